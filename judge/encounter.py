@@ -12,7 +12,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from cratous.judge import mission_file, separation, zones
-from cratous.judge.fields import Node
+from cratous.judge.fields import Node, is_plain
 from cratous.judge.log import Log, State
 from cratous.judge.mission import Mission, Point
 from cratous.judge.plane import squared_distance
@@ -43,6 +43,9 @@ def judge_encounter(file: Path, states: States, reached: Mapping[int, int]) -> l
 
 
 def _state(data: Node) -> State:
+    plain = data.data
+    if type(plain) is list and len(plain) == len(State._fields) and all(map(is_plain, plain[1:])):
+        return State(next(iter(data)).whole, *plain[1:])
     values = list(data)
     if len(values) != len(State._fields):
         raise data.wrong("time [ms], position and velocity")

@@ -14,15 +14,34 @@ FARTHEST = 1e15
 """No real number exceeds this; squares and products of four stay far from the end of the doubles."""
 
 
+def is_plain(value: Any) -> bool:
+    """Whether a value is a double that `real` takes as it is; also of NaN the comparison is false."""
+    return type(value) is float and -FARTHEST <= value <= FARTHEST
+
+
 class Node:
     """A value with the place where it stands; `where` is the file."""
 
-    def __init__(self, data: Any, where: str, item: str) -> None:
-        self.data, self.where, self.item = data, where, item
+    __slots__ = ("_name", "_whole", "data", "where")
+
+    def __init__(self, data: Any, where: str, name: str | int, whole: Node | None = None) -> None:
+        """name: the item; of a part of another value (`whole`) its field or number in that."""
+        self.data, self.where, self._name, self._whole = data, where, name, whole
+
+    @property
+    def item(self) -> str:
+        """Where in the file it stands; put together only where an error says it."""
+        if self._whole is None:
+            return str(self._name)
+        part = f"[{self._name}]" if isinstance(self._name, int) else f".{self._name}"
+        return self._whole.item + part
 
     def wrong(self, expected: str) -> BadInput:
         """The error that this value is."""
-        got = repr(self.data) if not isinstance(self.data, int) else _digits(self.data)
+        try:
+            got = repr(self.data) if not isinstance(self.data, int) else _digits(self.data)
+        except RecursionError:
+            got = "what is nested too deeply to be shown"
         return BadInput(
             "does not fit", where=self.where, item=self.item, expected=expected, got=got[:80]
         )
@@ -35,20 +54,20 @@ class Node:
             raise BadInput(
                 "a field is missing", where=self.where, item=f"{self.item}.{name}", expected=name
             )
-        return Node(self.data[name], self.where, f"{self.item}.{name}")
+        return Node(self.data[name], self.where, name, self)
 
     def get(self, name: str, default: Any = None) -> Node:
         """A field of an object, or this default."""
         if not isinstance(self.data, dict):
             raise self.wrong("an object")
-        return Node(self.data.get(name, default), self.where, f"{self.item}.{name}")
+        return Node(self.data.get(name, default), self.where, name, self)
 
     def __iter__(self) -> Iterator[Node]:
         """The entries of a list."""
         if not isinstance(self.data, list):
             raise self.wrong("a list")
         for k, part in enumerate(self.data):
-            yield Node(part, self.where, f"{self.item}[{k}]")
+            yield Node(part, self.where, k, self)
 
     def has(self, name: str) -> bool:
         """Whether an object has the field, and not null in it."""
@@ -69,6 +88,14 @@ class Node:
         if not abs(self.data) <= FARTHEST or not math.isfinite(self.data):
             raise self.wrong(f"a number of at most {FARTHEST:g}")
         return float(self.data)
+
+    def reals(self, *names: str) -> list[float]:
+        """Fields of an object, each a finite number."""
+        if type(self.data) is dict:
+            values: list[Any] = list(map(self.data.get, names))
+            if all(map(is_plain, values)):
+                return values
+        return [self[name].real for name in names]
 
     @property
     def text(self) -> str:

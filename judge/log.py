@@ -9,6 +9,7 @@ import hashlib
 import json
 import sqlite3
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -22,6 +23,7 @@ KINDS = (
     "TruthState", "AirVehicleState", "TaskProgress", "MissionEnd", "GateState", "GatedCommand",
     "CommandDropped", "AuthorityChange", "Heartbeat", "BridgeStatus", "PlanAccepted",
 )  # fmt: skip
+FLOWN = ("North", "East", "Altitude", "VelocityNorth", "VelocityEast", "VelocityDown")
 PHASES = ("Planned", "Transit", "Waiting", "Active", "Suspended", "Complete", "Failed")
 SIDES = ("UxAS", "ICAROUS")
 
@@ -191,9 +193,10 @@ def _typed(row: tuple[Any, ...], where: str) -> tuple[int, int, Any]:
 
 def _feed(digest: Any, row: tuple[Any, ...]) -> None:
     """One message of the digest: its head as JSON, its body, each with a line's end."""
-    outside = any(value is not None for value in row[5:])
-    head = [*row[:4], *row[5:]] if outside else [*row[:4]]
-    text = json.dumps(head, separators=(",", ":"), ensure_ascii=False)
+    if row.count(None) < len(row) - len(OLD):
+        text = json.dumps([*row[:4], *row[5:]], separators=(",", ":"), ensure_ascii=False)
+    else:
+        text = f"[{row[0]},{row[1]},{_quoted(row[2])},{_quoted(row[3])}]"
     digest.update(text.encode("utf-8", "surrogatepass") + b"\n")
     body = row[4]
     digest.update((body if isinstance(body, bytes) else body.encode()) + b"\n")
@@ -230,12 +233,18 @@ def _doubt(log: Log, text: str) -> None:
         log.doubts.append(text)
 
 
-def _json(text: str, where: str, item: str) -> Any:
-    def refuse(name: str) -> float:
-        raise ValueError(f"{name} is no number of JSON")
+def _refuse(name: str) -> float:
+    raise ValueError(f"{name} is no number of JSON")
 
+
+_decode = json.JSONDecoder(parse_constant=_refuse).decode
+_quoted = lru_cache(256)(json.JSONEncoder(ensure_ascii=False).encode)
+"""A text as JSON; names of senders and types come again and again."""
+
+
+def _json(text: str, where: str, item: str) -> Any:
     try:
-        return json.loads(text, parse_constant=refuse)
+        return _decode(text)
     except (ValueError, RecursionError) as error:
         raise BadInput(f"not JSON ({str(error)[:100]})", where=where, item=item) from None
 
@@ -254,9 +263,8 @@ def _message(log: Log, kind: str, seq: int, time_ms: int, body: Any) -> None:
 
 
 def _truth(log: Log, body: Node, _time_ms: int) -> None:
-    names = ("North", "East", "Altitude", "VelocityNorth", "VelocityEast", "VelocityDown")
-    values = [body[name].real for name in names]
-    values[5] = -values[5]
+    values = body.reals(*FLOWN)
+    values[-1] = -values[-1]
     state = State(body["Time"].whole, *values)
     log.states.setdefault(body["VehicleID"].whole, []).append(state)
 

@@ -26,6 +26,8 @@ from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, doubted, second
 
 ROUND = 2.0**-50
 """More than the relative rounding of a difference of differences, with its terms' sizes."""
+SUMS = 1e-14
+"""More than the relative rounding of a sum of a few such products."""
 NMAC = (152.4, 30.48)
 """Near mid-air collision: 500 ft and 100 ft. Told, not judged: the mission says what is well clear."""
 
@@ -65,6 +67,43 @@ def clear_by_far(a0: State, a1: State, b0: State, b1: State, volume: Volume) -> 
     climbed = (abs(z1 - z0) + size * ROUND) * (1 + 1e-9)
     reach = (volume.zthr_m + (volume.tcoa_s / h + 1) * climbed) * (1 + 1e-9) + 1e-9
     return abs(z0) > reach
+
+
+def clear_by_course(a0: State, a1: State, b0: State, b1: State, volume: Volume) -> bool:
+    """Certainly never lost on the leg, as `lost_within` decides it, by doubles with room for their rounding.
+
+    The course passes outside of DTHR; or at the beginning they are outside of DTHR and part; or at the end
+    `soon` is still above 0 and falls, so that its lower root is later.
+    """
+    h = (a1.time_ms - a0.time_ms) / 1000
+    n0, e0 = a0.north_m - b0.north_m, a0.east_m - b0.east_m
+    n1, e1 = a1.north_m - b1.north_m, a1.east_m - b1.east_m
+    dn, de = n1 - n0, e1 - e0
+    slip = ROUND * (
+        abs(a0.north_m) + abs(b0.north_m) + abs(a1.north_m) + abs(b1.north_m)
+        + abs(a0.east_m) + abs(b0.east_m) + abs(a1.east_m) + abs(b1.east_m)
+    )  # fmt: skip
+    aside, off = _of_products(n0, de, -e0, dn, slip)
+    if abs(aside) - off > volume.dthr_m * (math.hypot(dn, de) + 2 * slip) * (1 + 1e-9):
+        return True
+    along, off = _of_products(n0, dn, e0, de, slip)
+    if along > off and math.hypot(n0, e0) > (volume.dthr_m + 2 * slip) * (1 + 1e-9):
+        return True
+    ahead, off = _of_products(n1, dn, e1, de, slip)
+    apart, apart_off = _of_products(n1, n1, e1, e1, slip)
+    way, way_off = _of_products(dn, dn, de, de, slip)
+    dd, longer, tthr = volume.dthr_m**2, volume.tthr_s / h, volume.tthr_s
+    soon = apart - apart_off + longer * (ahead - off) - dd
+    rise = 2 * h * (ahead + off) + tthr * (way + way_off)
+    return soon > SUMS * (apart + longer * abs(ahead) + dd) and rise < -SUMS * (
+        2 * h * abs(ahead) + tthr * way
+    )
+
+
+def _of_products(a: float, b: float, c: float, d: float, slip: float) -> tuple[float, float]:
+    """a b + c d, and more than that may be off where each of the four is off by at most `slip`."""
+    size = abs(a) + abs(b) + abs(c) + abs(d) + slip
+    return a * b + c * d, 2 * slip * size + ROUND * (abs(a * b) + abs(c * d)) + 1e-200
 
 
 def lost_on_leg(a0: State, a1: State, b0: State, b1: State, volume: Volume) -> bool:
@@ -169,7 +208,8 @@ def _watch(one: Track, two: Track, volume: Volume) -> Pair:
         if a[i].time_ms in one.unknown or a[i].time_ms in two.unknown:
             lost = _lost_at(a[i], b[j], volume) or _lost_at(a[i + 1], b[j + 1], volume)
         else:
-            lost = not clear_by_far(*legs, volume) and lost_on_leg(*legs, volume)
+            clear = clear_by_far(*legs, volume) or clear_by_course(*legs, volume)
+            lost = not clear and lost_on_leg(*legs, volume)
         if lost:
             pair.last_ms = a[i].time_ms
             if pair.lost_ms is None:

@@ -21,18 +21,33 @@ from typing import NamedTuple
 from cratous.core.avoidance.manoeuvre import PIECE_S, Ability, Motion, smallest_turn
 
 
+class Off(NamedTuple):
+    """How far off a place may be: beside, and in altitude [m]."""
+
+    wide_m: float
+    high_m: float
+
+
 class Drift(NamedTuple):
     """turn_rad: of the whole turn; turn_rate_rad_s: how fast it is flown; m_per_rad: by how much the flown way may be
-    off for each radian that is turned [m]; rise_m_per_m: how far off in height for each metre."""
+    off for each radian that is turned [m]; rise_m_per_m: how far off in height for each metre; here: how far the vehicle
+    may be from where it is taken to be now."""
 
     turn_rad: float
     turn_rate_rad_s: float
     m_per_rad: float
     rise_m_per_m: float
+    here: Off = Off(0.0, 0.0)
 
     def aside_m(self, at_s: float) -> float:
         """How far aside of the predicted way the vehicle may be until at_s [s from the start of the turn]."""
-        return self.m_per_rad * min(self.turn_rad, self.turn_rate_rad_s * at_s)
+        turned_m = self.m_per_rad * min(self.turn_rad, self.turn_rate_rad_s * at_s)
+        return turned_m + self.here.wide_m
+
+    def rise_m(self, at_s: float) -> float:
+        """How far above or below it, likewise."""
+        turned_m = self.m_per_rad * min(self.turn_rad, self.turn_rate_rad_s * at_s)
+        return turned_m * self.rise_m_per_m + self.here.high_m
 
 
 NONE = Drift(0.0, 0.0, 0.0, 0.0)
@@ -45,9 +60,10 @@ def drift_of(
     heading_rad: float,
     speed_m_s: float,
     climb_m_s: float,
+    here: Off = NONE.here,
 ) -> Drift:
     """The drift of a turn to a heading [rad] with a change of speed [m/s] and a climb [m/s], as `fly_to`
-    predicts it."""
+    predicts it. here: how far the vehicle may be from where it is taken to be."""
     slow, fast = sorted((now.speed_m_s, speed_m_s))
     radius_m = now.speed_m_s / ability.turn_rate_rad_s
     wider_m = radius_m * abs((speed_m_s / now.speed_m_s) ** 2 - 1)
@@ -56,4 +72,5 @@ def drift_of(
         ability.turn_rate_rad_s,
         fast * max(PIECE_S, ability.step_s) / 2 + wider_m,
         abs(climb_m_s) / slow if climb_m_s else 0.0,
+        here,
     )

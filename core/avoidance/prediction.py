@@ -3,7 +3,8 @@
 A trajectory is a sequence of pieces of constant velocity. Each piece is checked against each
 intruder by the kernel `violation_within`, which is exact over the whole piece: no time between
 samples is missed. Only the *instant* of the first violation is found by halving, to a fraction of
-the piece, and always rounded towards the earlier side.
+the piece, and always rounded towards the earlier side. An intruder that is known within a spread loses well clear
+where the true one may (`core.daa.uncertainty`).
 """
 
 from __future__ import annotations
@@ -13,8 +14,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
+from cratous.core.daa.uncertainty import LEAST_ERROR, Uncertainty, uncertain_conflict
 from cratous.core.kernel import Vec2, driver
-from cratous.core.well_clear import StandardThresholds, violation, violation_within
+from cratous.core.well_clear import StandardThresholds, Thresholds, violation, violation_within
 from cratous.spec.mission import Position, Velocity, WellClear
 
 STANDING = Velocity(0.0, 0.0, 0.0)
@@ -30,11 +32,35 @@ class Piece(NamedTuple):
     velocity: Velocity
 
 
+class Spread(NamedTuple):
+    """How far an aircraft may be from where it is predicted: wide_m beside and high_m in altitude [m], and after t seconds
+    wide_m_s t and high_m_s t more, until it does not grow any more at steady_s [s]. All 0: it is where it is predicted.
+    """
+
+    wide_m: float = 0.0
+    wide_m_s: float = 0.0
+    high_m: float = 0.0
+    high_m_s: float = 0.0
+    steady_s: float = math.inf
+
+    def after(self, t_s: float) -> Spread:
+        """The same, counted from t_s [s] later on."""
+        grows_s = min(t_s, self.steady_s)
+        wide, high = self.wide_m + grows_s * self.wide_m_s, self.high_m + grows_s * self.high_m_s
+        if t_s >= self.steady_s:
+            return Spread(wide, 0.0, high, 0.0)
+        return Spread(wide, self.wide_m_s, high, self.high_m_s, self.steady_s - t_s)
+
+
+EXACT = Spread()
+"""Of one that is where it is predicted."""
+
+
 class Intruder(NamedTuple):
     """Another aircraft, as seen now; cooperates: it too is flown by one of our instances.
 
     way: how it is taken to fly, from now on and without gaps; () is straight on. After it the intruder is within hold_m
-    [m] of where the way ends.
+    [m] of where the way ends. spread: how far off it may be, the own vehicle being where it is taken to be.
     """
 
     id: int
@@ -43,6 +69,7 @@ class Intruder(NamedTuple):
     cooperates: bool = False
     way: tuple[Piece, ...] = ()
     hold_m: float = 0.0
+    spread: Spread = EXACT
 
 
 def buffered(volume: WellClear, buffer: float) -> WellClear:
@@ -86,7 +113,8 @@ def later(other: Intruder, t_s: float) -> Intruder:
     # straight flight and hold, the last leg, are no part of the way
     left = (begun, *rest[1:-1]) if rest[1:] else ()
     way = tuple(leg._replace(start_s=leg.start_s - t_s) for leg in left)
-    return other._replace(position=begun.position, velocity=begun.velocity, way=way)
+    spread = other.spread.after(t_s)
+    return other._replace(position=begun.position, velocity=begun.velocity, way=way, spread=spread)
 
 
 def rest_of(pieces: Sequence[Piece], t_s: float) -> tuple[Piece, ...]:
@@ -103,17 +131,32 @@ def rest_of(pieces: Sequence[Piece], t_s: float) -> tuple[Piece, ...]:
 def meetings(
     pieces: Sequence[Piece], other: Intruder
 ) -> Iterator[tuple[tuple[Piece, ...], Intruder]]:
-    """The pieces cut where the intruder begins another leg: each run of them with the intruder as it flies then, as one
-    that has flown and will fly straight on. No instant of the pieces is left out, none comes twice but the cuts."""
-    if not other.way:
+    """The pieces cut where the intruder begins another leg, and where its spread stops to grow: each run of them with
+    the intruder as it flies then, as one that has flown and will fly straight on. No instant of the pieces is left out,
+    none comes twice but the cuts."""
+    steady_s = other.spread.steady_s
+    if not other.way and steady_s == math.inf:
         yield tuple(pieces), other
         return
     for leg in legs_of(other):
-        run = tuple(_within(piece, leg) for piece in pieces if _overlap(piece, leg))
-        if run:
-            begun = after(leg, -leg.start_s)
-            held_m = other.hold_m if leg.duration_s == math.inf else 0.0
-            yield run, other._replace(position=begun, velocity=leg.velocity, way=(), hold_m=held_m)
+        held_m = other.hold_m if other.way and leg.duration_s == math.inf else 0.0
+        for part in _cut(leg, steady_s):
+            run = tuple(_within(piece, part) for piece in pieces if _overlap(piece, part))
+            if run:
+                begun = after(part, -part.start_s)
+                spread = other.spread.after(steady_s) if part.start_s >= steady_s else other.spread
+                spread = spread._replace(steady_s=math.inf)
+                straight_on = other._replace(position=begun, velocity=leg.velocity, way=())
+                yield run, straight_on._replace(hold_m=held_m, spread=spread)
+
+
+def _cut(leg: Piece, at_s: float) -> tuple[Piece, ...]:
+    """A leg, in two where an instant [s] lies in it."""
+    gone_s = at_s - leg.start_s
+    if not 0 < gone_s < leg.duration_s:
+        return (leg,)
+    first = leg._replace(duration_s=gone_s)
+    return first, Piece(at_s, leg.duration_s - gone_s, after(leg, gone_s), leg.velocity)
 
 
 def around(volume: WellClear, other: Intruder) -> WellClear:
@@ -163,10 +206,12 @@ def out_of_reach(pieces: Sequence[Piece], other: Intruder, volume: WellClear) ->
         first.position.east_m - other.position.east_m,
     )
     reach = last.start_s + last.duration_s + volume.tthr_s
-    return far > 1 + volume.dthr_m + closing * reach
+    spread = other.spread.after(last.start_s + last.duration_s)
+    off = spread.wide_m + other.spread.wide_m_s * volume.tthr_s
+    return far > 1 + volume.dthr_m + off + closing * reach
 
 
-@driver(checked_by=("violation_within",))
+@driver(checked_by=("violation_within", "uncertain_conflict"))
 def first_violation_s(
     pieces: Sequence[Piece], other: Intruder, volume: WellClear, halvings: int = 6
 ) -> float | None:
@@ -189,18 +234,43 @@ def _first_of_straight(
     if not pieces or out_of_reach(pieces, other, volume):
         return None
     for piece in pieces:
-        s, v, sz, vz = _relative(piece, other, 0.0)
-        if not violation_within(s, v, sz, vz, _thresholds(volume), piece.duration_s):
+        if not _lost_within(piece, other, volume, piece.duration_s):
             continue
         low, high = 0.0, piece.duration_s
         for _ in range(halvings):
             middle = (low + high) / 2
-            if violation_within(s, v, sz, vz, _thresholds(volume), middle):
+            if _lost_within(piece, other, volume, middle):
                 high = middle
             else:
                 low = middle
         return piece.start_s + low
     return None
+
+
+@driver(checked_by=("violation_within", "uncertain_conflict"))
+def _lost_within(piece: Piece, other: Intruder, volume: WellClear, t_s: float) -> bool:
+    """Whether the first t_s [s] of a piece lose well clear of one that flies straight on, or may."""
+    s, v, sz, vz = _relative(piece, other, 0.0)
+    spread = other.spread
+    if not (spread.wide_m or spread.wide_m_s or spread.high_m or spread.high_m_s):
+        return bool(violation_within(s, v, sz, vz, _thresholds(volume), t_s))
+    # the spread is that of now: from there the relative flight of this piece would have come
+    at_s = piece.start_s
+    error = Uncertainty(*(max(LEAST_ERROR, one) for one in (
+        spread.wide_m, spread.high_m, spread.wide_m_s, spread.high_m_s
+    )))  # fmt: skip
+    return bool(
+        uncertain_conflict(
+            Vec2(s.x - at_s * v.x, s.y - at_s * v.y),
+            v,
+            sz - at_s * vz,
+            vz,
+            error,
+            Thresholds(*_thresholds(volume), 0.0),
+            at_s,
+            at_s + t_s,
+        )
+    )
 
 
 @driver(checked_by=("violation",))

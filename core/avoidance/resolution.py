@@ -15,7 +15,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from cratous.core.avoidance.drift import NONE, Drift, drift_of
+from cratous.core.avoidance.drift import NONE, Drift, Off, drift_of
 from cratous.core.avoidance.manoeuvre import Ability, Motion, fly_to, smallest_turn
 from cratous.core.avoidance.prediction import Intruder, Piece, after, first_violation_s, violated_s
 from cratous.core.geofence.clearance import leg_keeps
@@ -43,12 +43,14 @@ class Choice(NamedTuple):
 
 
 class Scene(NamedTuple):
-    """What a manoeuvre is judged against: traffic, zones, the buffered volume, and how far."""
+    """What a manoeuvre is judged against: traffic, zones, the buffered volume, and how far. here: how far the vehicle
+    may be from where it is taken to be."""
 
     intruders: tuple[Intruder, ...]
     zones: tuple[Zone, ...]
     volume: WellClear
     lookahead_s: float
+    here: Off = NONE.here
 
 
 @driver(checked_by=("keep_out_leg_ok", "keep_in_leg_ok", "locate", "comes_within"))
@@ -63,8 +65,9 @@ def first_zone_s(
             step = min(chunk_s, piece.duration_s - t)
             p, q = after(piece, t), after(piece, t + step)
             aside_m = drift.aside_m(piece.start_s + t + step)
+            rise_m = drift.rise_m(piece.start_s + t + step)
             for zone in zones:
-                if not leg_keeps(p, q, zone, aside_m, aside_m * drift.rise_m_per_m):
+                if not leg_keeps(p, q, zone, aside_m, rise_m):
                     return piece.start_s + t
             t += step
     return None
@@ -90,7 +93,7 @@ def keeps_clear(now: Motion, ability: Ability, scene: Scene, choice: Choice) -> 
     pieces = _pieces(now, ability, choice, scene.lookahead_s)
     if first_conflict_s(pieces, scene) is not None:
         return False
-    drift = drift_of(now, ability, *choice[1:4])
+    drift = drift_of(now, ability, *choice[1:4], scene.here)
     return first_zone_s(pieces, scene.zones, turn_back_s(now, ability), drift) is None
 
 
@@ -121,7 +124,7 @@ def resolve(
     for candidate in _candidates(now, ability, scene, course_rad, speed_m_s, held):
         pieces = _pieces(now, ability, candidate, scene.lookahead_s)
         traffic_s = first_conflict_s(pieces, scene)
-        drift = drift_of(now, ability, *candidate[1:4])
+        drift = drift_of(now, ability, *candidate[1:4], scene.here)
         zone_s = first_zone_s(pieces, scene.zones, near_s, drift) if scene.zones else None
         if traffic_s is None and zone_s is None:
             return candidate._replace(clear=True)

@@ -16,7 +16,7 @@ import json
 import os
 import sys
 import types
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, get_type_hints
@@ -140,8 +140,13 @@ def names_of(code: types.CodeType) -> Iterator[str]:
 
 def constants(item: Any) -> list[str]:
     """The values of all constants that a function or fold rests on, in an order that no move changes."""
+    return constants_of(reached(item))
+
+
+def constants_of(rests: Mapping[str, Any]) -> list[str]:
+    """The same of what was `reached` already."""
     found = []
-    for name, value in reached(item).items():
+    for name, value in rests.items():
         last = name.rpartition(".")[2]
         if name.startswith("fold "):
             found.append(f"start {_shown(value[0])}")
@@ -225,12 +230,18 @@ def altered_of(rests: dict[str, Any]) -> list[str]:
 
 
 @functools.cache
+def _resolved(file: str) -> Path:
+    """Where a module's file lies; many functions stand in one, and links are slow to follow."""
+    return Path(file).resolve()
+
+
+@functools.cache
 def _as_written(function: types.FunctionType, code: types.CodeType) -> bool:
     """A function runs what the file of its module says, which lies where the module should.
 
     code: what it runs now, so that it is looked at anew.
     """
-    file = Path(str(sys.modules[function.__module__].__file__)).resolve()
+    file = _resolved(str(sys.modules[function.__module__].__file__))
     top, *parts = function.__module__.split(".")
     if top in PACKAGES:
         base = PACKAGES[top].joinpath(*parts)

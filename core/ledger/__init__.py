@@ -104,7 +104,10 @@ def _not_proved(names: list[str], theorems: dict[str, Any], home: Home) -> str:
 
 
 def _problems(home: Home, entries: dict[str, Entry], data: dict[str, Any]) -> Iterator[Problem]:
-    theorems, keys = data["theorems"], keys_of(home, entries, data)
+    theorems = data["theorems"]
+    known = {name: entry for name, entry in entries.items() if name in data["kernels"]}
+    rests = {name: reached(entry.function) for name, entry in known.items()}
+    keys = keys_of(home, known, rests, data)
     looked: Looked = {}
     for name, entry in entries.items():
         record = data["kernels"].get(name)
@@ -125,10 +128,9 @@ def _problems(home: Home, entries: dict[str, Entry], data: dict[str, Any]) -> It
         if changed:
             yield Problem(name, "changed since the proof: " + ", ".join(changed))
             continue
-        rests = reached(entry.function)
-        if wrong := altered_of(rests):
+        if wrong := altered_of(rests[name]):
             yield Problem(name, "the code that runs is not its file's: " + ", ".join(wrong))
-        elif other := replaced(rests.values(), looked):
+        elif other := replaced(rests[name].values(), looked):
             yield Problem(
                 name, "names mean something else than their files say: " + ", ".join(other)
             )

@@ -18,7 +18,7 @@ from typing import Any
 
 from cratous.core.files.private_cache import private_cache
 from cratous.core.kernel import Entry, checkers
-from cratous.core.kernel.sources import constants, digest
+from cratous.core.kernel.sources import constants_of, digest
 from cratous.core.ledger.key_parts import MISSING, PARTS, PROVENANCE, compiler, solver_version
 from cratous.core.ledger.keys import Keys
 from cratous.core.ledger.module_trees import DATA
@@ -30,12 +30,13 @@ KEPT = "keys"
 """The folder of the cache."""
 
 Found = dict[str, dict[str, str]]
+Rests = Mapping[str, Mapping[str, Any]]
+"""What each entry rests on as it runs, by its name (`core.kernel.sources.reached`)."""
 
 
-def keys_of(home: Home, entries: Mapping[str, Entry], data: Mapping[str, Any]) -> Found:
-    """The parts of the key of each entry that has a record in this ledger, by name."""
-    known = {name: entry for name, entry in entries.items() if name in data["kernels"]}
-    stamp = _stamp(home, known, data)
+def keys_of(home: Home, known: Mapping[str, Entry], rests: Rests, data: Mapping[str, Any]) -> Found:
+    """The parts of the key of each of these entries, which all have records in this ledger."""
+    stamp = _stamp(home, known, rests, data)
     file = private_cache() / KEPT / stamp
     with contextlib.suppress(OSError, ValueError):
         found: Found = json.loads(file.read_text(encoding="utf-8"))
@@ -48,7 +49,7 @@ def keys_of(home: Home, entries: Mapping[str, Entry], data: Mapping[str, Any]) -
     }
     whole = not any(MISSING in key.values() for key in made.values())
     # a file that was edited meanwhile may stand in the keys and not in the stamp
-    if whole and not _elsewhere(keys.tree.asked) and _stamp(home, known, data) == stamp:
+    if whole and not _elsewhere(keys.tree.asked) and _stamp(home, known, rests, data) == stamp:
         _keep(file, made)
     return made
 
@@ -73,7 +74,7 @@ def _keep(file: Path, made: Found) -> None:
         part.replace(file)
 
 
-def _stamp(home: Home, known: Mapping[str, Entry], data: Mapping[str, Any]) -> str:
+def _stamp(home: Home, known: Mapping[str, Entry], rests: Rests, data: Mapping[str, Any]) -> str:
     """One hash over all that the keys are made from: files, versions, the registry, the records."""
     texts = [sys.version, compiler(), solver_version(), home.name]
     for root, folders in _roots(home):
@@ -82,7 +83,7 @@ def _stamp(home: Home, known: Mapping[str, Entry], data: Mapping[str, Any]) -> s
             texts += _files(root, folder)
     for name, entry in sorted(known.items()):
         rechecked = checkers(entry) if entry.kind == "driver" else ()
-        texts += [name, entry.kind, str(entry.implements), *constants(entry.function), *rechecked]
+        texts += [name, entry.kind, str(entry.implements), *constants_of(rests[name]), *rechecked]
         texts.append(json.dumps(data["kernels"][name]["theorems"]))
     lemmas = {name: record.get("lemmas", ()) for name, record in data["theorems"].items()}
     return digest([*texts, json.dumps(lemmas, sort_keys=True)])

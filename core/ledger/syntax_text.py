@@ -251,12 +251,13 @@ class _Reader:
         inside = [node.body] if isinstance(node, ast.Lambda) else [*node.body]
         bound: set[str] = set()
         outer: set[str] = set()
+        around: set[str] = set()
+        kinds = {"global": outer, "nonlocal": around}
         for what, name in _bindings(inside):
-            (outer if what == "global" else bound).add(name)
+            kinds.get(what, bound).add(name)
         self.found.rebinds |= outer & bound
         bound |= {a.arg for a in ast.walk(node.args) if isinstance(a, ast.arg)}
-        bound -= {name for what, name in _bindings(inside) if what == "nonlocal"}
-        self.scopes.append((frozenset(bound - outer), frozenset(outer)))
+        self.scopes.append((frozenset(bound - outer - around), frozenset(outer)))
         self.several([*inside])
         self.scopes.pop()
         self.found.parts.append(")")

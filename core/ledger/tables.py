@@ -13,7 +13,7 @@ import hashlib
 import json
 import os
 import sys
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -93,7 +93,7 @@ def _table(data: bytes, around: tuple[str, ...], key: str) -> Table:
     try:
         kept.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
         part = kept.with_name(f"{key}.{os.getpid()}")
-        part.write_text(json.dumps(asdict(made), separators=(",", ":")), encoding="utf-8")
+        part.write_text(json.dumps(_kept(made), separators=(",", ":")), encoding="utf-8")
         part.replace(kept)
     except OSError:
         pass  # a folder that cannot be written is no error
@@ -105,6 +105,11 @@ def _maker() -> bytes:
     """What tables are made by: another text makes others."""
     files = (Path(__file__), Path(str(syntax_text.__file__)))
     return sys.version.encode() + b"".join(file.read_bytes() for file in files)
+
+
+def _kept(made: Table) -> dict[str, Any]:
+    """The fields of a table and of its units, without a copy of each text in them."""
+    return {**vars(made), "units": [vars(unit) for unit in made.units]}
 
 
 def restored(data: dict[str, Any]) -> Table:

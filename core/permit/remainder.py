@@ -1,7 +1,7 @@
 """Whether a vehicle may fly a way to its end, and hold there: what permits it, by traffic and by zones.
 
 The hold is a disc that stands. Intruders are taken to fly straight on, as everywhere in prediction: their tubes
-have no width. The proved kernels keep the closed cylinder of the volume; that the way keeps its thresholds of time
+are as wide as their states are known, and have no width where they are exact. The proved kernels keep the closed cylinder of the volume; that the way keeps its thresholds of time
 too is the caller's to check.
 """
 
@@ -9,7 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from cratous.core.avoidance.prediction import STANDING, Intruder, Piece, around, later, meetings
+from cratous.core.avoidance.prediction import (
+    EXACT,
+    STANDING,
+    Intruder,
+    Piece,
+    Spread,
+    around,
+    later,
+    meetings,
+)
 from cratous.core.geofence.distance import comes_within
 from cratous.core.geofence.planar import edges_of, keep_in_leg_ok, keep_out_leg_ok, locate
 from cratous.core.kernel import Vec2, driver
@@ -26,7 +35,7 @@ from cratous.core.readings.exact import exact
 from cratous.spec.mission import Position, WellClear, Zone, ZoneKind
 
 STEADY = Growth(0.0, 0.0, 0.0)
-"""The tube of an intruder that is taken to fly straight on."""
+"""The tube of an intruder that is where it is predicted."""
 
 Moving = tuple[Vec2, float, float, float]
 """Velocity [m/s], climb [m/s, up], duration [s] and rho [m], as in `core.permit.pieces.Piece`."""
@@ -45,10 +54,18 @@ def meeting(start: Position, other: Intruder, volume: WellClear) -> Meeting:
         start.alt_m - p.alt_m,
         Vec2(w.north_m_s, w.east_m_s),
         -w.down_m_s,
-        STEADY,
-        STEADY,
+        *tube_of(other.spread),
         volume.dthr_m,
         volume.zthr_m,
+    )
+
+
+def tube_of(spread: Spread) -> Tube:
+    """How far an intruder may be from where it is predicted, as a tube. Of one whose spread never stops to grow."""
+    if spread == EXACT:
+        return Tube(STEADY, STEADY)
+    return Tube(
+        Growth(spread.wide_m, spread.wide_m_s, 0.0), Growth(spread.high_m, spread.high_m_s, 0.0)
     )
 
 
@@ -84,11 +101,10 @@ def _hold_permits(
     # it stands: 0 less the other's velocity, which no rounding touches
     v = Vec2(0.0 - met.w.x, 0.0 - met.w.y)
     margins = Margins(met.radius_m, met.half_height_m, hold_m)
-    if exact(
-        piece_clear, met.s, v, met.sz, -met.wz, Tube(STEADY, STEADY), margins, hold.duration_s
-    ):
+    tube = Tube(met.wide, met.high)
+    if exact(piece_clear, met.s, v, met.sz, -met.wz, tube, margins, hold.duration_s):
         return True
-    layer = Growth(volume.zthr_m + rise_m, 0.0, 0.0)
+    layer = met.high._replace(start_m=volume.zthr_m + rise_m + met.high.start_m)
     if exact(above_during, met.sz, -met.wz, layer, hold.duration_s):
         return True
     return bool(exact(above_during, -met.sz, met.wz, layer, hold.duration_s))

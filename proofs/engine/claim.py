@@ -220,8 +220,9 @@ class Claim:
         self.facts += lifted.roots
         self._closed(function, args, met, machine, where)
         self.roots += lifted.roots
-        wide = self.wide & {name for premise in self.premises for name in free_names(premise)}
-        for name, term in depending(args, wide) if machine and wide else ():
+        named = (n for premise in self.premises for n in free_names(premise))
+        wide = self.wide.intersection(named) if machine and self.wide else set()
+        for name, term in depending(args, wide) if wide else ():
             text = f"{function.__name__}: argument {name}: {RANGE}"
             self._owe("defined", text, z3.And(term >= -INT64, term < INT64))
         for text, condition in lifted.obligations:

@@ -7,6 +7,7 @@ of them would then be another goal than the one that was proved, without a word.
 
 from __future__ import annotations
 
+import functools
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +19,10 @@ from cratous.proofs.engine.theorem_files import load_claim, load_lemma
 def hangs_on_calls(name: str, folder: Path) -> bool:
     """Does the theorem show something else, or nothing, where it meets no calls?"""
     statement = load_claim(name, folder)[0]
+    lemma = functools.cache(lambda other: load_lemma(other, folder))
 
     def read(**how: Any) -> Claim:
-        claim = Claim(load=lambda other: load_lemma(other, folder), **how)
+        claim = Claim(load=lemma, **how)
         statement(claim)
         return claim
 

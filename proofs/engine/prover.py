@@ -9,6 +9,7 @@ obligation can be written out as SMT-LIB for solvers that stand alone.
 
 from __future__ import annotations
 
+import functools
 import sys
 import time
 import traceback
@@ -32,7 +33,7 @@ from cratous.proofs.engine.lift import LiftError
 from cratous.proofs.engine.obligation import Obligation
 from cratous.proofs.engine.obligation_hash import Hasher
 from cratous.proofs.engine.outcomes import Outcome, Owed, Ran, restored
-from cratous.proofs.engine.smtlib import logic_of, question, smt2, sorts
+from cratous.proofs.engine.smtlib import Seen, logic_of, question, smt2, sorts
 from cratous.proofs.engine.solver_order import check, solvers
 from cratous.proofs.engine.theorem_files import FOLDER, find, load_claim, load_lemma, theorem_files
 from cratous.spec.errors import BadInput
@@ -134,10 +135,19 @@ def restore(data: dict[str, Any]) -> Theorem:
     )
 
 
+@dataclass(frozen=True)
+class _Memory:
+    """What the questions of one theorem share: answers, hashes of terms, kinds of values in them."""
+
+    cache: Cache
+    hasher: Hasher = field(default_factory=Hasher)
+    seen: Seen = field(default_factory=dict)
+
+
 def _solvers(
-    terms: list[z3.ExprRef], context: z3.Context, rlimit: int
+    terms: list[z3.ExprRef], context: z3.Context, rlimit: int, seen: Seen
 ) -> Iterator[tuple[str, z3.Solver, int]]:
-    kinds = sorts(terms) & {"Real", "Int", "BitVec", "quantifier", "function"}
+    kinds = sorts(terms, seen) & {"Real", "Int", "BitVec", "quantifier", "function"}
     return solvers(context, rlimit, polynomials=kinds == {"Real"})
 
 
@@ -145,14 +155,19 @@ def _maker(logic: str, context: z3.Context) -> z3.Solver:
     return z3.Solver(ctx=context) if logic == "ALL" else z3.SolverFor(logic, ctx=context)
 
 
-def _ask(given: list[z3.BoolRef], rlimit: int) -> tuple[Answer, z3.ModelRef | None, z3.Context]:
-    """The answer of the first solver that decides, and a model if it is sat."""
+def _ask(
+    given: list[z3.BoolRef], rlimit: int, seen: Seen
+) -> tuple[Answer, z3.ModelRef | None, z3.Context]:
+    """The answer of the first solver that decides, and a model if it is sat.
+
+    seen: what kinds of values terms have, as was found before.
+    """
     context = z3.Context()
     # translated in order into an empty context, terms get the same numbers wherever this runs
     terms = [term.translate(context) for term in given]
     begun = time.process_time()
     spent, result, logic, model = 0, "unknown", "ALL", None
-    for name, solver, effort in _solvers(terms, context, rlimit):
+    for name, solver, effort in _solvers(given, context, rlimit, seen):
         solver.add(*terms)
         before = _rlimit_count(solver)
         result, logic = check(solver, context, effort), name
@@ -168,21 +183,19 @@ def _rlimit_count(solver: z3.Solver) -> int:
     return next((int(value) for key, value in solver.statistics() if key == "rlimit count"), 0)
 
 
-def _decide(
-    claim: Claim, obligation: Obligation, rlimit: int, cache: Cache, hasher: Hasher
-) -> Outcome:
-    asked = question(obligation)
-    key = hasher.key("unsat?", asked)
+def _decide(claim: Claim, obligation: Obligation, rlimit: int, memory: _Memory) -> Outcome:
+    asked, cache = question(obligation), memory.cache
+    key = memory.hasher.key("unsat?", asked)
     answer = cache.get(key, rlimit)
     example: tuple[tuple[str, str], ...] = ()
     lines: list[str] = []
     if answer is None or answer.result == "sat":
-        answer, found, context = _ask(asked, rlimit)
+        answer, found, context = _ask(asked, rlimit, memory.seen)
         if found is None:
             cache.put(key, rlimit, answer)
         else:
             terms = [term.translate(context) for term in asked]
-            first = next(_solvers(terms, context, rlimit))[0]
+            first = next(_solvers(asked, context, rlimit, memory.seen))[0]
             found = telling(terms, found, lambda: _maker(first, context))
             model = Model(found, context)
             values = [(str(d.name()), str(found[d])) for d in found.decls() if d.arity() == 0]
@@ -195,7 +208,7 @@ def _decide(
     )
 
 
-def _premises(claim: Claim, rlimit: int, cache: Cache, hasher: Hasher) -> str:
+def _premises(claim: Claim, rlimit: int, memory: _Memory) -> str:
     """Whether some values satisfy the premises, and with them all that is taken as known.
 
     A contradiction among premises, assumptions and what lemmas say would prove anything. Where
@@ -205,7 +218,7 @@ def _premises(claim: Claim, rlimit: int, cache: Cache, hasher: Hasher) -> str:
         ([*claim.premises, *claim.facts], min(rlimit, FACTS_RLIMIT)),
         (list(claim.premises), rlimit),
     ):
-        result = _satisfiable(terms, budget, cache, hasher)
+        result = _satisfiable(terms, budget, memory)
         if result != "unknown":
             break
     return {"sat": "satisfiable", "unsat": "contradictory"}.get(result, "unknown")
@@ -230,16 +243,16 @@ def prove(
         raise ValueError(f"theorem {name}: it names no kernel (state it with c.use)")
     if not claim.obligations:
         raise ValueError(f"theorem {name}: it shows nothing (state it with c.show)")
-    hasher = Hasher()
-    premises = _premises(claim, rlimit, cache, hasher)
+    memory = _Memory(cache)
+    premises = _premises(claim, rlimit, memory)
     outcomes = []
     for obligation in claim.obligations:
-        outcomes.append(_decide(claim, obligation, rlimit, cache, hasher))
+        outcomes.append(_decide(claim, obligation, rlimit, memory))
         if tell is not None:
             tell(len(outcomes), len(claim.obligations))
 
     def possible(terms: list[z3.BoolRef]) -> str:
-        return _satisfiable(terms, min(rlimit, PATH_RLIMIT), cache, hasher)
+        return _satisfiable(terms, min(rlimit, PATH_RLIMIT), memory)
 
     return Theorem(
         name,
@@ -255,21 +268,23 @@ def prove(
     )
 
 
-def _satisfiable(terms: list[z3.BoolRef], rlimit: int, cache: Cache, hasher: Hasher) -> str:
-    key = hasher.key("sat?", terms)
-    answer = cache.get(key, rlimit)
+def _satisfiable(terms: list[z3.BoolRef], rlimit: int, memory: _Memory) -> str:
+    key = memory.hasher.key("sat?", terms)
+    answer = memory.cache.get(key, rlimit)
     if answer is None:
-        answer, *_ = _ask(terms, rlimit)
-        cache.put(key, rlimit, answer)
+        answer, *_ = _ask(terms, rlimit, memory.seen)
+        memory.cache.put(key, rlimit, answer)
     return answer.result
 
 
 def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
     """The claim of a theorem file, stated, and its sentence; the kernels must be registered."""
     statement, sentence = load_claim(name, folder)
+    # the statement is run more than once
+    lemma = functools.cache(lambda other: load_lemma(other, folder))
 
     def stated(by: Callable[..., Any]) -> Watched:
-        claim = Watched(load=lambda other: load_lemma(other, folder))
+        claim = Watched(load=lemma)
         by(claim)
         return claim
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import os
 import sys
 import types
 from collections.abc import Callable
@@ -10,7 +11,7 @@ from pathlib import Path
 
 from cratous.core.kernel.names import near
 from cratous.core.kernel.sources import place
-from cratous.core.ledger.package_home import PRODUCT, theorem_name
+from cratous.core.ledger.package_home import PRODUCT
 from cratous.proofs.engine import theorem_subset, theorem_values
 from cratous.proofs.engine.claim import Claim
 from cratous.spec.errors import BadInput
@@ -21,14 +22,18 @@ FOLDER = PRODUCT.theorems
 def theorem_files(folder: Path = FOLDER) -> dict[str, Path]:
     """Name to file of every theorem, in order of name; raises BadInput for two of one name."""
     found: dict[str, Path] = {}
-    for path in sorted(folder.rglob("*.py")):
-        if path.stem.startswith("_"):
-            continue
-        name = theorem_name(path, folder)
-        if name in found:
-            places = f"{place(found[name])} and {place(path)}"
-            raise BadInput(f"two theorems are called {name!r}", where=places)
-        found[name] = path
+    for at, folders, files in os.walk(folder):
+        folders.sort()
+        # as `theorem_name` has it, which would be asked of each file for each lemma
+        around = "".join(f"{part}_" for part in Path(at).relative_to(folder).parts)
+        for file in sorted(files):
+            if not file.endswith(".py") or file.startswith("_"):
+                continue
+            name, path = f"{around}{file.removesuffix('.py')}", Path(at, file)
+            if name in found:
+                places = f"{place(found[name])} and {place(path)}"
+                raise BadInput(f"two theorems are called {name!r}", where=places)
+            found[name] = path
     return dict(sorted(found.items()))
 
 

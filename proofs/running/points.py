@@ -52,12 +52,13 @@ def witnesses(claim: Claim) -> list[dict[str, Any]]:
     """Values of the claim's names, point by point, where the solver gives any within its effort."""
     base = [*claim.premises, *claim.roots]
     found: list[dict[str, Any]] = []
+    # in one context, since they are asked in the same order in every run
+    context = z3.Context()
+    same = [term.translate(context) for term in base]
     for extra in _wanted(claim):
-        context = z3.Context()
-        terms = [term.translate(context) for term in (*base, *extra)]
         solver = z3.Solver(ctx=context)
         solver.set("rlimit", RLIMIT)
-        solver.add(*terms)
+        solver.add(*same, *[term.translate(context) for term in extra])
         if solver.check() != z3.sat:
             continue
         model = Model(solver.model(), context)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -69,12 +70,13 @@ def _ran(
     found: list[str] = []
     points = 0
     given = witnesses(claim)
+    lemma = functools.cache(lambda other: load_lemma(other, folder))
     for number in range(len(given) + DRAWN_AT_MOST):
         if number >= len(given) + DRAWN and points > FEW:
             break
         point = given[number] if number < len(given) else {}
         values = Values(point, f"{name} at {number}")
-        on = OnNumbers(values, lambda other: load_lemma(other, folder), called=called)
+        on = OnNumbers(values, lemma, called=called)
         try:
             statement(on)
         except (Outside, Undecided, ZeroDivisionError):

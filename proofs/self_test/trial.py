@@ -160,6 +160,7 @@ def attempts(cases: Sequence[Case], jobs: int = 1) -> Iterator[Trial]:
 def prepare() -> None:
     """Read what every ledger hashes, and wake the solver, so that forked processes find it done."""
     gate.check()
+    _ = gate.Keys().shared  # the tables of all modules that a key is made from
     z3.Solver(ctx=z3.main_ctx()).check()
     importlib.import_module("numba")  # as long as several cases
     gc.collect()

@@ -219,6 +219,15 @@ LISTING = (
         "not in the log)",
     ),
     Assumption(
+        "sensed within its bound",
+        "an aircraft is no farther from what was sensed of it than the bound that its track declares",
+        PERMIT,
+        ("G2",),
+        "that what ICAROUS keeps clear of holds the true places",
+        SAMPLED,
+        "each state that was sensed, at each heartbeat: how far from it the true one is, as a share of the bound",
+    ),
+    Assumption(
         "offers begin at once",
         "a certificate that is offered begins at the instant at which it is taken",
         HAND,

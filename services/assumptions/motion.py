@@ -52,7 +52,7 @@ def room_of(daa: Daa) -> Room:
 
 def is_within(off: Position, room: Room) -> bool:
     """Whether something is off its prediction by no more; exact on the given numbers."""
-    if not all(map(math.isfinite, off)):
+    if not all(map(math.isfinite, (*off, *room))):
         return False
     beside = exact(disc_within, Vec2(off.north_m, off.east_m), 0.0, room.wide_m)
     return bool(beside) and bool(exact(disc_within, Vec2(off.alt_m, 0.0), 0.0, room.high_m))
@@ -98,6 +98,7 @@ class IntruderWatch:
         self._instances = frozenset(mission.instances)
         self._positions = _Positions()
         self._avoided: dict[int, set[int]] = {}
+        self._sources: dict[tuple[int, int], int] = {}
         self._base: dict[tuple[int, int], Seen] = {}
         self._last: dict[tuple[int, int], int] = {}
         self._step_ms = mission.simulation.step_ms
@@ -114,9 +115,13 @@ class IntruderWatch:
             if not has_it(Gate(NUMBERS.get(body.Owner.name, UXAS), body.Epoch, False)):
                 self._forget(own, now_ms)
             elif body.IntruderID:
+                # a track of radar has a number of its own
+                other = self._sources.get((own, body.IntruderID), body.IntruderID)
                 self._record.waits = "the intruder was not seen during the takeover"
-                self._avoided.setdefault(own, set()).add(body.IntruderID)
-                self._last[own, body.IntruderID] = now_ms
+                self._avoided.setdefault(own, set()).add(other)
+                self._last[own, other] = now_ms
+        elif kind == "SensedState":
+            self._sources[body.ObserverID, body.TrackID] = body.VehicleID
         elif kind == "TruthState":
             self._sample(message)
 

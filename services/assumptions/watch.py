@@ -21,6 +21,7 @@ from cratous.services.assumptions.observed import (
     Record,
     Watch,
 )
+from cratous.services.assumptions.sensed import SensedWatch
 from cratous.spec.mission import Mission
 
 
@@ -40,6 +41,7 @@ class AssumptionWatch:
             IntruderWatch(mission),
             TrackingWatch(mission),
             OfferWatch(mission),
+            SensedWatch(mission),
         )
         self._records: dict[str, Record] = {}
         for watch in self._watches:

@@ -52,10 +52,10 @@ def _made(row: Data, report: Data) -> Data:
     return {
         **{key: row[key] for key in ("requirement", "item", "verdict", "time_ms")},
         "why": row["note"],
-        "command": [_command(number, report, at) for number in about],
+        "command": [command_then(number, report, at) for number in about],
         "ways_out": [
             {
-                **_command(own, report, way["time_ms"]),
+                **command_then(own, report, way["time_ms"]),
                 "at_ms": way["time_ms"],
                 "manoeuvre": way["manoeuvre"],
             }
@@ -71,7 +71,8 @@ def _made(row: Data, report: Data) -> Data:
     }
 
 
-def _command(number: int, report: Data, at: int) -> Data:
+def command_then(number: int, report: Data, at: int) -> Data:
+    """Who commanded a vehicle at an instant [ms], by the changes of command of a report."""
     since, side = 0, "UxAS"
     told = [one for one in report["flight"]["authority"] if one["vehicle"] == number]
     for one in sorted(told, key=lambda one: one["time_ms"]):
@@ -82,10 +83,15 @@ def _command(number: int, report: Data, at: int) -> Data:
 
 
 def _first(name: str, assumptions: list[Data], at: int) -> dict[str, Any] | None:
-    broken = [one for one in assumptions if one["since_ms"] is not None]
-    by_then = [one for one in broken if int(one["since_ms"]) <= at]
-    first = min(by_then, key=lambda one: int(one["since_ms"]), default=None)
+    first = broken_then(assumptions, at)
     if first is None:
         return None
     told = {key: first[key] for key in ("name", "since_ms", "vehicle")}
     return {**told, "bears": name in first["guarantees"]}
+
+
+def broken_then(assumptions: list[Data], at: int) -> Data | None:
+    """The row of the assumption that had broken first by an instant [ms]."""
+    broken = [one for one in assumptions if one["since_ms"] is not None]
+    by_then = [one for one in broken if int(one["since_ms"]) <= at]
+    return min(by_then, key=lambda one: int(one["since_ms"]), default=None)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from cratous.services.certify.own_views import own_findings
 from cratous.spec.mission.guarantees import Outcome
 
 Data = dict[str, Any]
@@ -45,6 +46,7 @@ def unshown(subject: Subject) -> list[tuple[str, str]]:
         (f"proof of {one['kernel']}", f"not proved: {one['what']}")
         for one in report["proofs"]["problems"]
     ]
+    found += own_findings(report)
     for text in subject.unchecked:
         what, _, why = text.partition(": ")
         found.append((what, f"not checked: {why or what}"))

@@ -1,4 +1,4 @@
-"""JUnit XML of a report: one suite a requirement, one test case a constraint.
+"""JUnit XML of a report: one suite a requirement, one test case a constraint; of one's own requirements each is a case.
 
 A case passes only if its constraint was checked and holds. One that is violated is a failure; one that
 is unknown, excused or was never checked is skipped, with the reason. Each suite has the digest of the
@@ -12,11 +12,13 @@ from typing import Any
 from xml.sax.saxutils import quoteattr
 
 from cratous.services.attestation.findings import Data, Subject, doubt, unshown
+from cratous.services.certify.own_views import own_constraints
 from cratous.spec.files.printable import printable
 from cratous.spec.mission.guarantees import Outcome
 
 NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 PROPERTIES = ("margin", "unit", "time_ms", "kind", "method", "checks")
+OF_OWN = ("severity", "source", "text")
 Case = tuple[str, list[str]]
 """How it ended, and its lines."""
 
@@ -29,6 +31,8 @@ def junit(subject: Subject) -> str:
         rows = [r for r in report["constraints"] if r["requirement"] == wanted["requirement"]]
         name = f"{wanted['requirement']} {wanted['title']}"
         suites.append((name, [_case(report, row) for row in rows]))
+    for row in own_constraints(report):
+        suites.append((f"{row['requirement']} {row['own']['title']}".strip(), [_case(report, row)]))
     suites.append(("not shown", [_skipped("cratous.report", *one) for one in unshown(subject)]))
     every = [case for _, cases in suites for case in cases]
     lines = [
@@ -65,7 +69,9 @@ def _opened(of: str, name: str) -> list[str]:
 
 
 def _properties(row: Data) -> list[str]:
-    return _block("      ", {name: row[name] for name in PROPERTIES if row[name] not in (None, "")})
+    said = {name: row[name] for name in PROPERTIES}
+    said |= {name: row["own"][name] for name in OF_OWN if "own" in row}
+    return _block("      ", {k: v for k, v in said.items() if v not in (None, "")})
 
 
 def _block(indent: str, named: dict[str, Any]) -> list[str]:

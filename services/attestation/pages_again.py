@@ -31,9 +31,11 @@ from cratous.services.certify.running_code import code_digest
 from cratous.services.results.names import HTML_NAME, LOG_NAME, MAP_NAME, REPORT_NAME
 from cratous.spec.errors import BadInput, CratousError
 from cratous.spec.files.limits import DOCUMENT_BYTES, json_of
+from cratous.spec.mission.guarantees import REQUIREMENTS
 
 WITH_LEDGER = (FULL_NAME, FULL_PDF_NAME)
 """What these say of the assurance argument is made from the ledger as it was when they were written."""
+OF_MISSION = {one.id for one in REQUIREMENTS}
 View = Callable[[Subject, str], bytes]
 """Makes one of the views for people, or MCAP, by its name."""
 
@@ -131,6 +133,8 @@ def _lines(text: bytes) -> dict[str, int | None]:
         results: Any = json_of(text, SARIF_NAME)["runs"][0]["results"]
         found = {}
         for one in results:
+            if one["ruleId"] not in OF_MISSION:  # its line is in the report
+                continue
             place = one["locations"][0]
             name = place["logicalLocations"][0]["fullyQualifiedName"]
             line = place["physicalLocation"].get("region", {}).get("startLine")

@@ -1,5 +1,6 @@
 """SARIF 2.1.0 of a report: each constraint that is not shown to hold, at its place in the mission file.
 
+Requirements of the user's own are rules as G1 to G5 are, at their place in their file.
 The rule of G1 to G5 is that its constraints are shown to hold: a violation is an error, an unknown one
 a warning, an excused one and one of which nothing was checked a note. What no row speaks of is a
 notification of the run. There is no time stamp: the same subject and lines give the same bytes.
@@ -13,6 +14,7 @@ from typing import Any
 from urllib.parse import quote
 
 from cratous.services.attestation.findings import Data, Subject, doubt, unshown
+from cratous.services.certify.own_views import digests, own_constraints, own_requirements
 from cratous.spec.files.printable import printable
 from cratous.spec.mission.guarantees import Outcome
 
@@ -36,10 +38,10 @@ def sarif(subject: Subject, line_of: LineOf) -> str:
         }
         for one in report["requirements"]
     ]
+    rules += [_own_rule(one, digests(report)) for one in own_requirements(report)]
     numbers = {rule["id"]: number for number, rule in enumerate(rules)}
-    findings = [
-        row for row in report["constraints"] if row["verdict"] == Outcome.VIOLATED or doubt(row)
-    ]
+    rows = [*report["constraints"], *own_constraints(report)]
+    findings = [row for row in rows if row["verdict"] == Outcome.VIOLATED or doubt(row)]
     notes = [
         {"level": "warning", "message": {"text": printable(f"{what}: {why}")}}
         for what, why in unshown(subject)
@@ -64,9 +66,26 @@ def sarif(subject: Subject, line_of: LineOf) -> str:
     return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
 
 
+def _own_rule(one: Data, sha: dict[str, str]) -> Data:
+    """The rule of a requirement of the user's own."""
+    said = {"severity": one["severity"], "source": one["source"], "file": one["file"]}
+    return {
+        "id": one["requirement"],
+        "name": one["requirement"],
+        "shortDescription": {"text": printable(one["title"] or one["requirement"])},
+        "fullDescription": {"text": printable(one["text"])},
+        "properties": {
+            **{k: printable(v) for k, v in said.items()},
+            "sha256": sha.get(one["file"], ""),
+        },
+    }
+
+
 def _result(report: Data, row: Data, numbers: dict[str, int], line_of: LineOf) -> Data:
-    place: dict[str, Any] = {"artifactLocation": {"uri": quote(report["mission"]["source"])}}
-    line = line_of(row["item"])
+    own = row.get("own")
+    file = report["mission"]["source"] if own is None else own["file"]
+    place: dict[str, Any] = {"artifactLocation": {"uri": quote(file)}}
+    line = line_of(row["item"]) if own is None else own["line"]
     if line is not None:
         place["region"] = {"startLine": line}
     said = doubt(row) or f"{row['verdict']}: {row['note']}"

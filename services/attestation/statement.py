@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from cratous.services.attestation.findings import Data, Subject
+from cratous.services.results.names import OWN
 from cratous.services.results.ownership import digest_of
 from cratous.spec.errors import BadInput
 
@@ -26,8 +27,17 @@ def claim(report: Data) -> Data:
     return {
         **{key: report[key] for key in CLAIMED},
         "product": report["product"],
+        **({OWN: _own(report[OWN])} if OWN in report else {}),
         "log_digest": report["log"]["digest"],
         "ledger": {key: report["proofs"][key] for key in ("seal", "line", "solver")},
+    }
+
+
+def _own(own: Data) -> Data:
+    """Of requirements of the user's own: digests of the files, verdicts by id."""
+    return {
+        "files": [{"file": one["file"], "sha256": one["sha256"]} for one in own["files"]],
+        "verdicts": {one["requirement"]: one["verdict"] for one in own["requirements"]},
     }
 
 

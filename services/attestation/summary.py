@@ -9,9 +9,9 @@ from typing import Any
 from cratous.services.attestation.findings import Data
 from cratous.services.attestation.names import STATEMENT_NAME
 from cratous.services.attestation.statement import claim
-from cratous.services.certify.limits import LIMITS
+from cratous.services.certify.limits import LIMITS, said_of_states
 from cratous.services.certify.report_schema import departures
-from cratous.services.results.names import FORMER, REPORT_NAME
+from cratous.services.results.names import FORMER, OWN, REPORT_NAME
 from cratous.spec.mission.guarantees import REQUIREMENTS, Outcome, exit_code, worst
 
 OF_FRAME = re.compile(
@@ -34,6 +34,8 @@ def summary_faults(report: Data, predicate: Data) -> list[str]:
         for key, value in claim(report).items()
         if predicate.get(key) != value
     ]
+    if OWN in predicate and OWN not in report:
+        found.append(f"{STATEMENT_NAME}: {OWN} is not in {REPORT_NAME}")
     return found + [f"{REPORT_NAME}: {text}" for text in (*_rows(report), *_sums(report))]
 
 
@@ -59,7 +61,9 @@ def _rows(report: Data) -> list[str]:
         if number > 1:
             found.append(f"{number} rows of {name} on the same: {item}")
     *limits, of_frame = report["limits"] or [""]
-    if tuple(limits) != LIMITS or not OF_FRAME.fullmatch(of_frame):
+    mission = report["mission"]
+    of_states = said_of_states(bool(mission["instances"]), "sensing" in mission["daa"])
+    if limits != [*LIMITS, *of_states] or not OF_FRAME.fullmatch(of_frame):
         found.append("its limits are not those that every report has")
     return found
 
@@ -79,6 +83,7 @@ def _sums(report: Data) -> list[str]:
     if report["proofs"]["problems"]:
         outcomes.append(Outcome.UNKNOWN)
     counts = {str(o): sum(row["verdict"] == o for row in rows) for o in Outcome}
+    outcomes += [Outcome(one["verdict"]) for one in report.get(OWN, {}).get("requirements", ())]
     found += _differs("verdict", report["verdict"], str(worst(outcomes)))
     found += _differs("exit_code", report["exit_code"], exit_code(outcomes))
     return found + _differs("counts", report["counts"], counts)

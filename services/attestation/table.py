@@ -6,6 +6,7 @@ import csv
 import io
 
 from cratous.services.attestation.findings import Subject, unshown
+from cratous.services.certify.own_views import own_constraints
 from cratous.spec.files.printable import cell
 
 COLUMNS = (
@@ -21,7 +22,7 @@ def table(subject: Subject) -> str:
     stream = io.StringIO()
     out = csv.writer(stream, lineterminator="\n")
     out.writerow(COLUMNS)
-    for row in subject.report["constraints"]:
+    for row in (*subject.report["constraints"], *own_constraints(subject.report)):
         cells = {**row, **{name: " ".join(map(str, row[name])) for name in LISTS}}
         out.writerow([cell(cells[name]) for name in COLUMNS])
     for what, why in unshown(subject):

@@ -2,7 +2,8 @@
 
 The process that does this imports neither planner nor pilot nor monitor nor a kernel: the verdicts on
 the flight are those of the independent judge (`cratous.judge`), which is handed in. Of the core it reads
-the ledger's records alone, for the argument. What it cannot decide, or what it has no counterpart of,
+the ledger's records alone, for the argument, and the operators' kernels where a report has requirements of
+the user's own, which are judged again from their texts. What it cannot decide, or what it has no counterpart of,
 is listed and never taken as shown.
 """
 
@@ -21,6 +22,7 @@ from cratous.services.attestation.dsse import ENVELOPE_BYTES, opened
 from cratous.services.attestation.findings import Data, Subject
 from cratous.services.attestation.judged import held
 from cratous.services.attestation.names import STATEMENT_NAME
+from cratous.services.attestation.own_judged import own_faults, own_not_judged
 from cratous.services.attestation.pages_again import Again, View, pages_again, sarif_faults
 from cratous.services.attestation.planned import plan_faults, plan_not_judged
 from cratous.services.attestation.recorded import not_recorded, recorded_faults
@@ -29,6 +31,7 @@ from cratous.services.attestation.statement import PREDICATE_TYPE, RESULTS, STAT
 from cratous.services.attestation.statement import VIEWS as MADE
 from cratous.services.attestation.summary import summary_faults
 from cratous.services.certify.report_input import read_report
+from cratous.services.results.names import LOG_NAME
 from cratous.spec.errors import BadInput
 from cratous.spec.files.text_file import text_of
 from cratous.spec.mission.guarantees import Outcome
@@ -41,6 +44,7 @@ MOST_SUBJECTS = 100
 class Verification:
     """What verifying found. refused: what is not as it was signed, or not as the evidence says.
 
+    own: requirements of the user's own whose verdict, margins and blame were made again from the log;
     expected: rows on the flight that the judge expects; recomputed: those that it confirms; undecided:
     those that it cannot, and an argument that this ledger does not give, in words; not_checked: what
     certifying could not check, by the statement; not_judged: what nobody looked into here. verdict: of
@@ -49,6 +53,7 @@ class Verification:
     """
 
     refused: list[str] = field(default_factory=list)
+    own: int = 0
     expected: int = 0
     recomputed: int = 0
     undecided: list[str] = field(default_factory=list)
@@ -93,6 +98,8 @@ def verify(place: Place, public: Any, judged: Any, view: View) -> Verification:
     found.refused += [*sarif_faults(place, named, subject), *recorded]
     found.refused += [*assumption_faults(report, judgement.meta), *blame_faults(report)]
     found.refused += answer.refused
+    faults, found.own = own_faults(report, judgement.meta, place.results / LOG_NAME)
+    found.refused += faults
     found.undecided = answer.undecided + argument.undecided
     found.expected, found.recomputed = answer.expected, answer.confirmed
     found.not_checked = list(subject.unchecked)
@@ -102,6 +109,7 @@ def verify(place: Place, public: Any, judged: Any, view: View) -> Verification:
     found.not_judged += [
         *assumptions_not_judged(report, judgement.meta),
         *not_judged(report),
+        *own_not_judged(report),
     ]
     found.verdict = report["verdict"]
     if not found.refused:

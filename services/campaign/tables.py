@@ -1,37 +1,81 @@
-"""A campaign's runs as CSV for spreadsheets, and as JUnit for continuous integration."""
+"""A campaign's runs as CSV for spreadsheets, as Parquet for programs, and as JUnit for continuous integration."""
 
 from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Iterator
 from typing import Any
 from xml.etree import ElementTree
 
 from cratous.services.campaign.outcomes import FAILED, IMPOSSIBLE, LOST
+from cratous.spec.files.extras import told
 from cratous.spec.files.printable import cell, printable
 from cratous.spec.mission.guarantees import Outcome
 
 HEAD = ("run", "mission", "option", "seed", "outcome", "takeovers", "end_ms", "separation_m", "log")
 
 
+MEASURES = ("verdict", "margin", "unit")
+WHOLE, REAL = ("seed", "takeovers", "end_ms"), ("separation_m",)
+"""Columns of numbers, besides margins and what was drawn; all others are texts."""
+
+
 def csv_text(summary: dict[str, Any]) -> str:
     """A line for each run; a text that a spreadsheet would take for a formula begins with `'`."""
-    names = summary["requirements"]
-    drawn = sorted({name for run in summary["runs"] for name in run["drawn"]})
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
-    measures = [f"{name} {what}" for name in names for what in ("verdict", "margin", "unit")]
-    writer.writerow([cell(text) for text in (*HEAD, *measures, *drawn, "why")])
+    for row in (_names(summary), *_rows(summary)):
+        writer.writerow([cell(value) for value in row])
+    return out.getvalue()
+
+
+def parquet_bytes(summary: dict[str, Any]) -> bytes:
+    """The same columns as Parquet: whole numbers of 64 bits, doubles, texts as they are, null where there is nothing.
+
+    A column of what was drawn is of doubles if all of it are numbers, else of texts. NotInstalled without pyarrow.
+    """
+    with told():
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+    kinds = {**dict.fromkeys(WHOLE, pa.int64()), **dict.fromkeys(REAL, pa.float64())}
+    kinds |= {f"{name} margin": pa.float64() for name in summary["requirements"]}
+    names, rows = _names(summary), list(_rows(summary))
+    columns = [[row[k] for row in rows] for k in range(len(names))]
+    for name in _drawn(summary):
+        k = names.index(name, len(HEAD))
+        if all(value is None or type(value) in (int, float) for value in columns[k]):
+            kinds[name] = pa.float64()
+        else:
+            columns[k] = [None if value is None else str(value) for value in columns[k]]
+    types = [kinds.get(name, pa.string()) for name in names]
+    arrays = [pa.array(column, kind) for column, kind in zip(columns, types, strict=True)]
+    out = pa.BufferOutputStream()
+    pq.write_table(pa.Table.from_arrays(arrays, names=names), out, compression="zstd")
+    found: bytes = out.getvalue().to_pybytes()
+    return found
+
+
+def _drawn(summary: dict[str, Any]) -> list[str]:
+    return sorted({name for run in summary["runs"] for name in run["drawn"]})
+
+
+def _names(summary: dict[str, Any]) -> list[str]:
+    measures = [f"{name} {what}" for name in summary["requirements"] for what in MEASURES]
+    return [*HEAD, *measures, *_drawn(summary), "why"]
+
+
+def _rows(summary: dict[str, Any]) -> Iterator[list[Any]]:
+    drawn = _drawn(summary)
     for run in summary["runs"]:
         result = run["result"] or {}
         row = [run["name"], run["mission"], run["option"], run["seed"], run["outcome"]]
         row += [result.get(key) for key in HEAD[5:]]
-        for name in names:
+        for name in summary["requirements"]:
             found = result.get("requirements", {}).get(name, {})
-            row += [found.get(key) for key in ("verdict", "margin", "unit")]
+            row += [found.get(key) for key in MEASURES]
         row += [run["drawn"].get(name) for name in drawn]
-        writer.writerow([cell(value) for value in (*row, run["why"])])
-    return out.getvalue()
+        yield [*row, run["why"]]
 
 
 def junit_text(summary: dict[str, Any]) -> str:

@@ -10,6 +10,7 @@ from typing import Any
 
 from cratous.core.authority.blame import broke_first, stood_at
 from cratous.services.assumptions.listing import State
+from cratous.services.certify.own_blame import Told
 from cratous.services.certify.verdicts import broken_of
 from cratous.spec.mission.guarantees import Outcome
 
@@ -74,6 +75,18 @@ def first_broken(assumptions: list[Data], at_ms: int) -> Data | None:
     if place < 0:
         return None
     return {key: broken[place][key] for key in ("name", "since_ms", "vehicle", "guarantees")}
+
+
+def told_of(commands: Commands, assumptions: list[Data], why: str = "") -> Told:
+    """What the kernels say of a flight, for requirements of one's own; why: nothing is told of it, and why."""
+    unseen = tuple(one["name"] for one in assumptions if one["state"] == State.NOT_OBSERVED)
+    return Told(
+        tuple(commands),
+        lambda number, at_ms: command_at(number, commands, at_ms),
+        lambda at_ms: first_broken(assumptions, at_ms),
+        unseen,
+        why,
+    )
 
 
 def _bearing(requirement: str, first: Data | None) -> Data | None:

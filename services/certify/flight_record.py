@@ -6,6 +6,7 @@ from typing import Any
 
 from cratous.core import ledger
 from cratous.services.certify.evidence import is_data
+from cratous.services.certify.own_again import files_in
 from cratous.services.certify.proofs import inventory
 from cratous.services.certify.report import PROOFS_KEPT, Flown, environment
 from cratous.services.certify.running_code import running_code
@@ -18,8 +19,9 @@ SILENT = "the log does not say (it was made before this was recorded)"
 
 def flown_of(
     meta: dict[str, Any], written: dict[str, Any], where: str
-) -> tuple[Flown, dict[str, str], list[str]]:
-    """How it was flown; which entries of the report are not checked, and why; what is wrong.
+) -> tuple[Flown, dict[str, str], list[str], list[str]]:
+    """How it was flown; which entries of the report are not checked, and why; what is wrong with its proofs, and
+    with its files of requirements.
 
     meta: of the log; written: the report, whose word is taken only for what is not checked.
     """
@@ -53,7 +55,8 @@ def flown_of(
     if former:
         unchecked["format"] = unchecked["proofs"] = f"the report is one of {FORMER}"
         wrong = []
-    return Flown(command, avoidance, proofs, around), unchecked, wrong
+    own, lacking = files_in(written, meta)
+    return Flown(command, avoidance, proofs, around, own), unchecked, wrong, lacking
 
 
 def _is_environment(data: Any) -> bool:

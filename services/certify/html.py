@@ -13,6 +13,9 @@ from cratous.services.certify.blame_said import sentence
 from cratous.services.certify.charts import altitude_view, separation_view
 from cratous.services.certify.command import flown_in_processes
 from cratous.services.certify.gantt import gantt, plan_bars, plan_rows, tree
+from cratous.services.certify.own_said import margin as own_margin
+from cratous.services.certify.own_said import sentence as own_blamed
+from cratous.services.certify.own_views import own_requirements
 from cratous.services.certify.picture import map_view, time_view
 from cratous.services.certify.proofs import statuses
 from cratous.services.certify.trace import chains
@@ -42,6 +45,8 @@ def _environment() -> Any:
     environment.filters["percent"] = percent
     environment.filters["measured"] = measured
     environment.filters["blamed"] = sentence
+    environment.filters["own_blamed"] = own_blamed
+    environment.filters["own_margin"] = own_margin
     environment.filters["cost"] = lambda value, kind: cost_text(kind, value)
     return environment
 
@@ -72,7 +77,7 @@ def render(report: dict[str, Any]) -> str:
         r=report, map=map_view(report), time=time_view(report), near=separation_view(report),
         high=altitude_view(report), rows_of=_rows_of(report),
         gantt=_gantt(report), tree=_tree(report), losses=losses(report), names=_names(report),
-        chains=chains(report), statuses=statuses(report["proofs"]), repeats=repeats(report),
+        own=own_requirements(report), chains=chains(report), statuses=statuses(report["proofs"]), repeats=repeats(report),
     )  # fmt: skip
     return text
 

@@ -18,7 +18,7 @@ def inventory(standing: ledger.Standing, calls: dict[str, Any] | None) -> dict[s
     standing: from `core.ledger.require`, taken before anything ran; calls: of `evidence.Calls.data`,
     None where nothing was recorded: then no kernel is listed.
     """
-    data = ledger.read()
+    data = _records(standing)
     names = short([*data["kernels"], *(problem.name for problem in standing.problems)])
     kernels = _kernels(calls or {}, data["kernels"])
     return {
@@ -33,6 +33,17 @@ def inventory(standing: ledger.Standing, calls: dict[str, Any] | None) -> dict[s
         "theorems": _theorems(kernels, data["theorems"]),
         "definitions": _definitions(kernels),
     }
+
+
+_read: tuple[ledger.Standing, dict[str, Any]] | None = None
+
+
+def _records(standing: ledger.Standing) -> dict[str, Any]:
+    """The ledger's records, read once for all flights by one word of the gate."""
+    global _read
+    if _read is None or _read[0] is not standing:
+        _read = standing, ledger.read()
+    return _read[1]
 
 
 def _kernels(calls: dict[str, Any], known: dict[str, Any]) -> dict[str, Any]:

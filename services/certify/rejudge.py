@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Container
+from collections.abc import Container, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from cratous.services.certify.blame import Commands
+from cratous.services.certify.blame import Commands, told_of
 from cratous.services.certify.command import with_original_clients
 from cratous.services.certify.differences import differences
 from cratous.services.certify.flight_record import flown_of
+from cratous.services.certify.own_again import files_in, together, with_own
 from cratous.services.certify.report import (
     Judged,
     build_report,
@@ -31,6 +32,7 @@ from cratous.services.logs.log import read_envelopes, read_log, read_meta
 from cratous.services.logs.records import from_data
 from cratous.services.logs.sqlite_log import SqliteLog
 from cratous.services.mission.wind import known_at
+from cratous.services.requirements.own_files import OwnFile
 from cratous.services.results.names import (
     ASSUMPTIONS,
     BLAME,
@@ -102,11 +104,12 @@ class Judgement:
     rewritten: list[str] = field(default_factory=list)
 
 
-def certify_again(folder: Path, *, rewrite: bool = False) -> Judgement:
+def certify_again(folder: Path, *, rewrite: bool = False, own: Sequence[OwnFile] = ()) -> Judgement:
     """Judge the flight in a folder again and hold every file of it against what was found.
 
     rewrite: files that are made from report.json are made anew where they differ, if all else is
-    confirmed; without it nothing is written.
+    confirmed; own: files of requirements that a confirmed report is made anew with. Without these two nothing
+    is written.
     """
     written = read_report(folder)
     log = folder / LOG_NAME
@@ -121,9 +124,16 @@ def certify_again(folder: Path, *, rewrite: bool = False) -> Judgement:
         whole = {**written, **{key: report[key] for key in left if key not in written}}
         found += [f"{REPORT_NAME}, by its schema: {line}" for line in departures(whole)]
     _, plan = subject(log)
-    files = Files(folder, report, read_meta(log), same=not found)
+    meta = read_meta(log)
+    files = Files(folder, report, meta, same=not found)
     found += _certificate(plan, folder) + files.wrong
     unchecked = [f"{key}: {why}" for key, why in sorted(silent.items())] + files.unchecked
+    if own and not found and (rewrite or not files.differing):
+        kept, _ = files_in(report, meta)
+        told = told_of(watch(log).commands, report["assumptions"])
+        report = with_own(report, together(kept, meta, own), log, told)
+        anew = Files(folder, report, meta, same=True)
+        return Judgement(report, anew.wrong, unchecked, anew.rewrite() if anew.differing else [])
     if rewrite and files.differing and not found:
         return Judgement(report, [], unchecked, files.rewrite())
     return Judgement(report, found + files.differing, unchecked)
@@ -177,7 +187,7 @@ def rebuilt(log: Path, written: dict[str, Any]) -> tuple[dict[str, Any], dict[st
     from cratous.services.monitor.plan_check import check_plan
 
     mission, plan = subject(log)
-    flown, silent, wrong = flown_of(read_meta(log), written, str(log))
+    flown, silent, wrong, lacking = flown_of(read_meta(log), written, str(log))
     rows = plan_rows(check_plan(known_at(mission, 0), plan))
     watched = watch(log)
     rows += constraint_rows(watched.verdicts, "flight")
@@ -185,6 +195,7 @@ def rebuilt(log: Path, written: dict[str, Any]) -> tuple[dict[str, Any], dict[st
     report = json.loads(report_text(build_report(mission, plan, judged, log, flown)))
     if wrong:  # one sentence says it; what differs in detail says no more
         report["proofs"] = written.get("proofs")
+    wrong += lacking
     told = read_meta(log).get(ASSUMPTIONS)
     if told is not None:
         broken = broken_of(report["assumptions"])

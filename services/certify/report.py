@@ -12,22 +12,33 @@ import os
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cratous import __version__
 from cratous.core.files.whole_file import write_atomically
 from cratous.services.certify.blame import Commands, blame_rows
-from cratous.services.certify.limits import LIMITS
+from cratous.services.certify.limits import LIMITS, of_states
 from cratous.services.certify.running_code import running_code
 from cratous.services.certify.timeline import Flight, bars, read_flight
 from cratous.services.certify.verdicts import requirement_rows, with_promised, without_ground
 from cratous.services.logs.log import read_digest, read_log
 from cratous.services.logs.records import fingerprint, to_data
 from cratous.services.monitor.required_rows import watched
-from cratous.services.results.names import BLAME, FORMAT, HTML_NAME, LOG_NAME, MAP_NAME, REPORT_NAME
+from cratous.services.results.names import (
+    BLAME,
+    FORMAT,
+    HTML_NAME,
+    LOG_NAME,
+    MAP_NAME,
+    OWN,
+    REPORT_NAME,
+)
 from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import Outcome, exit_code, worst
 from cratous.spec.mission.plan import Plan
+
+if TYPE_CHECKING:
+    from cratous.services.requirements.own_files import OwnFile
 
 PROOFS_KEPT = ("line", "problems", "seal", "solver")
 
@@ -36,13 +47,15 @@ PROOFS_KEPT = ("line", "problems", "seal", "solver")
 class Flown:
     """How a mission was flown, which the messages do not say; the log's meta keeps it.
 
-    proofs: of `proofs.inventory`; environment: of `environment`.
+    proofs: of `proofs.inventory`; environment: of `environment`; own: files of requirements of the user's own,
+    which the log is held against too.
     """
 
     command: str
     avoidance: bool
     proofs: dict[str, Any]
     environment: dict[str, Any]
+    own: tuple[OwnFile, ...] = ()
 
     def meta(self) -> dict[str, Any]:
         """What the log keeps of it, so that a report can be held against it."""
@@ -52,6 +65,7 @@ class Flown:
             "avoidance": self.avoidance,
             "environment": self.environment,
             "proofs": {**kept, "sha256": fingerprint(self.proofs)},
+            **({OWN: [file.named for file in self.own]} if self.own else {}),
         }
 
 
@@ -100,7 +114,8 @@ def build_report(
     found = with_promised(list(judged.rows), seen)
     found.sort(key=lambda row: (row["requirement"], row["source"], row["item"]))
     requirements = requirement_rows(found)
-    outcomes = [Outcome(row["verdict"]) for row in requirements]
+    own = _own(flown, judged, log)
+    outcomes = [Outcome(row["verdict"]) for row in (*requirements, *own.get("requirements", ()))]
     if flown.proofs["problems"] or without_ground(flown.command, judged.assumptions):
         outcomes.append(Outcome.UNKNOWN)
     return {
@@ -116,6 +131,7 @@ def build_report(
         "not_covered": [v.id for v in mission.vehicles if not v.protected],
         "requirements": requirements,
         "constraints": found,
+        **({OWN: own} if own else {}),
         "assumptions": judged.assumptions,
         BLAME: blame_rows(found, judged.commands, judged.assumptions, flight.end_ms),
         "plan": {**to_data(plan), "hash": plan_hash(plan)},
@@ -140,9 +156,20 @@ def build_report(
             "by_topic": dict(sorted(flight.counts.items())),
         },
         "proofs": flown.proofs,
-        "limits": [*LIMITS, _scale(mission)],
+        "limits": [*LIMITS, *of_states(mission), _scale(mission)],
         "environment": flown.environment,
     }
+
+
+def _own(flown: Flown, judged: Judged, log: Path) -> dict[str, Any]:
+    """Requirements of the user's own over the log; nothing where there are none."""
+    from cratous.services.certify.blame import told_of
+    from cratous.services.certify.own import own_section
+    from cratous.services.requirements.lint import lint
+
+    if not flown.own:
+        return {}
+    return own_section(flown.own, log, told_of(judged.commands, judged.assumptions), lint)
 
 
 def _seen(footprints: dict[int, list[dict[str, Any]]], mission: Mission) -> list[dict[str, Any]]:

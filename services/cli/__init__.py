@@ -13,6 +13,7 @@ import gc
 import importlib
 import io
 import json
+import keyword
 import sys
 import traceback
 from contextlib import nullcontext
@@ -50,7 +51,9 @@ COMMANDS = {
     "uxas": "Run a UxAS configuration: services and bridges.",
     "icarous": "Avoid for one vehicle, over the CRATOUS bridge to UxAS.",
     "sim": "Simulate the aircraft of an AMASE scenario, and be its AMASE on the network.",
-    "export": "Write a mission as AMASE scenario, UxAS messages, GeoJSON or KML.",
+    "params": "List what ICAROUS and detect-and-avoid are set to for a mission.",
+    "import": "Make a mission of flight plans, fences, traffic and parameters of ICAROUS.",
+    "export": "Write a mission for other tools: AMASE, UxAS, GeoJSON, KML, ICAROUS.",
     "check": "Check mission files, algebra texts and requirements.",
     "serve": "Fly a mission, or replay one or two runs or a message log, in the browser.",
     "algebra": "Check, draw or enumerate a process-algebra text.",
@@ -69,6 +72,7 @@ class LazyGroup(click.Group):
         if cmd_name not in COMMANDS:
             return None
         name = cmd_name.replace("-", "_")
+        name += "_" * keyword.iskeyword(name)
         module = importlib.import_module(f"cratous.services.cli.{name}")
         command: click.Command = getattr(module, name)
         return command

@@ -12,6 +12,7 @@ import click
 from cratous.services.cli.job import silent as untold
 from cratous.services.cli.progress import passing, waiting
 from cratous.services.cli.show import say, table
+from cratous.spec.files.extras import told
 
 Tell = Callable[[str], None]
 ALL = ("G1", "G2", "G3", "G4", "G5")
@@ -36,6 +37,7 @@ class Wanted(NamedTuple):
     find: str | None
     budget: int
     as_json: bool
+    parquet: bool
     quiet: bool
 
 
@@ -55,6 +57,7 @@ class Wanted(NamedTuple):
     "--budget", type=click.IntRange(1, 100_000), default=200, help="Runs of a search. [200]"
 )
 @click.option("--json", "as_json", is_flag=True, help="Print campaign.json, or what was found.")
+@click.option("--parquet", is_flag=True, help="Write runs.parquet beside runs.csv.")
 @click.option("--quiet", is_flag=True, help="No progress, only the result.")
 def campaign(
     file: Path, seeds: range | None, workers: int, scheduler: str | None, out: Path | None,
@@ -76,7 +79,10 @@ def campaign(
     """
     from cratous.services.campaign.definition import load_campaign
 
-    reports, find, budget, as_json, quiet = Wanted(**wanted)
+    reports, find, budget, as_json, parquet, quiet = Wanted(**wanted)
+    if parquet:
+        with told():  # before anything is flown
+            import pyarrow.parquet  # noqa: F401
     found = load_campaign(file, seeds, (option_of(not no_daa),))
     place = out or Path("out") / "campaigns" / found.name
     how = {"workers": workers, "scheduler": scheduler, "allow_unproved": allow_unproved}
@@ -90,6 +96,8 @@ def campaign(
             show_found(data, place, as_json)
             return int(data["exit_code"])
         summary, lost = conducted(found, place, how, reports, tell)
+        if parquet:
+            _write_parquet(summary, place)
     if as_json:
         click.echo(json.dumps(summary, indent=1, sort_keys=True))
     else:
@@ -203,6 +211,13 @@ def _write(summary: dict[str, Any], place: Path, links: dict[str, str]) -> None:
     }  # fmt: skip
     for name, text in texts.items():
         write_atomically(place / name, text, "the summary")
+
+
+def _write_parquet(summary: dict[str, Any], place: Path) -> None:
+    from cratous.core.files.whole_file import write_atomically
+    from cratous.services.campaign.tables import parquet_bytes
+
+    write_atomically(place / "runs.parquet", parquet_bytes(summary), "the table")
 
 
 def table_of_runs(summary: dict[str, Any]) -> None:

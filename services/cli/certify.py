@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from cratous.services.cli.certify_views import Asked, checked, verified, view_options, write
+from cratous.services.cli.own_requirements import own_files, own_lines, own_option
 
 SHOWN = 20
 
@@ -36,9 +37,19 @@ def _print_schema(context: click.Context, _parameter: click.Parameter, wanted: b
     is_flag=True,
     help="Print for each row which kernels decided it, and their theorems and definitions.",
 )
+@own_option(
+    "Hold the log against these requirements of your own too, and make the report anew with them."
+)
 @view_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON, all differences.")
-def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool, **views: Any) -> int:
+def certify(
+    folder: Path,
+    rewrite: bool,
+    trace: bool,
+    as_json: bool,
+    requirements: tuple[Path, ...],
+    **views: Any,
+) -> int:
     """Judge a finished flight again from its log and compare with all that is written of it.
 
     FOLDER is an output folder of `cratous run`. The log's digest, the plan check and the monitor
@@ -52,6 +63,11 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool, **views: An
 
     With --junit, --sarif, --csv, --argument, --sign or -o views of the confirmed report are written for
     other tools, all of these if none is named. In none of them does anything pass that was not checked.
+
+    With --requirements (again for each file) a report that is confirmed is made anew with requirements of
+    your own: verdict, margins and blame of each, and the text of the file. They count for the exit code. From
+    then on they are judged again with the rest. Files of an earlier --requirements are replaced by those that
+    are named now; those that the flight was flown with stay.
 
     --pdf writes the report as PDF (the extra `pdf`), --full as full.html with all sections: requirements,
     margins, certificate, proofs, assumptions, coverage, argument; --pdf --full as full.pdf. The same report
@@ -69,9 +85,9 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool, **views: An
     asked = Asked(**views)
     key = checked(asked)
     if asked.verify:
-        if rewrite or trace:
+        if rewrite or trace or requirements:
             raise click.UsageError(
-                "--verify judges by the judge alone, without --rewrite and --trace"
+                "--verify judges by the judge alone, without --rewrite, --trace and --requirements"
             )
         return verified(folder, asked, as_json)
 
@@ -81,8 +97,9 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool, **views: An
     from cratous.services.cli.progress import waiting
     from cratous.services.cli.show import requirement_table, say
 
+    own = own_files(requirements)
     with waiting("judging the flight again from its log", as_json):
-        done = certify_again(folder, rewrite=rewrite)
+        done = certify_again(folder, rewrite=rewrite, own=own)
     report, found = done.report, done.found
     code = 1 if found else int(report["exit_code"])
     files: list[str] = []
@@ -106,6 +123,7 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool, **views: An
             "of_an_earlier_run": stale,
             "verdict": report.get("verdict"),
             "digest": report["log"]["digest"] if report else None,
+            **({"own": report["own"]["requirements"]} if report.get("own") else {}),
             "exit_code": code,
             **({"trace": {k: v for k, v in chains.items() if k != "names"}} if chains else {}),
         }
@@ -119,6 +137,8 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool, **views: An
             say(f"  and {len(found) - SHOWN} more (--json lists all)", err=True)
     else:
         requirement_table(report["requirements"])
+        for line in own_lines(report):
+            say(line)
         say(f"confirmed from the log with the digest {report['log']['digest']}")
     for line in lines(chains) if chains is not None else ():
         say(line)

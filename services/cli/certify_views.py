@@ -155,6 +155,7 @@ def verified(results: Path, asked: Asked, as_json: bool) -> int:
         say(
             f"verified: signature, {found.files} digests, {found.recomputed} of {found.expected} "
             "verdicts on the flight by the judge"
+            + (f", {found.own} requirements of the user's own from the log" if found.own else "")
         )
     for line in found.undecided:
         say(f"not decided: {line}")

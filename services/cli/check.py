@@ -27,13 +27,16 @@ def check(files: tuple[Path, ...], fretish: bool, as_json: bool) -> int:
 
     Example:  cratous check examples/crossing/mission.yaml
 
+    Parameters that can be read and do not fit the vehicles (`cratous params`) are named.
+
     With --fretish each requirement whose form FRETish has is printed as its sentence, and of the others
     why it has none.
 
     Exit codes: 0 all can be read, 2 one cannot (all that is wrong is printed), 3 with --fretish a
     requirement has no sentence.
     """
-    found = [_read(file) for file in files]
+    notes: dict[Path, tuple[str, ...]] = {}
+    found = [_read(file, notes) for file in files]
     said = {str(file): _said(file) for file, bad in found if fretish and not bad}
     missing = any(not one["sentence"] for rows in said.values() for one in rows)
     code = 2 if any(problems for _, problems in found) else 3 if missing else 0
@@ -43,6 +46,7 @@ def check(files: tuple[Path, ...], fretish: bool, as_json: bool) -> int:
                 {
                     "file": str(file),
                     "problems": [_data(one) for one in problems],
+                    "notes": list(notes.get(file, ())),
                     **({"fretish": said.get(str(file), [])} if fretish else {}),
                 }
                 for file, problems in found
@@ -56,13 +60,15 @@ def check(files: tuple[Path, ...], fretish: bool, as_json: bool) -> int:
             say(f"cratous: {one}", err=True)
         if not problems:
             say(f"{file}: can be read")
+        for note in notes.get(file, ()):
+            say(f"{file}: {note}")
         for row in said.get(str(file), ()):
             say(f"{row['requirement']}: {row['sentence'] or 'not in FRETish: ' + row['why']}")
     return code
 
 
-def _read(file: Path) -> tuple[Path, list[BadInput]]:
-    """The file and what is wrong with it."""
+def _read(file: Path, notes: dict[Path, tuple[str, ...]]) -> tuple[Path, list[BadInput]]:
+    """The file and what is wrong with it; notes: gets the parameters of missions that do not fit."""
     try:
         if file.suffix == ALGEBRA:
             from cratous.spec import algebra
@@ -78,8 +84,9 @@ def _read(file: Path) -> tuple[Path, list[BadInput]]:
             return file, [one for one in asked if isinstance(one, NotRead)]
         else:
             from cratous.services.loading import load
+            from cratous.services.loading.fitness import warnings_of
 
-            load(file)
+            notes[file] = warnings_of(load(file))
     except BadInput as error:
         return file, list(getattr(error, "problems", ())) or [error]
     return file, []

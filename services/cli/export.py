@@ -18,7 +18,7 @@ from cratous.spec.mission.plan import Plan
 @click.option(
     "--format",
     "form",
-    type=click.Choice(["amase", "uxas", "geojson", "kml"]),
+    type=click.Choice(["amase", "uxas", "geojson", "kml", "qgc", "geofence"]),
     required=True,
     help="What to write.",
 )
@@ -28,7 +28,10 @@ from cratous.spec.mission.plan import Plan
     type=click.Path(path_type=Path),
     help="File, or for uxas a new or empty folder; without it, the text is printed.",
 )
-@click.option("--plan", "planned", is_flag=True, help="With the planned routes (geojson, kml).")
+@click.option(
+    "--plan", "planned", is_flag=True, help="With the planned routes (geojson, kml, qgc)."
+)
+@click.option("--vehicle", type=click.IntRange(1), help="Of a flight plan (qgc): whose.")
 @click.option("--request", type=click.IntRange(1), default=1, help="Of several requests the N-th.")
 @click.option("--strict", is_flag=True, help="Write nothing if the format cannot say everything.")
 @click.option("--allow-unproved", is_flag=True, help="Plan with kernels that have no proof.")
@@ -37,15 +40,18 @@ def export(
     form: str,
     out: Path | None,
     planned: bool,
+    vehicle: int | None,
     request: int,
     strict: bool,
     allow_unproved: bool,
 ) -> int:
-    """Write a MISSION as AMASE scenario, UxAS configuration with messages, GeoJSON or KML.
+    """Write a MISSION as AMASE scenario, UxAS configuration with messages, GeoJSON or KML, or of it a vehicle's
+    flight plan (qgc: QGC WPL 110) or the zones (geofence: XML), as ICAROUS reads them.
 
     What the format cannot say is listed on stderr, each field by name; with --strict that is bad
     input, and nothing is written. AMASE scenarios and UxAS folders are missions again, for `cratous
-    check`, `plan`, `run` and `export`.
+    check`, `plan`, `run` and `export`; `cratous import` reads the others. A flight plan without --plan has the points
+    that the mission has the vehicle fly through in one order.
 
     Example:  cratous export examples/crossing/mission.yaml --format geojson --plan -o crossing.geojson
 
@@ -55,16 +61,20 @@ def export(
     from cratous.core.files.whole_file import write_atomically
     from cratous.services.exporting.exported import MAPS, UXAS, beside, exported
     from cratous.services.exporting.folder import write_folder
+    from cratous.services.exporting.icarous import QGC
     from cratous.services.loading import load
 
     if form == UXAS and out is None:
         raise click.UsageError("--format uxas writes a folder: name it with -o")
-    if planned and form not in MAPS:
-        raise click.UsageError(f"--plan goes with --format {' or '.join(MAPS)}")
+    ways = (*MAPS, QGC)
+    if planned and form not in ways:
+        raise click.UsageError(f"--plan goes with --format {' or '.join(ways)}")
+    if vehicle is not None and form != QGC:
+        raise click.UsageError(f"--vehicle goes with --format {QGC}")
     loaded = load(mission, 0, request)
     plan, code = _planned(loaded, allow_unproved) if planned else (None, 0)
     folder = None if out is None else out.absolute().name
-    made = exported(loaded, form, plan, folder)
+    made = exported(loaded, form, plan, folder, vehicle)
     unsaid = [*made.unsaid, *beside(mission, request)]
     if strict and unsaid:
         raise BadInput(

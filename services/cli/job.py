@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
+from cratous.services.loading.fitness import warnings_of
 from cratous.services.mission.availability import absent
 from cratous.services.mission.wind import known_at
 from cratous.spec.errors import NoPlan
@@ -20,22 +21,25 @@ from cratous.spec.mission.plan import (
     in_part_of,
     left_out_of,
 )
+from cratous.spec.mission.sensing import EXACT_STATES, words
 
 if TYPE_CHECKING:
     from cratous.services.certify.report import Flown
     from cratous.services.logs.log import LogWriter
     from cratous.services.monitor import Monitor
+    from cratous.services.requirements.own_files import OwnFile
 
 Tell = Callable[[str], None]
 
 
 @dataclass(frozen=True)
 class Settings:
-    """How a mission is run; `command` is what reproduces it."""
+    """How a mission is run; `command` is what reproduces it, own: requirements of the user's own."""
 
     daa: bool = True
     allow_unproved: bool = False
     command: str = ""
+    own: tuple[OwnFile, ...] = ()
 
 
 class InProcesses(NamedTuple):
@@ -165,7 +169,8 @@ def fly_mission(
         mission = replace(mission, instances=())
     bus = new_bus()
     log = folder / LOG_NAME
-    flown = Flown(settings.command, settings.daa, inventory(standing, None), environment())
+    proofs = inventory(standing, None)
+    flown = Flown(settings.command, settings.daa, proofs, environment(), settings.own)
     with LogWriter(log, **log_meta(mission, flown)) as writer:
         bus.tap(writer.tap)
         if onlooker is not None:
@@ -203,13 +208,22 @@ def log_meta(mission: Mission, flown: Flown) -> dict[str, Any]:
 
 
 def tell_plan(mission: Mission, plan: Plan, checks: list[Verdict], tell: Tell) -> None:
-    """Say what is planned, what is left out, and who takes no part at the start."""
+    """Say which parameters do not fit, what is planned, what is left out, and who takes no part at the start."""
     for line in (
+        *(f"note: {text}" for text in warnings_of(mission)),
         plan_line(mission, plan, checks),
         *left_out_lines(plan),
         *absent_lines(mission),
+        *states_lines(mission),
     ):
         tell(line)
+
+
+def states_lines(mission: Mission) -> list[str]:
+    """A line that says what ICAROUS is given to see, if anybody has one."""
+    if not mission.instances:
+        return []
+    return [EXACT_STATES if mission.sensing is None else words(mission.sensing)]
 
 
 def accept_plan(

@@ -20,7 +20,8 @@ from cratous.spec.errors import BadInput
 if TYPE_CHECKING:
     from cratous.services.logs.entry import Entry
     from cratous.services.logs.store import LogStore
-    from cratous.services.requirements.watch import Outcome, Watch
+    from cratous.services.requirements.outcome import Outcome
+    from cratous.services.requirements.watch import Watch
 
 WAIT_S = 60.0
 """So long nobody may listen at the address."""

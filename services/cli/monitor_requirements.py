@@ -12,8 +12,9 @@ import click
 if TYPE_CHECKING:
     from cratous.core.ledger import Standing
     from cratous.services.requirements.lint import Remark
+    from cratous.services.requirements.outcome import Margin, Outcome
     from cratous.services.requirements.specification import Specification
-    from cratous.services.requirements.watch import Margin, Outcome, Watched
+    from cratous.services.requirements.watch import Watched
 
 
 class Judged(NamedTuple):
@@ -89,7 +90,7 @@ def result(found: Judged) -> dict[str, Any]:
 
 def told(found: Judged) -> Iterator[str]:
     """The same for people."""
-    from cratous.services.certify.blame_own import lines
+    from cratous.services.certify.own_said import lines
 
     for remark in found.remarks:
         yield f"lint: {remark.text}"

@@ -53,7 +53,8 @@ def run_in_processes(
     told = told_of(mission)
     standing = ledger.require(allow_unproved=settings.allow_unproved)
     tell(f"proofs: {standing.line}")
-    flown = Flown(settings.command, settings.daa, inventory(standing, None), environment())
+    proofs = inventory(standing, None)
+    flown = Flown(settings.command, settings.daa, proofs, environment(), settings.own)
     log = folder / LOG_NAME
     with LogWriter(log, **log_meta(mission, flown)) as writer:
         with counted() as calls:

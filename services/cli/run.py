@@ -7,7 +7,7 @@ import shlex
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
@@ -15,12 +15,9 @@ from cratous.services.cli.campaign import seed_range
 from cratous.services.cli.job import InProcesses, Settings, folder_name, run_mission
 from cratous.services.cli.job import silent as untold
 from cratous.services.cli.numbers import Number
+from cratous.services.cli.own_requirements import own_data, own_files, own_lines, own_option
 from cratous.services.cli.progress import waiting
-from cratous.services.cli.show import requirement_table, say
-from cratous.spec.errors import BadInput
-
-if TYPE_CHECKING:
-    from cratous.services.requirements.specification import Specification
+from cratous.services.cli.show import requirement_table, say, shown_path
 
 Tell = Callable[[str], None]
 
@@ -46,10 +43,7 @@ Tell = Callable[[str], None]
     "--original-clients", is_flag=True,
     help="With --processes: wait for the original's clients, which you start, in place of `cratous icarous`.",
 )  # fmt: skip
-@click.option(
-    "--requirements", type=click.Path(path_type=Path), metavar="FILE.req",
-    help="Also hold the log of the flight against requirements of your own.",
-)  # fmt: skip
+@own_option("Also hold the log of the flight against requirements of your own.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="No progress, only the result.")
 def run(
@@ -71,8 +65,9 @@ def run(
     With --processes a mission file is flown by processes that `ps` shows, over sockets of loopback and
     against the clock: `cratous sim`, `cratous uxas` and a `cratous icarous` for each protected vehicle.
 
-    With --requirements, the log is then held against requirements of your own, as `cratous monitor
-    --requirements` does, with who was in command where one is violated; the exit code is that of all.
+    With --requirements (again for each file), the log is then held against requirements of your own, as
+    `cratous monitor --requirements` does. They stand in the report, with the text of their files, margins and
+    who was in command where one is violated; the exit code is that of all.
 
     Example:  cratous run examples/crossing/mission.yaml
 
@@ -82,7 +77,11 @@ def run(
     command = ["cratous", "run", shown_path(mission)]
     command += ["--no-daa"] * no_daa + ["--allow-unproved"] * allow_unproved
     daa, quiet, rate = not no_daa, bool(how["quiet"]), how["rate"]
-    own = _own(how["requirements"], seeds)
+    if how["requirements"] and seeds is not None:
+        raise click.UsageError("--requirements is of one flight: no --seeds")
+    own = own_files(how["requirements"])
+    for file in own:
+        command += ["--requirements", file.name]
     if rate is not None and not how["processes"]:
         raise click.UsageError("--rate is of --processes")
     if how["original_clients"] and not how["processes"]:
@@ -94,33 +93,16 @@ def run(
             )
         command += ["--processes"] + (["--rate", f"{rate:g}"] if rate is not None else [])
         command += ["--original-clients"] * how["original_clients"]
-        settings = Settings(daa, allow_unproved, shlex.join(command))
+        settings = Settings(daa, allow_unproved, shlex.join(command), own)
         processes = InProcesses(rate or 1.0, how["original_clients"])
-        return fly_and_show(mission, seed, out, settings, as_json, quiet, processes, own)
+        return fly_and_show(mission, seed, out, settings, as_json, quiet, processes)
     if seeds is not None:
         if seed:
             raise click.UsageError("--seed and --seeds exclude each other")
         return _many(mission, seeds, out, Settings(daa, allow_unproved), as_json, quiet)
     command += ["--seed", str(seed)] if seed else []
-    settings = Settings(daa, allow_unproved, shlex.join(command))
-    return fly_and_show(mission, seed, out, settings, as_json, quiet, own=own)
-
-
-def _own(file: Path | None, seeds: range | None) -> Specification | None:
-    """The requirements of the user's own, refused before anything is flown if no log can be held against them."""
-    from cratous.services.cli.monitor_requirements import read
-    from cratous.services.requirements.traces import wanted_of
-    from cratous.services.requirements.watch import Watch
-
-    if file is None:
-        return None
-    if seeds is not None:
-        raise click.UsageError("--requirements is of one flight: no --seeds")
-    found = read(file)
-    if not found.timed:
-        raise BadInput("these requirements count samples", where=str(file), expected="a file *.req")
-    wanted_of(found, Watch(found).needed)
-    return found
+    settings = Settings(daa, allow_unproved, shlex.join(command), own)
+    return fly_and_show(mission, seed, out, settings, as_json, quiet)
 
 
 def fly_and_show(
@@ -131,35 +113,18 @@ def fly_and_show(
     as_json: bool,
     quiet: bool,
     processes: InProcesses | None = None,
-    own: Specification | None = None,
 ) -> int:
     """Run one mission and print what came of it; returns the exit code. processes: it is flown in; None: in
-    this process, in virtual time; own: requirements of the user's, which the flight's log is held against too."""
-    from cratous.services.cli.monitor_requirements import judged, result, told
-
+    this process, in virtual time."""
     silent = quiet or as_json
     with waiting("loading the mission", silent) as wait:
         tell = untold if silent else wait.tell
         report, folder = run_one(mission, seed, out or Path("out"), settings, tell, processes)
-    if not as_json:
-        _show(report, folder)
-    found = None if own is None else judged(own, folder)
-    code = int(report["exit_code"])
-    if found is not None:
-        code = 1 if 1 in (code, found.code) else code or found.code
     if as_json:
-        more = {} if found is None else {"own": result(found), "exit_code": code}
-        click.echo(json.dumps({**summary(report, folder), **more}, indent=1))
-    elif found is not None:
-        for line in told(found):
-            say(line)
-        say(f"with requirements of your own: exit code {code}")
-    return code
-
-
-def shown_path(path: Path) -> str:
-    """A path as it goes into a report: never a folder of one machine."""
-    return path.name if path.is_absolute() else path.as_posix()
+        click.echo(json.dumps(summary(report, folder), indent=1))
+    else:
+        _show(report, folder)
+    return int(report["exit_code"])
 
 
 def run_one(
@@ -199,6 +164,7 @@ def summary(report: dict[str, Any], folder: Path | None) -> dict[str, Any]:
         "verdict": report["verdict"],
         "exit_code": report["exit_code"],
         "requirements": report["requirements"],
+        **({"own": own_data(report)} if "own" in report else {}),
         "takeovers": len(report["flight"]["takeovers"]),
         "outcome": report["flight"]["outcome"],
         "digest": report["log"]["digest"],
@@ -214,6 +180,8 @@ def _show(report: dict[str, Any], folder: Path) -> None:
 
     flight = report["flight"]
     requirement_table(report["requirements"])
+    for line in own_lines(report):
+        say(line)
     for served in flight["served"]:
         note = f" ({served['note']})" if served["note"] else ""
         who = f"vehicle {served['vehicle']}" if served["vehicle"] else "no vehicle"

@@ -140,7 +140,7 @@ def _asked(
     mission: Path, out: Path, seed: int, no_daa: bool, allow_unproved: bool
 ) -> dict[str, Any]:
     """What the flight's process is asked for; its report names the command that does the same."""
-    from cratous.services.cli.run import shown_path
+    from cratous.services.cli.show import shown_path
 
     command = ["cratous", "run", shown_path(mission)]
     command += ["--no-daa"] * no_daa + ["--allow-unproved"] * allow_unproved

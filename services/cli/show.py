@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 from typing import Any
 
 import click
@@ -51,6 +52,11 @@ def table(head: list[str], rows: list[list[str]], verdict_column: int | None = N
     for row in [head, *rows]:
         line = "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True))
         click.echo(line.rstrip())
+
+
+def shown_path(path: Path) -> str:
+    """A path as it goes into a report: never a folder of one machine."""
+    return path.name if path.is_absolute() else path.as_posix()
 
 
 def requirement_table(rows: list[dict[str, Any]]) -> None:

@@ -51,7 +51,7 @@ def sim(
     compatibility: str,
     **how: Any,
 ) -> int:
-    """Fly the aircraft of an AMASE SCENARIO (XML).
+    """Fly the aircraft of an AMASE SCENARIO (XML), and move what drives or sails.
 
     Without --listen as fast as it goes, to the end; -o keeps what AMASE would tell (read it with
     `cratous lmcp decode`). With --listen for clients such as UxAS, at --rate: they send MissionCommand,
@@ -98,7 +98,7 @@ def sim(
     took_s = max(1e-9, time.monotonic() - began_s)
     _tell_unheard(world)
     click.echo(
-        f"{plan.name}: {world.time_s:.0f} s of {len(world.aircraft)} aircraft, "
+        f"{plan.name}: {world.time_s:.0f} s of {_count(world)}, "
         f"{world.time_s / took_s:.0f} times real time"
     )
     return 0
@@ -125,7 +125,21 @@ def _ports(texts: Sequence[str]) -> dict[int, Address]:
 
 def _configures(body: Any) -> bool:
     """Whether an object brings a vehicle."""
-    return type(body).__name__ == "AirVehicleConfiguration"
+    from cratous.services.simulator.server import CONFIGURATIONS
+
+    return type(body).__name__ in CONFIGURATIONS
+
+
+def _count(world: World) -> str:
+    """How many aircraft there are, and others."""
+    others = len(world.drivers.there)
+    more = f" and {others} that drive or sail" if others else ""
+    return f"{len(world.aircraft)} aircraft{more}"
+
+
+def _warn(world: World) -> None:
+    for text in world.warnings():
+        click.echo(f"WARN: {text}", err=True)
 
 
 def _tell_unheard(world: World) -> None:
@@ -142,6 +156,7 @@ def _write(world: World, output: Path | None) -> None:
     if output is None:
         while not world.over:
             world.tick()
+            _warn(world)
         return
     with replacing(output) as part:
         try:
@@ -149,6 +164,7 @@ def _write(world: World, output: Path | None) -> None:
                 while not world.over:
                     for body in world.tick():
                         file.write(sentinel.frame(frame_payload(body)))
+                    _warn(world)
         except OSError as error:
             raise cannot_write(output, error) from error
 

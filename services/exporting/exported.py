@@ -7,6 +7,7 @@ from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from cratous.core.files.whole_file import write_atomically
+from cratous.services.exporting import icarous
 from cratous.services.exporting.amase import scenario_text
 from cratous.services.exporting.differences import differences
 from cratous.services.exporting.geojson import geojson_text
@@ -27,6 +28,8 @@ from cratous.spec.mission.plan import Plan
 
 AMASE, UXAS, GEOJSON, KML = FORMATS = ("amase", "uxas", "geojson", "kml")
 MAPS = {GEOJSON: geojson_text, KML: kml_text}
+OF_ICAROUS = (icarous.QGC, icarous.GEOFENCE)
+"""Each says one thing of a mission: the way of a vehicle, the zones."""
 ENDINGS = {AMASE: "xml", GEOJSON: "geojson", KML: "kml"}
 
 SECTIONS = ("variation", "expect")
@@ -41,17 +44,30 @@ class Exported(NamedTuple):
 
 
 def exported(
-    mission: Mission, form: str, plan: Plan | None = None, folder: str | None = None
+    mission: Mission,
+    form: str,
+    plan: Plan | None = None,
+    folder: str | None = None,
+    vehicle: int | None = None,
 ) -> Exported:
-    """The mission in one of FORMATS; plan: its routes, which only formats of maps have; folder: the name
-    that a UxAS folder gets, which is the name of its mission. Raises BadInput for what cannot be written
-    at all.
+    """The mission in one of FORMATS or OF_ICAROUS; plan: its routes, which only formats of maps and flight plans have;
+    folder: the name that a UxAS folder gets, which is the name of its mission; vehicle: of a flight plan. Raises
+    BadInput for what cannot be written at all.
 
     What AMASE and UxAS are told is read again, and what is then not the same was not said.
     """
     if form in MAPS:
         text = MAPS[form](mission, plan)
         return Exported({f"{mission.name}.{ENDINGS[form]}": text}, tuple(unsaid(mission)))
+    if form in OF_ICAROUS:
+        if form == icarous.QGC:
+            name, text = (
+                f"{mission.name}.waypoints",
+                icarous.flight_plan_text(mission, vehicle, plan),
+            )
+        else:
+            name, text = f"{mission.name}.fences.xml", icarous.geofence_text(mission)
+        return Exported({name: text}, tuple(icarous.unsaid_of(mission, form)))
     try:
         told = messages_of(mission)
     except BadInput as error:

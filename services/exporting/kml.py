@@ -46,13 +46,14 @@ def kml_text(mission: Mission, plan: Plan | None = None) -> str:
 
 def _placemark(shape: Shape) -> str:
     said, kind = shape.properties, shape.properties["kind"]
+    name = said.get("label") or f"{kind} {said['id']}"
     style = f"<styleUrl>#{kind}</styleUrl>" if kind in COLOURS else ""
     data = "".join(
-        f"<Data name={quoteattr(name)}><value>{escape(_value(value))}</value></Data>"
-        for name, value in said.items()
+        f"<Data name={quoteattr(key)}><value>{escape(_value(value))}</value></Data>"
+        for key, value in said.items()
     )
     return (
-        f'<Placemark id="{kind}-{said["id"]}"><name>{escape(said["label"])}</name>{style}\n'
+        f'<Placemark id="{kind}-{said["id"]}"><name>{escape(name)}</name>{style}\n'
         f"<ExtendedData>{data}</ExtendedData>\n{_geometry(shape)}</Placemark>\n"
     )
 

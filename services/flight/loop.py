@@ -53,6 +53,7 @@ from cratous.services.flight.messages import (
     Say,
     Sense,
     SetOut,
+    Surveyed,
     Suspend,
     TakeBack,
     Tick,
@@ -71,6 +72,7 @@ from cratous.services.icarous.messages import (
     FromInstance,
     Line,
     Offers,
+    Sensed,
     Steer,
     ToInstance,
     Uncertified,
@@ -78,8 +80,11 @@ from cratous.services.icarous.messages import (
     Wish,
 )
 from cratous.services.mission.frames import Projection
+from cratous.services.sensing import surveillance
+from cratous.services.sensing.filter import Flown
+from cratous.services.sensing.surveillance import Carrier, Surveillance
 from cratous.spec.errors import NoPlan
-from cratous.spec.mission import FaultySimulation, LivePlanningMission, Mission
+from cratous.spec.mission import FaultySimulation, LivePlanningMission, Mission, SensedDaa
 from cratous.spec.mission.plan import Plan
 
 Segmenter = Callable[[bytes], Iterable[bytes]]
@@ -116,6 +121,15 @@ def _bridge(mission: Mission, instances: tuple[int, ...], segmenter: Segmenter |
     return FaultyBridge(instances, mission.simulation.bridge_faults, segmenter=segmenter)
 
 
+def _carriers(mission: Mission, instances: tuple[int, ...]) -> dict[int, Carrier]:
+    """Who has sensors: each vehicle with an instance, if the mission has any."""
+    daa, step_ms = mission.daa, mission.simulation.step_ms
+    if not isinstance(daa, SensedDaa):
+        return {}
+    ours = frozenset(instances)
+    return {vid: Carrier(vid, daa, mission.seed, step_ms, ours) for vid in instances}
+
+
 Answer = FromExecutive | FromLinkEnd | FromVehicle | FromInstance
 
 
@@ -146,6 +160,8 @@ class Flight:
         self.icarous = {vid: Instance(config) for vid, config in configs.items()}
         self.icarous_states = {vid: icarous.State() for vid in instances}
         self.waiting: dict[int, list[ToInstance]] = {vid: [] for vid in instances}
+        self.carriers = _carriers(mission, instances)
+        self.seen = dict.fromkeys(self.carriers, Surveillance())
         self.gated = lmcp.types["GatedCommand"]
         self.commands, self.now_ms, self.outcome = 0, 0, ""
 
@@ -172,6 +188,10 @@ class Flight:
 
     def _step(self) -> None:
         now = self.now_ms
+        if self.carriers:
+            flown = {vid: Flown(s.position, s.velocity) for vid, s in self._everyone()}
+            for vid, carrier in self.carriers.items():
+                self.seen[vid] = surveillance.stepped(carrier, self.seen[vid], now, flown)
         self._executive(Tick(now, self._own()))
         if now % self.mission.simulation.heartbeat_ms == 0:
             self._heartbeat()
@@ -248,6 +268,19 @@ class Flight:
         for vid in self.vehicles:
             self._vehicle(vid, message)
 
+    def _given(self, vid: int, true: Sensed) -> Sensed:
+        """What the vehicle's ICAROUS is given at a heartbeat: the true states, or what its sensors see."""
+        carrier = self.carriers.get(vid)
+        if carrier is None:
+            return true
+        self.seen[vid] = surveillance.arrived(carrier, self.seen[vid], true.now_ms)
+        air = self.vehicle_states[vid].air
+        own = Flown(air.position, air.velocity)
+        shown = surveillance.shown(carrier, self.seen[vid], true.now_ms, own)
+        for one in shown:
+            self._publish(surveillance.sensed_state(carrier, one), f"vehicle/{vid}")
+        return surveillance.given(carrier, shown, true)
+
     def _instance(self, vid: int, message: ToInstance) -> None:
         if self._stands_still():
             # lines wait to be read, what was sensed is gone
@@ -284,7 +317,10 @@ class Flight:
                     self._vehicle(vid, Wished(self.now_ms, answer))
                     self._executive(Because(*answer))
                 case OnBoard(vid, sensed):
-                    self._instance(vid, sensed)
+                    given = self._given(vid, sensed)
+                    self._vehicle(vid, Surveyed(self.now_ms, given.intruders))
+                    hand = self.vehicle_states[vid].held.hand
+                    self._instance(vid, given._replace(hand=hand))
                 case Offers(vid) | Uncertified(vid):
                     self._vehicle(vid, Held(self.now_ms, answer))
                 case Foresees(vid):

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.text_protocol import Message
 from cratous.core.authority.gate import Gate
+from cratous.core.avoidance.prediction import Intruder
 from cratous.services.flight.dynamics import AirState, Limits
 from cratous.services.icarous.messages import Offers, Sensed, Uncertified, Wish
 from cratous.spec.mission import Mission, Position, Zone
@@ -285,6 +286,13 @@ class Held(NamedTuple):
     offer: Offers | Uncertified
 
 
+class Surveyed(NamedTuple):
+    """Who is seen at a heartbeat, as the vehicle's surveillance has them."""
+
+    now_ms: int
+    intruders: tuple[Intruder, ...]
+
+
 class LimitsAre(NamedTuple):
     """What the airframe can do over the ground from now on."""
 
@@ -328,7 +336,7 @@ class OnBoard(NamedTuple):
     sensed: Sensed
 
 
-ToVehicle = Commanded | Wished | Held | LimitsAre | Look | Sense | Choose | Move
+ToVehicle = Commanded | Wished | Held | Surveyed | LimitsAre | Look | Sense | Choose | Move
 FromVehicle = Say | GateIs | OnBoard
 
 ToExecutive = (

@@ -56,6 +56,7 @@ from cratous.services.flight.messages import (
     OnBoard,
     Say,
     Sense,
+    Surveyed,
     ToVehicle,
     Wished,
 )
@@ -116,12 +117,14 @@ class VehicleNode:
                 return self._wished(state, message)
             case Held():
                 return self._offered(state, message)
+            case Surveyed():
+                return self._surveyed(state, message)
             case LimitsAre(_, limits):
                 return replace(state, limits=limits), ()
             case Look():
                 return state, (self._say(self._air_vehicle_state(state, message)),)
             case Sense():
-                return self._sense(state, message)
+                return state, (self.sensed(state, message),)
             case Choose(now_ms):
                 return self._choose(state, now_ms)
             case Move():
@@ -166,15 +169,13 @@ class VehicleNode:
         said = (self._say(hand_state(self.vehicle.id, now_ms, change)) for change in changes)
         return replace(state, held=held), tuple(said)
 
-    def _sense(self, state: State, message: Sense) -> Step:
-        """What has become known to the hand, and then what ICAROUS gets."""
-        said: tuple[FromVehicle, ...] = ()
-        if self.ground is not None:
-            others = self.sensed(state, message).sensed.intruders
-            own, now_ms = state.air.position, message.now_ms
-            kept = holding.seen(state.held, own, others, now_ms, self.ground)
-            state, said = self._kept(state, kept, now_ms)
-        return state, (*said, self.sensed(state, message))
+    def _surveyed(self, state: State, message: Surveyed) -> Step:
+        """What has become known to the hand."""
+        if self.ground is None:
+            return state, ()
+        now_ms, others = message
+        kept = holding.seen(state.held, state.air.position, others, now_ms, self.ground)
+        return self._kept(state, kept, now_ms)
 
     def _wished(self, state: State, message: Wished) -> Step:
         """Let the gate do what the vehicle's ICAROUS wants."""
@@ -238,7 +239,7 @@ class VehicleNode:
         motion = Motion(air.position, air.heading_rad, air.speed_m_s, air.climb_m_s)
         seen = traffic_picture(self.vehicle.id, message)
         hand = state.held.hand
-        sensed = Sensed(message.now_ms, motion, ability, seen, state.gate, hand)
+        sensed = Sensed(message.now_ms, motion, ability, seen, state.gate, hand=hand)
         return OnBoard(self.vehicle.id, sensed)
 
     def _air_vehicle_state(self, state: State, look: Look) -> Any:

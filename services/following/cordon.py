@@ -1,19 +1,23 @@
 """The service of a cordon: vehicles that drive block every road that crosses the circle about a place.
 
 It asks the OsmPlannerService where roads cross the circle (EgressRouteRequest). An option is one vehicle at one of
-these places; offered is a choice of all ways to give each place a vehicle of its own. Each drives there along roads
-and stands. Complete: all of them stand at their places at one time for as long as is asked.
+these places; offered is a choice of all ways to give each place a vehicle of its own. Each drives there along roads,
+and is told to stand there until the last has come. Complete: all of them stand at their places at one time for as long
+as is asked; then each is sent on in its plan.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from math import isfinite
 from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.core.authority.timeliness import lasted
+from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.kernel import Vec2
-from cratous.core.tasks.stations import in_ring
+from cratous.core.routing.visibility import name_of
+from cratous.core.tasks.stations import in_ring, outruns
 from cratous.services.bus import Envelope
 from cratous.services.following.asked import (
     DURATION,
@@ -24,9 +28,10 @@ from cratous.services.following.asked import (
 )
 from cratous.services.following.blocking import Told, options_of
 from cratous.services.following.offering import choice
-from cratous.services.following.part import Part
+from cratous.services.following.part import Part, command_id
 from cratous.services.following.service import (
     SELECTED,
+    SILENT_MS,
     Following,
     FollowingTaskService,
     Step,
@@ -46,8 +51,8 @@ from cratous.services.planning.options import Dropped, Option
 from cratous.spec.errors import BadInput, NoPlan
 
 EGRESS = "uxas.messages.route.EgressRouteResponse"
-PLACE_M = 20.0
-"""Who is no farther from its place blocks the road there."""
+PLACE_M, STANDS_M_S = 20.0, 0.5
+"""Who is no farther from its place, and slower, blocks the road there."""
 
 
 AWAITS_PLACES = 3
@@ -126,30 +131,56 @@ class CordonTaskService(FollowingTaskService):
         return choice(context, self._task_id, options, self._ways)
 
     def _plan(self, request: Any, response: Any) -> list[Any]:
-        """Its way along roads; NoPlan where it would have to wait before, which nothing that drives is told."""
-        plan = response.RouteResponses[0] if response.RouteResponses else None
+        """Its way along roads, and where it has to wait before, a stand at the beginning of the way."""
+        plan, wait = response.RouteResponses[0] if response.RouteResponses else None, 0
         if plan is not None and not plan.RouteCost < 0:
             wait = max(0, request.TimeThreshold - request.StartTime - plan.RouteCost)
-            if lasted(0, wait, ROUNDED_MS):
-                text = f"vehicle {request.VehicleID} would have to wait {wait / 1000:.3f} s before task"
-                raise NoPlan((f"{text} {self._task_id}, and what drives is not told to",))
-        return [self._standing(one) for one in super()._plan(request, response)]
+        if not lasted(0, wait, ROUNDED_MS):
+            return [self._standing(one, 0) for one in super()._plan(request, response)]
+        soon = request.copy(TimeThreshold=request.StartTime)
+        return [self._standing(one, wait) for one in super()._plan(soon, response)]
 
-    def _standing(self, said: Any) -> Any:
-        """With the action to stand at the place for as long as is asked, before the plan goes on from there."""
+    def _standing(self, said: Any, wait: int) -> Any:
+        """With the actions to wait [ms] where its way begins, and to stand at the place before the plan goes on.
+
+        There it stands a little longer than is asked, so that it is told to stay before it would go on.
+        """
         if type(said).__name__ != "TaskImplementationResponse":
             return said
         *way, last = said.TaskWaypoints
-        stand = lmcp.new(
+        stand = self._stand(self._least_ms + SILENT_MS, said.FinalLocation)
+        ways = [*way, last.copy(VehicleActionList=[stand])]
+        if wait:
+            first = ways[0]
+            if not way:
+                raise NoPlan(
+                    (f"vehicle {said.VehicleID} has to wait, and its way is of one place",)
+                )
+            at = lmcp.new("Location3D", Latitude=first.Latitude, Longitude=first.Longitude)
+            ways[0] = first.copy(VehicleActionList=[self._stand(wait, at)])
+        return said.copy(TaskWaypoints=ways, FinalTime=said.FinalTime + wait)
+
+    def _stand(self, duration: int, place: Any) -> Any:
+        """The action to stand at a place for so long [ms], -1: until something else is told."""
+        return lmcp.new(
             "LoiterAction",
             AssociatedTaskList=[self._task_id],
             LoiterType="Hover",
-            Duration=self._least_ms,
-            Location=said.FinalLocation,
+            Duration=duration,
+            Location=place,
         )
-        return said.copy(TaskWaypoints=[*way, last.copy(VehicleActionList=[stand])])
 
     # what is driven
+
+    def _implemented(self, part: Part, more: Iterable[Any]) -> Part:
+        """Who waits where its way begins is not at its place before it goes on from there."""
+        more = list(more)
+        part = super()._implemented(part, more)
+        for one in more:
+            if type(one).__name__ == "TaskImplementationResponse":
+                first = one.TaskWaypoints[0]
+                return part._replace(begins=first.Number + 1 if first.VehicleActionList else 0)
+        return part
 
     def _told(self, state: Following, body: Any) -> Step:
         """A vehicle's state: its life, and whether all stand where they have to."""
@@ -160,7 +191,10 @@ class CordonTaskService(FollowingTaskService):
         needed = len(self._ways[0]) if self._ways else 0
         # who was silent until now was there until then, not since
         state = state._replace(now_ms=now_ms, kept=kept_at(state, needed, now_ms, 0))
+        number = command_id(self._task_id, part.state.task.request)
         there, why = self._stands(part, body)
+        begun = body.CurrentCommand == number or body.CurrentWaypoint not in range(part.begins)
+        there = there and begun
         if why and not part.blocked:
             out.append(self._warning(f"vehicle {part.vehicle} is not at its place: {why}"))
         elif part.there and not there:
@@ -170,17 +204,45 @@ class CordonTaskService(FollowingTaskService):
             part, out = part._replace(state=own), [*out, *more]
         state = state.with_part(part._replace(there=there, seen_ms=now_ms, blocked=why))
         state = state._replace(kept=kept_at(state, needed, now_ms, self._least_ms))
-        return self._over(state, body, out) if state.kept.done else (state, out)
+        if state.kept.done:
+            return self._over(state, body, out)
+        # nobody leaves before the last has come; who is not on its last leg yet would leave its road for its place
+        if there and self._task_id in body.AssociatedTasks and body.CurrentCommand != number:
+            stay = self._stand(-1, part.context.places.sent(part.option.end)[0])
+            out.append(self._order(part, stay))
+        return state, out
 
     def _stands(self, part: Part, body: Any) -> tuple[bool, str]:
-        """Whether a vehicle is at its place by its state; why that says nothing."""
+        """Whether a vehicle stands at its place by its state; why that says nothing."""
         where, at = f"state of vehicle {body.ID}", part.option.path[0]
         try:
             here = part.context.places.pose(body.Location, 0.0, where, "Location")
         except BadInput as error:
             return False, str(error)
-        return in_ring(Vec2(*at[:2]), Vec2(*here[:2]), 0.0, PLACE_M), ""
+        if not isfinite(body.Groundspeed):
+            return False, "its Groundspeed is no number"
+        stands = outruns(Vec2(body.Groundspeed, 0.0), STANDS_M_S)
+        return stands and in_ring(Vec2(*at[:2]), Vec2(*here[:2]), 0.0, PLACE_M), ""
 
     def _let_go(self, state: Following, part: Part) -> list[Any]:
-        """Nothing: it stays where it is, as its plan ends there, or goes on in this by itself."""
-        return []
+        """On to what comes next in its plan, if something does."""
+        goal = state.plans.get(part.vehicle, {}).get(part.then)
+        if goal is None:
+            return []
+        leg = first_bad_leg((part.option.path[0], goal), part.context.inputs.zones)
+        if leg is not None:
+            who = f"vehicle {part.vehicle} stays at its place"
+            return [self._warning(f"{who}: {name_of(leg[1])} keeps it from its plan")]
+        return [self._order(part, lmcp.new("GoToWaypointAction", WaypointNumber=part.then))]
+
+    def _sent(self, state: Following) -> list[Any]:
+        """Who was told to stay is sent on."""
+        return [one for part in state.parts if part.there for one in self._let_go(state, part)]
+
+    def _order(self, part: Part, action: Any) -> Any:
+        return lmcp.new(
+            "VehicleActionCommand",
+            CommandID=command_id(self._task_id, part.state.task.request),
+            VehicleID=part.vehicle,
+            VehicleActionList=[action],
+        )

@@ -43,6 +43,10 @@ RUN_IN_RESERVE = 1.25
 RUN_IN_MOST_M = 20_000.0
 LEAST_M_S = 1.0
 """Who makes less way against the wind is taken to make this."""
+SLOWER = 2.0
+"""Who waits flies no slower than its nominal speed by this: a lap is so long that states show each quarter of it."""
+RUN_IN = "run-in, waiting at [m/s] "
+"""The label of an option, before the speed at which its vehicle waits."""
 BEYOND_RADII = 2.5
 """A run-in ends so many radii of a turn at the fastest speed beyond its state: at most two ahead the next begins."""
 
@@ -115,6 +119,22 @@ def lap_s(flyer: Flyer, wind: Vec2 = Vec2(0.0, 0.0)) -> float:
     return calm_s / max(1 - (wind.x**2 + wind.y**2) / flyer.speed_m_s**2, 0.1)
 
 
+def waiting_of(flyer: Flyer, limits: Limits, wind: Vec2) -> Flyer:
+    """How a vehicle flies while it waits: as slowly as it can, on the narrower circle of that, if a lap is shorter so."""
+    share = max(limits.slowest_m_s / limits.nominal_m_s, 1 / SLOWER)
+    slow = flyer._replace(
+        speed_m_s=share * flyer.speed_m_s, radius_m=share * share * flyer.radius_m
+    )
+    return min(flyer, slow, key=lambda one: lap_s(one, wind))
+
+
+def waits_as(option: Option) -> Flyer:
+    """How the vehicle of an option flies while it waits."""
+    speed = float(option.label.removeprefix(RUN_IN))
+    share = speed / option.flyer.speed_m_s
+    return option.flyer._replace(speed_m_s=speed, radius_m=share**2 * option.flyer.radius_m)
+
+
 def options_of(
     context: Context, task: Task, met: Met, world: Known
 ) -> tuple[list[tuple[Option, int]], list[Dropped], list[str]]:
@@ -153,7 +173,8 @@ def _option(
     """The run-in of a vehicle to a state, or why there is none."""
     flyer, limits, zones = flyer_of(vehicle), limits_of(vehicle), context.inputs.zones
     wind = wind_of(world.get("state", vehicle.id), pose.heading_rad)
-    ground, lap = over_ground(limits, wind), lap_s(flyer, wind)
+    waiting = waiting_of(flyer, limits, wind)
+    ground, lap = over_ground(limits, wind), lap_s(waiting, wind)
     spread = ground.fastest_m_s - ground.slowest_m_s
     lap_m2_s = lap * ground.slowest_m_s * ground.fastest_m_s
     length = min(RUN_IN_RESERVE * lap_m2_s / spread, RUN_IN_MOST_M) if spread else RUN_IN_MOST_M
@@ -176,12 +197,13 @@ def _option(
     rooms = tuple(
         room
         for room in rooms
-        if first_bad_leg((_middle(gate, flyer, room.clockwise), path[2]), zones) is None
+        if first_bad_leg((_middle(gate, waiting, room.clockwise), path[2]), zones) is None
     )
     if not rooms:
         return "its circle to wait on, before its straight way there, breaks a zone"
     lasts = flight_ms(length + beyond, flyer.speed_m_s)
-    return Option(task.id, 0, (), flyer, gate, end, path, lasts, rooms, "run-in")
+    label = f"{RUN_IN}{waiting.speed_m_s!r}"
+    return Option(task.id, 0, (), flyer, gate, end, path, lasts, rooms, label)
 
 
 def _middle(gate: Pose, flyer: Flyer, clockwise: bool) -> Position:
@@ -197,8 +219,9 @@ def _middle(gate: Pose, flyer: Flyer, clockwise: bool) -> Position:
 def waiting_circle(option: Option) -> tuple[Station, bool]:
     """The circle on which an option's vehicle waits, and whether clockwise."""
     clockwise = option.holds[0].clockwise
-    middle = _middle(option.start, option.flyer, clockwise)
-    return Station(Vec2(middle.north_m, middle.east_m), option.flyer.radius_m), clockwise
+    waiting = waits_as(option)
+    middle = _middle(option.start, waiting, clockwise)
+    return Station(Vec2(middle.north_m, middle.east_m), waiting.radius_m), clockwise
 
 
 def ways_of(met: Met, options: Sequence[tuple[Option, int]]) -> list[tuple[int, ...]]:

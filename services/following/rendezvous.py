@@ -37,11 +37,12 @@ from cratous.services.following.meeting import (
     offered,
     options_of,
     waiting_circle,
+    waits_as,
     ways_of,
     wind_of,
 )
 from cratous.services.following.part import Part
-from cratous.services.following.progress import Progress, Way, ahead_of, heard, place_of
+from cratous.services.following.progress import Progress, Way, ahead_of, heard, place_of, turn_left
 from cratous.services.following.service import (
     SELECTED,
     SILENT_MS,
@@ -201,7 +202,8 @@ class RendezvousTaskService(FollowingTaskService):
         here, at = self._here(part, body), place_of(part)
         gone = part.vehicle in progress.gone or body.CurrentWaypoint > part.begins
         if laps:
-            return Way(math.dist(here, at), True, True)
+            share = turn_left(part, body) if part.vehicle in progress.slow else 1.0
+            return Way(math.dist(here, at), True, True, turn=share, here=here)
         if not gone:
             gate = part.option.start
             run_in = math.dist((gate.north_m, gate.east_m), at)
@@ -274,11 +276,11 @@ class RendezvousTaskService(FollowingTaskService):
         if way.laps:
             left_s = (progress.common - state.now_ms) / 1000
             again = another_lap(
-                way.left_m, left_s, way.lap_s(part.option.flyer), ground.nominal_m_s
+                way.left_m, left_s, way.lap_s(waits_as(part.option)), ground.nominal_m_s
             )
             if said.act == FLY and not again and self._at_gate(part, body):
                 return self._leaves(state, part, speed_m_s, out)
-            return state, out
+            return self._waits(state, part, out)
         if said.act == EARLY and way.waits:
             return self._waits(state, part, out)
         out.append(self._speed(part, speed_m_s))
@@ -314,7 +316,7 @@ class RendezvousTaskService(FollowingTaskService):
                 soonest, latest = way.arrived, way.arrived
                 if way.arrived is None:
                     speed = limits.fastest_m_s if fast else limits.nominal_m_s
-                    lap = way.lap_s(part.option.flyer) if way.laps else 0.0
+                    lap = way.turn * way.lap_s(waits_as(part.option))
                     soonest = now_ms + math.ceil(1000 * (lap + way.left_m / speed))
                     latest = now_ms + math.floor(1000 * way.left_m / limits.slowest_m_s)
                 meeting = meeting_step(meeting, soonest, NO_END if way.waits else latest)
@@ -328,27 +330,30 @@ class RendezvousTaskService(FollowingTaskService):
         here, gate = self._here(part, body), part.option.start
         heading = math.radians(body.Heading)
         toward = Vec2(math.cos(heading), math.sin(heading))
-        reach_m = NEAR_GATE * part.option.flyer.radius_m
+        reach_m = NEAR_GATE * waits_as(part.option).radius_m
         near = in_ring(Vec2(gate.north_m, gate.east_m), here, 0, reach_m)
         ahead, origin = ahead_of(part), Vec2(0.0, 0.0)
-        left, right = (
-            Vec2(ahead.x + ahead.y, ahead.y - ahead.x),
-            Vec2(ahead.x - ahead.y, ahead.y + ahead.x),
-        )
+        left = Vec2(ahead.x + ahead.y, ahead.y - ahead.x)
+        right = Vec2(ahead.x - ahead.y, ahead.y + ahead.x)
         return near and beyond(toward, origin, left) and beyond(toward, origin, right)
 
     def _waits(self, state: Following, part: Part, out: list[Any]) -> Step:
-        """It waits in laps beside its gate, if it can and does not yet."""
+        """It waits in laps beside its gate, if it can and does not yet: slowly, as soon as it is there."""
         progress, way = state.meeting, state.meeting.ways[part.vehicle]
-        if way.laps or not way.waits:
-            return state, out
         circle, clockwise = waiting_circle(part.option)
+        flyer = part.option.flyer
+        slow = way.laps and in_ring(circle.at, way.here, 0, 3 * flyer.radius_m)
+        if way.laps != slow or part.vehicle in progress.slow or not way.waits:
+            return state, out
         part = part._replace(held=circle)
         turn = "Clockwise" if clockwise else "CounterClockwise"
-        action = parts_of.loiter(part, self._task_id).copy(Direction=turn)
+        speed = (waits_as(part.option) if slow else flyer).speed_m_s
+        action = parts_of.loiter(part, self._task_id).copy(Direction=turn, Airspeed=speed)
         out.append(self._command(part, [action]))
         since = {part.vehicle: state.now_ms, **progress.since}
-        return state.with_part(part)._replace(meeting=progress._replace(since=since)), out
+        slower = progress.slow | {part.vehicle} if slow else progress.slow
+        progress = progress._replace(since=since, slow=slower)
+        return state.with_part(part)._replace(meeting=progress), out
 
     def _leaves(self, state: Following, part: Part, speed_m_s: float, out: list[Any]) -> Step:
         """It is sent on along its run-in."""
@@ -366,12 +371,8 @@ class RendezvousTaskService(FollowingTaskService):
 
     def _speed(self, part: Part, speed_m_s: float) -> Any:
         """A command to fly at another speed: one of its own, as not every autopilot knows it."""
-        action = lmcp.new(
-            "SpeedOverrideAction",
-            AssociatedTaskList=[self._task_id],
-            VehicleID=part.vehicle,
-            Speed=speed_m_s,
-        )
+        of = {"AssociatedTaskList": [self._task_id], "VehicleID": part.vehicle}
+        action = lmcp.new("SpeedOverrideAction", Speed=speed_m_s, **of)
         return self._command(part, [action])
 
     def _command(self, part: Part, actions: list[Any]) -> Any:

@@ -211,11 +211,20 @@ class FollowingTaskService(TaskService):
         for part in state.parts:
             own, more = super().handle(part.state, envelope, now_ms)
             if topic == ROUTES:
-                part = _implemented(part, more)
+                part = self._implemented(part, more)
             state = state.with_part(part._replace(state=own))
             out += more if topic == ROUTES else ()
         kept = tuple(part for part in state.parts if part.state.task.state >= FINAL)
         return state._replace(parts=kept), out
+
+    def _implemented(self, part: Part, more: Iterable[Any]) -> Part:
+        """With the waypoints that its plan has for the task, if they are among what is said."""
+        for one in more:
+            if type(one).__name__ == "TaskImplementationResponse":
+                own = [w for w in one.TaskWaypoints if w.AssociatedTasks]
+                waits = any(type(a).__name__ == "LoiterAction" for a in own[0].VehicleActionList)
+                return part._replace(begins=own[0].Number + waits, then=own[-1].Number + 1)
+        return part
 
     def _asked_for(self, state: Following, envelope: Envelope, now_ms: int) -> Step:
         """A request: one with this task ends what is flown of it, as it does for any task."""
@@ -362,16 +371,6 @@ class FollowingTaskService(TaskService):
     def _warning(self, text: str) -> Any:
         told = [("TaskID", str(self._task_id)), ("reason", f"task {self._task_id}: {text}")]
         return status(0, "Warning", told)
-
-
-def _implemented(part: Part, more: Iterable[Any]) -> Part:
-    """With the waypoints that its plan has for the task, if they are among what is said."""
-    for one in more:
-        if type(one).__name__ == "TaskImplementationResponse":
-            own = [w for w in one.TaskWaypoints if w.AssociatedTasks]
-            waits = any(type(a).__name__ == "LoiterAction" for a in own[0].VehicleActionList)
-            return part._replace(begins=own[0].Number + waits, then=own[-1].Number + 1)
-    return part
 
 
 def _points(context: Context, command: Any) -> dict[int, Position]:

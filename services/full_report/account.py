@@ -10,8 +10,10 @@ from cratous.services.argument.build import argument
 from cratous.services.attestation.findings import Subject, doubt, unshown
 from cratous.services.certify.blame_said import sentence
 from cratous.services.certify.html import repeats, seconds
+from cratous.services.certify.own_views import own_requirements
 from cratous.services.certify.proofs import NOT_RECORDED, statuses
 from cratous.services.full_report import document
+from cratous.services.full_report.own import blame_of_own, trace_of_own, untested_own
 from cratous.spec.errors import CratousError
 from cratous.spec.mission.guarantees import Outcome
 
@@ -87,13 +89,15 @@ def _coverage(subject: Subject, chains: Data) -> Iterator[document.Part]:
     )
     yield document.Table(("No", "", "Constraint", "Kernel, theorems, definition", "Trace"), tuple(rows), (5, 5, 22, 53, 15))  # fmt: skip
     yield document.Head("Nothing tested these")
-    untested = [
+    untested: list[tuple[str, ...]] = [
         (one["requirement"], one["title"], "no row") for one in report["requirements"] if not one["constraints"]
     ]  # fmt: skip
     untested += [
         (row["requirement"], row["item"], doubt(row)) for row in report["constraints"] if not row["checks"]
     ]  # fmt: skip
+    untested += untested_own(report)
     yield document.Table(("", "Requirement or constraint", "Why"), tuple(untested), (8, 46, 46), empty="Every constraint was checked at least once.")  # fmt: skip
+    yield from trace_of_own(report)
     yield document.Head("Called, and named by no row")
     named = {name for row in report["constraints"] for name in row["kernels"]}
     called = sorted(names.get(k, k) for k in report["proofs"]["kernels"] if k not in named)
@@ -117,6 +121,11 @@ def _discrepancies(subject: Subject) -> Iterator[document.Part]:
         for row in report["constraints"]
         if row["verdict"] != Outcome.HOLDS
     ]
+    rows += [
+        (one["requirement"], one["title"] or one["text"], one["verdict"], one["note"])
+        for one in own_requirements(report)
+        if one["verdict"] != Outcome.HOLDS
+    ]
     yield document.Table(
         ("", "Constraint", "Verdict", "Note"), tuple(rows), (7, 38, 13, 42), empty="None."
     )
@@ -125,6 +134,7 @@ def _discrepancies(subject: Subject) -> Iterator[document.Part]:
         (one["requirement"], one["item"], seconds(one["time_ms"]), sentence(one))
         for one in report["blame"]
     ]
+    rows += blame_of_own(report)
     yield document.Table(
         ("", "Constraint", "At", "Blame"), tuple(rows), (7, 38, 13, 42), (2,), empty="None."
     )

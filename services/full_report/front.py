@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from cratous.services.certify.html import losses, margin, repeats, seconds
+from cratous.services.certify.own_views import own_requirements
 from cratous.services.full_report.document import DASH, Head, Part, Section, Table, Words
 from cratous.services.full_report.pictures import flight_pictures, time_line
 
@@ -36,7 +37,7 @@ def _verdict(report: Data) -> Iterator[Part]:
     counts, flight = report["counts"], report["flight"]
     yield Words(
         f"{report['verdict'].upper()}: {WORDS[report['verdict']]}. {counts['holds']} constraints hold, "
-        f"{counts['violated']} violated, {counts['unknown']} unknown, {counts['excused']} excused.\n"
+        f"{counts['violated']} violated, {counts['unknown']} unknown, {counts['excused']} excused.{_own(report)}\n"
         f"{flight['outcome']}, {seconds(flight['end_ms'])} of flight, takeovers: {len(flight['takeovers'])}; "
         f"exit code {report['exit_code']}",
         report["verdict"],
@@ -53,6 +54,15 @@ def _verdict(report: Data) -> Iterator[Part]:
         f"{report['proofs']['seal'] or 'none'}. Not signed here: a signed statement stands beside it, if any.",
         "soft",
     )
+
+
+def _own(report: Data) -> str:
+    """How many requirements of the user's own hold, violated, unknown; nothing where there are none."""
+    words = [one["verdict"] for one in own_requirements(report)]
+    said = ", ".join(
+        f"{words.count(w)} {'hold' if w == 'holds' else w}" for w in WORDS if w in words
+    )
+    return f" Requirements of one's own: {said}." if words else ""
 
 
 def alarms(report: Data) -> Iterator[Words]:
@@ -75,7 +85,7 @@ def alarms(report: Data) -> Iterator[Words]:
 
 
 def requirement_table(report: Data) -> Table:
-    """The five requirements with their verdicts, and where the margin is least."""
+    """The requirements with their verdicts, the user's own among them, and where the margin is least."""
     rows: list[tuple[str, ...]] = []
     for one in report["requirements"]:
         place = one["item"] or DASH
@@ -84,6 +94,13 @@ def requirement_table(report: Data) -> Table:
         rows.append(
             (f"{one['requirement']} {one['title']}\n{one['text']}", one["verdict"], margin(one),
              f"{place}\n{of}{one['note']}")
+        )  # fmt: skip
+    for one in own_requirements(report):
+        at = "" if one["time_ms"] is None else f" at {seconds(one['time_ms'])}"
+        title = f"{one['requirement']} {one['title']}".strip()
+        rows.append(
+            (f"{title}\n{one['text']}", one["verdict"], margin(one),
+             f"{one['file']}{at}\nof one's own; {one['note']}")
         )  # fmt: skip
     head = ("Requirement", "Verdict", "Least margin", "Where it is least")
     return Table(head, tuple(rows), (40, 10, 14, 36), (2,))

@@ -6,8 +6,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from cratous.services.certify.html import margin, repeats, seconds
+from cratous.services.certify.own_views import own_requirements
 from cratous.services.full_report import document
 from cratous.services.full_report.front import later_plans, not_covered, plan_table
+from cratous.services.full_report.own import margins_of_own, of_own
 from cratous.spec.mission.plan import cost_text, percent
 
 Data = dict[str, Any]
@@ -84,10 +86,14 @@ def _requirements(report: Data, chains: Data) -> Iterator[document.Part]:
     head = ("Id", "Requirement", "Kind", "Formal form: definitions its rows reach", "Verdict")
     yield document.Table(head, tuple(rows), (6, 36, 12, 34, 12))
     yield document.Words(f"Source of the five: {SOURCE}; the constraints of the mission: {report['mission']['source']}.")  # fmt: skip
-    yield document.Words(
-        f"Lint: {document.NOT_ASKED}. The five are fixed; requirements of users over a trace are linted where they are "
-        "judged (cratous monitor), and are no part of this report."
-    )
+    own = own_requirements(report)
+    if not own:
+        yield document.Words(
+            f"Lint: {document.NOT_ASKED}. The five are fixed; requirements of users over a trace are linted where they "
+            "are judged (cratous monitor), and are no part of this report."
+        )
+        return
+    yield from of_own(report)
 
 
 def _constraints(report: Data, chains: Data) -> Iterator[document.Part]:
@@ -105,6 +111,7 @@ def _constraints(report: Data, chains: Data) -> Iterator[document.Part]:
         "messages say it; real-only: over the reals."
     )
     yield document.Table(head, tuple(rows), (5, 5, 30, 10, 11, 10, 8, 21), (4, 5, 6))
+    yield from margins_of_own(report)
 
 
 def _assignment(report: Data) -> Iterator[document.Part]:

@@ -31,7 +31,7 @@ def scene_of(config: Config, state: State, sensed: Sensed) -> Scene:
     """What manoeuvres are judged against now."""
     daa = config.daa
     volume = buffered(daa.well_clear, daa.buffer)
-    return Scene(sensed.intruders, state.told.zones, volume, daa.lookahead_s)
+    return Scene(sensed.intruders, state.told.zones, volume, daa.lookahead_s, sensed.here)
 
 
 def predicted(config: Config, state: State, sensed: Sensed, scene: Scene) -> Ahead:

@@ -49,6 +49,7 @@ from cratous.services.icarous.return_to_path import PERSIST_MS, RELAPSE_MS, onto
 from cratous.services.icarous.state import IDLE, Config, State
 from cratous.services.icarous.traffic_monitor import (
     courses,
+    loose_courses,
     most_urgent,
     nearest,
     threats,
@@ -109,7 +110,8 @@ class Instance:
         )
         state, sensed = replace(state, told=beaten(state.told)), sensed._replace(intruders=others)
         # one whose way is known is where that leads, in a turn too
-        in_turn = turning(now, state.courses, beat_s) - {o.id for o in others if o.way}
+        loose = loose_courses(sensed.intruders)
+        in_turn = turning(now, state.courses, beat_s, loose) - {o.id for o in others if o.way}
         if flew and watches:
             fresh = state.asking.idle()
             state = replace(state, held=None, search=IDLE, threats=(), asking=fresh)

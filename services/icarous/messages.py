@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from cratous.bridge.text_protocol import Message
 from cratous.core.authority.gate import Gate
+from cratous.core.avoidance.drift import NONE, Off
 from cratous.core.avoidance.manoeuvre import Ability, Motion
 from cratous.core.avoidance.prediction import Intruder
 from cratous.core.permit.hand import Hand
@@ -32,13 +33,15 @@ class Line(NamedTuple):
 
 class Sensed(NamedTuple):
     """A heartbeat is due. motion, ability: of the vehicle itself; intruders: everybody else, as its
-    surveillance sees them; gate: how its actuator gate stands; hand: the certificate behind it."""
+    surveillance sees them; gate: how its actuator gate stands; here: how far the vehicle may be from where it is
+    taken to be; hand: the certificate behind the gate."""
 
     now_ms: int
     motion: Motion
     ability: Ability
     intruders: tuple[Intruder, ...]
     gate: Gate
+    here: Off = NONE.here
     hand: Hand = EMPTY
 
 

@@ -71,7 +71,7 @@ def with_ways(
             window_m = old.track.length_m
         at_m = old.track.nearest(other.position, old.at_m, window_m).s_m
         ways.append(old._replace(at_m=at_m))
-        kept = keeps_to(old.track.at(at_m), other.position, daa)
+        kept = keeps_to(old.track.at(at_m), other.position, daa, seen=other.spread)
         off_rad = smallest_turn(old.track.heading_rad(at_m), _course_rad(other.velocity))
         kept = kept and not turns(off_rad, _turn_rate(other, sensed), ASTRAY_S)
         way = _along(old.track, at_m, other) if kept else ()

@@ -144,5 +144,5 @@ def _on_line(met: Met, other: Intruder, now_ms: int, daa: Daa) -> bool:
     """No farther from where it was predicted than half of what the buffer leaves."""
     if met.predicted is None:
         return False
-    told = later(met.predicted, (now_ms - met.made_ms) / 1000).position
-    return keeps_to(told, other.position, daa)
+    told = later(met.predicted, (now_ms - met.made_ms) / 1000)
+    return keeps_to(told.position, other.position, daa, told.spread, other.spread)

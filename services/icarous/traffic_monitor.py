@@ -80,14 +80,26 @@ def courses(intruders: tuple[Intruder, ...]) -> Tracks:
     )
 
 
-def turning(now: Tracks, before: Tracks, dt_s: float) -> frozenset[int]:
-    """The intruders that are in a turn: their course has changed since the last heartbeat."""
-    was = dict(before)
-    return frozenset(
-        other
+def turning(now: Tracks, before: Tracks, dt_s: float, loose: Tracks = ()) -> frozenset[int]:
+    """The intruders that are in a turn: their course has changed since the last heartbeat, by more than it may be off.
+    loose: by how much that is [rad], of those whose course is not known exactly."""
+    was, off = dict(before), dict(loose)
+    turned = {
+        other: max(0.0, abs(smallest_turn(was[other], course)) - off.get(other, 0.0))
         for other, course in now
-        if other in was and turns(smallest_turn(was[other], course), TURNING_RAD_S, dt_s)
-    )
+        if other in was
+    }
+    return frozenset(other for other, turn in turned.items() if turns(turn, TURNING_RAD_S, dt_s))
+
+
+def loose_courses(intruders: tuple[Intruder, ...]) -> Tracks:
+    """By how much the course of an intruder may be off [rad], of those of which it may be."""
+    found = []
+    for other in intruders:
+        v, off = other.velocity, other.spread.wide_m_s
+        if off:
+            found.append((other.id, math.atan2(off, math.hypot(v.north_m_s, v.east_m_s))))
+    return tuple(found)
 
 
 def threats(

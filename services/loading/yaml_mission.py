@@ -21,12 +21,14 @@ from cratous.services.loading.checks import (
     zone_end_problems,
 )
 from cratous.services.loading.document import Document, item_key, read_document
+from cratous.services.loading.fitness import warnings_of
 from cratous.services.loading.places import Places
 from cratous.services.loading.polygons import padded
 from cratous.services.loading.problems import refuse
 from cratous.services.loading.schema import schema_problems
 from cratous.services.loading.start_distances import close_starts
 from cratous.services.loading.yaml_bridge_faults import yaml_bridge_faults
+from cratous.services.loading.yaml_sensing import yaml_sensing
 from cratous.services.loading.yaml_task import yaml_task
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import (
@@ -37,6 +39,7 @@ from cratous.spec.mission import (
     Frame,
     LivePlanningMission,
     Mission,
+    SensedDaa,
     Simulation,
     Traffic,
     Vehicle,
@@ -48,8 +51,12 @@ from cratous.spec.mission import (
 )
 from cratous.spec.mission.bridge_faults import words
 from cratous.spec.mission.changes import WIND, ZONE_ENDS, WindChange, ZoneEnd
+from cratous.spec.mission.sensing import Sensing
+from cratous.spec.mission.sensing import words as sensing_words
 
 DEFAULT_WELL_CLEAR = WellClear(dthr_m=150.0, zthr_m=30.0, tthr_s=15.0, tcoa_s=0.0)
+MAX_BANK_DEG, MAX_CLIMB_M_S = 30.0, 5.0
+"""Of a vehicle that does not say them."""
 
 
 def load(path: Path, seed: int = 0) -> Mission:
@@ -112,9 +119,12 @@ def finish(mission: Mission, where: Any) -> Mission:
     refuse(problems)
     if isinstance(mission.simulation, FaultySimulation):
         notes.append(words(mission.simulation.bridge_faults))
-    mission = replace(mission, zones=zones, changes=known, notes=(*mission.notes, *notes))
+    if mission.sensing is not None:
+        notes.append(sensing_words(mission.sensing))
+    mission = replace(mission, zones=zones, changes=known)
     refuse(list(start_problems(mission, where)))
-    return mission
+    said = [*mission.notes, *notes, *warnings_of(mission)]
+    return replace(mission, notes=tuple(dict.fromkeys(said)))
 
 
 def expectations(path: Path) -> dict[str, Any]:
@@ -133,6 +143,8 @@ def _mission(document: Document, seed: int) -> Mission:
     places = Places(frame)
     vehicles = tuple(_vehicle(entry, places) for entry in data["vehicles"])
     live = bool(data.get("bridge", {}).get("uxas_route_planner", False))
+    instances, simulation = _instances(document, vehicles), _simulation(document)
+    sensing = yaml_sensing(document, simulation, len(instances))
     kind = LivePlanningMission if live else Mission
     return kind(
         name=data["name"],
@@ -142,14 +154,14 @@ def _mission(document: Document, seed: int) -> Mission:
         tasks=tuple(
             yaml_task(entry, places, document.where, k) for k, entry in enumerate(data["tasks"])
         ),
-        daa=_daa(data.get("daa", {})),
+        daa=_daa(data.get("daa", {}), sensing),
         zones=tuple(_zone(entry, places) for entry in data.get("zones", [])),
         traffic=tuple(_traffic(entry, places) for entry in data.get("traffic", [])),
         relations=data.get("relations", "").strip(),
         cost=data.get("cost", "MINMAX"),
         order=data.get("order", "time"),
-        instances=_instances(document, vehicles),
-        simulation=_simulation(document, data.get("simulation", {})),
+        instances=instances,
+        simulation=simulation,
         changes=tuple(_change(entry, places) for entry in data.get("changes", [])),
         seed=seed,
         node_limit=_nodes(data.get("search", {})),
@@ -185,8 +197,8 @@ def _vehicle(data: dict[str, Any], places: Places) -> Vehicle:
         speed_m_s=speed,
         min_speed_m_s=float(data.get("min_speed_m_s", speed)),
         max_speed_m_s=float(data.get("max_speed_m_s", speed)),
-        max_bank_rad=radians(float(data.get("max_bank_deg", 30.0))),
-        max_climb_m_s=float(data.get("max_climb_m_s", 5.0)),
+        max_bank_rad=radians(float(data.get("max_bank_deg", MAX_BANK_DEG))),
+        max_climb_m_s=float(data.get("max_climb_m_s", MAX_CLIMB_M_S)),
         protected=data.get("protected", True),
         cameras=tuple(_camera(entry) for entry in data.get("cameras", [])),
         cruise_m=float(data["cruise_m"]) if "cruise_m" in data else None,
@@ -250,14 +262,18 @@ def _traffic(data: dict[str, Any], places: Places) -> Traffic:
     )
 
 
-def _daa(data: dict[str, Any]) -> Daa:
+def _daa(data: dict[str, Any], sensing: Sensing | None) -> Daa:
     volume = {name: float(value) for name, value in data.get("well_clear", {}).items()}
     rest = {name: float(data[name]) for name in ("lookahead_s", "buffer") if name in data}
     close = bool(data.get("close_starts", False))
-    return Daa(replace(DEFAULT_WELL_CLEAR, **volume), **rest, close_starts=close)
+    volume_kept = replace(DEFAULT_WELL_CLEAR, **volume)
+    if sensing is None:
+        return Daa(volume_kept, **rest, close_starts=close)
+    return SensedDaa(volume_kept, **rest, close_starts=close, sensing=sensing)
 
 
-def _simulation(document: Document, data: dict[str, Any]) -> Simulation:
+def _simulation(document: Document) -> Simulation:
+    data = document.data.get("simulation", {})
     found: dict[str, int] = {
         name: int(data[name]) for name in ("step_ms", "heartbeat_ms") if name in data
     }

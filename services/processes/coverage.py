@@ -50,6 +50,8 @@ def _asked(mission: Mission) -> Iterator[tuple[str, bool, str, str]]:
     yield "changes", bool(changes), "something becomes known in flight", "no changes"
     faulty = isinstance(mission.simulation, FaultySimulation)
     yield "simulation.bridge_faults", faulty, "the bridge is made to fail", "no bridge_faults"
+    sensed = mission.sensing is not None
+    yield "sensing", sensed, "ICAROUS is given what sensors see", "no sensing"
     high = mission.frame.terrain_m != 0
     yield "frame.terrain_m", high, "the ground is not at mean sea level", "0"
     other = mission.cost not in COSTS

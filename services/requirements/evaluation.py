@@ -11,6 +11,7 @@ from collections import deque
 from collections.abc import Mapping
 from itertools import count
 from math import isfinite
+from typing import Any
 
 from cratous.core.requirements import since
 from cratous.core.requirements.until import Times, until_decided, until_times
@@ -42,18 +43,22 @@ class _Leaf:
     """A constant, or a comparison of signals."""
 
     def __init__(self, formula: Always | Reaches) -> None:
-        self.formula = formula
+        self.constant = formula.verdict if isinstance(formula, Always) else None
+        sides = (formula.left, formula.right) if isinstance(formula, Reaches) else (0.0, 0.0)
+        self.names = tuple(side if isinstance(side, str) else None for side in sides)
+        self.numbers = tuple(0.0 if isinstance(side, str) else side for side in sides)
 
-    def sample(self, time: int, values: Mapping[str, float | None]) -> Decided:
-        one = self.formula
-        if isinstance(one, Always):
-            return [(time, one.verdict)]
-        left = values.get(one.left) if isinstance(one.left, str) else one.left
-        right = values.get(one.right) if isinstance(one.right, str) else one.right
+    def verdict(self, values: Mapping[str, float | None]) -> int:
+        """At a sample with these values."""
+        if self.constant is not None:
+            return self.constant
+        name, other = self.names
+        left = values.get(name) if name is not None else self.numbers[0]
+        right = values.get(other) if other is not None else self.numbers[1]
         # what is missing, no number or infinite is not known
         if left is None or right is None or not (isfinite(left) and isfinite(right)):
-            return [(time, UNKNOWN)]
-        return [(time, TRUE if reaches(left, right) else FALSE)]
+            return UNKNOWN
+        return TRUE if reaches(left, right) else FALSE
 
 
 class _Not:
@@ -100,11 +105,17 @@ class _Paired:
 
     def __init__(self, formula: Bounded) -> None:
         self.low, self.high = formula.low, formula.high
+        self.phi = formula.phi.verdict if isinstance(formula.phi, Always) else None
+        """Of a constant, which waits for nothing: then only verdicts of psi come."""
         self.waiting: tuple[deque[tuple[int, int]], ...] = (deque(), deque())
 
     def take(self, side: int, got: Decided) -> Decided:
-        self.waiting[side].extend(got)
         out: Decided = []
+        if self.phi is not None:
+            for time, psi in got:
+                self.step(time, self.phi, psi, out)
+            return out
+        self.waiting[side].extend(got)
         left, right = self.waiting
         while left and right:
             (time, phi), (_, psi) = left.popleft(), right.popleft()
@@ -202,11 +213,22 @@ class Evaluation:
                 self.nodes.append(_Join(part))
             else:
                 self.nodes.append(_Since(part) if part.past else _Until(part))
+                if isinstance(part.phi, Always):
+                    self.parents[places[id(part.psi)]].append((mine, 1))
+                    continue
             self.parents[places[id(part.phi)]].append((mine, 0))
             self.parents[places[id(part.psi)]].append((mine, 1))
+        self.pending: list[list[tuple[int, Decided]]] = [[] for _ in self.nodes]
+        """For each node what its parts have decided at this sample: which side, and the verdicts."""
         self.parts = Parts(formula, places) if blames else None
         self._blaming = self.parts
-        self.leaves = [n for n, node in enumerate(self.nodes) if isinstance(node, _Leaf)]
+        last = len(self.nodes) - 1
+        self.order = [
+            (place, node, type(node) is _Leaf, self.parents[place])
+            for place, node in enumerate(self.nodes)
+            # a constant that nobody waits for has nothing to say
+            if self.parents[place] or place == last
+        ]
 
     def sample(self, time: int, values: Mapping[str, float | None]) -> Decided:
         """The verdicts that this sample decides: (time of the sample that each is of, 0, 1 or 2).
@@ -223,29 +245,42 @@ class Evaluation:
             )
         self.last = time
         # parts stand before the whole, so that one pass brings every verdict to the top
-        pending: list[list[tuple[int, Decided]]] = [[] for _ in self.nodes]
-        out: Decided = []
-        for place, node in enumerate(self.nodes):
-            if isinstance(node, _Leaf):
-                got = node.sample(time, values)
+        got: Decided = []
+        blaming, pending = self._blaming, self.pending
+        node: Any
+        for place, node, is_leaf, parents in self.order:
+            if is_leaf:
+                got = [(time, node.verdict(values))]
+            elif rows := pending[place]:
+                got = self._taken(node, rows, time)
+                rows.clear()
             else:
-                got = [row for side, rows in pending[place] for row in node.take(side, rows)]
-                if isinstance(node, _Join | _Until | _Since) and node.size > self.most:
-                    raise TooManyWait(
-                        "more samples wait for a verdict than were allowed for",
-                        item=f"time {time}",
-                        expected=f"at most {self.most}",
-                        got=str(node.size),
-                    )
-            if place == len(self.nodes) - 1:
-                out = got
-            if self._blaming is not None:
-                self._blaming.take(place, got)
-            for parent, side in self.parents[place] if got else ():
+                got = []
+                continue
+            if not got:
+                continue
+            if blaming is not None:
+                blaming.take(place, got)
+            for parent, side in parents:
                 pending[parent].append((side, got))
-        if self._blaming is not None and not self._blaming.decided(out):
+        if blaming is not None and not blaming.decided(got):
             self._blaming = None
-        return out
+        return got
+
+    def _taken(self, node: Any, rows: list[tuple[int, Decided]], time: int) -> Decided:
+        """What a node makes of what its parts have decided."""
+        (side, got), *more = rows
+        found: Decided = node.take(side, got)
+        for side, got in more:
+            found += node.take(side, got)
+        if type(node) is not _Not and node.size > self.most:
+            raise TooManyWait(
+                "more samples wait for a verdict than were allowed for",
+                item=f"time {time}",
+                expected=f"at most {self.most}",
+                got=str(node.size),
+            )
+        return found
 
     @property
     def blamed(self) -> tuple[Part, ...]:

@@ -19,6 +19,7 @@ from cratous.services.requirements.formula import Formula
 from cratous.services.requirements.fret_terms import Meaning, Names, Wrong
 from cratous.services.requirements.specification import Requirement, Signal
 from cratous.services.requirements.units import Quantity
+from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import DIGITS, DOCUMENT_BYTES
 from cratous.spec.files.text_file import text_of
 
@@ -31,19 +32,22 @@ def of_sentence(token: Any, signals: Mapping[str, Signal]) -> Formula:
         raise Wrong(no.what, token.start_pos + 1 + no.offset, no.expected, no.got) from None
 
 
+Files = Path | Mapping[str, str]
+"""Where the files lie that a file of requirements imports: a folder, or their texts by name."""
+
+
 def imported(
-    item: Any, signals: Mapping[str, Signal], folder: Path | None
+    item: Any, signals: Mapping[str, Signal], files: Files | None
 ) -> Iterator[Requirement]:
     """The requirements that an import names, or all of the export; one that is not read says why.
 
     Raises Wrong for what is not in the export, BadInput for a file that is none.
     """
     token = item.children[1]
-    if folder is None:
+    if files is None:
         raise Wrong("a text that lies in no folder imports nothing", token.start_pos)
     parts = {str(one.data): one.children for one in item.children[2:]}
-    file = folder / _text(token)
-    export = fret.read_export(text_of(file, DOCUMENT_BYTES, "an export of FRET"), str(file))
+    export = fret.read_export(*_export(files, _text(token)))
     names = Names(signals, {**export.defined, **_bound(parts.get("variables", ()), signals)})
     rows = {str(one["reqid"]): one for one in export.requirements}
     wanted = [(_text(one), one.start_pos) for one in parts.get("only", ())]
@@ -52,6 +56,16 @@ def imported(
             known = ", ".join(list(rows)[:8]) or "it has none"
             raise Wrong("the export has no such requirement", at, known, name)
         yield fret.requirement(rows[name], names, export.where, timed=True)
+
+
+def _export(files: Files, name: str) -> tuple[str, str]:
+    """(text of an export, where it lies)."""
+    if not isinstance(files, Path):
+        if name not in files:
+            known = ", ".join(list(files)[:8]) or "none is there"
+            raise BadInput("the export is not there", item=name, expected=known)
+        return files[name], name
+    return text_of(files / name, DOCUMENT_BYTES, "an export of FRET"), str(files / name)
 
 
 def _bound(variables: Any, signals: Mapping[str, Signal]) -> dict[str, Meaning]:

@@ -30,7 +30,7 @@ from cratous.services.requirements.formula import (
     implies,
     once,
 )
-from cratous.services.requirements.fret_import import imported, of_sentence, quantity
+from cratous.services.requirements.fret_import import Files, imported, of_sentence, quantity
 from cratous.services.requirements.fret_terms import Wrong, value_in
 from cratous.services.requirements.specification import (
     NotRead,
@@ -54,16 +54,16 @@ ONE_SIDED: dict[str, Callable[[Formula, int, int], Formula]] = {
 }
 
 
-def read(text: str, where: str = "requirements", folder: Path | None = None) -> Specification:
+def read(text: str, where: str = "requirements", files: Files | None = None) -> Specification:
     """The requirements of a text. Raises NotRead, with a caret, for what is outside of the language.
 
-    folder: where files that it imports lie; None: it may import none. Of these a requirement that is not read
+    files: where files that it imports lie; None: it may import none. Of these a requirement that is not read
     stands among the others, and says why.
     """
     at_most(len(text.encode()), CONFIG_BYTES, "the requirements are too long", where)
     try:
         _refuse_deep(text)
-        return _Reader(text, folder).specification(_parsed(text))
+        return _Reader(text, files).specification(_parsed(text))
     except Wrong as no:
         line, column, caret = caret_of(text, no.offset)
         place = f"{where}, line {line}, column {column}"
@@ -107,8 +107,8 @@ def _in_words(known: list[str]) -> str:
 
 
 class _Reader:
-    def __init__(self, text: str, folder: Path | None) -> None:
-        self.text, self.folder = text, folder
+    def __init__(self, text: str, files: Files | None) -> None:
+        self.text, self.files = text, files
         self.signals: dict[str, Signal] = {}
         self.requirements: list[Requirement] = []
         self.period_ns = self.gap_ns = 0
@@ -124,7 +124,7 @@ class _Reader:
             if item.data == "requirement":
                 self._requirement(item)
             elif item.data == "import":
-                for one in imported(item, self.signals, self.folder):
+                for one in imported(item, self.signals, self.files):
                     self._add(one, item.children[1])
         if not self.requirements:
             raise Wrong("there is no requirement", len(self.text.rstrip()), "requirement ID: ...")

@@ -6,7 +6,8 @@ which holds, and b, which does not. A comparison and what has a time are parts t
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 from cratous.services.requirements.formula import Formula, Join, Not, children
 
@@ -36,13 +37,15 @@ class Parts:
     def take(self, place: int, got: Sequence[tuple[int, int]]) -> None:
         """Verdicts of the part at a place; where the whole is decided already they are not kept."""
         if (known := self.kept[place]) is not None:
-            known.update(row for row in got if row[0] > self.through)
+            for time, verdict in got:
+                if time > self.through:
+                    known[time] = verdict
 
     def decided(self, out: Sequence[tuple[int, int]]) -> bool:
         """The whole is decided at these samples. True as long as none was violated."""
         for time, verdict in out:
             if verdict == FALSE:
-                self.found = tuple(self._why(time))
+                self.found = tuple(why(self.formula, partial(self._verdict, time)))
                 return False
             self.through = time
             for known in self.kept:
@@ -50,22 +53,25 @@ class Parts:
                     known.pop(time, None)
         return True
 
-    def _verdict(self, part: Formula, time: int) -> int | None:
+    def _verdict(self, time: int, part: Formula) -> int | None:
         return (self.kept[self.places[id(part)]] or {}).get(time)
 
-    def _why(self, time: int) -> list[Part]:
-        found: list[Part] = []
-        todo, seen = [self.formula], set()
-        while todo:
-            one = todo.pop()
-            if id(one) in seen:
-                continue
-            seen.add(id(one))
-            verdict = self._verdict(one, time)
-            if isinstance(one, Not):
-                todo.append(one.phi)
-            elif isinstance(one, Join):
-                todo += [s for s in (one.psi, one.phi) if self._verdict(s, time) == verdict]
-            elif verdict is not None:
-                found.append((one, verdict))
-        return found
+
+def why(formula: Formula, verdict_of: Callable[[Formula], int | None]) -> list[Part]:
+    """The parts that are to blame at a sample at which the formula is violated; verdict_of: of a part there, None where
+    it is not known yet."""
+    found: list[Part] = []
+    todo, seen = [formula], set()
+    while todo:
+        one = todo.pop()
+        if id(one) in seen:
+            continue
+        seen.add(id(one))
+        verdict = verdict_of(one)
+        if isinstance(one, Not):
+            todo.append(one.phi)
+        elif isinstance(one, Join):
+            todo += [side for side in (one.psi, one.phi) if verdict_of(side) == verdict]
+        elif verdict is not None:
+            found.append((one, verdict))
+    return found

@@ -5,96 +5,21 @@ Samples are numbered from 0 where the language counts them, and bear times where
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from itertools import chain, islice
 from pathlib import Path
 
 from cratous.services.requirements.csv_trace import samples
-from cratous.services.requirements.evaluation import FALSE, TRUE, Evaluation
-from cratous.services.requirements.formula import Formula, Reaches, horizon, parts, signals
+from cratous.services.requirements.evaluation import Evaluation
+from cratous.services.requirements.formula import horizon, signals
+from cratous.services.requirements.outcome import Outcome, margins_of
 from cratous.services.requirements.sampling import Finding, Row, Sample, Sampling
-from cratous.services.requirements.specification import NotRead, Requirement, Specification
-from cratous.services.requirements.to_blame import Part
+from cratous.services.requirements.specification import NotRead, Specification
 from cratous.services.requirements.traces import doubts
 from cratous.services.requirements.traces import rows as timed_rows
+from cratous.services.requirements.whole import MOST, Columns, Whole, is_worth
 from cratous.spec.errors import BadInput
-
-
-@dataclass
-class Outcome:
-    """One requirement over a trace. Instants: numbers of samples, or times [ns]; -1 where there is none.
-
-    undecided: samples whose verdict needs more than the trace has; decided_at: when the first violation was
-    known; whole: nothing of the trace is known to be missing; margins: of each comparison; blamed: the parts of the
-    formula that are to blame for the first violation.
-    """
-
-    requirement: Requirement
-    horizon: int
-    holds: int = 0
-    violated: int = 0
-    unknown: int = 0
-    undecided: int = 0
-    first_violated: int = -1
-    decided_at: int = -1
-    first_unknown: int = -1
-    whole: bool = True
-    margins: list[Margin] = field(default_factory=list)
-    blamed: tuple[Part, ...] = ()
-
-    @property
-    def name(self) -> str:
-        """The requirement's name."""
-        return self.requirement.name
-
-    @property
-    def verdict(self) -> str:
-        """violated, unknown, undecided, or holds: the last only where every sample is decided."""
-        if self.violated:
-            return "violated"
-        if self.unknown or not self.whole:
-            return "unknown"
-        return "undecided" if self.undecided or not self.holds else "holds"
-
-    def add(self, sample: int, verdict: int, now: int) -> None:
-        """A verdict more, decided by the sample `now`."""
-        if verdict == TRUE:
-            self.holds += 1
-        elif verdict == FALSE:
-            self.violated += 1
-            if self.first_violated < 0:
-                self.first_violated, self.decided_at = sample, now
-        else:
-            self.unknown += 1
-            self.first_unknown = sample if self.first_unknown < 0 else self.first_unknown
-
-
-@dataclass
-class Margin:
-    """How near a comparison came to its bound: least and greatest left - right, where it was known.
-
-    unit: of both sides; at, greatest_at: instants.
-    """
-
-    left: str | float
-    right: str | float
-    unit: str
-    least: float = math.inf
-    at: int = -1
-    greatest: float = -math.inf
-    greatest_at: int = -1
-
-    def add(self, row: Sample, now: int) -> None:
-        """A sample more."""
-        left = row.get(self.left) if isinstance(self.left, str) else self.left
-        right = row.get(self.right) if isinstance(self.right, str) else self.right
-        if left is None or right is None or not math.isfinite(left - right):
-            return
-        if left - right < self.least:
-            self.least, self.at = left - right, now
-        if left - right > self.greatest:
-            self.greatest, self.greatest_at = left - right, now
 
 
 @dataclass(frozen=True)
@@ -121,7 +46,7 @@ class Watch:
             if isinstance(one.formula, NotRead):
                 raise one.formula
             self.needed |= set(signals(one.formula))
-            outcome = Outcome(one, horizon(one.formula), margins=_margins(one.formula, spec))
+            outcome = Outcome(one, horizon(one.formula), margins=margins_of(one.formula, spec))
             self._watched.append((outcome, Evaluation(one.formula, blames=True)))
         self.sampling = Sampling(spec, self.needed)
 
@@ -146,8 +71,26 @@ class Watch:
                 if self.verdicts is not None:
                     at = f"{sample / 1e9:.9g}" if self.spec.timed else str(sample)
                     self.verdicts.append(f"{outcome.name}:{at},{'F?T'[verdict]}")
-            outcome.blamed = outcome.blamed or evaluation.blamed
+            if outcome.violated and not outcome.blamed:
+                outcome.blamed = evaluation.blamed
         self.count += 1
+
+    def all(self, samples: Iterable[tuple[int, Sample]]) -> None:
+        """Take all samples of a trace that has ended, of which none was taken yet: over whole columns where that is
+        sooner (`whole`), with the same outcome."""
+        taken, kept = iter(samples), Columns(self.needed)
+        if self.verdicts is None:
+            for time, row in islice(taken, MOST):
+                kept.add(time, row)
+        formulas = [evaluation.formula for _, evaluation in self._watched]
+        if len(kept.times) < MOST and is_worth(formulas, len(kept.times)):
+            whole = Whole(kept)
+            for outcome, evaluation in self._watched:
+                whole.fill(outcome, evaluation.formula)
+            self.count = len(kept.times)
+            return
+        for time, row in chain(kept.samples(), taken):
+            self.sample(time, row)
 
     def result(self) -> Watched:
         """What can be said where the trace ends here."""
@@ -169,27 +112,10 @@ def watch(spec: Specification, trace: Path, verdicts: list[str] | None = None) -
         rows = timed_rows(trace, spec, watching.needed)
         for doubt in doubts(trace):
             watching.sampling.find(doubt)
-        for _ in watching.rows(rows):
-            pass
+        watching.all(watching.sampling.samples(rows))
     else:
-        for time, row in _counted(spec, trace, watching.needed):
-            watching.sample(time, row)
+        watching.all(_counted(spec, trace, watching.needed))
     return watching.result()
-
-
-def _margins(formula: Formula, spec: Specification) -> list[Margin]:
-    """One for each comparison of numbers, whichever side is written first."""
-    found: dict[frozenset[str | float], Margin] = {}
-    for part in parts(formula):
-        if isinstance(part, Reaches):
-            named = [s for s in (part.left, part.right) if isinstance(s, str)]
-            if spec.signals[named[0]].kind != "bool":
-                left, right = part.left, part.right
-                if not isinstance(left, str):
-                    left, right = right, left
-                unit = spec.signals[named[0]].unit
-                found.setdefault(frozenset((left, right)), Margin(left, right, unit))
-    return list(found.values())
 
 
 def _counted(spec: Specification, trace: Path, needed: set[str]) -> Iterator[tuple[int, Sample]]:

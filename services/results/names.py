@@ -17,6 +17,8 @@ ASSUMPTIONS = "assumptions"
 """Where a log's meta has the assumptions of the system theorems that broke while it was flown."""
 BLAME = "blame"
 """Where a report says who was in command where something does not hold."""
+OWN = "own"
+"""Where a report has requirements of the user's own; a log's meta names their files, of a flight with some."""
 OF_PROCESSES = re.compile(
     r"(cfg|messages|scenario)\.xml|(simulator|uxas|icarous_[1-9][0-9]{0,18})\.txt"
 )

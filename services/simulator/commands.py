@@ -34,8 +34,8 @@ def present(body: Any, where: str) -> None:
             present(part, where)
 
 
-def check_command(body: Any, where: str) -> None:
-    """BadInput for a MissionCommand or VehicleActionCommand that cannot be flown."""
+def check_command(body: Any, where: str, *, flies: bool = True) -> None:
+    """BadInput for a MissionCommand or VehicleActionCommand that cannot be flown; who does not fly has no circles."""
     name = f"{type(body).__name__} {body.CommandID}"
     waypoints = list(getattr(body, "WaypointList", ()))
     actions = [*getattr(body, "VehicleActionList", ())]
@@ -49,7 +49,7 @@ def check_command(body: Any, where: str) -> None:
         _finite(numbers, where, f"{name}: {kind}")
         if kind == "LoiterAction":
             _place(action.Location, where, name)
-            if not action.Radius > 0 or not action.Length >= 0:
+            if flies and (not action.Radius > 0 or not action.Length >= 0):
                 raise BadInput(
                     "a loiter that cannot be flown",
                     where=where,

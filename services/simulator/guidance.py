@@ -81,7 +81,7 @@ def mission(g: Guidance, body: Any) -> Guidance:
     route: dict[int, Waypoint] = {}
     for w in body.WaypointList:
         # of waypoints with the same number the first one counts
-        route.setdefault(w.Number, _waypoint(w))
+        route.setdefault(w.Number, waypoint_of(w))
     g = g._replace(
         mode=WAYPOINT,
         route=route,
@@ -96,7 +96,7 @@ def mission(g: Guidance, body: Any) -> Guidance:
     return g if g.leg.to is not None else g._replace(mode=DIRECTED)
 
 
-def _waypoint(w: Any) -> Waypoint:
+def waypoint_of(w: Any) -> Waypoint:
     return Waypoint(
         w.Number,
         w.NextWaypoint,

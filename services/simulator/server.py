@@ -23,6 +23,7 @@ from cratous.bridge import envelope as wire
 from cratous.bridge import lmcp
 from cratous.bridge.port import Address, Incoming, Limits, Tally
 from cratous.bridge.tcp_port import TcpPort
+from cratous.services.simulator.driver import STATES
 from cratous.services.simulator.world import TICK_S, World
 from cratous.spec.errors import BadInput, CratousError
 
@@ -30,6 +31,9 @@ LIMITS = Limits(payload_bytes=4 << 20, waiting_bytes=1 << 20, connections=100)
 BURST = 500
 """Ticks in a row before clients are heard again."""
 MOST_RATE = 1e6
+CONFIGURATIONS = ("AirVehicleConfiguration", *STATES)
+TOLD_OF = ("AirVehicleState", *STATES.values())
+"""Configurations of vehicles, and their states."""
 LINGER_S = 2.0
 """How long clients have, at the end, to read what waits for them [s]."""
 
@@ -125,6 +129,8 @@ class Server:
                 self._take(incoming, port)
         self._tell_newcomers()
         self._count()
+        for text in self.world.warnings():
+            self._report("WARN", text)
         there = sum(port.peers for port in self._ports())
         self._clients = max(0, self._clients if there < self._clients else 0)
         if self.state != "Running" or self._clients:
@@ -184,7 +190,7 @@ class Server:
         name = type(body).__name__
         if name == "SessionStatus" and not but:
             body = body.copy(RealTimeMultiple=self.rate)
-        elif name == "AirVehicleConfiguration":
+        elif name in CONFIGURATIONS:
             self._known[body.ID] = body
         elif name == "RemoveEntities":
             for key in body.EntityList:
@@ -228,7 +234,7 @@ class Server:
 def _concerns(body: Any, vehicle: int) -> bool:
     """Whether an object is told on the port that a vehicle has of its own."""
     kind = type(body).__name__
-    if kind in ("AirVehicleState", "AirVehicleConfiguration"):
+    if kind in CONFIGURATIONS or kind in TOLD_OF:
         return bool(vehicle == body.ID)
     if kind == "VehicleActionCommand":
         return bool(body.VehicleID == vehicle)

@@ -16,6 +16,7 @@ from cratous.bridge import lmcp
 from cratous.services.simulator import payload
 from cratous.services.simulator.aircraft import Aircraft, aircraft_of, receive, state, step
 from cratous.services.simulator.commands import check_command, present
+from cratous.services.simulator.driver import STATES, Drivers
 from cratous.services.simulator.performance import Airframe, airframe_of
 from cratous.spec.errors import BadInput
 
@@ -53,6 +54,7 @@ class World:
         self._airframes: dict[int, Airframe] = {}
         self._mounted: dict[int, tuple[payload.Gimbal, ...]] = {}
         self.aircraft: dict[int, Aircraft] = {}
+        self.drivers = Drivers()
         self.wind_m_s = 0.0, 0.0
         self._part = 0.0  # of a step that is due already
         self._told_s = 0.0
@@ -107,6 +109,7 @@ class World:
             mounted = self._mounted.get(key)
             if mounted:
                 self._mounted[key] = tuple(payload.step(p, one.motion, STEP_S) for p in mounted)
+        self.drivers.step(STEP_S)
 
     def status(self, state_name: str, rate: float = 1.0) -> Any:
         """The SessionStatus of now."""
@@ -125,18 +128,21 @@ class World:
             seen = payload.states(mounted, one.motion, GROUND_M) if mounted else ()
             self.aircraft[key], body = state(one, self.wind_m_s, self.time_ms, seen)
             told.append(body)
-        return told
+        return [*told, *self.drivers.states(self.time_ms, GROUND_M)]
+
+    def warnings(self) -> list[str]:
+        """What vehicles were asked for and do not do, since it was asked last; each is said once."""
+        said, self.drivers.said = self.drivers.said, []
+        return said
 
     def receive(self, body: Any, where: str = "") -> None:
         """Take a message, of the scenario or from outside; BadInput if it cannot be done."""
         kind = type(body).__name__
         present(body, where)
-        if kind == "AirVehicleConfiguration":
-            if body.ID not in self._airframes:
-                if len(self._airframes) >= MOST_VEHICLES:
-                    raise BadInput("too many vehicles", where=where, expected=f"{MOST_VEHICLES}")
-                self._airframes[body.ID] = airframe_of(body, self.compatible, where)
-                self._mounted[body.ID] = payload.gimbals_of(body, where)
+        if kind == "AirVehicleConfiguration" or kind in STATES:
+            self._configure(body, where)
+        elif kind in STATES.values():
+            self.drivers.place(body, where)
         elif kind == "AirVehicleState":
             airframe = self._airframes.get(body.ID)
             if airframe is None:
@@ -149,7 +155,7 @@ class World:
             before = self.aircraft.get(body.ID)
             self.aircraft[body.ID] = aircraft_of(body, airframe, before, where)
             self._mounted[body.ID] = payload.placed(self._mounted[body.ID], body)
-        elif kind in ("MissionCommand", "VehicleActionCommand"):
+        elif kind in ("MissionCommand", "VehicleActionCommand") or self.drivers.takes(body):
             self._command(body, where)
         elif kind == "AutomationResponse":
             commands = (*body.MissionCommandList, *body.VehicleCommandList)
@@ -164,26 +170,50 @@ class World:
             self.wind_m_s = body.WindSpeed * cos(at), body.WindSpeed * sin(at)
         elif kind == "RemoveEntities":
             for key in body.EntityList:
+                self.drivers.remove(key)
                 self.aircraft.pop(key, None)
                 self._airframes.pop(key, None)
                 self._mounted.pop(key, None)
         else:
             self.unheard[kind] += 1
 
+    def _configure(self, body: Any, where: str) -> None:
+        """A new vehicle; one that is known stays as it was."""
+        flies = type(body).__name__ == "AirVehicleConfiguration"
+        if body.ID in (self.drivers if flies else self._airframes):
+            raise BadInput(
+                "the same vehicle of two kinds",
+                where=where,
+                item=f"{type(body).__name__} {body.ID}",
+            )
+        if body.ID in (self._airframes if flies else self.drivers):
+            return
+        if len(self._airframes) + len(self.drivers) >= MOST_VEHICLES:
+            raise BadInput("too many vehicles", where=where, expected=f"{MOST_VEHICLES}")
+        if not flies:
+            self.drivers.configure(body, where)
+        else:
+            self._airframes[body.ID] = airframe_of(body, self.compatible, where)
+            self._mounted[body.ID] = payload.gimbals_of(body, where)
+
     def _check(self, body: Any, where: str) -> None:
         """BadInput for a command that cannot be done."""
-        check_command(body, where)
-        if body.VehicleID not in self.aircraft:
+        check_command(body, where, flies=body.VehicleID not in self.drivers.there)
+        if body.VehicleID not in self.aircraft and body.VehicleID not in self.drivers.there:
+            there = [*self.aircraft, *self.drivers.there]
             raise BadInput(
                 "a command for a vehicle that is not there",
                 where=where,
                 item=f"{type(body).__name__} {body.CommandID}",
-                expected=f"one of {sorted(self.aircraft)[:20]}",
+                expected=f"one of {sorted(there)[:20]}",
                 got=str(body.VehicleID),
             )
 
     def _command(self, body: Any, where: str) -> None:
         self._check(body, where)
+        if body.VehicleID in self.drivers.there:
+            self.drivers.command(body)
+            return
         one = receive(self.aircraft[body.VehicleID], body)
         for fired in one.guidance.fired:
             self._act(body.VehicleID, fired)

@@ -14,7 +14,12 @@ from cratous.core.contracts.segments import Span, first_span, span_after, waypoi
 from cratous.services.bus import Envelope
 
 RESPONSE, COMMAND = "afrl.cmasi.AutomationResponse", "afrl.cmasi.MissionCommand"
-INCREMENT, STATE = "uxas.messages.uxnative.IncrementWaypoint", "afrl.cmasi.AirVehicleState"
+INCREMENT = "uxas.messages.uxnative.IncrementWaypoint"
+STATES = (
+    "afrl.cmasi.AirVehicleState",
+    "afrl.vehicles.GroundVehicleState",
+    "afrl.vehicles.SurfaceVehicleState",
+)
 FAR = 2**60
 """The last position of a path without end."""
 
@@ -122,7 +127,7 @@ Step = tuple[Served, Iterable[Any]]
 class WaypointPlanManagerService:
     """AutomationResponse or MissionCommand -> MissionCommands of a few waypoints, one by one."""
 
-    subscribes: tuple[str, ...] = (RESPONSE, COMMAND, INCREMENT, STATE)
+    subscribes: tuple[str, ...] = (RESPONSE, COMMAND, INCREMENT, *STATES)
 
     def __init__(self, name: str, vehicle: int, serving: Serving) -> None:
         self.name, self._vehicle, self._serving = name, vehicle, serving
@@ -137,7 +142,7 @@ class WaypointPlanManagerService:
                 if command.VehicleID == self._vehicle:
                     return self._begin(state, command)
             return state, ()
-        if topic == STATE:
+        if topic in STATES:
             return self._flown(state, body) if self._vehicle == body.ID else (state, ())
         if body.VehicleID != self._vehicle:
             return state, ()

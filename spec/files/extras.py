@@ -19,6 +19,7 @@ EXTRAS = {
     "reportlab": ("reportlab", "pdf"),
     "dask": ("dask", "campaign"),
     "distributed": ("distributed", "campaign"),
+    "pyarrow": ("pyarrow", "parquet"),
 }
 """By the name that is imported: the library, and the extra of `pyproject.toml`."""
 

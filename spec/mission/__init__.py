@@ -13,6 +13,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from cratous.spec.mission.bridge_faults import BridgeFaults
+from cratous.spec.mission.sensing import Sensing
 
 
 class Position(NamedTuple):
@@ -244,6 +245,13 @@ class Daa:
 
 
 @dataclass(frozen=True)
+class SensedDaa(Daa):
+    """The same where ICAROUS is given what sensors see, and not the true states."""
+
+    sensing: Sensing = field(default_factory=lambda: Sensing(()))
+
+
+@dataclass(frozen=True)
 class Simulation:
     """Virtual time: length of a physics step, heartbeat period, and the end of patience."""
 
@@ -299,6 +307,11 @@ class Mission:
     node_limit: int | None = None
     gap: float = 0.0
     changes: tuple[Change, ...] = ()
+
+    @property
+    def sensing(self) -> Sensing | None:
+        """The sensors of its ICAROUS instances; None: they are given the true states."""
+        return self.daa.sensing if isinstance(self.daa, SensedDaa) else None
 
     def vehicle(self, vehicle_id: int) -> Vehicle:
         """The vehicle with this id; KeyError if there is none."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import sqlite3
+import sys
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -22,7 +23,8 @@ from cratous.services.campaign.pages import page
 from cratous.services.campaign.runs import runs_of
 from cratous.services.campaign.store import Store
 from cratous.services.campaign.summary import build, text_of
-from cratous.services.campaign.tables import csv_text, junit_text
+from cratous.services.campaign.tables import csv_text, junit_text, parquet_bytes
+from cratous.services.cli import main
 from cratous.spec.errors import BadInput, Refused
 
 VARIED = "seeds: [1, 12]\nvary: [{item: 'vehicles[0].speed_m_s', range: [10, 40]}]\n"
@@ -257,6 +259,43 @@ def test_csv_and_junit_say_the_same(tmp_path: Path) -> None:
     assert suite is not None
     counts = {key: suite.get(key) for key in ("tests", "failures", "errors", "skipped")}
     assert counts == {"tests": "4", "failures": "1", "errors": "1", "skipped": "1"}
+
+
+def test_parquet_says_what_csv_says(tmp_path: Path) -> None:
+    pytest.importorskip("pyarrow", reason="the extra `parquet` is not installed")
+    import pyarrow.parquet
+
+    failed = {"kind": "failed", "why": ["=cmd"]}
+    found = summary_of(tmp_path, [flown({"G2": 10.5}), flown({"G2": -4.0}), failed])
+    for run, (speed, side) in zip(
+        found["runs"], [(20, 1), (21.5, "left"), (22, None)], strict=True
+    ):
+        run["drawn"] = {"speed": speed, "side": side}
+    (tmp_path / "runs.parquet").write_bytes(parquet_bytes(found))
+    table = pyarrow.parquet.read_table(tmp_path / "runs.parquet")
+    texts = csv.reader(io.StringIO(csv_text(found)))
+    assert table.column_names == next(texts)
+    assert [table["G2 margin"].to_pylist(), table["outcome"].to_pylist()] == [
+        [10.5, -4.0, None], ["holds", "violated", "failed"],
+    ]  # fmt: skip
+    assert table["why"].to_pylist()[2] == "=cmd", "as it is: programs run no formula"
+    assert table["speed"].to_pylist() == [20.0, 21.5, 22.0]
+    assert table["side"].to_pylist() == ["1", "left", None]
+    kinds = {
+        name: str(table.schema.field(name).type) for name in ("seed", "takeovers", "separation_m")
+    }
+    assert kinds == {"seed": "int64", "takeovers": "int64", "separation_m": "double"}
+    assert parquet_bytes(found) == (tmp_path / "runs.parquet").read_bytes()
+
+
+def test_parquet_without_its_library_is_told_before_anything_is_flown(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    file = written(tmp_path, {"plain": ""}, VARIED)
+    assert main(["campaign", str(file), "-o", str(tmp_path / "out"), "--parquet"]) == 2
+    assert "pyarrow is not installed; expected the extra 'parquet'" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
 
 
 def test_the_page_is_whole_and_loads_nothing(tmp_path: Path) -> None:

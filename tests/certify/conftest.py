@@ -11,10 +11,13 @@ from typing import Any
 
 import pytest
 from certify_tools import ROOT, read
+from own_tools import EXPORT, TEXT
 
 from cratous.services.certify import flight_record, rejudge, report, result_files
+from cratous.services.certify import own as own_module
 from cratous.services.cli import main
 from cratous.services.logs.sqlite_log import SqliteLog
+from cratous.services.requirements.own_files import own_file
 
 
 @pytest.fixture(scope="module")
@@ -75,3 +78,40 @@ def signed_run(
 @pytest.fixture
 def home(signed_run: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(signed_run, tmp_path / "home"))
+
+
+@pytest.fixture(scope="module")
+def own(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("own")
+    (folder / "own.req").write_text(TEXT)
+    (folder / "export.json").write_text(json.dumps(EXPORT))
+    return folder / "own.req"
+
+
+@pytest.fixture(scope="module")
+def watched_once() -> Iterator[None]:
+    """Each text is held against the log of the flight once; all that compares is the product's own."""
+    patch, real, kept = pytest.MonkeyPatch(), own_module._watched, dict[str, Any]()
+
+    def watched(spec: Any, log: Path) -> Any:
+        if repr(spec) not in kept:
+            kept[repr(spec)] = real(spec, log)
+        return kept[repr(spec)]
+
+    patch.setattr(own_module, "_watched", watched)
+    yield
+    patch.undo()
+
+
+@pytest.fixture(scope="module")
+def with_own(
+    flown: Path,
+    judged: None,
+    watched_once: None,
+    own: Path,
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Path:
+    folder = tmp_path_factory.mktemp("with-own") / "run"
+    shutil.copytree(flown, folder)
+    rejudge.certify_again(folder, own=(own_file(own, own.name),))
+    return folder

@@ -7,6 +7,7 @@ import json
 import sys
 import threading
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -322,12 +323,11 @@ def evidence_of(capsys: pytest.CaptureFixture[str], *command: object) -> dict[st
 
 
 def test_plan_and_monitor_tell_what_they_called(
-    capsys: pytest.CaptureFixture[str], tmp_path: Path
+    capsys: pytest.CaptureFixture[str], fly_once: Callable[[Path], Path]
 ) -> None:
     zones = Path(__file__).parents[2] / "examples" / "relations" / "mission.yaml"
     planned = evidence_of(capsys, "plan", zones)
     assert "cratous.core.geofence.mission_legs.leg_ok" in planned
-    assert main(["run", str(CROSSING), "--out", str(tmp_path), "--quiet", "--allow-unproved"]) == 0
-    watched = evidence_of(capsys, "monitor", tmp_path / "crossing")
+    watched = evidence_of(capsys, "monitor", fly_once(CROSSING))
     assert "cratous.core.well_clear.during.violation_within" in watched
     assert not any(".contracts." in name or ".assignment." in name for name in watched)

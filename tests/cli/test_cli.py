@@ -332,9 +332,8 @@ def test_nothing_to_judge(run: Run, tmp_path: Path, command: str) -> None:
 
 
 @pytest.mark.slow
-def test_relations_wait_for_the_real_end(run: Run, tmp_path: Path) -> None:
-    run("run", RELATIONS, "--out", tmp_path, "--allow-unproved", "--quiet")
-    report = report_of(tmp_path / "relations")
+def test_relations_wait_for_the_real_end(fly_once: Callable[[Path], Path]) -> None:
+    report = report_of(fly_once(RELATIONS))
     assert {row["verdict"] for row in report["requirements"]} == {"holds"}
     planned = {item["task_id"]: item for item in report["plan"]["items"]}
     assert planned[2]["wait_ms"] > 0, "the plan waits"

@@ -195,6 +195,7 @@ KEPT = {
     "services/cli/sim.py": "inside `replacing`",
     "services/daa/plot.py": "inside `replacing`",
     "docs/tools/geofence_pictures.py": "inside `replacing`",
+    "docs/tools/moving_tasks.py": "inside `replacing`",
     "docs/tools/pictures_well_clear.py": "into memory",
     "services/results/former.py": "opened for reading",
     "services/campaign/store.py": "results in SQLite, in transactions",

@@ -17,7 +17,7 @@ from cratous.judge.earth import to_local
 from cratous.judge.log import State
 from cratous.judge.mission import Volume, Zone
 from cratous.judge.plane import fault_of_ring, meet, squared_gap, turn, winding
-from cratous.judge.separation import clear_by_far, lost_on_leg, lost_within
+from cratous.judge.separation import clear_by_course, clear_by_far, lost_on_leg, lost_within
 from cratous.judge.zones import Fence
 
 SMALL = st.integers(-6, 6).map(float)
@@ -167,6 +167,39 @@ def test_what_is_clear_by_far_is_clear(data):
     volume = Volume(data.draw(st.floats(0, 300)), data.draw(st.floats(0, 60)), 15.0, 5.0)
     if clear_by_far(a0, a1, b0, b1, volume):
         assert not lost_on_leg(a0, a1, b0, b1, volume)
+
+
+NEAR = st.integers(-2000, 2000).map(float)
+
+
+@given(
+    *[st.tuples(NEAR, NEAR, st.integers(-40, 40).map(float))] * 2,
+    st.tuples(*[st.integers(-60, 60)] * 2, st.integers(-3, 3)),
+    st.sampled_from([250, 1000, 5000]),
+)
+def test_what_is_clear_by_its_course_is_clear(place, other, velocity, step):
+    after = [x + v * step / 1000 for x, v in zip(place, velocity, strict=True)]
+    legs = state(0, *place), state(step, *after), state(0, *other), state(step, *other)
+    volume = Volume(150.0, 30.0, 15.0, 0.0)
+    if clear_by_course(*legs, volume):
+        assert not lost_on_leg(*legs, volume)
+
+
+@pytest.mark.parametrize(
+    ("north", "east", "speed"),
+    [(-600, 150, 40), (-150, 0, -40), (-315, 0, 15), (-1e-160, 0, 1e-160)],
+)
+def test_what_is_at_the_edge_of_a_loss_is_left_to_rationals(north, east, speed):
+    """A course that just touches DTHR, a start at DTHR, a leg whose loss begins with its end, and no course at all."""
+    legs = [
+        state(0, north, east, 0),
+        state(1000, north + speed, east, 0),
+        *[state(t, 0, 0, 0) for t in (0, 1000)],
+    ]
+    assert not clear_by_course(*legs, Volume(150.0, 30.0, 15.0, 0.0))
+    for apart in (1 + 1e-6, 1 + 1e-12):
+        volume = Volume(150.0 / apart, 30.0, 15.0 / apart, 0.0)
+        assert not clear_by_course(*legs, volume) or not lost_on_leg(*legs, volume)
 
 
 def test_well_clear_agrees_with_the_proved_kernel():

@@ -168,7 +168,8 @@ def test_a_report_that_does_not_fit(tmp_path: Path, capsys, report: str) -> None
 
 
 @pytest.mark.parametrize(
-    "text", ["", "a: [", "[]", "{name: x}", "&a [*a]", "name: !!python/object:os.system x"]
+    "text",
+    ["", "a: [", "[]", "{name: x}", "&a [*a]", "name: !!python/object:os.system x", "- " * 500_000],
 )
 def test_a_mission_file_that_does_not_fit(tmp_path: Path, capsys, text: str) -> None:
     file = tmp_path / "mission.yaml"

@@ -76,7 +76,8 @@ def tampered(change: Change) -> dict[str, dict[str, Any]]:
 def test_a_flight_in_which_all_hold() -> None:
     rows = judged(WHOLE, list(flown(WHOLE)))
     held = {name for name, row in rows.items() if row["state"] == "held"}
-    assert WATCHED - held == {"suspended", "takeovers told"}
+    assert WATCHED - held == {"suspended", "takeovers told", "sensed within its bound"}
+    assert "the exact states" in rows["sensed within its bound"]["note"]
     assert rows["suspended"]["note"] == "no task was suspended"
     assert rows["takeovers told"]["note"] == "UxAS sent no command in an epoch that was over"
     for name in held:
@@ -86,12 +87,8 @@ def test_a_flight_in_which_all_hold() -> None:
         assert row["observed"] is None or row["observed"] <= row["bound"]
     assert rows["intruder in its tube"]["bound"] == 150 * 0.25 / 2
     assert 0 < rows["tracking"]["observed"] < 1
-    for one in LISTING:
-        if not one.watch:
-            assert (rows[one.name]["state"], rows[one.name]["note"]) == (
-                "not observed",
-                one.why_not,
-            )
+    unwatched = {one.name: ("not observed", one.why_not) for one in LISTING if not one.watch}
+    assert {name: (rows[name]["state"], rows[name]["note"]) for name in unwatched} == unwatched
 
 
 TAKEN = {"VehicleID": 1, "Owner": "ICAROUS", "Epoch": 1}
@@ -99,8 +96,7 @@ BY_ICAROUS = {"VehicleID": 1, "Sender": "ICAROUS"}
 
 
 def taken_ms() -> int:
-    log = list(flown(WHOLE))
-    return log[at(log, "GateState", **TAKEN)].time_ms
+    return (log := list(flown(WHOLE)))[at(log, "GateState", **TAKEN)].time_ms
 
 
 def aside(number: int, since_ms: int, **off: float) -> Change:
@@ -178,6 +174,11 @@ def flown_again(log: Log) -> None:
     log.insert(k + 1, other(log[k], Phase="Active"))
 
 
+def seen_elsewhere(log: Log) -> None:
+    sent(log, 20_000, "vehicle/1", kind="cratous.SensedState", ObserverID=1, TrackID=90, VehicleID=90,
+         Time=20_000, HorizontalBound=9.0, VerticalBound=9.0)  # fmt: skip
+
+
 def beats_of_icarous(log: Log) -> None:
     remove("GatedCommand", taken_ms() + 5000, **BY_ICAROUS)(log)
 
@@ -206,10 +207,8 @@ BREAKS: dict[str, tuple[Change, str]] = {
         lambda log: aside(1, taken_ms() + 3000, Altitude=5.0)(log),
         "m beside and 5 m above or below the path",
     ),
-    "offers begin at once": (
-        lambda log: alter({"Sigma": 0}, "HandState", ID=3)(log),
-        "certificate 3 begins at 0.00 s",
-    ),
+    "offers begin at once": (alter({"Sigma": 0}, "HandState", ID=3), "begins at 0.00 s"),
+    "sensed within its bound": (seen_elsewhere, "what 1 sensed of aircraft 90 is"),
 }
 
 

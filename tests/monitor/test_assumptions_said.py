@@ -79,6 +79,10 @@ def test_an_intruder_that_turns_leaves_its_tube_and_violates_nothing(turning: Pa
     assert "Without ground since then: that what ICAROUS flies is clear" in page
     assert re.search(r"<tr>\s*<td>an intruder that a takeover avoids", page)
     assert '<tr class="screen"><td>the clock of one end' in page
+    # what did not fit when the mission was read stays in its report
+    (note,) = [n for n in report["mission"]["notes"] if n.startswith("parameter does not fit: ")]
+    assert "daa.buffer is 1.1, expected at least 1.12" in note
+    assert f"<li>{note}</li>" in page
 
 
 def test_certify_refuses_what_the_log_does_not_say(turning: Path, tmp_path: Path) -> None:

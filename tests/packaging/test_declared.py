@@ -53,7 +53,9 @@ def imported(root: Path) -> dict[str, set[str]]:
             for top in {name.partition(".")[0] for name in names}:
                 if top not in sys.stdlib_module_names | {"cratous"}:
                     place = file.relative_to(root).as_posix()
-                    found.setdefault(plain(known[top][0]), set()).add(place)
+                    # an extra need not be installed
+                    library = known[top][0] if top in known else EXTRAS[top][0]
+                    found.setdefault(plain(library), set()).add(place)
     return found
 
 

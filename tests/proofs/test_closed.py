@@ -9,8 +9,7 @@ from cratous.proofs.claim import Claim
 from cratous.proofs.engine import closed, reachable_paths
 from cratous.proofs.engine.cache import Cache
 from cratous.proofs.engine.counterexample import Watched
-from cratous.proofs.engine.obligation_hash import Hasher
-from cratous.proofs.engine.prover import _satisfiable
+from cratous.proofs.engine.prover import _Memory, _satisfiable
 
 
 def inverse(x: float) -> float:
@@ -108,9 +107,9 @@ def test_what_a_lemma_looks_into_it_has_shown_under_its_premises():
 
 
 def _how(state) -> list[str]:
-    claim, hasher = Watched(), Hasher()
+    claim, memory = Watched(), _Memory(Cache(None))
     state(claim)
-    ask = lambda terms: _satisfiable(terms, 100_000, Cache(None), hasher)  # noqa: E731
+    ask = lambda terms: _satisfiable(terms, 100_000, memory)  # noqa: E731
     return [how for _, how in reachable_paths.varied(claim, ask)]
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from cratous.core import ledger
-from cratous.core.kernel.sources import ROOT
+from cratous.core.kernel.sources import ROOT, reached
 from cratous.core.ledger import kept_keys
 from cratous.core.ledger.key_parts import MISSING
 from cratous.core.ledger.keys import Keys
@@ -24,6 +24,11 @@ def entries() -> dict:
     return {NAME: ledger.load_all()[NAME]}
 
 
+@pytest.fixture(scope="module")
+def rests(entries: dict) -> dict:
+    return {name: reached(entry.function) for name, entry in entries.items()}
+
+
 @pytest.fixture
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(kept_keys, "private_cache", lambda: tmp_path)
@@ -31,20 +36,22 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_what_is_kept_is_what_was_walked(
-    entries: dict, cache: Path, monkeypatch: pytest.MonkeyPatch
+    entries: dict, rests: dict, cache: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    walked = kept_keys.keys_of(PRODUCT, entries, DATA)
+    walked = kept_keys.keys_of(PRODUCT, entries, rests, DATA)
     [file] = cache.iterdir()
     monkeypatch.setattr(Keys, "of", None)  # nothing is walked again
-    assert kept_keys.keys_of(PRODUCT, entries, DATA) == walked
+    assert kept_keys.keys_of(PRODUCT, entries, rests, DATA) == walked
     file.write_text(json.dumps({NAME: {"source": "x"}}), encoding="utf-8")
     with pytest.raises(TypeError):  # what is not whole is not believed
-        kept_keys.keys_of(PRODUCT, entries, DATA)
+        kept_keys.keys_of(PRODUCT, entries, rests, DATA)
 
 
-def test_every_difference_has_another_stamp(entries: dict, monkeypatch: pytest.MonkeyPatch) -> None:
-    def stamp(data: dict = DATA) -> str:
-        return kept_keys._stamp(PRODUCT, entries, data)
+def test_every_difference_has_another_stamp(
+    entries: dict, rests: dict, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stamp(data: dict = DATA, rests: dict = rests) -> str:
+        return kept_keys._stamp(PRODUCT, entries, rests, data)
 
     found = [stamp()]
     record = DATA["kernels"][NAME]
@@ -57,9 +64,9 @@ def test_every_difference_has_another_stamp(entries: dict, monkeypatch: pytest.M
         with monkeypatch.context() as other:
             other.setattr(kept_keys, name, lambda: "9.9")
             found.append(stamp())
-    with monkeypatch.context() as other:
-        other.setattr(kept_keys, "constants", lambda _: ["LIMIT=int 7"])
-        found.append(stamp())
+    for value in (7, 8):
+        more = {**rests[NAME], "cratous.core.somewhere.LIMIT": value}
+        found.append(stamp(rests={NAME: more}))
     assert len(set(found)) == len(found)
     assert stamp() == found[0]
 
@@ -85,8 +92,8 @@ def test_names_that_lead_to_what_is_not_hashed_are_not_kept() -> None:
 
 
 def test_what_is_missing_is_not_kept(
-    entries: dict, cache: Path, monkeypatch: pytest.MonkeyPatch
+    entries: dict, rests: dict, cache: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(Keys, "source", lambda _self, _entry: MISSING)
-    assert kept_keys.keys_of(PRODUCT, entries, DATA)[NAME]["source"] == MISSING
+    assert kept_keys.keys_of(PRODUCT, entries, rests, DATA)[NAME]["source"] == MISSING
     assert not cache.exists()

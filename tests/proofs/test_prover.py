@@ -15,7 +15,7 @@ from cratous.core.kernel import Vec2
 from cratous.core.well_clear import vertical_violation, violation
 from cratous.proofs import ledger
 from cratous.proofs.claim import Claim
-from cratous.proofs.engine import counterexample, prover, theorem_files
+from cratous.proofs.engine import counterexample, prover, smtlib, theorem_files
 from cratous.proofs.engine.cache import Answer, Cache
 from cratous.proofs.engine.counterexample import Watched, meanings, number_text
 from cratous.proofs.engine.obligation_hash import Hasher
@@ -379,3 +379,22 @@ def test_junit_and_sarif_say_what_failed_and_where():
     place = second["locations"][0]["physicalLocation"]
     assert place["artifactLocation"]["uri"] == "core/authority/gate.py"
     assert place["region"]["startLine"] == 24
+
+
+def test_a_lemma_is_looked_for_once_however_often_it_is_used(monkeypatch: pytest.MonkeyPatch):
+    real, loaded = prover.load_lemma, []
+    monkeypatch.setattr(prover, "load_lemma", lambda n, at: loaded.append(n) or real(n, at))
+    claim, _ = prover.state("well_clear_cylinder_is_convex")
+    assert sorted(loaded) == sorted(set(loaded))
+    assert {*claim.lemmas} <= {*loaded} != set()
+
+
+def test_what_occurs_in_terms_is_the_same_with_what_was_found_before():
+    x, n, mask = z3.Real("x"), z3.Int("n"), z3.BitVec("mask", 64)
+    f = z3.Function("f", z3.RealSort(), z3.RealSort())
+    some = [x * x > 0, n > 1, mask == 3, f(x) > 0, z3.ForAll([x], x > 0), z3.And(x > 0, n > 2)]
+    seen: smtlib.Seen = {}
+    for _ in range(2):
+        for number in range(1, len(some) + 1):
+            assert smtlib.sorts(some[:number], seen) == smtlib.sorts(some[:number])
+            assert smtlib.sorts(some[number - 1 : number], seen) == smtlib.sorts([some[number - 1]])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import re
 import sys
 from collections.abc import Iterator
 from fractions import Fraction
@@ -15,7 +16,7 @@ import z3
 
 from cratous.core.kernel import REGISTRY, names
 from cratous.core.readings.exact import exact
-from cratous.core.readings.machine.compiled import compiled, machine
+from cratous.core.readings.machine.compiled import FLAGS, WITHIN, _entry_text, compiled, machine
 from cratous.core.readings.machine.source_text import SourceText
 from cratous.proofs.engine.lift import lift
 from cratous.proofs.engine.symbolic import SymReal
@@ -117,6 +118,17 @@ def test_loops_keep_the_constants_helpers_and_records_of_each_module(package) ->
         assert machine(far.total)(x) == far.total(x)
         assert machine(near.clamp)(x) == near.clamp(x)
         assert machine(far.made)(x) == far.made(x) == -near.made(x)
+
+
+def test_only_what_is_called_from_outside_is_kept_and_has_a_way_in(package) -> None:
+    _, far = package
+    made, name = _entry_text(far.total)
+    flags = {one: flag for flag, one in re.findall(r"^@(.*)\ndef (\w+)", made.text, re.MULTILINE)}
+    assert len(flags) > 2
+    assert {one for one, flag in flags.items() if flag == FLAGS} == {name}
+    assert {flag for one, flag in flags.items() if one != name} == {WITHIN}
+    assert "cache=True" in FLAGS
+    assert "cache=True" not in WITHIN
 
 
 def test_kernels_of_sister_modules_that_divide_are_compiled(package) -> None:

@@ -120,7 +120,7 @@ def test_it_is_complete_when_all_stand_at_one_time_for_as_long_as_is_asked(tmp_p
     pair = lmcp.new("KeyValuePair", Key="Duration_ms", Value="3000")
     rig = asked(tmp_path, cordon(Parameters=[pair]))
     (stand,) = ends(rig)[1].VehicleActionList
-    assert (stand.LoiterType.name, stand.Duration) == ("Hover", 3000)
+    assert (stand.LoiterType.name, stand.Duration) == ("Hover", 6000), "so that it is told to stay"
     rig.tell(*(standing(rig, n, 1000, 0.01) for n in range(1, 5)))
     assert not rig.got("TaskActive"), "they are on their ways"
     rig.tell(standing(rig, 1, 2000, 0.001, AssociatedTasks=[100]))
@@ -149,6 +149,18 @@ def test_who_is_silent_or_tells_no_place_is_not_there(tmp_path: Path) -> None:
     assert not rig.got("TaskComplete")
     assert len(rig.reasons("Warning")) == 1
     assert "vehicle 4 is not at its place: " in rig.reasons("Warning")[0]
+
+
+def test_who_passes_its_place_does_not_stand_there(tmp_path: Path) -> None:
+    rig = asked(tmp_path, cordon())
+    for time_ms in (1000, 2000, 3000):
+        rig.tell(*(standing(rig, n, time_ms) for n in (1, 2, 3)))
+        rig.tell(standing(rig, 4, time_ms, Groundspeed=3.0))
+    assert not rig.got("TaskComplete")
+    rig.tell(standing(rig, 4, 4000, Groundspeed=math.nan))
+    assert "vehicle 4 is not at its place: its Groundspeed" in rig.reasons("Warning")[0]
+    rig.tell(*(standing(rig, n, time_ms) for time_ms in (4500, 5500) for n in range(1, 5)))
+    assert rig.got("TaskComplete")[0].TimeTaskCompleted == 5500
 
 
 def test_one_alone_does_not_count_while_it_is_silent(tmp_path: Path) -> None:
@@ -267,14 +279,6 @@ def test_what_flies_blocks_no_road_and_what_drives_flies_no_task(tmp_path: Path)
         rig.all.clear()
         rig.tell(blockade, request(number, vehicles=(1, 2)))
         assert "it drives, and the task is flown" in "\n".join(rig.reasons())
-
-
-def test_a_wait_before_it_is_refused(tmp_path: Path) -> None:
-    """Nothing that drives is told to stand and wait on its way."""
-    rig = driven(tmp_path)
-    late = request(100, vehicles=(1, 2, 3, 4), TaskRelationships="p100_[900000-1000000]")
-    rig.tell(*cars(4), cordon(), late)
-    assert "would have to wait" in "\n".join(rig.reasons())
 
 
 def test_the_example_is_planned(tmp_path: Path) -> None:

@@ -11,6 +11,9 @@ from pipeline_tools import place, request
 from rendezvous_tools import PLACES, coming, sent_on, under_way, waiting
 
 from cratous.bridge import lmcp
+from cratous.core.kernel import Vec2
+from cratous.services.following.meeting import Limits, waiting_of
+from cratous.services.planning.flyers import Flyer
 
 
 @pytest.mark.parametrize("change", [{"AssociatedTasks": []}, {"Location": place(math.nan)}])
@@ -49,16 +52,35 @@ def behind(two: Any, time_ms: int, north: float) -> Any:
 
 
 def test_who_waits_leaves_at_the_end_of_its_last_lap(tmp_path: Path) -> None:
-    """The common time is at 80.6 s, the way 466 m long, a lap takes 24.4 s: so between 32.9 and 57.3 s, although at
-    5 m/s it would be in time sooner."""
+    """The common time is at 80.6 s, the way 466 m long, a lap at 10 m/s takes 12.2 s: so between 45.1 and 57.3 s,
+    although at 5 m/s it would be in time sooner."""
     rig, (one, two) = coming(tmp_path, slowest=5.0)
     here = waiting(rig, one)
-    rig.tell(behind(two, 1_000, 0.0144), here, behind(two, 28_000, 0.0095), here.copy(Time=28_000))
+    for time_ms, north in ((1_000, 0.0144), (20_000, 0.0109), (40_000, 0.0073)):
+        rig.tell(behind(two, time_ms, north), here.copy(Time=time_ms))
     assert 1 not in left(rig), "there is time for another lap"
-    rig.tell(behind(two, 40_000, 0.0073), here.copy(Time=40_000, Heading=180.0))
+    rig.tell(behind(two, 50_000, 0.0055), here.copy(Time=50_000, Heading=180.0))
     assert 1 not in left(rig), "it heads away"
-    rig.tell(here.copy(Time=40_500))
+    rig.tell(here.copy(Time=50_500))
     assert 1 in left(rig)
+
+
+def test_who_waits_flies_slowly_where_that_makes_its_laps_shorter(tmp_path: Path) -> None:
+    """A quarter of the radius at half of the speed; to its circle it comes as fast as it usually flies."""
+    rig, (one, two) = coming(tmp_path, slowest=5.0)
+    here = waiting(rig, one)
+    rig.tell(behind(two, 1_000, 0.0144), here, here.copy(Time=1_500))
+    circles = [c.VehicleActionList[0] for c in rig.got("VehicleActionCommand") if c.VehicleID == 1]
+    assert [a.Airspeed for a in circles] == pytest.approx([20.0, 10.0])
+    tightest_m = 1.1 * 10**2 / (9.80665 * math.tan(math.radians(30)))
+    assert [a.Radius for a in circles] == pytest.approx([tightest_m] * 2)
+
+
+def test_a_lap_is_waited_at_the_usual_speed_where_the_wind_makes_that_the_shorter_one() -> None:
+    flyer, limits = Flyer(20.0, 80.0, 300.0, 3.0, ()), Limits(12.0, 20.0, 30.0)
+    assert waiting_of(flyer, limits, Vec2(0.0, 0.0))[:2] == pytest.approx((12.0, 28.8))
+    assert waiting_of(flyer, limits, Vec2(11.5, 0.0)) is flyer
+    assert waiting_of(flyer, Limits(20.0, 20.0, 20.0), Vec2(0.0, 0.0))[:2] == flyer[:2]
 
 
 def left(rig: Any) -> list[int]:

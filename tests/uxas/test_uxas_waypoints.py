@@ -19,8 +19,8 @@ from cratous.spec.errors import BadInput
 MANAGER, SIMPLE = "WaypointPlanManagerService", "SimpleWaypointPlanManagerService"
 
 
-def at(number: int, vehicle_id: int = 1) -> Any:
-    return lmcp.new("AirVehicleState", ID=vehicle_id, CurrentWaypoint=number)
+def at(number: int, vehicle_id: int = 1, kind: str = "Air") -> Any:
+    return lmcp.new(f"{kind}VehicleState", ID=vehicle_id, CurrentWaypoint=number)
 
 
 def numbers(command: Any) -> list[int]:
@@ -39,16 +39,19 @@ def manager(tmp_path: Path, attributes: str = "") -> Rig:
     "VehicleID",
     "NumberWaypointsToServe",
     "NumberWaypointsOverlap",
+    "GroundVehicleState",
+    "SurfaceVehicleState",
 )
-def test_a_long_path_is_served_in_segments_that_overlap(tmp_path: Path) -> None:
+@pytest.mark.parametrize("kind", ["Air", "Ground", "Surface"])
+def test_a_long_path_is_served_in_segments_that_overlap(tmp_path: Path, kind: str) -> None:
     rig = manager(tmp_path, 'NumberWaypointsToServe="5" NumberWaypointsOverlap="2"')
     rig.tell(response(mission(3, vehicle_id=2), mission(9)))
     (first,) = rig.got("MissionCommand")
     assert (numbers(first), first.FirstWaypoint, first.CommandID) == ([1, 2, 3, 4, 5], 1, 1)
     assert first.WaypointList[-1].NextWaypoint == 5
-    rig.tell(at(2), at(3), at(4, 2))
+    rig.tell(at(2), at(3), at(4, 2, kind))
     assert len(rig.got("MissionCommand")) == 1
-    rig.tell(at(4), at(4))
+    rig.tell(at(4, 1, kind), at(4, 1, kind))
     second = rig.got("MissionCommand")[1]
     assert (numbers(second), second.FirstWaypoint) == ([4, 5, 6, 7, 8], 4)
     rig.tell(at(7), at(8), at(9))

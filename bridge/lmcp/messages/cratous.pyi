@@ -379,8 +379,58 @@ class OwnRoutePlanner(LmcpObject):
         Reason: str = ...,
     ) -> None: ...
 
+class SensedState(LmcpObject):
+    """cratous.SensedState: CRATOUS type 16."""
+
+    ObserverID: int
+    """int64, default 0."""
+    TrackID: int
+    """int64, default 0."""
+    VehicleID: int
+    """int64, default 0."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    North: float
+    """real64 [meters], default 0.0."""
+    East: float
+    """real64 [meters], default 0.0."""
+    Altitude: float
+    """real64 [meters], default 0.0."""
+    VelocityNorth: float
+    """real64 [meters/second], default 0.0."""
+    VelocityEast: float
+    """real64 [meters/second], default 0.0."""
+    VelocityDown: float
+    """real64 [meters/second], default 0.0."""
+    HorizontalBound: float
+    """real64 [meters], default 0.0."""
+    VerticalBound: float
+    """real64 [meters], default 0.0."""
+    HorizontalRateBound: float
+    """real64 [meters/second], default 0.0."""
+    VerticalRateBound: float
+    """real64 [meters/second], default 0.0."""
+    def __init__(
+        self,
+        *,
+        ObserverID: int = ...,
+        TrackID: int = ...,
+        VehicleID: int = ...,
+        Time: int = ...,
+        North: float = ...,
+        East: float = ...,
+        Altitude: float = ...,
+        VelocityNorth: float = ...,
+        VelocityEast: float = ...,
+        VelocityDown: float = ...,
+        HorizontalBound: float = ...,
+        VerticalBound: float = ...,
+        HorizontalRateBound: float = ...,
+        VerticalRateBound: float = ...,
+    ) -> None: ...
+
 class HandState(LmcpObject):
-    """cratous.HandState: CRATOUS type 16."""
+    """cratous.HandState: CRATOUS type 17."""
 
     VehicleID: int
     """int64, default 0."""

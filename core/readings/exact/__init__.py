@@ -268,11 +268,25 @@ def _labelled(values: Iterable[tuple[str, Any]]) -> Iterator[tuple[str, Any]]:
             yield label, value
 
 
+@functools.cache
+def _parameters(function: Callable[..., Any]) -> tuple[str, ...]:
+    return tuple(inspect.signature(function).parameters)
+
+
+def _any_below(values: Iterable[Any]) -> bool:
+    """True iff a number in these, or in the records among them, is not 0 or more."""
+    return any(
+        _any_below(value) if isinstance(value, tuple) else not value >= 0 for value in values
+    )
+
+
 def _one(function: Callable[..., Any], args: tuple[Any, ...]) -> Any:
     names = nonnegative(function)
     if names:
-        parameters = inspect.signature(function).parameters
-        refuse_negative(function.__name__, names, _labelled(zip(parameters, args, strict=False)))
+        given = list(zip(_parameters(function), args, strict=False))
+        # which number it is, and whether it is one that is refused, is asked of few
+        if _any_below(value for name, value in given if name in names):
+            refuse_negative(function.__name__, names, _labelled(given))
     source = _filterable(function)
     row = _numbers(args) if source is not None else []
     if source is None or not _fits(source, row):

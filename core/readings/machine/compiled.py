@@ -34,9 +34,11 @@ from cratous.core.readings.graph.printing import straight
 from cratous.core.readings.machine.source_text import SourceText
 from cratous.spec.errors import BadInput
 
-FLAGS = "njit(cache=True, fastmath=False, error_model='python')"
+FLAGS = "njit(cache=True, fastmath=False, error_model='python', no_cfunc_wrapper=True)"
 QUIET = FLAGS.replace("'python'", "'numpy'")
 """For straight-line code that divides: it carries out both branches and keeps the chosen one."""
+WITHIN = FLAGS.replace("cache=True, ", "").replace(")", ", no_cpython_wrapper=True)")
+"""For what machine code alone calls: the code of its caller holds it, and Python has no way in."""
 KINDS: dict[Any, Any] = {bool: np.bool_, int: np.int64, float: np.float64}
 MACHINE, EXACT, ENCLOSED = "machine code", "exact", "enclosed"
 """How a function is read where CPython does not run it as written."""
@@ -162,7 +164,7 @@ def _record(shape: Any, arrays: list[Any]) -> Any:
 
 # -- the function's own source ------------------------------------------------------------
 def _entry_text(function: Callable[..., Any]) -> tuple[SourceText, str]:
-    made = SourceText(FLAGS)
+    made = SourceText(WITHIN, {function: FLAGS})
     made.add_arguments(function)
     return made, made.add(function)
 
@@ -210,7 +212,7 @@ def _map_source(kernel: Callable[..., Any], text: SourceText) -> str:
 
 @functools.cache
 def _source_map(kernel: Callable[..., Any]) -> Any:
-    made = SourceText(FLAGS)
+    made = SourceText(WITHIN)
     made.parts.append(_map_source(kernel, made))
     return load(made.text)._map
 

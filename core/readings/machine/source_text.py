@@ -26,10 +26,14 @@ LIBRARIES = ("math", "numpy")
 
 
 class SourceText:
-    """A text under construction, callees first. flags: the compiler's, put before each function."""
+    """A text under construction, callees first. flags: the compiler's, put before each function.
 
-    def __init__(self, flags: str) -> None:
+    entries: other flags, by function: those before what Python calls.
+    """
+
+    def __init__(self, flags: str, entries: dict[Callable[..., Any], str] | None = None) -> None:
         self.flags = flags
+        self.entries = entries or {}
         self.parts: list[str] = ["from typing import NamedTuple", "from numba import njit"]
         self._names: dict[str, str] = {}
         self._values: dict[str, Any] = {}
@@ -97,7 +101,7 @@ class SourceText:
             )
         made = ast.fix_missing_locations(_Renaming(self, function, renamed).visit(node))
         made.name = name
-        return f"@{self.flags}\n{ast.unparse(made)}"
+        return f"@{self.entries.get(function, self.flags)}\n{ast.unparse(made)}"
 
     def _reference(self, function: Callable[..., Any], used: str, own: str) -> str:
         """The name in the text of what a function's module calls `used`."""

@@ -1,0 +1,75 @@
+"""Assumption on what sensors see: an aircraft is within the bound of its track. Decided by `disc_within`.
+
+ICAROUS is given a place and how far off the aircraft may be (`SensedState`); the true place of the same instant stands
+beside it in the log. Bounds of the velocity are of where the aircraft will be, so they are not looked at by themselves.
+"""
+
+from __future__ import annotations
+
+import math
+
+from cratous.core.authority.timeliness import lasted
+from cratous.core.permit.tubes import disc_within
+from cratous.services.assumptions.link import NO_INSTANCE
+from cratous.services.assumptions.motion import Room, is_within
+from cratous.services.assumptions.observed import Message, Record
+from cratous.spec.mission import Mission, Position
+from cratous.spec.mission.sensing import EXACT_STATES
+
+NAME = "sensed within its bound"
+FEW = 5
+"""So many instants without a true state are told."""
+
+
+class SensedWatch:
+    """Each state that was sensed, at each heartbeat."""
+
+    def __init__(self, mission: Mission) -> None:
+        self._gone = {t.id: t.vanishes_ms for t in mission.traffic if t.vanishes_ms is not None}
+        self._waiting: dict[tuple[int, int], list[Message]] = {}
+        none = "" if mission.instances else NO_INSTANCE
+        if mission.instances and mission.sensing is None:
+            none = EXACT_STATES
+        waits = "nothing was sensed"
+        self._record = Record("", 1.0, (disc_within,), none, waits=waits)
+
+    def message(self, message: Message) -> None:
+        """What was sensed waits for the true state of its instant."""
+        body = message.body
+        if message.kind == "SensedState":
+            self._waiting.setdefault((body.Time, body.VehicleID), []).append(message)
+        elif message.kind == "TruthState":
+            for one in self._waiting.pop((body.Time, body.VehicleID), ()):
+                self._hold(one, message)
+
+    def _hold(self, sensed: Message, true: Message) -> None:
+        body, place = sensed.body, true.body
+        off = Position(
+            body.North - place.North, body.East - place.East, body.Altitude - place.Altitude
+        )
+        room, beside = Room(body.HorizontalBound, body.VerticalBound), math.hypot(*off[:2])
+        shares = [a / b if b else 0.0 for a, b in zip((beside, abs(off.alt_m)), room, strict=True)]
+        self._record.see(max(shares))
+        text = (
+            f"what {body.ObserverID} sensed of aircraft {body.VehicleID} is {beside:.4g} m beside and "
+            f"{abs(off.alt_m):.4g} m above or below it, with bounds of {room.wide_m:.4g} m and {room.high_m:.4g} m"
+        )
+        # a bound below 0 bounds nothing
+        holds = min(0.0, *room) == 0 and is_within(off, room)
+        self._record.check(holds, body.Time, body.ObserverID, text)
+
+    def end(self, at_ms: int) -> None:
+        """What was sensed of an aircraft of which no true state came was not looked at, unless it has vanished."""
+        left = [
+            (time_ms, number)
+            for time_ms, number in sorted(self._waiting)
+            if number not in self._gone or not lasted(self._gone[number], time_ms, 0)
+        ]
+        for time_ms, number in left[:FEW]:
+            self._record.gaps.append(
+                f"no true state of aircraft {number} of {time_ms / 1000:.2f} s came by {at_ms / 1000:.2f} s"
+            )
+
+    def records(self) -> dict[str, Record]:
+        """See `Watch`."""
+        return {NAME: self._record}

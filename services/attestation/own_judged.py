@@ -1,0 +1,95 @@
+"""Requirements of the user's own in a report, judged again from the log: their texts stand in the report.
+
+What judges here imports neither planner nor pilot nor monitor of G1 to G5: it is the reader of the language, the log,
+and the operators' kernels. Who was in command and what had broken is held against what the report says of
+changes of command and of assumptions, in plain Python.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from cratous.services.assumptions.listing import State
+from cratous.services.attestation.blamed import broken_then, command_then
+from cratous.services.attestation.findings import Data
+from cratous.services.results.names import ASSUMPTIONS, OWN, REPORT_NAME
+
+LINT = "lint"
+
+
+def own_faults(report: Data, meta: Mapping[str, Any], log: Path) -> tuple[list[str], int]:
+    """(What is not as files and log give it, how many verdicts were made again).
+
+    report: of its schema; meta: what the log recorded; log: the raw evidence.
+    """
+    if OWN not in report and OWN not in meta:
+        return [], 0
+    from cratous.services.certify.differences import differences
+    from cratous.services.certify.own import own_section
+    from cratous.services.certify.own_again import files_in
+
+    files, wrong = files_in(report, dict(meta))
+    if wrong:
+        return [f"{REPORT_NAME}: {text}" for text in wrong], 0
+    made = json.loads(json.dumps(own_section(files, log, _told(report), None)))
+    there = report[OWN]
+    wrong = _rows(there["requirements"], made["requirements"])
+    for part in ("files", "findings"):
+        wrong += differences(there[part], made[part], f"{OWN}.{part}")
+    return [f"{REPORT_NAME}: {text}" for text in wrong], len(made["requirements"])
+
+
+def _rows(there: list[Data], made: list[Data]) -> list[str]:
+    """Where the rows differ, but for the lint, which is z3's; a row is known by its id."""
+    from cratous.services.certify.differences import differences
+
+    names, wanted = [one["requirement"] for one in there], [one["requirement"] for one in made]
+    found = [f"{OWN} lacks the requirement {name}" for name in wanted if name not in names]
+    found += [
+        f"{OWN} has a requirement that is in no file: {name}"
+        for name in names
+        if name not in wanted
+    ]
+    if not found and names != wanted:
+        found.append(f"{OWN} has its requirements in another order, or one twice")
+    by_name = {one["requirement"]: one for one in made}
+    for one in there:
+        if (again := by_name.get(one["requirement"])) is not None:
+            found += differences(_judged(one), _judged(again), f"{OWN} {one['requirement']}")
+    return found
+
+
+def _judged(row: Data) -> Data:
+    return {key: value for key, value in row.items() if key != LINT}
+
+
+def own_not_judged(report: Data) -> list[str]:
+    """What of them nobody looked into here, in words."""
+    if not report.get(OWN):
+        return []
+    said = "lint of requirements of the user's own (cratous certify asks z3 again)"
+    return [said]
+
+
+def _told(report: Data) -> Any:
+    from cratous.services.certify.own_blame import Told
+
+    guarded = tuple(sorted(v["id"] for v in report["mission"]["vehicles"] if v["protected"]))
+    assumptions = report.get(ASSUMPTIONS, [])
+    unseen = tuple(one["name"] for one in assumptions if one["state"] == State.NOT_OBSERVED)
+    return Told(
+        guarded,
+        lambda number, at_ms: command_then(number, report, at_ms),
+        lambda at_ms: _first(assumptions, at_ms),
+        unseen,
+    )
+
+
+def _first(assumptions: list[Data], at_ms: int) -> Data | None:
+    first = broken_then(assumptions, at_ms)
+    if first is None:
+        return None
+    return {key: first[key] for key in ("name", "since_ms", "vehicle", "guarantees")}

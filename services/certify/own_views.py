@@ -1,0 +1,52 @@
+"""Requirements of the user's own as the rows that views have of G1 to G5 and of their constraints."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cratous.services.results.names import OWN
+
+Data = dict[str, Any]
+SOURCE = "own"
+"""Where such a row says `plan` or `flight` of a constraint."""
+
+
+def own_requirements(report: Data) -> list[Data]:
+    """The rows of the report, in the order of its files; none where it has none."""
+    return list(report.get(OWN, {}).get("requirements", ()))
+
+
+def digests(report: Data) -> dict[str, str]:
+    """By file of such requirements, its SHA-256."""
+    return {one["file"]: one["sha256"] for one in report.get(OWN, {}).get("files", ())}
+
+
+def own_constraints(report: Data) -> list[Data]:
+    """Each of them as a row like those of constraints; `own` has what these do not have."""
+    sha = digests(report)
+    return [
+        {
+            "requirement": one["requirement"],
+            "source": SOURCE,
+            "item": one["title"] or one["requirement"],
+            "verdict": one["verdict"],
+            "kind": "observed",
+            "margin": one["margin"],
+            "unit": one["unit"],
+            "time_ms": one["time_ms"],
+            "vehicles": sorted({c["vehicle"] for c in (one["blame"] or {}).get("command", ())}),
+            "note": one["note"],
+            "method": f"{one['file']}, SHA-256 {sha.get(one['file'], '')}",
+            "kernels": one["kernels"],
+            "checks": one["checks"],
+            "own": one,
+        }
+        for one in own_requirements(report)
+    ]
+
+
+def own_findings(report: Data) -> list[tuple[str, str]]:
+    """What is wrong with their samples, and odd about their files: (what, why)."""
+    own = report.get(OWN, {})
+    found = [(f"samples for {one['file']}", one["text"]) for one in own.get("findings", ())]
+    return found + [(f"lint of {one['file']}", one["text"]) for one in own.get("lint", ())]

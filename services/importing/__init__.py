@@ -1,0 +1,1 @@
+"""Missions from the files of others: flight plans, fences, traffic, maps and parameters of ICAROUS."""

@@ -1,0 +1,86 @@
+"""The section `sensing` of a mission file as `Sensing`; the schema has its bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from cratous.core.authority.timeliness import lasted
+from cratous.services.loading.document import Document
+from cratous.services.loading.problems import refuse
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Simulation
+from cratous.spec.mission.sensing import Sensing, Sensor, SensorKind
+
+Found = tuple[tuple[str | int, ...], str, str, str]
+"""Where in the section, what is wrong, what was expected, what was found."""
+
+
+def yaml_sensing(document: Document, simulation: Simulation, instances: int) -> Sensing | None:
+    """The sensors of a mission that has some; BadMission where they do not make sense together.
+
+    instances: how many vehicles carry them.
+    """
+    if "sensing" not in document.data:
+        return None
+    data = document.data["sensing"]
+    rest = {name: value for name, value in data.items() if name not in ("sensors", "coast_s")}
+    real = ("sigmas", "manoeuvre_m_s2")
+    rest = {name: float(v) if name in real else int(v) for name, v in rest.items()}
+    if "coast_s" in data:
+        rest["coast_ms"] = _ms(data["coast_s"])
+    sensing = Sensing(tuple(map(_sensor, data["sensors"])), **rest)
+    refuse([_problem(document, *one) for one in _found(sensing, simulation, instances)])
+    return sensing
+
+
+def _sensor(data: dict[str, Any]) -> Sensor:
+    found: dict[str, Any] = {"kind": SensorKind(data["kind"])}
+    for name in ("horizontal_m", "vertical_m", "velocity_m_s", "drop_out", "range_m"):
+        if name in data:
+            found[name] = float(data[name])
+    for name in ("latency", "period"):
+        if f"{name}_s" in data:
+            found[f"{name}_ms"] = _ms(data[f"{name}_s"])
+    return Sensor(**found)
+
+
+def _ms(seconds: Any) -> int:
+    return round(float(seconds) * 1000)
+
+
+def _found(sensing: Sensing, simulation: Simulation, instances: int) -> Iterator[Found]:
+    if not instances:
+        yield (), "nobody carries these sensors", "a vehicle with an ICAROUS instance", "none"
+    if not sensing.of_traffic:
+        yield ("sensors",), "no sensor sees traffic", "an adsb or a radar", "gps alone"
+    own = [k for k, one in enumerate(sensing.sensors) if one.kind is SensorKind.GPS]
+    for k in own[1:]:
+        yield ("sensors", k, "kind"), "there are two sensors of the own state", "one gps", "another"
+    if sensing.confirm_hits not in range(sensing.confirm_of + 1):
+        most = f"at most confirm_of, which is {sensing.confirm_of}"
+        yield ("confirm_hits",), "no track would ever count", most, str(sensing.confirm_hits)
+    for k, one in enumerate(sensing.sensors):
+        where, got = ("sensors", k, "period_s"), f"{one.period_ms / 1000:g} s"
+        if not lasted(simulation.step_ms, one.period_ms, 0):
+            expected = f"at least {simulation.step_ms / 1000:g} s (simulation.step_ms)"
+            yield where, "a sensor measures more often than the simulation steps", expected, got
+        if one.kind is SensorKind.GPS and one.range_m is not None:
+            what = "the sensor of the own state has no range"
+            yield ("sensors", k, "range_m"), what, "none", f"{one.range_m:g} m"
+        silent_ms = one.latency_ms + one.period_ms
+        if one.kind is not SensorKind.GPS and not lasted(silent_ms, sensing.coast_ms, 0):
+            expected = f"at least {silent_ms / 1000:g} s, the latency and period of sensors[{k}]"
+            what = "tracks would end between two measurements"
+            yield ("coast_s",), what, expected, f"{sensing.coast_ms / 1000:g} s"
+
+
+def _problem(
+    document: Document, key: tuple[str | int, ...], what: str, expected: str, got: str
+) -> BadInput:
+    from cratous.services.loading.document import item_name
+
+    full = ("sensing", *key)
+    return BadInput(
+        what, where=document.where(full), item=item_name(full), expected=expected, got=got
+    )

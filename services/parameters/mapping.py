@@ -1,0 +1,41 @@
+"""What a parameter file of ICAROUS sets in a mission: items with values in the mission file's units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import atan, degrees
+from typing import Any, NamedTuple
+
+from cratous.services.flight.dynamics import GRAVITY_M_S2
+from cratous.services.parameters.parameter_file import Given
+
+
+class Setting(NamedTuple):
+    """An item of a mission file, its value there, and the name and place that it comes from."""
+
+    item: str
+    value: Any
+    name: str
+    where: str
+
+
+def settings_of(given: Mapping[str, Given], speed_m_s: float) -> dict[str, Setting]:
+    """The items that a file sets, by item; speed_m_s: the cruise speed, by which a turn rate is a bank."""
+    found = dict[str, Setting]()
+    for one in given.values():
+        item, value = one.name.item, one.value
+        if not item:
+            continue
+        if one.name.name == "turn_rate":
+            value = degrees(atan(float(value) * speed_m_s / GRAVITY_M_S2))
+        if one.name.name in ("min_vs", "max_vs"):
+            value = abs(float(value))
+            before = found.get(item)
+            if before is not None and before.value <= value:
+                continue
+        if one.name.name == "passive_mode":
+            if not value:
+                continue
+            value = 0
+        found[item] = Setting(item, value, one.name.name, one.where)
+    return found

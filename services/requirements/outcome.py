@@ -1,0 +1,103 @@
+"""What came of one requirement over a trace, and how near its comparisons came to their bounds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from cratous.services.requirements.evaluation import FALSE, TRUE
+from cratous.services.requirements.formula import Formula, Reaches, parts
+from cratous.services.requirements.sampling import Sample
+from cratous.services.requirements.specification import Requirement, Specification
+from cratous.services.requirements.to_blame import Part
+
+
+@dataclass
+class Outcome:
+    """One requirement over a trace. Instants: numbers of samples, or times [ns]; -1 where there is none.
+
+    undecided: samples whose verdict needs more than the trace has; decided_at: when the first violation was
+    known; whole: nothing of the trace is known to be missing; margins: of each comparison; blamed: the parts of the
+    formula that are to blame for the first violation.
+    """
+
+    requirement: Requirement
+    horizon: int
+    holds: int = 0
+    violated: int = 0
+    unknown: int = 0
+    undecided: int = 0
+    first_violated: int = -1
+    decided_at: int = -1
+    first_unknown: int = -1
+    whole: bool = True
+    margins: list[Margin] = field(default_factory=list)
+    blamed: tuple[Part, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """The requirement's name."""
+        return self.requirement.name
+
+    @property
+    def verdict(self) -> str:
+        """violated, unknown, undecided, or holds: the last only where every sample is decided."""
+        if self.violated:
+            return "violated"
+        if self.unknown or not self.whole:
+            return "unknown"
+        return "undecided" if self.undecided or not self.holds else "holds"
+
+    def add(self, sample: int, verdict: int, now: int) -> None:
+        """A verdict more, decided by the sample `now`."""
+        if verdict == TRUE:
+            self.holds += 1
+        elif verdict == FALSE:
+            self.violated += 1
+            if self.first_violated < 0:
+                self.first_violated, self.decided_at = sample, now
+        else:
+            self.unknown += 1
+            self.first_unknown = sample if self.first_unknown < 0 else self.first_unknown
+
+
+@dataclass
+class Margin:
+    """How near a comparison came to its bound: least and greatest left - right, where it was known.
+
+    unit: of both sides; at, greatest_at: instants.
+    """
+
+    left: str | float
+    right: str | float
+    unit: str
+    least: float = math.inf
+    at: int = -1
+    greatest: float = -math.inf
+    greatest_at: int = -1
+
+    def add(self, row: Sample, now: int) -> None:
+        """A sample more."""
+        left = row.get(self.left) if isinstance(self.left, str) else self.left
+        right = row.get(self.right) if isinstance(self.right, str) else self.right
+        if left is None or right is None or not math.isfinite(left - right):
+            return
+        if left - right < self.least:
+            self.least, self.at = left - right, now
+        if left - right > self.greatest:
+            self.greatest, self.greatest_at = left - right, now
+
+
+def margins_of(formula: Formula, spec: Specification) -> list[Margin]:
+    """One for each comparison of numbers, whichever side is written first."""
+    found: dict[frozenset[str | float], Margin] = {}
+    for part in parts(formula):
+        if isinstance(part, Reaches):
+            named = [s for s in (part.left, part.right) if isinstance(s, str)]
+            if spec.signals[named[0]].kind != "bool":
+                left, right = part.left, part.right
+                if not isinstance(left, str):
+                    left, right = right, left
+                unit = spec.signals[named[0]].unit
+                found.setdefault(frozenset((left, right)), Margin(left, right, unit))
+    return list(found.values())

@@ -1,0 +1,141 @@
+"""Files of requirements with all that they import, as texts: what a report keeps, so that it can be judged again.
+
+A file is read once. From then on its text is what counts, wherever it goes; exports of FRET that it names go with it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from cratous.services.requirements import language
+from cratous.services.requirements.formula import signals
+from cratous.services.requirements.specification import NotRead, Specification
+from cratous.services.requirements.traces import wanted_of
+from cratous.spec.errors import BadInput
+from cratous.spec.files.limits import CONFIG_BYTES, DOCUMENT_BYTES
+from cratous.spec.files.text_file import text_of
+
+MOST_FILES = 50
+TAKEN = re.compile("G[1-5]")
+"""Ids that a report has already."""
+
+
+class OwnFile(NamedTuple):
+    """One file. name: as it was given, never with a folder of one machine; imports: its exports, by name."""
+
+    name: str
+    text: str
+    imports: tuple[tuple[str, str], ...] = ()
+
+    def data(self) -> dict[str, Any]:
+        """As a report keeps it."""
+        imports = [
+            {"file": name, "sha256": digest(text), "text": text} for name, text in self.imports
+        ]
+        said = {"file": self.name, "sha256": digest(self.text), "text": self.text}
+        return {**said, "imports": imports}
+
+    @property
+    def named(self) -> dict[str, Any]:
+        """The names and digests alone."""
+        parts = [{"file": name, "sha256": digest(text)} for name, text in self.imports]
+        return {"file": self.name, "sha256": digest(self.text), "imports": parts}
+
+    def specification(self) -> Specification:
+        """What it says; BadInput where no log of a flight can be held against it."""
+        found = language.read(self.text, self.name, dict(self.imports))
+        needed: set[str] = set()
+        for one in found.requirements:
+            if isinstance(one.formula, NotRead):
+                raise one.formula
+            needed |= set(signals(one.formula))
+        wanted_of(found, needed)
+        return found
+
+
+class _Gathered(dict[str, str]):
+    """The texts of files in a folder, each read when it is first asked for."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def __contains__(self, _name: object) -> bool:
+        return True
+
+    def __missing__(self, name: str) -> str:
+        self[name] = text_of(self.folder / name, DOCUMENT_BYTES, "an export of FRET")
+        return self[name]
+
+
+def digest(text: str) -> str:
+    """SHA-256 of a text as a file has it."""
+    return sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
+
+
+def own_file(path: Path, name: str) -> OwnFile:
+    """Read a file of requirements of the product's language with all that it imports; name: how it is called.
+
+    BadInput for what is none, or what no log of a flight can be held against.
+    """
+    if path.suffix != ".req":
+        raise BadInput("these requirements count samples", where=str(path), expected="a file *.req")
+    text = text_of(path, CONFIG_BYTES, "requirements")
+    gathered = _Gathered(path.parent)
+    language.read(text, str(path), gathered)
+    found = OwnFile(name, text, tuple(sorted(gathered.items())))
+    found.specification()
+    return found
+
+
+def refuse_clashes(files: Iterable[OwnFile]) -> None:
+    """BadInput where two files have one name, two requirements one id, or one is called as a guarantee."""
+    names: set[str] = set()
+    ids: dict[str, str] = {}
+    for number, file in enumerate(files, 1):
+        if file.name in names or number > MOST_FILES:
+            expected = f"at most {MOST_FILES} files, each once"
+            raise BadInput(
+                "these files cannot be judged together", item=file.name, expected=expected
+            )
+        names.add(file.name)
+        for one in file.specification().requirements:
+            if TAKEN.fullmatch(one.name):
+                expected = "another id than those of the guarantees, G1 to G5"
+                raise BadInput("the id is taken", where=file.name, item=one.name, expected=expected)
+            if one.name in ids:
+                raise BadInput(
+                    "two requirements have one id", where=f"{ids[one.name]} and {file.name}",
+                    item=one.name, expected="ids that differ",
+                )  # fmt: skip
+            ids[one.name] = file.name
+
+
+def files_of(data: Any) -> tuple[OwnFile, ...]:
+    """The files that a report keeps; BadInput for what is no such list, or has another digest than its text."""
+    try:
+        found = [(one, tuple(one["imports"])) for one in data]
+        texts = [part for one, imports in found for part in (one, *imports)]
+        other = [t["file"] for t in texts if digest(t["text"]) != t["sha256"]]
+        good = all(isinstance(t["file"], str) for t in texts)
+    except (TypeError, KeyError, AttributeError):
+        raise BadInput("these are no files of requirements", item="own.files") from None
+    if not good:
+        raise BadInput("a file has no name", item="own.files")
+    if other:
+        raise BadInput("its text has another digest than is said", item=other[0])
+    files = tuple(
+        OwnFile(one["file"], one["text"], tuple((p["file"], p["text"]) for p in imports))
+        for one, imports in found
+    )
+    refuse_clashes(files)
+    return files
+
+
+def line_of(text: str, name: str) -> int | None:
+    """The line on which a requirement begins; None for one that is imported."""
+    found = re.search(rf"^[ \t]*requirement[ \t]+{re.escape(name)}(?![\w.-])", text, re.MULTILINE)
+    return None if found is None else text.count("\n", 0, found.start()) + 1

@@ -1,0 +1,161 @@
+"""A trace that has ended, formula by formula over whole columns: the same verdicts as sample by sample.
+
+The loops are those of `core.requirements.whole_trace`, in machine code where there is enough to do for that; else
+the samples are taken one by one (`watch.Watch.sample`).
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from cratous.services.requirements.evaluation import FALSE, TRUE
+from cratous.services.requirements.formula import (
+    Always,
+    Formula,
+    Join,
+    Not,
+    Reaches,
+    children,
+    parts,
+)
+from cratous.services.requirements.sampling import Sample
+from cratous.services.requirements.to_blame import Part, why
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from cratous.services.requirements.outcome import Margin, Outcome
+
+MOST = 1_000_000
+"""Samples that are kept; also how many may wait in a queue where they are taken one by one."""
+KEPT, WORTH = 100_000, 2_000_000
+"""Operators times samples from which on loops are compiled: whose machine code is kept, and any."""
+NAN = float("nan")
+
+
+class Columns:
+    """Samples by column, as they come. times: of each; values: by signal, NaN where it has none."""
+
+    def __init__(self, names: Iterable[str]) -> None:
+        self.times = array("q")
+        self.values = {name: array("d") for name in sorted(names)}
+
+    def add(self, time: int, row: Sample) -> None:
+        """A sample more."""
+        self.times.append(time)
+        for name, column in self.values.items():
+            value = row.get(name)
+            column.append(NAN if value is None else value)
+
+    def samples(self) -> Iterable[tuple[int, Sample]]:
+        """The samples one by one; what has no value is NaN."""
+        for k, time in enumerate(self.times):
+            yield time, {name: column[k] for name, column in self.values.items()}
+
+
+def is_worth(formulas: Iterable[Formula], samples: int) -> bool:
+    """Whether so many samples are taken sooner by machine code than one by one."""
+    work = sum(1 for formula in formulas for _ in parts(formula)) * samples
+    if not KEPT < work <= WORTH:
+        return work > WORTH
+    from cratous.core.readings.machine.compiled import is_kept
+    from cratous.core.requirements import whole_trace as loops
+
+    return all(
+        map(is_kept, (loops.reached, loops.not_of, loops.joined, loops.until_of, loops.since_of))
+    )
+
+
+class _Found(NamedTuple):
+    """Of one part: its verdicts, and at which sample each was decided (the number of samples: at none)."""
+
+    verdict: np.ndarray
+    known: np.ndarray
+
+
+class Whole:
+    """Formulas over columns that are complete."""
+
+    def __init__(self, columns: Columns) -> None:
+        import numpy as np
+
+        self.times = np.frombuffer(columns.times, np.int64)
+        self.values = {n: np.frombuffer(c, np.float64) for n, c in columns.values.items()}
+        self.count = len(self.times)
+        self.at_once = np.arange(self.count)
+
+    def fill(self, outcome: Outcome, formula: Formula) -> None:
+        """Count the verdicts of a formula, and measure its margins, into an outcome that has none yet."""
+        found = self._parts(formula)
+        verdict, known = found[id(formula)]
+        decided = known < self.count
+        for name, word in (("holds", TRUE), ("violated", FALSE)):
+            setattr(outcome, name, int(((verdict == word) & decided).sum()))
+        outcome.unknown = int(((verdict == 1) & decided).sum())
+        if outcome.violated:
+            k = int(((verdict == FALSE) & decided).argmax())
+            outcome.first_violated = int(self.times[k])
+            outcome.decided_at = int(self.times[known[k]])
+            outcome.blamed = tuple(self._why(formula, found, k, int(known[k])))
+        if outcome.unknown:
+            outcome.first_unknown = int(self.times[((verdict == 1) & decided).argmax()])
+        for margin in outcome.margins:
+            self._measure(margin)
+
+    def _why(self, formula: Formula, found: Mapping[int, _Found], k: int, at: int) -> list[Part]:
+        def verdict(part: Formula) -> int | None:
+            one = found[id(part)]
+            return int(one.verdict[k]) if one.known[k] <= at else None
+
+        return why(formula, verdict)
+
+    def _measure(self, margin: Margin) -> None:
+        import numpy as np
+
+        with np.errstate(invalid="ignore", over="ignore"):
+            between = self._side(margin.left) - self._side(margin.right)
+        known = np.isfinite(between)
+        if not known.any():
+            return
+        low = int(np.where(known, between, np.inf).argmin())
+        high = int(np.where(known, between, -np.inf).argmax())
+        margin.least, margin.at = float(between[low]), int(self.times[low])
+        margin.greatest, margin.greatest_at = float(between[high]), int(self.times[high])
+
+    def _side(self, side: str | float) -> np.ndarray:
+        import numpy as np
+
+        return self.values[side] if isinstance(side, str) else np.array([side], np.float64)
+
+    def _parts(self, formula: Formula) -> dict[int, _Found]:
+        found: dict[int, _Found] = {}
+        for part in parts(formula):
+            found[id(part)] = self._found(part, [found[id(child)] for child in children(part)])
+        return found
+
+    def _found(self, part: Formula, below: list[_Found]) -> _Found:
+        import numpy as np
+
+        from cratous.core.readings.machine.compiled import machine
+        from cratous.core.requirements import whole_trace as loops
+
+        verdict = np.empty(self.count, np.int64)
+        if isinstance(part, Always):
+            verdict.fill(part.verdict)
+            return _Found(verdict, self.at_once)
+        if isinstance(part, Reaches):
+            machine(loops.reached)(self._side(part.left), self._side(part.right), verdict)
+            return _Found(verdict, self.at_once)
+        if isinstance(part, Not):
+            machine(loops.not_of)(below[0].verdict, verdict)
+            return _Found(verdict, below[0].known)
+        known = np.empty(self.count, np.int64)
+        given: list[Any] = [*below[0], *below[1]]
+        if isinstance(part, Join):
+            machine(loops.joined)(*given, part.is_and, verdict, known)
+        else:
+            loop = loops.since_of if part.past else loops.until_of
+            machine(loop)(self.times, *given, part.low, part.high, verdict, known)
+        return _Found(verdict, known)

@@ -1,0 +1,159 @@
+"""The sensors of one vehicle and its tracker: what its ICAROUS is given for its own state and for traffic."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.core.authority.timeliness import lasted
+from cratous.core.avoidance.drift import Off
+from cratous.core.avoidance.manoeuvre import Motion
+from cratous.core.avoidance.prediction import Intruder, Spread
+from cratous.services.icarous.messages import Sensed
+from cratous.services.sensing import own as own_state
+from cratous.services.sensing.filter import Cov, Estimate, Flown, deviations
+from cratous.services.sensing.own import Own
+from cratous.services.sensing.sensors import Detection, detections
+from cratous.services.sensing.tracks import Tracks, estimate, tracked
+from cratous.spec.mission import SensedDaa
+
+
+class Carrier(NamedTuple):
+    """Whose sensors these are, what does not change. daa: with the sensors; seed: of the mission's variant; cooperating:
+    the vehicles with an ICAROUS instance, of which ADS-B tells."""
+
+    own_id: int
+    daa: SensedDaa
+    seed: int
+    step_ms: int
+    cooperating: frozenset[int]
+
+
+class Surveillance(NamedTuple):
+    """under_way: measurements that have not come yet; own: None before the first step, or without a GPS."""
+
+    under_way: tuple[Detection, ...] = ()
+    own: Own | None = None
+    tracks: Tracks = Tracks()
+
+
+class Shown(NamedTuple):
+    """An aircraft as the vehicle's ICAROUS is given it. track: its number there; source: whom the last measurement was
+    of; known: where it is taken to be; spread: how far off that may be."""
+
+    track: int
+    source: int
+    known: Estimate
+    spread: Spread
+
+
+def stepped(
+    carrier: Carrier, before: Surveillance, now_ms: int, aircraft: Mapping[int, Flown]
+) -> Surveillance:
+    """After a step of the simulation: what is measured now is under way, and the vehicle has flown on."""
+    sensing, air = carrier.daa.sensing, aircraft[carrier.own_id]
+    gps, own = sensing.gps, before.own
+    if gps is not None and own is None:
+        own = own_state.first(gps, now_ms, air)
+    elif gps is not None and own is not None:
+        own = own_state.moved(own, now_ms, air, gps.latency_ms)
+    new = detections(sensing, carrier.seed, carrier.own_id, now_ms, carrier.step_ms, aircraft)
+    return before._replace(own=own, under_way=(*before.under_way, *new))
+
+
+def arrived(carrier: Carrier, before: Surveillance, now_ms: int) -> Surveillance:
+    """At a heartbeat: what has come by now is used."""
+    came = [one for one in before.under_way if lasted(one.due_ms, now_ms, 0)]
+    left = tuple(one for one in before.under_way if one not in came)
+    own = before.own
+    for one in came:
+        if one.source == carrier.own_id and own is not None:
+            own = own_state.fixed(own, one.seen)
+    others = [one for one in came if one.source != carrier.own_id]
+    return Surveillance(left, own, tracked(before.tracks, others, carrier.daa.sensing, now_ms))
+
+
+def shown(carrier: Carrier, now: Surveillance, now_ms: int, air: Flown) -> tuple[Shown, ...]:
+    """The own state first, then the tracks that count. air: the true own state, which is given where there is no GPS."""
+    known = now.own.estimate if now.own is not None else exactly(now_ms, air)
+    found = [_shown(carrier, carrier.own_id, carrier.own_id, known)]
+    for track in now.tracks.tracks:
+        if track.shown:
+            known = estimate(track, now_ms, carrier.daa.sensing.manoeuvre_m_s2)
+            found.append(_shown(carrier, track.number, track.source, known))
+    return tuple(found)
+
+
+def exactly(now_ms: int, air: Flown) -> Estimate:
+    """An estimate that is exact."""
+    nothing = Cov(0.0, 0.0, 0.0)
+    return Estimate(now_ms, air.position, air.velocity, nothing, nothing)
+
+
+def _shown(carrier: Carrier, number: int, source: int, known: Estimate) -> Shown:
+    sigmas = carrier.daa.sensing.sigmas
+    (wide, wide_rate), (high, high_rate) = deviations(known.wide), deviations(known.high)
+    off = Spread(sigmas * wide, sigmas * wide_rate, sigmas * high, sigmas * high_rate)
+    return Shown(number, source, known, off._replace(steady_s=carrier.daa.lookahead_s))
+
+
+def given(carrier: Carrier, seen: tuple[Shown, ...], true: Sensed) -> Sensed:
+    """What ICAROUS is given for the true states: of what is seen, its own first. What the airframe can do, and how the
+    gate stands, the vehicle knows."""
+    own, low, high = seen[0], true.ability.min_speed_m_s, true.ability.max_speed_m_s
+    v = own.known.velocity
+    motion = Motion(
+        own.known.position,
+        math.atan2(v.east_m_s, v.north_m_s),
+        # it flies no slower and no faster than it can
+        min(max(math.hypot(v.north_m_s, v.east_m_s), low), high),
+        -v.down_m_s,
+    )
+    others = tuple(
+        Intruder(
+            one.track,
+            one.known.position,
+            one.known.velocity,
+            one.track in carrier.cooperating,
+            spread=_both(own.spread, one.spread),
+        )
+        for one in seen[1:]
+    )
+    here = Off(own.spread.wide_m, own.spread.high_m)
+    return true._replace(motion=motion, intruders=others, here=here)
+
+
+def _both(own: Spread, other: Spread) -> Spread:
+    """How far off the one may be as seen from where the other is taken to be."""
+    return Spread(
+        own.wide_m + other.wide_m,
+        own.wide_m_s + other.wide_m_s,
+        own.high_m + other.high_m,
+        own.high_m_s + other.high_m_s,
+        other.steady_s,
+    )
+
+
+def sensed_state(carrier: Carrier, one: Shown) -> Any:
+    """An aircraft as a vehicle's ICAROUS is given it, as a `SensedState`."""
+    at_ms, p, v = one.known[:3]
+    wide, wide_rate, high, high_rate, _ = one.spread
+    return lmcp.new(
+        "SensedState",
+        ObserverID=carrier.own_id,
+        TrackID=one.track,
+        VehicleID=one.source,
+        Time=at_ms,
+        North=p.north_m,
+        East=p.east_m,
+        Altitude=p.alt_m,
+        VelocityNorth=v.north_m_s,
+        VelocityEast=v.east_m_s,
+        VelocityDown=v.down_m_s,
+        HorizontalBound=wide,
+        VerticalBound=high,
+        HorizontalRateBound=wide_rate,
+        VerticalRateBound=high_rate,
+    )

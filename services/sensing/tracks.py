@@ -1,0 +1,152 @@
+"""Tracks: which measurement is of whom, and where everybody is taken to be.
+
+A measurement with an id is of the track of that id; one without, of the nearest track in whose gate it is, one of each
+scan. A track counts once enough of its sensor's updates have come, and ends when none has come for a while. Measurements
+may come late and in another order: each track keeps those of the last while, and takes them in the order in which
+they were made. One of its own that is outside of the gate is of an aircraft that manoeuvres: the track begins anew.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import groupby
+from typing import NamedTuple
+
+from cratous.core.authority.timeliness import in_time, lasted
+from cratous.core.kernel import Vec2
+from cratous.core.permit.association import in_gate
+from cratous.services.sensing.filter import Estimate, Measured, begun, folded, later
+from cratous.services.sensing.sensors import Detection
+from cratous.spec.mission.sensing import Sensing
+
+
+class Track(NamedTuple):
+    """One aircraft. number: its id, or -1, -2, ... where no sensor tells one; base: what is known without `recent`, the
+    measurements of the last while in the order of their times; hits: when those came that make it count [ms]; shown: it
+    counts; source: of whom the last measurement is, which the vehicle does not know."""
+
+    number: int
+    base: Estimate
+    recent: tuple[Measured, ...] = ()
+    hits: tuple[int, ...] = ()
+    shown: bool = False
+    last_ms: int = 0
+    source: int = 0
+
+
+class Tracks(NamedTuple):
+    """All tracks of a vehicle, and how many had no id."""
+
+    tracks: tuple[Track, ...] = ()
+    unnamed: int = 0
+
+
+def estimate(track: Track, at_ms: int, manoeuvre_m_s2: float) -> Estimate:
+    """Where a track is at an instant that is not before its base, by the measurements of up to then."""
+    seen = [one for one in track.recent if lasted(one.at_ms, at_ms, 0)]
+    return later(folded(track.base, seen, manoeuvre_m_s2), at_ms, manoeuvre_m_s2)
+
+
+def tracked(before: Tracks, came: Sequence[Detection], sensing: Sensing, now_ms: int) -> Tracks:
+    """The tracks after measurements have come, those that have ended left out."""
+    after = before
+    scans = sorted(came, key=lambda one: (one.seen.at_ms, one.sensor, one.name, one.seen))
+    for _, scan in groupby(scans, key=lambda one: (one.seen.at_ms, one.sensor)):
+        after = _scanned(after, tuple(scan), sensing, now_ms)
+    kept = (t for t in after.tracks if not lasted(t.last_ms, now_ms, sensing.coast_ms))
+    return after._replace(tracks=tuple(_settled(t, sensing, now_ms) for t in kept))
+
+
+def _scanned(before: Tracks, scan: Sequence[Detection], sensing: Sensing, now_ms: int) -> Tracks:
+    """All measurements of one sensor at one instant: each track gets one at most."""
+    tracks = {track.number: track for track in before.tracks}
+    unnamed = before.unnamed
+    left, free = list[Detection](), set(tracks)
+    for one in scan:
+        if one.name in tracks and one.name:
+            tracks[one.name] = _with(tracks[one.name], one, sensing, now_ms)
+            free.discard(one.name)
+        else:
+            left.append(one)
+    for number, one in _nearest(left, [t for t in before.tracks if t.number in free], sensing):
+        left.remove(one)
+        track = tracks.pop(number)
+        number = one.name or number
+        tracks[number] = _with(track._replace(number=number), one, sensing, now_ms)
+    for one in left:
+        unnamed += not one.name
+        number = one.name or -unnamed
+        tracks[number] = _with(Track(number, begun(one.seen)), one, sensing, now_ms)
+    return Tracks(tuple(tracks[number] for number in sorted(tracks)), unnamed)
+
+
+def _nearest(
+    left: Sequence[Detection], tracks: Sequence[Track], sensing: Sensing
+) -> list[tuple[int, Detection]]:
+    """Pairs of a track and a measurement in its gate, the nearest first, each of them once."""
+    pairs = []
+    for k, one in enumerate(left):
+        for track in tracks:
+            # a track of an id is not of one that tells another
+            if one.name and track.number in range(1, 2**31):
+                continue
+            known = estimate(track, max(one.seen.at_ms, track.base.at_ms), sensing.manoeuvre_m_s2)
+            if _fits(known, one.seen, sensing.sigmas):
+                pairs.append((_apart_m(known, one.seen), k, track.number))
+    taken, used = dict[int, int](), set[int]()
+    for _, k, number in sorted(pairs):
+        if k not in taken and number not in used:
+            taken[k] = number
+            used.add(number)
+    return [(number, left[k]) for k, number in taken.items()]
+
+
+def _fits(known: Estimate, seen: Measured, sigmas: float) -> bool:
+    """The place that was measured is in the gate."""
+    p, q = known.position, seen.position
+    off = Vec2(q.north_m - p.north_m, q.east_m - p.east_m)
+    wide, high = known.wide.place + seen.wide.place, known.high.place + seen.high.place
+    return bool(in_gate(off, q.alt_m - p.alt_m, wide, high, sigmas))
+
+
+def _steady(known: Estimate, seen: Measured, sigmas: float) -> bool:
+    """The velocity that was measured is in the gate."""
+    v, w = known.velocity, seen.velocity
+    off = Vec2(w.north_m_s - v.north_m_s, w.east_m_s - v.east_m_s)
+    wide = known.wide.velocity + seen.wide.velocity
+    high = known.high.velocity + seen.high.velocity
+    return bool(in_gate(off, w.down_m_s - v.down_m_s, wide, high, sigmas))
+
+
+def _apart_m(known: Estimate, seen: Measured) -> float:
+    p, q = known.position, seen.position
+    return math.hypot(q.north_m - p.north_m, q.east_m - p.east_m, q.alt_m - p.alt_m)
+
+
+def _with(track: Track, one: Detection, sensing: Sensing, now_ms: int) -> Track:
+    """The track after a measurement of its own."""
+    seen, first = one.seen, not track.hits
+    window_ms = sensing.confirm_of * sensing.sensors[one.sensor].period_ms
+    hits = tuple(
+        at for at in (*track.hits, seen.at_ms) if in_time(at, max(at, seen.at_ms), window_ms - 1)
+    )
+    counts = len(hits) >= sensing.confirm_hits
+    after = track._replace(
+        hits=hits, shown=track.shown or counts, last_ms=now_ms, source=one.source
+    )
+    if first or not lasted(track.base.at_ms, seen.at_ms, 0):
+        return after  # what came later than it may says nothing any more
+    known = estimate(track, seen.at_ms, sensing.manoeuvre_m_s2)
+    if not (_fits(known, seen, sensing.sigmas) and _steady(known, seen, sensing.sigmas)):
+        newer = tuple(m for m in track.recent if not lasted(m.at_ms, seen.at_ms, 0))
+        return after._replace(base=begun(seen), recent=newer)
+    return after._replace(recent=tuple(sorted((*track.recent, seen))))
+
+
+def _settled(track: Track, sensing: Sensing, now_ms: int) -> Track:
+    """The same, with those measurements in the base before which none can come any more."""
+    latest_ms = max(one.latency_ms for one in sensing.of_traffic)
+    old = [m for m in track.recent if not lasted(now_ms - latest_ms, m.at_ms, 0)]
+    base = folded(track.base, old, sensing.manoeuvre_m_s2)
+    return track._replace(base=base, recent=track.recent[len(old) :])

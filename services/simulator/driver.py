@@ -1,0 +1,206 @@
+"""One vehicle that drives or sails, and all of them in a world: what they are told, and what they tell."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import degrees, isfinite, radians
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.services.simulator import course, payload
+from cratous.services.simulator.course import Course
+from cratous.services.simulator.driving import Chassis, chassis_of, move
+from cratous.services.simulator.guidance import DIRECTED, LOITER
+from cratous.services.simulator.motion import Motion
+from cratous.spec.errors import BadInput
+
+STATES = {
+    "GroundVehicleConfiguration": "GroundVehicleState",
+    "SurfaceVehicleConfiguration": "SurfaceVehicleState",
+}
+"""The kind of state of a vehicle, by that of its configuration."""
+STANDS = ("Hover", "VehicleDefault")
+"""The loiters that are a stand to all; one of another type is a stand as well, which is said."""
+
+
+class Driver(NamedTuple):
+    """kind: of its states; first: the state that it began with; told: command and waypoint that it told last."""
+
+    kind: str
+    chassis: Chassis
+    motion: Motion
+    course: Course
+    first: Any
+    told: tuple[int, int] = (0, 0)
+
+
+class Drivers:
+    """The vehicles of a world that drive or sail, by id. said: what they were asked for and do not do, to be told."""
+
+    def __init__(self) -> None:
+        self.there: dict[int, Driver] = {}
+        self.said: list[str] = []
+        self._warned: set[str] = set()
+        self._chassis: dict[int, tuple[str, Chassis]] = {}
+        self._mounted: dict[int, tuple[payload.Gimbal, ...]] = {}
+
+    def __contains__(self, key: int) -> bool:
+        return key in self._chassis
+
+    def __len__(self) -> int:
+        return len(self._chassis)
+
+    def configure(self, body: Any, where: str) -> None:
+        """Take the configuration of one that is new; BadInput for what does not move."""
+        self._chassis[body.ID] = STATES[type(body).__name__], chassis_of(body, where)
+        self._mounted[body.ID] = payload.gimbals_of(body, where)
+
+    def place(self, body: Any, where: str) -> None:
+        """Put a vehicle where a state has it, with what it was doing before; BadInput for one that cannot be."""
+        kind = type(body).__name__
+        name = f"{kind} {body.ID}"
+        configured, chassis = self._chassis.get(body.ID, ("", None))
+        if configured != kind or chassis is None:
+            raise BadInput(
+                "a state of a vehicle without configuration", where=where, item=name,
+                expected=f"its {kind.replace('State', 'Configuration')} before it",
+            )  # fmt: skip
+        at = body.Location
+        speed = body.Speed if hasattr(body, "Speed") else body.u or body.Groundspeed
+        numbers = (
+            at.Latitude,
+            at.Longitude,
+            at.Altitude,
+            body.Heading,
+            speed,
+            body.EnergyAvailable,
+        )
+        if not all(map(isfinite, numbers)) or abs(at.Latitude) > 89.9:
+            raise BadInput(
+                "a state that cannot be driven", where=where, item=name,
+                expected="finite numbers, Latitude between -89.9 and 89.9 deg", got=str(numbers),
+            )  # fmt: skip
+        motion = Motion(
+            radians(at.Latitude), radians(at.Longitude), at.Altitude, radians(body.Heading), 0.0, 0.0,
+            max(0.0, min(chassis.max_speed_m_s, speed)), 0.0, 0.0, 0.0, body.EnergyAvailable, 0.0,
+        )  # fmt: skip
+        before = self.there.get(body.ID)
+        held = before.course if before else Course()
+        told = body.CurrentCommand, body.CurrentWaypoint
+        self.there[body.ID] = Driver(kind, chassis, motion, held, body, told)
+        self._mounted[body.ID] = payload.placed(self._mounted[body.ID], body)
+
+    def remove(self, key: int) -> None:
+        """It is no longer there."""
+        for held in (self.there, self._chassis, self._mounted):
+            held.pop(key, None)
+
+    def takes(self, body: Any) -> bool:
+        """Whether an object is a FollowPathCommand for one that is there."""
+        return type(body).__name__ == "FollowPathCommand" and body.VehicleID in self.there
+
+    def command(self, body: Any) -> None:
+        """Take a MissionCommand, VehicleActionCommand or FollowPathCommand for one that is there."""
+        key = body.VehicleID
+        one = self.there[key]
+        if type(body).__name__ == "FollowPathCommand":
+            if body.StartTime or body.StopTime or body.RepeatMode.name == "ReverseCourse":
+                what = "a FollowPathCommand with StartTime, StopTime or ReverseCourse"
+                self._say(key, f"does not do {what}: it is left out")
+                return
+            body = course.along_path(body)
+        take = course.mission if type(body).__name__ == "MissionCommand" else course.command
+        self._warn(body)
+        self.there[key] = one._replace(course=take(one.course, body, one.motion, one.chassis))
+        self._fire(key)
+
+    def _warn(self, body: Any) -> None:
+        actions = [*body.VehicleActionList]
+        for w in getattr(body, "WaypointList", ()):
+            actions += w.VehicleActionList
+        kinds = {a.LoiterType.name for a in actions if type(a).__name__ == "LoiterAction"}
+        for kind in sorted(kinds.difference(STANDS)):
+            self._say(
+                body.VehicleID,
+                f"does not fly: told a loiter of type {kind} it stands at its middle",
+            )
+        if any(a.Altitude or a.ClimbRate for a in actions if hasattr(a, "ClimbRate")):
+            text = "does not fly: of a FlightDirectorAction it takes heading and speed alone"
+            self._say(body.VehicleID, text)
+
+    def _say(self, key: int, what: str) -> None:
+        text = f"vehicle {key} {what}"
+        if text not in self._warned:
+            self._warned.add(text)
+            self.said.append(text)
+
+    def step(self, dt_s: float) -> None:
+        """All of them a step on."""
+        for key, one in self.there.items():
+            held, heading, speed = course.steer(one.course, one.motion, one.chassis, dt_s)
+            motion = move(one.motion, heading, speed, one.chassis, dt_s)
+            self.there[key] = one._replace(motion=motion, course=held)
+            if held.fired:
+                self._fire(key)
+            if self._mounted[key]:
+                steps = (payload.step(p, motion, dt_s) for p in self._mounted[key])
+                self._mounted[key] = tuple(steps)
+
+    def _fire(self, key: int) -> None:
+        """The actions that were set off, for what is mounted."""
+        one, mounted = self.there[key], self._mounted[key]
+        for body in one.course.fired:
+            if payload.is_for(mounted, body):
+                mounted = tuple(payload.act(p, body) for p in mounted)
+            else:
+                self._say(key, f"has nothing mounted for a {type(body).__name__}: it is left out")
+        self._mounted[key] = mounted
+        self.there[key] = one._replace(course=one.course._replace(fired=()))
+
+    def states(self, time_ms: int, ground_m: float) -> Iterator[Any]:
+        """The states of all, as they are now."""
+        for key, one in self.there.items():
+            seen = payload.states(self._mounted[key], one.motion, ground_m)
+            self.there[key], body = state(one, time_ms, seen)
+            yield body
+
+
+def state(d: Driver, time_ms: int, payloads: tuple[Any, ...]) -> tuple[Driver, Any]:
+    """The GroundVehicleState or SurfaceVehicleState that is told, and the vehicle that has told it."""
+    m, c = d.motion, d.course
+    number, waypoint = d.told
+    tasks: tuple[int, ...] = ()
+    if c.mode == DIRECTED:
+        number = c.directed_id or number
+    elif c.mode == LOITER:
+        number = c.stand_id
+        tasks = c.to.tasks if c.of_waypoint and c.to is not None else ()
+    elif c.to is not None:
+        number, waypoint, tasks = c.route_id, c.to.number, c.to.tasks
+    more: dict[str, float] = {}
+    if d.chassis.sails:
+        more = {"BankAngle": degrees(m.roll_rad), "Speed": m.airspeed_m_s}
+    body = lmcp.new(
+        d.kind,
+        ID=d.first.ID,
+        u=m.airspeed_m_s,
+        r=degrees(m.turning_rad_s),
+        p=degrees(m.rolling_rad_s),
+        Heading=degrees(m.heading_rad),
+        Roll=degrees(m.roll_rad),
+        Groundspeed=m.airspeed_m_s,
+        Course=degrees(m.heading_rad),
+        Location=d.first.Location.copy(
+            Latitude=degrees(m.lat_rad), Longitude=degrees(m.lon_rad), Altitude=m.alt_m
+        ),
+        EnergyAvailable=m.energy_percent,
+        ActualEnergyRate=m.energy_percent_s,
+        PayloadStateList=list(payloads),
+        CurrentWaypoint=waypoint,
+        CurrentCommand=number,
+        Mode=c.mode,
+        AssociatedTasks=list(tasks),
+        Time=time_ms,
+        **more,
+    )
+    return d._replace(told=(number, waypoint)), body

@@ -1,0 +1,148 @@
+"""A whole trace at once gives what sample by sample gives: verdicts, when each was known, margins, blame."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from cratous.core.readings.machine import compiled
+from cratous.services.requirements import watch, whole
+from cratous.services.requirements.evaluation import Evaluation
+from cratous.services.requirements.formula import Always, Bounded, Formula, Join, Not, Reaches
+from cratous.services.requirements.outcome import Outcome
+from cratous.services.requirements.specification import Requirement, Signal, Specification
+from cratous.services.requirements.watch import Watch
+
+SIDES = st.sampled_from(("x", "y", 0.0, 1.0))
+NAMES = st.sampled_from(("x", "y"))
+LEAVES = (
+    st.builds(Reaches, NAMES, SIDES)
+    | st.builds(Reaches, SIDES, NAMES)
+    | st.sampled_from((Always(0), Always(2)))
+)
+FORMULAS = st.recursive(
+    LEAVES,
+    lambda inner: st.one_of(
+        st.builds(Not, inner),
+        st.builds(Join, inner, inner, st.booleans()),
+        st.builds(lambda p, q, low, more, past: Bounded(p, q, low, low + more, past),
+                  inner, inner, st.integers(0, 3), st.integers(0, 4), st.booleans()),
+    ),
+    max_leaves=9,
+)  # fmt: skip
+VALUES = st.sampled_from((0.0, 1.0, 2.0, None, math.nan, math.inf))
+ROWS = st.lists(st.tuples(st.integers(1, 3), VALUES, VALUES), max_size=14)
+SIGNALS = {name: Signal("float", "m") for name in "xy"}
+
+
+def plainly(function: Callable[..., Any]) -> Callable[..., Any]:
+    return function
+
+
+def samples(rows: list[tuple[int, Any, Any]]) -> list[tuple[int, dict[str, float | None]]]:
+    found, time = [], -1
+    for later, x, y in rows:
+        time += later
+        found.append((time, {"x": x, "y": y}))
+    return found
+
+
+def both_ways(formula: Formula, rows: list[tuple[int, Any, Any]]) -> tuple[Outcome, Outcome]:
+    spec = Specification(SIGNALS, (Requirement("A", "", formula),))
+    one_by_one, at_once = Watch(spec), Watch(spec)
+    for time, row in samples(rows):
+        one_by_one.sample(time, row)
+    columns = whole.Columns("xy")
+    for time, row in samples(rows):
+        columns.add(time, row)
+    whole.Whole(columns).fill(at_once.outcomes[0], formula)
+    at_once.count = len(rows)
+    return one_by_one.result().outcomes[0], at_once.result().outcomes[0]
+
+
+@settings(max_examples=300, deadline=None)
+@given(formula=FORMULAS, rows=ROWS)
+@example(
+    formula=Bounded(
+        Bounded(Always(2), Reaches("x", 1.0), 0, 4, False), Reaches("y", 1.0), 0, 2, False
+    ),
+    rows=[(1, 0.0, 1.0), (1, 0.0, 0.0), (1, 0.0, 1.0), (1, 1.0, None), (1, 0.0, 0.0)],
+)
+def test_any_formula_over_any_trace(formula: Formula, rows: list[tuple[int, Any, Any]]) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(compiled, "machine", plainly)
+        one_by_one, at_once = both_ways(formula, rows)
+    assert vars(at_once) == vars(one_by_one)
+
+
+@settings(max_examples=200, deadline=None)
+@given(formula=FORMULAS, rows=ROWS)
+def test_each_sample_is_decided_when_it_is_one_by_one(
+    formula: Formula, rows: list[tuple[int, Any, Any]]
+) -> None:
+    evaluation, wanted = Evaluation(formula), {}
+    for k, (time, row) in enumerate(samples(rows)):
+        wanted |= {at: (verdict, k) for at, verdict in evaluation.sample(time, row)}
+    columns = whole.Columns("xy")
+    for time, row in samples(rows):
+        columns.add(time, row)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(compiled, "machine", plainly)
+        verdict, known = whole.Whole(columns)._parts(formula)[id(formula)]
+    assert wanted == {
+        at: (int(v), int(k))
+        for (at, _), v, k in zip(samples(rows), verdict, known, strict=True)
+        if k < len(rows)
+    }
+
+
+def test_machine_code_says_the_same_and_is_used_where_it_is_worth_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every loop, through the monitor of a trace."""
+    x, y = Reaches("x", 1.0), Reaches("y", 1.0)
+    a = Join(
+        Bounded(x, Not(Reaches("y", 2.0)), 1, 3, True),
+        Bounded(Not(Reaches("x", 1.5)), y, 1, 4, False),
+        False,
+    )
+    b = Join(Reaches("x", 0.0), Reaches("y", 0.0), True)
+    spec = Specification(
+        {name: Signal("float") for name in "xy"}, (Requirement("A", "", a), Requirement("B", "", b))
+    )
+    lines = [
+        f"{k * 7 % 5 / 2 - (k == 400)},{k * 11 % 13 / 4 if k % 97 else ''}\n" for k in range(600)
+    ]
+    (tmp_path / "t.csv").write_text("x,y\n" + "".join(lines))
+    one_by_one = watch.watch(spec, tmp_path / "t.csv")
+    filled: list[str] = []
+    real = whole.Whole.fill
+    monkeypatch.setattr(
+        whole.Whole, "fill", lambda *words: filled.append(words[1].name) or real(*words)
+    )
+    monkeypatch.setattr(whole, "WORTH", 1000)
+    at_once = watch.watch(spec, tmp_path / "t.csv")
+    assert filled == ["A", "B"]
+    assert at_once == one_by_one
+    first, second = at_once.outcomes
+    assert first.violated > 0 < first.unknown
+    assert (second.violated, second.first_violated) == (1, 400)
+    assert min((m.least, m.at) for m in second.margins) == (-1.0, 400)
+
+
+def test_a_trace_longer_than_is_kept_goes_on_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    spec = Specification(SIGNALS, (Requirement("A", "", Reaches("x", 1.0)),))
+    rows = samples([(1, k % 3 / 1.0, None) for k in range(50)])
+    wanted = Watch(spec)
+    for time, row in rows:
+        wanted.sample(time, row)
+    monkeypatch.setattr(watch, "MOST", 20)
+    found = Watch(spec)
+    found.all(rows)
+    assert found.result() == wanted.result()
