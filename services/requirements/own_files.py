@@ -71,6 +71,14 @@ class _Gathered(dict[str, str]):
         return self[name]
 
 
+def _is_unicode(name: str) -> bool:
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
 class _Taken(dict[str, str]):
     """Texts by name, and which of them were asked for."""
 
@@ -95,6 +103,10 @@ def own_file(path: Path, name: str) -> OwnFile:
     """
     if path.suffix != ".req":
         raise BadInput("these requirements count samples", where=str(path), expected="a file *.req")
+    if not _is_unicode(name):
+        shown = name.encode("ascii", "backslashreplace").decode()
+        expected = "a name in Unicode, as reports and logs have it"
+        raise BadInput("this name cannot be kept", where=shown, expected=expected)
     text = text_of(path, CONFIG_BYTES, "requirements")
     gathered = _Gathered(path.parent)
     language.read(text, str(path), gathered)

@@ -150,6 +150,8 @@ def test_files_that_clash_are_refused(run: Run, flown: Path, own: Path, tmp_path
     ):
         code, _, err = run("certify", flown, "--requirements", own, "--requirements", second)
         assert (code, said in err) == (2, True), err
+    with pytest.raises(BadInput, match="this name cannot be kept"):
+        own_file(own, "a\udcff.req")
     with pytest.raises(BadInput, match="these are no files"):
         files_of([{"file": "a"}])
 
