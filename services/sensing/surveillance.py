@@ -65,14 +65,17 @@ def stepped(
 
 def arrived(carrier: Carrier, before: Surveillance, now_ms: int) -> Surveillance:
     """At a heartbeat: what has come by now is used."""
-    came = [one for one in before.under_way if lasted(one.due_ms, now_ms, 0)]
-    left = tuple(one for one in before.under_way if one not in came)
+    came, left = list[Detection](), list[Detection]()
+    for one in before.under_way:
+        (came if lasted(one.due_ms, now_ms, 0) else left).append(one)
     own = before.own
     for one in came:
         if one.source == carrier.own_id and own is not None:
             own = own_state.fixed(own, one.seen)
     others = [one for one in came if one.source != carrier.own_id]
-    return Surveillance(left, own, tracked(before.tracks, others, carrier.daa.sensing, now_ms))
+    return Surveillance(
+        tuple(left), own, tracked(before.tracks, others, carrier.daa.sensing, now_ms)
+    )
 
 
 def shown(carrier: Carrier, now: Surveillance, now_ms: int, air: Flown) -> tuple[Shown, ...]:
