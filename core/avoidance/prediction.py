@@ -117,6 +117,17 @@ def later(other: Intruder, t_s: float) -> Intruder:
     return other._replace(position=begun.position, velocity=begun.velocity, way=way, spread=spread)
 
 
+def rest_of(pieces: Sequence[Piece], t_s: float) -> tuple[Piece, ...]:
+    """What is left of pieces t_s [s] after they begin, at 0, counted from then; their end if they are over."""
+    begun = []
+    for piece in [p for p in pieces if p.start_s + p.duration_s > t_s] or pieces[-1:]:
+        gone_s = min(max(t_s - piece.start_s, 0.0), piece.duration_s)
+        start_s = max(piece.start_s - t_s, 0.0)
+        place = after(piece, gone_s)
+        begun.append(Piece(start_s, piece.duration_s - gone_s, place, piece.velocity))
+    return tuple(begun)
+
+
 def meetings(
     pieces: Sequence[Piece], other: Intruder
 ) -> Iterator[tuple[tuple[Piece, ...], Intruder]]:

@@ -111,9 +111,11 @@ def _hold_permits(
 
 
 @driver(checked_by=("permitted",))
-def way_permits(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> bool:
+def way_permits(
+    pieces: Sequence[Piece], other: Intruder, volume: WellClear, rho_m: float = 0.0
+) -> bool:
     """True only if a way, from its first piece to its last, keeps the closed cylinder of a volume clear of an
-    intruder that flies straight on.
+    intruder that flies straight on. rho_m: how far off the way the vehicle may be, also in altitude [m], >= 0.
 
     A way of no piece is permitted, wherever the intruder is: it lasts for no instant, and where the vehicle is then
     is not the way's to say. Whoever asks has looked at what is flown after it (`hold_permits`).
@@ -121,15 +123,15 @@ def way_permits(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> 
     if not pieces:
         return True
     return all(
-        _run_permits(run, later(straight_on, run[0].start_s), volume)
+        _run_permits(run, later(straight_on, run[0].start_s), volume, rho_m)
         for run, straight_on in meetings(pieces, other)
     )
 
 
-def _run_permits(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> bool:
+def _run_permits(pieces: Sequence[Piece], other: Intruder, volume: WellClear, rho_m: float) -> bool:
     """The same against one that flies straight on, and is seen as the first piece begins."""
     met = meeting(pieces[0].position, other, volume)
-    return bool(exact(permitted, [moving(piece, 0.0) for piece in pieces], met))
+    return bool(exact(permitted, [moving(piece, rho_m) for piece in pieces], met))
 
 
 @driver(checked_by=("locate", "comes_within", "keep_out_leg_ok", "keep_in_leg_ok"))

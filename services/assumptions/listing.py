@@ -18,6 +18,7 @@ GATE, UXAS_END = AUTHORITY[1:2], AUTHORITY[3:4]
 TAKEOVER_ENDS = ("a_takeover_whose_way_back_stays_free_ends",)
 SILENCE = ("silence_is_noticed_within_one_heartbeat",)
 PERMIT = ("permitted_has_no_hit", "disc_within_holds_every_place")
+HAND = ("the_hand_is_clear_until_a_surprise_or_its_expiry",)
 ONE_COMMANDER = "exactly one commander at any time"
 REPLAYED = "the replay of the gate (G4) judges each command and each report by itself"
 SAMPLED = (
@@ -225,6 +226,23 @@ LISTING = (
         "that what ICAROUS keeps clear of holds the true places",
         SAMPLED,
         "each state that was sensed, at each heartbeat: how far from it the true one is, as a share of the bound",
+    ),
+    Assumption(
+        "offers begin at once",
+        "a certificate that is offered begins at the instant at which it is taken",
+        HAND,
+        ("G1", "G2"),
+        "that the certificate in hand is clear between its offer and its begin",
+        SAMPLED,
+        "offers that are taken and begin at another instant",
+    ),
+    Assumption(
+        "permitted as offered",
+        "what a certificate is offered for, or is said to be permitted against, the kernels have permitted, up to its "
+        "expiry, and its id names one trajectory",
+        HAND,
+        ("G1", "G2"),
+        why_not="the trajectory of a certificate and its tracks are not in the log",
     ),
 )
 """All of them, in the order in which they are shown."""

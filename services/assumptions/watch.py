@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from cratous.services.assumptions.authority import CommandWatch, SteeringWatch
+from cratous.services.assumptions.hand import OfferWatch
 from cratous.services.assumptions.link import (
     ChangeWatch,
     ClockWatch,
@@ -39,6 +40,7 @@ class AssumptionWatch:
             SettledWatch(),
             IntruderWatch(mission),
             TrackingWatch(mission),
+            OfferWatch(mission),
             SensedWatch(mission),
         )
         self._records: dict[str, Record] = {}

@@ -35,7 +35,8 @@ def own_faults(report: Data, meta: Mapping[str, Any], log: Path) -> tuple[list[s
     if wrong:
         return [f"{REPORT_NAME}: {text}" for text in wrong], 0
     made = json.loads(json.dumps(own_section(files, log, _told(report), None)))
-    there = report[OWN]
+    # a log may name an empty list of files, and then the report has none
+    there = report.get(OWN, {part: [] for part in made})
     wrong = _rows(there["requirements"], made["requirements"])
     for part in ("files", "findings"):
         wrong += differences(there[part], made[part], f"{OWN}.{part}")

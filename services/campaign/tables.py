@@ -19,6 +19,8 @@ HEAD = ("run", "mission", "option", "seed", "outcome", "takeovers", "end_ms", "s
 MEASURES = ("verdict", "margin", "unit")
 WHOLE, REAL = ("seed", "takeovers", "end_ms"), ("separation_m",)
 """Columns of numbers, besides margins and what was drawn; all others are texts."""
+EXACT = 2**53
+"""Up to here every whole number is a double."""
 
 
 def csv_text(summary: dict[str, Any]) -> str:
@@ -33,7 +35,7 @@ def csv_text(summary: dict[str, Any]) -> str:
 def parquet_bytes(summary: dict[str, Any]) -> bytes:
     """The same columns as Parquet: whole numbers of 64 bits, doubles, texts as they are, null where there is nothing.
 
-    A column of what was drawn is of doubles if all of it are numbers, else of texts. NotInstalled without pyarrow.
+    A column of what was drawn is of doubles if doubles hold all of it exactly, else of texts. NotInstalled without pyarrow.
     """
     with told():
         import pyarrow as pa
@@ -44,7 +46,7 @@ def parquet_bytes(summary: dict[str, Any]) -> bytes:
     columns = [[row[k] for row in rows] for k in range(len(names))]
     for name in _drawn(summary):
         k = names.index(name, len(HEAD))
-        if all(value is None or type(value) in (int, float) for value in columns[k]):
+        if all(value is None or _is_double(value) for value in columns[k]):
             kinds[name] = pa.float64()
         else:
             columns[k] = [None if value is None else str(value) for value in columns[k]]
@@ -54,6 +56,11 @@ def parquet_bytes(summary: dict[str, Any]) -> bytes:
     pq.write_table(pa.Table.from_arrays(arrays, names=names), out, compression="zstd")
     found: bytes = out.getvalue().to_pybytes()
     return found
+
+
+def _is_double(value: Any) -> bool:
+    """Whether it is a number, and as a double still the same."""
+    return type(value) is float or (type(value) is int and abs(value) <= EXACT)
 
 
 def _drawn(summary: dict[str, Any]) -> list[str]:

@@ -80,6 +80,8 @@ def campaign(
     from cratous.services.campaign.definition import load_campaign
 
     reports, find, budget, as_json, parquet, quiet = Wanted(**wanted)
+    if parquet and find is not None:
+        raise click.UsageError("--parquet is of the runs of a campaign, not of --find")
     if parquet:
         with told():  # before anything is flown
             import pyarrow.parquet  # noqa: F401

@@ -89,7 +89,7 @@ def fly_encounter(mission: Mission, *, daa: bool = True) -> Encounter:
             for one, modes in lines:
                 one.hear(modes, now_ms)
         for one in ours:
-            one.state, _ = one.node.handle(one.state, Choose())
+            one.state, _ = one.node.handle(one.state, Choose(now_ms))
         instants.append(Instant(now_ms, _everyone(mission, ours, now_ms)))
         if outcome == COMPLETE:
             break

@@ -25,6 +25,7 @@ from cratous.services.flight.commands import gated, velocity_command
 from cratous.services.flight.dynamics import AirState, floor_of, traffic_state
 from cratous.services.flight.executive import Executive
 from cratous.services.flight.executive_state import Config
+from cratous.services.flight.holding import Ground
 from cratous.services.flight.link_end import UxasEnd
 from cratous.services.flight.messages import (
     AskPlan,
@@ -39,6 +40,7 @@ from cratous.services.flight.messages import (
     FromExecutive,
     FromLinkEnd,
     FromVehicle,
+    Held,
     LimitsAre,
     Look,
     Move,
@@ -51,6 +53,7 @@ from cratous.services.flight.messages import (
     Say,
     Sense,
     SetOut,
+    Surveyed,
     Suspend,
     TakeBack,
     Tick,
@@ -68,9 +71,11 @@ from cratous.services.icarous.messages import (
     Foresees,
     FromInstance,
     Line,
+    Offers,
     Sensed,
     Steer,
     ToInstance,
+    Uncertified,
     Up,
     Wish,
 )
@@ -136,22 +141,25 @@ class Flight:
     ) -> None:
         self.mission, self.bus, self.bridge, self.instances = mission, bus, bridge, instances
         projection, simulation = Projection(mission.frame), mission.simulation
-        floor = floor_of(mission)
+        floor, ground = floor_of(mission), Ground(mission.daa, simulation.heartbeat_ms)
         self.executive = Executive(Config(mission, projection, instances))
         self.executive_state = executive_state.first_state(mission, plan)
         live = isinstance(mission, LivePlanningMission)
         self.link, self.link_state = UxasEnd(projection, live), link_end.State()
         self.vehicles = {
-            v.id: VehicleNode(v, projection, simulation.step_ms / 1000, floor)
+            v.id: VehicleNode(v, projection, simulation.step_ms / 1000, floor, ground)
             for v in sorted(mission.vehicles, key=lambda v: v.id)
         }
         self.vehicle_states = {vid: node.first() for vid, node in self.vehicles.items()}
         configs = {
-            vid: icarous.Config(vid, mission.daa, projection, simulation.heartbeat_ms)
+            vid: icarous.Config(
+                vid, mission.daa, projection, simulation.heartbeat_ms, certifies=True
+            )
             for vid in instances
         }
         self.icarous = {vid: Instance(config) for vid, config in configs.items()}
         self.icarous_states = {vid: icarous.State() for vid in instances}
+        self.waiting: dict[int, list[ToInstance]] = {vid: [] for vid in instances}
         self.carriers = _carriers(mission, instances)
         self.seen = dict.fromkeys(self.carriers, Surveillance())
         self.gated = lmcp.types["GatedCommand"]
@@ -187,7 +195,7 @@ class Flight:
         self._executive(Tick(now, self._own()))
         if now % self.mission.simulation.heartbeat_ms == 0:
             self._heartbeat()
-        self._to_all(Choose())
+        self._to_all(Choose(now))
         for vid, air in self._everyone():
             self.bus.publish(truth(vid, air, now, vid in self.instances), SIMULATION)
 
@@ -274,6 +282,22 @@ class Flight:
         return surveillance.given(carrier, shown, true)
 
     def _instance(self, vid: int, message: ToInstance) -> None:
+        if self._stands_still():
+            # lines wait to be read, what was sensed is gone
+            self.waiting[vid] += [message] if isinstance(message, Line) else []
+            return
+        waited, self.waiting[vid] = self.waiting[vid], []
+        for one in (*waited, message):
+            self._handled(vid, one)
+
+    def _stands_still(self) -> bool:
+        """Whether a fault that the mission asks for lets ICAROUS stand still."""
+        simulation = self.mission.simulation
+        if not isinstance(simulation, FaultySimulation):
+            return False
+        return simulation.bridge_faults.icarous_is_silent(self.now_ms)
+
+    def _handled(self, vid: int, message: ToInstance) -> None:
         state, out = self.icarous[vid].handle(self.icarous_states[vid], message)
         self.icarous_states[vid] = state
         # whatever it says, it speaks for its own vehicle alone
@@ -293,7 +317,12 @@ class Flight:
                     self._vehicle(vid, Wished(self.now_ms, answer))
                     self._executive(Because(*answer))
                 case OnBoard(vid, sensed):
-                    self._instance(vid, self._given(vid, sensed))
+                    given = self._given(vid, sensed)
+                    self._vehicle(vid, Surveyed(self.now_ms, given.intruders))
+                    hand = self.vehicle_states[vid].held.hand
+                    self._instance(vid, given._replace(hand=hand))
+                case Offers(vid) | Uncertified(vid):
+                    self._vehicle(vid, Held(self.now_ms, answer))
                 case Foresees(vid):
                     self._publish(conflict(answer), f"icarous/{vid}")
                 case Steer(vid, epoch, velocity):

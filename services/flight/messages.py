@@ -11,8 +11,9 @@ from typing import Any, NamedTuple
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.text_protocol import Message
 from cratous.core.authority.gate import Gate
+from cratous.core.avoidance.prediction import Intruder
 from cratous.services.flight.dynamics import AirState, Limits
-from cratous.services.icarous.messages import Sensed, Wish
+from cratous.services.icarous.messages import Offers, Sensed, Uncertified, Wish
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.mission.plan import Plan, Pose
 
@@ -278,6 +279,20 @@ class Wished(NamedTuple):
     wish: Wish
 
 
+class Held(NamedTuple):
+    """The vehicle's own ICAROUS has a certificate for what it commands next, or has none."""
+
+    now_ms: int
+    offer: Offers | Uncertified
+
+
+class Surveyed(NamedTuple):
+    """Who is seen at a heartbeat, as the vehicle's surveillance has them."""
+
+    now_ms: int
+    intruders: tuple[Intruder, ...]
+
+
 class LimitsAre(NamedTuple):
     """What the airframe can do over the ground from now on."""
 
@@ -307,6 +322,8 @@ class Sense(NamedTuple):
 class Choose(NamedTuple):
     """Choose the velocity of the coming step."""
 
+    now_ms: int
+
 
 class Move(NamedTuple):
     """Fly the step."""
@@ -319,7 +336,7 @@ class OnBoard(NamedTuple):
     sensed: Sensed
 
 
-ToVehicle = Commanded | Wished | LimitsAre | Look | Sense | Choose | Move
+ToVehicle = Commanded | Wished | Held | Surveyed | LimitsAre | Look | Sense | Choose | Move
 FromVehicle = Say | GateIs | OnBoard
 
 ToExecutive = (

@@ -9,6 +9,7 @@ from cratous.bridge.text_protocol import SetMode
 from cratous.core.authority.gate import ICAROUS, UXAS, Gate, epoch_given
 from cratous.services.flight.commands import SENDERS
 from cratous.services.flight.dynamics import AirState
+from cratous.services.flight.holding import Change
 from cratous.services.icarous.messages import Foresees
 from cratous.services.logs.records import fingerprint, to_data
 from cratous.services.mission.frames import compass
@@ -18,6 +19,29 @@ from cratous.spec.mission.plan import Plan
 def gate_state(vehicle_id: int, now_ms: int, gate: Gate) -> Any:
     """How a vehicle's gate stands, as a `GateState`."""
     return _of_gate("GateState", vehicle_id, now_ms, gate, Offered=gate.offered)
+
+
+def hand_state(vehicle_id: int, now_ms: int, change: Change) -> Any:
+    """A change of the certificate in hand, as a `HandState`: what it was, what came, and what it is."""
+    kind, before, after, offer, permitted, intruder_id, reason = change
+    # of an offer that is refused the log has what was offered
+    refused = kind == "Refused"
+    return lmcp.new(
+        "HandState",
+        VehicleID=vehicle_id,
+        Time=now_ms,
+        Change=kind,
+        Base=offer.base if refused else before.id,
+        BaseExpiry=before.expiry_ms,
+        ID=offer.id if refused else after.id,
+        Sigma=offer.sigma_ms,
+        Knowledge=offer.knowledge if refused else after.knowledge,
+        Expiry=offer.expiry_ms if refused else after.expiry_ms,
+        Surprises=after.surprises,
+        Permitted=permitted,
+        IntruderID=intruder_id,
+        Reason=reason,
+    )
 
 
 def _of_gate(name: str, vehicle_id: int, now_ms: int, gate: Gate, **more: Any) -> Any:

@@ -22,7 +22,15 @@ from cratous.core.authority.gate import (
 )
 from cratous.core.avoidance.manoeuvre import Ability, Motion
 from cratous.core.avoidance.prediction import Intruder
-from cratous.services.flight.autopilot import Circle, Command, Follow, decide, track_progress
+from cratous.services.flight import holding
+from cratous.services.flight.autopilot import (
+    Circle,
+    Command,
+    Fly,
+    Follow,
+    decide,
+    track_progress,
+)
 from cratous.services.flight.commands import SENDERS, decode
 from cratous.services.flight.dynamics import (
     MAX_ACCELERATION_M_S2,
@@ -35,22 +43,25 @@ from cratous.services.flight.dynamics import (
     turn_radius_m,
     turn_rate_rad_s,
 )
+from cratous.services.flight.holding import Ground, InHand
 from cratous.services.flight.messages import (
     Choose,
     Commanded,
     FromVehicle,
     GateIs,
+    Held,
     LimitsAre,
     Look,
     Move,
     OnBoard,
     Say,
     Sense,
+    Surveyed,
     ToVehicle,
     Wished,
 )
-from cratous.services.flight.notices import authority_change, dropped, gate_state
-from cratous.services.icarous.messages import Sensed
+from cratous.services.flight.notices import authority_change, dropped, gate_state, hand_state
+from cratous.services.icarous.messages import Offers, Sensed
 from cratous.services.mission.frames import Projection, compass
 from cratous.spec.mission import Vehicle
 from cratous.spec.mission.plan import Hold
@@ -58,6 +69,7 @@ from cratous.spec.records import replace
 
 OVERRUN_S = 5.0
 """Flying on past the end of a path for this long [s] without a new command starts a loiter."""
+NOTHING_IN_HAND = InHand()
 UNTOUCHED = Gate(UXAS, 0, False)
 """UxAS commands, and has always done so."""
 HANDED_BACK = "the way back is free: handed back"
@@ -66,7 +78,8 @@ HANDED_BACK = "the way back is free: handed back"
 @dataclass(frozen=True)
 class State:
     """air: where it is and how it flies until the next step; command: what the autopilot flies, None for
-    nothing yet; roll_rad: of the last turn; takeovers: how often ICAROUS has taken the vehicle."""
+    nothing yet; roll_rad: of the last turn; takeovers: how often ICAROUS has taken the vehicle; held: the certificate
+    in hand."""
 
     air: AirState
     limits: Limits
@@ -74,6 +87,7 @@ class State:
     command: Command | None = None
     roll_rad: float = 0.0
     takeovers: int = 0
+    held: InHand = NOTHING_IN_HAND
 
 
 Step = tuple[State, tuple[FromVehicle, ...]]
@@ -81,12 +95,14 @@ Step = tuple[State, tuple[FromVehicle, ...]]
 
 @dataclass(frozen=True)
 class VehicleNode:
-    """A vehicle in the simulator; what does not change. Steps of dt_s; it descends to floor_m at most."""
+    """A vehicle in the simulator; what does not change. Steps of dt_s; it descends to floor_m at most; ground: by what
+    it holds a certificate, None where it is offered none."""
 
     vehicle: Vehicle
     projection: Projection
     dt_s: float
     floor_m: float
+    ground: Ground | None = None
 
     def first(self) -> State:
         """At mission start."""
@@ -99,14 +115,18 @@ class VehicleNode:
                 return self._commanded(state, message)
             case Wished():
                 return self._wished(state, message)
+            case Held():
+                return self._offered(state, message)
+            case Surveyed():
+                return self._surveyed(state, message)
             case LimitsAre(_, limits):
                 return replace(state, limits=limits), ()
             case Look():
                 return state, (self._say(self._air_vehicle_state(state, message)),)
             case Sense():
                 return state, (self.sensed(state, message),)
-            case Choose():
-                return self._choose(state), ()
+            case Choose(now_ms):
+                return self._choose(state, now_ms)
             case Move():
                 return replace(state, air=advance(state.air, self.dt_s)), ()
 
@@ -121,14 +141,49 @@ class VehicleNode:
             return state, (self._say(dropped(command, message.now_ms, sender, before)),)
         wanted = decode(self.projection, command.Command, state.air.heading_rad)
         after = commanded(state, sender, command.Epoch, wanted)
-        return after, self._notices(before, after, message.now_ms, HANDED_BACK, 0)
+        said = self._notices(before, after, message.now_ms, HANDED_BACK, 0)
+        if self.ground is None:
+            return after, said
+        if sender == ICAROUS:
+            velocity = wanted.velocity if isinstance(wanted, Fly) else None
+            kept = holding.steered(after.held, velocity, message.now_ms, self.ground)
+        else:
+            kept = holding.left(after.held, message.now_ms, self.ground, HANDED_BACK)
+        after, more = self._kept(after, kept, message.now_ms)
+        return after, (*said, *more)
+
+    def _offered(self, state: State, message: Held) -> Step:
+        """ICAROUS has a certificate for what it commands next, or says why there is none."""
+        now_ms, offer = message
+        if self.ground is None or not gate_accepts(state.gate, ICAROUS, state.gate.epoch):
+            return state, ()
+        if isinstance(offer, Offers):
+            kept = holding.offered(state.held, offer.certificate, now_ms, self.ground)
+        else:
+            kept = holding.uncertified(state.held, offer.intruder_id, offer.reason)
+        return self._kept(state, kept, now_ms)
+
+    def _kept(self, state: State, kept: holding.Kept, now_ms: int) -> Step:
+        """The state with what is in hand now, and what is said of it."""
+        held, changes = kept
+        said = (self._say(hand_state(self.vehicle.id, now_ms, change)) for change in changes)
+        return replace(state, held=held), tuple(said)
+
+    def _surveyed(self, state: State, message: Surveyed) -> Step:
+        """What has become known to the hand."""
+        if self.ground is None:
+            return state, ()
+        now_ms, others = message
+        kept = holding.seen(state.held, state.air.position, others, now_ms, self.ground)
+        return self._kept(state, kept, now_ms)
 
     def _wished(self, state: State, message: Wished) -> Step:
         """Let the gate do what the vehicle's ICAROUS wants."""
         now_ms, wish = message
         after = replace(state, gate=gate_wished(state.gate, wish.act))
         if after.gate.owner != state.gate.owner:
-            after = replace(after, takeovers=state.takeovers + 1)
+            held = holding.taken_over(state.held, now_ms)
+            after = replace(after, takeovers=state.takeovers + 1, held=held)
         said = self._notices(state.gate, after, now_ms, wish.reason, wish.intruder_id)
         return after, said
 
@@ -143,8 +198,9 @@ class VehicleNode:
             said.append(self._say(authority_change(vid, now_ms, gate, reason, intruder_id)))
         return tuple(said)
 
-    def _choose(self, state: State) -> State:
+    def _choose(self, state: State, now_ms: int) -> Step:
         """Choose the velocity of the coming step."""
+        state, said = self._alone(state, now_ms)
         dt, air, command = self.dt_s, state.air, state.command
         if isinstance(command, Follow):
             command, progress = track_progress(command, air, dt)
@@ -155,7 +211,17 @@ class VehicleNode:
         moved = steer(air, decide(command, air, state.limits, dt), state.limits, dt)
         turn = math.remainder(moved.heading_rad - air.heading_rad, 2 * math.pi)
         roll_rad = math.atan(moved.speed_m_s * turn / dt / 9.80665)
-        return replace(state, air=moved, command=command, roll_rad=roll_rad)
+        return replace(state, air=moved, command=command, roll_rad=roll_rad), said
+
+    def _alone(self, state: State, now_ms: int) -> Step:
+        """While ICAROUS, which has the vehicle, is silent: what is in hand is commanded, or a loiter."""
+        theirs = gate_accepts(state.gate, ICAROUS, state.gate.epoch)
+        if self.ground is None or not theirs or not holding.silent(state.held, now_ms, self.ground):
+            return state, ()
+        held, command, changes = holding.flown_on(state.held, now_ms, state.air.speed_m_s)
+        if command is None:
+            command = state.command if isinstance(state.command, Circle) else _loiter_here(state)
+        return self._kept(replace(state, command=command), (held, changes), now_ms)
 
     def sensed(self, state: State, message: Sense) -> OnBoard:
         """What the vehicle's ICAROUS instance gets: own state, what the airframe can do at its present
@@ -172,7 +238,8 @@ class VehicleNode:
         )
         motion = Motion(air.position, air.heading_rad, air.speed_m_s, air.climb_m_s)
         seen = traffic_picture(self.vehicle.id, message)
-        sensed = Sensed(message.now_ms, motion, ability, seen, state.gate)
+        hand = state.held.hand
+        sensed = Sensed(message.now_ms, motion, ability, seen, state.gate, hand=hand)
         return OnBoard(self.vehicle.id, sensed)
 
     def _air_vehicle_state(self, state: State, look: Look) -> Any:

@@ -34,12 +34,15 @@ from cratous.services.icarous.messages import (
     Foresees,
     FromInstance,
     Line,
+    Offers,
     Sensed,
     Steer,
     ToInstance,
+    Uncertified,
     Up,
     Wish,
 )
+from cratous.services.icarous.offers import Refused, certified
 from cratous.services.icarous.others import with_ways
 from cratous.services.icarous.proposal import describe, manoeuvre
 from cratous.services.icarous.return_to_path import PERSIST_MS, RELAPSE_MS, onto
@@ -136,7 +139,8 @@ class Instance:
         state, choice = manoeuvre(self.config, state, sensed, in_turn, False)
         foresees = Foresees(vid, sensed.now_ms, conflict.intruder_id, first_s, describe(choice))
         wish = Wish(vid, cycled.act, reason, conflict.intruder_id)
-        return state, (wish, foresees, *self._commands(sensed, choice, cycled.act))
+        offer = self._offer(state, sensed, choice)
+        return state, (wish, foresees, *offer, *self._commands(sensed, choice, cycled.act))
 
     def _foreseen(
         self, state: State, sensed: Sensed, in_turn: frozenset[int]
@@ -177,7 +181,8 @@ class Instance:
         said = f"offer withdrawn; {text}" if cycled.act == WITHDRAW else text
         if changed or cycled.act == WITHDRAW:
             out.append(Foresees(vid, sensed.now_ms, 0, -1.0, said))
-        return state, (*out, *asked, *self._commands(sensed, choice, cycled.act, proposed))
+        offer = self._offer(state, sensed, choice)
+        return state, (*out, *asked, *offer, *self._commands(sensed, choice, cycled.act, proposed))
 
     def _proposed(
         self, state: State, sensed: Sensed, in_turn: frozenset[int], free: bool
@@ -206,6 +211,14 @@ class Instance:
         out += [Foresees(vid, now_ms, 0, -1.0, text) for text in found.said]
         out += [Up(vid, line)] if line is not None else []
         return replace(state, asking=found._replace(said=())), number, out
+
+    def _offer(self, state: State, sensed: Sensed, choice: Choice) -> tuple[FromInstance, ...]:
+        """The certificate of a manoeuvre, for the gate, or why there is none."""
+        if not self.config.certifies:
+            return ()
+        vid, scene = self.config.vehicle_id, scene_of(self.config, state, sensed)
+        found = certified(sensed, scene, choice, self.config.daa)
+        return (Uncertified(vid, *found) if isinstance(found, Refused) else Offers(vid, found),)
 
     def _commands(
         self, sensed: Sensed, choice: Choice, act: int, proposed: int | None = None

@@ -1,7 +1,8 @@
 """What a vehicle and its ICAROUS instance say to each other: plain values, times in ms of virtual time.
 
 To the instance: lines that have come over the bridge, and at each heartbeat what the vehicle senses.
-From it, in this order: what it wants of the gate, what it foresees, the velocity to fly, lines to UxAS.
+From it, in this order: what it wants of the gate, what it foresees, a certificate for the manoeuvre or why there is
+none, the velocity to fly, lines to UxAS.
 """
 
 from __future__ import annotations
@@ -13,7 +14,12 @@ from cratous.core.authority.gate import Gate
 from cratous.core.avoidance.drift import NONE, Off
 from cratous.core.avoidance.manoeuvre import Ability, Motion
 from cratous.core.avoidance.prediction import Intruder
+from cratous.core.permit.hand import Hand
+from cratous.services.icarous.certificate import Certificate
 from cratous.spec.mission import Velocity
+
+EMPTY = Hand(0, 0, 0, 0)
+"""Nothing is in hand, and nothing has become known."""
 
 # to the instance --------------------------------------------------------------------------------
 
@@ -28,7 +34,7 @@ class Line(NamedTuple):
 class Sensed(NamedTuple):
     """A heartbeat is due. motion, ability: of the vehicle itself; intruders: everybody else, as its
     surveillance sees them; gate: how its actuator gate stands; here: how far the vehicle may be from where it is
-    taken to be."""
+    taken to be; hand: the certificate behind the gate."""
 
     now_ms: int
     motion: Motion
@@ -36,6 +42,7 @@ class Sensed(NamedTuple):
     intruders: tuple[Intruder, ...]
     gate: Gate
     here: Off = NONE.here
+    hand: Hand = EMPTY
 
 
 # from the instance ------------------------------------------------------------------------------
@@ -62,6 +69,21 @@ class Foresees(NamedTuple):
     resolution: str
 
 
+class Offers(NamedTuple):
+    """To the gate: a certificate for what is commanded next."""
+
+    vehicle_id: int
+    certificate: Certificate
+
+
+class Uncertified(NamedTuple):
+    """To the gate: what is commanded next is not permitted. intruder_id: against whom, 0 for a zone."""
+
+    vehicle_id: int
+    intruder_id: int
+    reason: str
+
+
 class Steer(NamedTuple):
     """To the autopilot, through the gate: fly this velocity. epoch: in which it is commanded."""
 
@@ -78,4 +100,4 @@ class Up(NamedTuple):
 
 
 ToInstance = Line | Sensed
-FromInstance = Wish | Foresees | Steer | Up
+FromInstance = Wish | Foresees | Offers | Uncertified | Steer | Up

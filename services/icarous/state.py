@@ -25,13 +25,15 @@ START = Cycle(MONITOR, 0, False, 0, False, 0)
 class Config(NamedTuple):
     """What does not change: whose instance, what it keeps clear of, and the heartbeat [ms].
 
-    original: UxAS's end is the original's, whose WAYPT lines carry a running count."""
+    original: UxAS's end is the original's, whose WAYPT lines carry a running count; certifies: what it commands is
+    offered to the gate with a certificate."""
 
     vehicle_id: int
     daa: Daa
     projection: Projection
     heartbeat_ms: int
     original: bool = False
+    certifies: bool = False
 
 
 class Met(NamedTuple):

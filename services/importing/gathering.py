@@ -41,11 +41,16 @@ def gathered(paths: Sequence[Path], how: Reading) -> Parts:
 
 
 def _of(path: Path, how: Reading) -> list[Parts]:
-    if not path.exists():
-        raise BadInput("there is no such file", where=str(path), expected=KNOWN)
-    if not path.is_dir():
+    try:
+        if not path.exists():
+            raise BadInput("there is no such file", where=str(path), expected=KNOWN)
+        files = None
+        if path.is_dir():
+            files = sorted(f for f in path.iterdir() if f.is_file() and not f.name.startswith("."))
+    except (OSError, ValueError) as error:
+        raise BadInput(f"cannot be read ({error})", where=str(path), expected=KNOWN) from None
+    if files is None:
         return [read_part(path, how)]
-    files = sorted(f for f in path.iterdir() if f.is_file() and not f.name.startswith("."))
     if len(files) > MOST:
         raise BadInput(
             "too many files", where=str(path), expected=f"at most {MOST}", got=str(len(files))

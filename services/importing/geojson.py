@@ -1,7 +1,7 @@
 """Zones and ways of GeoJSON (RFC 7946): polygons are zones, lines are ways; all else is named and left.
 
 A polygon's kind is its property `kind` (or `type`): keep_in or keep_out, as `cratous export` writes them. A line is a
-way unless its `kind` is that of a task.
+way unless its `kind` is that of a task. A zone in another geometry is refused: without it the mission would be another.
 """
 
 from __future__ import annotations
@@ -26,6 +26,8 @@ KINDS = {
     "keepin": "keep_in", "keepout": "keep_out", "inclusion": "keep_in", "exclusion": "keep_out",
 }  # fmt: skip
 WAYS = ("", "route", "way")
+SEVERAL = ("MultiPolygon", "GeometryCollection")
+"""Geometries that may hold areas."""
 MOST = 2000
 """Places of a shape, and shapes of a file."""
 
@@ -33,8 +35,7 @@ MOST = 2000
 def kind_of(told: object, how: Reading, where: str, item: str) -> bool:
     """Whether an area is to be kept out of, from the word for its kind, or from what the user says of areas that
     have none. Raises BadInput."""
-    word = str(told or how.areas).lower().replace("_", "").replace("-", "").replace(" ", "")
-    kind = KINDS.get(word)
+    kind = KINDS.get(_word(told or how.areas))
     if kind is None:
         raise BadInput(
             "an area of no kind" if not told else "an area of another kind", where=where, item=item,
@@ -43,6 +44,10 @@ def kind_of(told: object, how: Reading, where: str, item: str) -> bool:
             got=str(told or "none")[:40],
         )  # fmt: skip
     return kind == "keep_out"
+
+
+def _word(told: object) -> str:
+    return str(told or "").lower().replace("_", "").replace("-", "").replace(" ", "")
 
 
 def read_geojson(text: str, file: str, how: Reading) -> Parts:
@@ -67,6 +72,7 @@ def read_geojson(text: str, file: str, how: Reading) -> Parts:
         elif form == "LineString" and str(told or "") in WAYS:
             ways.append(_way(coordinates, said, name, (file, item), how))
         else:
+            no_zone(told, form, (file, item), several=form in SEVERAL)
             what = f"{told or 'no kind'} ({form})"
             left[what] = left.get(what, 0) + 1
     notes = tuple(f"{file}: not taken over: {count} x {what}" for what, count in left.items())
@@ -76,6 +82,17 @@ def read_geojson(text: str, file: str, how: Reading) -> Parts:
 def _is_zone(told: object) -> bool:
     """Tasks are areas too: they have kinds of their own."""
     return "search" not in str(told)
+
+
+def no_zone(told: object, form: str, place: tuple[str, str], several: bool) -> None:
+    """Raises BadInput for what would be a zone if its geometry was read; several: whether that may hold areas."""
+    word = _word(told)
+    if word in KINDS or (several and (not word or _is_zone(told))):
+        where, item = place
+        raise BadInput(
+            "an area that is not one polygon", where=where, item=item,
+            expected="each area as a Polygon of its own", got=form,
+        )  # fmt: skip
 
 
 def _parts(feature: Any, file: str, item: str) -> tuple[str, Any, dict[str, Any]]:

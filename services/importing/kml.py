@@ -1,7 +1,8 @@
 """Zones and ways of KML 2.2: polygons are zones, line strings are ways; all else is named and left.
 
 A polygon's kind is its datum `kind` (`<ExtendedData>`), as `cratous export` writes it. `altitudeMode` of a way:
-absolute, or relativeToGround; one on the ground has no altitude that could be flown.
+absolute, or relativeToGround; one on the ground has no altitude that could be flown. A zone in another geometry is
+refused: without it the mission would be another.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 from typing import Any
 
 from cratous.bridge.lmcp.xml_text import parse
-from cratous.services.importing.geojson import MOST, WAYS, kind_of
+from cratous.services.importing.geojson import MOST, WAYS, kind_of, no_zone
 from cratous.services.importing.parts import (
     Fence,
     Parts,
@@ -48,6 +49,8 @@ def read_kml(text: bytes, file: str, how: Reading) -> Parts:
         elif form is not None and kind == "LineString" and told in WAYS:
             ways.append(_way(form, said, name, where, how))
         else:
+            several = form is None and any(_tag(e) == "Polygon" for e in mark.iter())
+            no_zone(told, kind or "another geometry", (where, name), several)
             what = f"{told or 'no kind'} ({kind or 'another geometry'})"
             left[what] = left.get(what, 0) + 1
     notes = tuple(f"{file}: not taken over: {count} x {what}" for what, count in left.items())
@@ -112,7 +115,8 @@ def _way(form: Any, said: dict[str, str], name: str, where: str, how: Reading) -
     mode = _text(form, "altitudeMode")
     places = []
     for row in _rows(form, where, name):
-        alt: Any = row[2] if len(row) == 3 and mode in (ABSOLUTE, RELATIVE) else how.alt_m
+        own = len(row) == 3 and mode in (ABSOLUTE, RELATIVE)
+        alt: Any = row[2] if own else how.alt_m
         if alt is None:
             raise BadInput(
                 "a way without altitudes", where=where, item=name,
@@ -120,7 +124,7 @@ def _way(form: Any, said: dict[str, str], name: str, where: str, how: Reading) -
                 got=mode or "clampToGround",
             )  # fmt: skip
         lat, lon = latitude(row[1], where, name), longitude(row[0], where, name)
-        places.append(Place(lat, lon, altitude(alt, where, name), mode == RELATIVE))
+        places.append(Place(lat, lon, altitude(alt, where, name), own and mode == RELATIVE))
     if len(places) < 2:
         raise BadInput("a way that leads nowhere", where=where, item=name, expected="two places")
     told = said.get("speed_m_s")

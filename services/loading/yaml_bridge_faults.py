@@ -12,6 +12,7 @@ from cratous.spec.mission.bridge_faults import BridgeFaults
 AFTER = (
     ("reconnect_s", ("cut_s", "stops_reading_s")),
     ("reads_again_s", ("stops_reading_s",)),
+    ("speaks_again_s", ("silent_s",)),
 )
 """An instant, and those of which one has to be before it."""
 

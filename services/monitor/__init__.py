@@ -16,6 +16,7 @@ from cratous.services.monitor.authority import AuthorityWatch
 from cratous.services.monitor.bridge import BridgeWatch
 from cratous.services.monitor.completion import CompletionWatch
 from cratous.services.monitor.constraints import ConstraintWatch
+from cratous.services.monitor.hand import HandWatch
 from cratous.services.monitor.observation import Ending, Presence
 from cratous.services.monitor.required_rows import missing, promised, watched
 from cratous.services.monitor.samples import Sample, Sampler
@@ -51,6 +52,7 @@ class Monitor:
         self.completion = CompletionWatch(mission, plan, self.presence)
         self.authority = AuthorityWatch(mission)
         self.bridge = BridgeWatch(mission, says_beats)
+        self.hand = HandWatch.of(mission)
         self._assumed = AssumptionWatch(mission)
         self._last_ms, self._over = 0, False
         self._tell, self._tell_broken = on_violation, on_broken
@@ -74,6 +76,10 @@ class Monitor:
             self.completion.progress(body)
         elif short in ("GateState", "GatedCommand", "CommandDropped", "ModeRefused"):
             self.authority.message(short, body, envelope.time_ms)
+            if short == "GateState":
+                self.hand.gate(body, envelope.time_ms)
+        elif short == "HandState":
+            self.hand.hand(body, envelope.time_ms)
         elif short == "Heartbeat":
             self.bridge.heartbeat(body)
         elif short == "BridgeStatus":
@@ -86,6 +92,7 @@ class Monitor:
             self.completion.end(body)
             self.authority.end(body)
             self.bridge.end(body)
+            self.hand.end(body.Time)
         if self._tell is not None:
             for k, events in enumerate((self.separation.violations, self.constraints.violations)):
                 for verdict in events[self._told[k] :]:
@@ -136,7 +143,8 @@ class Monitor:
         """One verdict for each of G1 to G5, followed by all details."""
         details = self.details()
         return [
-            _whole(r.id, [v for v in details if v.requirement == r.id]) for r in REQUIREMENTS
+            self.hand.beside(_whole(r.id, [v for v in details if v.requirement == r.id]))
+            for r in REQUIREMENTS
         ] + details
 
 

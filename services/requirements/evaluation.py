@@ -35,6 +35,18 @@ FALSE, UNKNOWN, TRUE, WAITS = range(4)
 NEVER = -(2**62)
 
 
+def in_order(time: int, last: int) -> int:
+    """The time of a sample; BadInput unless it is later than that of the one before, and none is beyond MAX_TIME."""
+    if not last < time <= MAX_TIME:
+        raise BadInput(
+            "a sample is out of order",
+            item="time",
+            expected=f"above {last}, up to {MAX_TIME}",
+            got=str(time),
+        )
+    return time
+
+
 class TooManyWait(BadInput):
     """More samples wait for a verdict than were allowed for: the trace is denser than was declared."""
 
@@ -236,14 +248,7 @@ class Evaluation:
         time: later than that of the sample before, in time units; values: of the signals; None, what is not
         finite and a signal that is not there are unknown. Raises BadInput for a time that is not later.
         """
-        if not self.last < time <= MAX_TIME:
-            raise BadInput(
-                "a sample is out of order",
-                item="time",
-                expected=f"above {self.last}, up to {MAX_TIME}",
-                got=str(time),
-            )
-        self.last = time
+        self.last = in_order(time, self.last)
         # parts stand before the whole, so that one pass brings every verdict to the top
         got: Decided = []
         blaming, pending = self._blaming, self.pending

@@ -71,9 +71,29 @@ class _Gathered(dict[str, str]):
         return self[name]
 
 
+def _is_unicode(name: str) -> bool:
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+class _Taken(dict[str, str]):
+    """Texts by name, and which of them were asked for."""
+
+    def __init__(self, texts: Iterable[tuple[str, str]]) -> None:
+        super().__init__(texts)
+        self.asked: set[str] = set()
+
+    def __getitem__(self, name: str) -> str:
+        self.asked.add(name)
+        return super().__getitem__(name)
+
+
 def digest(text: str) -> str:
-    """SHA-256 of a text as a file has it."""
-    return sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
+    """SHA-256 of a text as a file has it; UnicodeEncodeError for one that no file has."""
+    return sha256(text.encode()).hexdigest()
 
 
 def own_file(path: Path, name: str) -> OwnFile:
@@ -83,6 +103,10 @@ def own_file(path: Path, name: str) -> OwnFile:
     """
     if path.suffix != ".req":
         raise BadInput("these requirements count samples", where=str(path), expected="a file *.req")
+    if not _is_unicode(name):
+        shown = name.encode("ascii", "backslashreplace").decode()
+        expected = "a name in Unicode, as reports and logs have it"
+        raise BadInput("this name cannot be kept", where=shown, expected=expected)
     text = text_of(path, CONFIG_BYTES, "requirements")
     gathered = _Gathered(path.parent)
     language.read(text, str(path), gathered)
@@ -120,8 +144,8 @@ def files_of(data: Any) -> tuple[OwnFile, ...]:
         found = [(one, tuple(one["imports"])) for one in data]
         texts = [part for one, imports in found for part in (one, *imports)]
         other = [t["file"] for t in texts if digest(t["text"]) != t["sha256"]]
-        good = all(isinstance(t["file"], str) for t in texts)
-    except (TypeError, KeyError, AttributeError):
+        good = all(isinstance(t["file"], str) and t["file"].encode() for t in texts)
+    except (TypeError, KeyError, AttributeError, UnicodeEncodeError):
         raise BadInput("these are no files of requirements", item="own.files") from None
     if not good:
         raise BadInput("a file has no name", item="own.files")
@@ -132,6 +156,15 @@ def files_of(data: Any) -> tuple[OwnFile, ...]:
         for one, imports in found
     )
     refuse_clashes(files)
+    for file in files:
+        taken = _Taken(file.imports)
+        language.read(file.text, file.name, taken)
+        names = [name for name, _ in file.imports]
+        if names != sorted(taken.asked):
+            raise BadInput(
+                "its imports are others than it takes, each once, by name", item=file.name,
+                expected=", ".join(sorted(taken.asked)) or "none", got=", ".join(names) or "none",
+            )  # fmt: skip
     return files
 
 

@@ -10,8 +10,9 @@ from array import array
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from cratous.services.requirements.evaluation import FALSE, TRUE
+from cratous.services.requirements.evaluation import FALSE, TRUE, in_order
 from cratous.services.requirements.formula import (
+    MAX_TIME,
     Always,
     Formula,
     Join,
@@ -41,9 +42,11 @@ class Columns:
     def __init__(self, names: Iterable[str]) -> None:
         self.times = array("q")
         self.values = {name: array("d") for name in sorted(names)}
+        self.last = -MAX_TIME - 1
 
     def add(self, time: int, row: Sample) -> None:
-        """A sample more."""
+        """A sample more. Raises BadInput for a time that is not later, as `Evaluation.sample` does."""
+        self.last = in_order(time, self.last)
         self.times.append(time)
         for name, column in self.values.items():
             value = row.get(name)

@@ -7,6 +7,7 @@ from typing import Any
 
 from cratous.core.authority import cycle, gate, link_end
 from cratous.core.kernel import qualified
+from cratous.core.permit import hand
 
 STEPS = {
     "the gate takes a command": (gate.gate_accepts, gate.gate_after),
@@ -17,12 +18,14 @@ STEPS = {
         link_end.suspended_after,
     ),
     "a sign of life, or silence": (link_end.link_sign,),
+    "a change of the certificate in hand": (hand.hand_step, hand.accepts, hand.hand_passed),
     "UxAS commands a track": (link_end.track_is_told,),
 }
 """Each step of the model, and the kernels that answer it."""
 NOT_COVERED = (
     "whether a conflict was foreseen or the way back free (either is allowed at each heartbeat)",
     "when ICAROUS heard UxAS (an offer is allowed also while nothing goes to it)",
+    "what a certificate permits (its trajectory and tracks are not in the log), and whether one was offered at all",
     "SETMOD lines (not in the log: any may have come, also a forged one that is true)",
     "silence that is not reported once ICAROUS has flown (its other lines count as signs of life)",
     "notes on the link of lines that cannot be read",

@@ -9,10 +9,18 @@ from typing import Any
 
 from cratous.core.authority.timeliness import in_time, lasted
 from cratous.services.system_model.finding import Finding, Misfit
-from cratous.services.system_model.vehicle import REPORTS, VehicleModel
-from cratous.spec.mission import Mission
+from cratous.services.system_model.vehicle import HAND, REPORTS, VehicleModel
+from cratous.spec.mission import FaultySimulation, Mission
 
-LOOKED_AT = (*REPORTS, "GatedCommand", "Heartbeat", "BridgeStatus", "ModeRefused", "MissionEnd")
+LOOKED_AT = (
+    *REPORTS,
+    HAND,
+    "GatedCommand",
+    "Heartbeat",
+    "BridgeStatus",
+    "ModeRefused",
+    "MissionEnd",
+)
 SUSPENDED = "Suspended"
 
 
@@ -30,8 +38,11 @@ class Replayed:
 class _Replay:
     def __init__(self, mission: Mission, avoidance: bool) -> None:
         instances = frozenset(mission.instances if avoidance else ())
-        self.models = {v.id: VehicleModel(v.id, v.id in instances) for v in mission.vehicles}
-        self.heartbeat_ms = mission.simulation.heartbeat_ms
+        beat_ms = mission.simulation.heartbeat_ms
+        self.models = {
+            v.id: VehicleModel(v.id, v.id in instances, beat_ms) for v in mission.vehicles
+        }
+        self.heartbeat_ms, self.simulation = beat_ms, mission.simulation
         self.limit_ms = mission.simulation.limit_ms + mission.simulation.step_ms
         self.result = Replayed(len(instances))
         self.now_ms, self.seq, self.vehicle_id, self.over = 0, 0, 0, False
@@ -99,8 +110,14 @@ class _Replay:
                 if model.icarous is not None and model.uxas.open and vehicle_id not in self.told:
                     number = f"number {model.uxas.downs + 1}"
                     raise Misfit("a heartbeat to ICAROUS", f"{number} at {self.now_ms} ms", "none")
-                model.end_of_heartbeat(self.now_ms)
+                model.end_of_heartbeat(self.now_ms, self._stands_still())
         self.told.clear()
+
+    def _stands_still(self) -> bool:
+        """Whether the mission lets ICAROUS stand still now."""
+        if not isinstance(self.simulation, FaultySimulation):
+            return False
+        return self.simulation.bridge_faults.icarous_is_silent(self.now_ms)
 
     def _due_now(self, short: str) -> None:
         if self.now_ms % self.heartbeat_ms != 0 or self.vehicle_id in self.told:

@@ -6,11 +6,13 @@ from typing import Any
 
 from cratous.core.authority.gate import ICAROUS, UXAS, Gate, gate_accepts, gate_after
 from cratous.services.system_model.finding import Misfit
+from cratous.services.system_model.hand import HandModel
 from cratous.services.system_model.icarous_end import IcarousEnd
 from cratous.services.system_model.uxas_end import UxasEnd
 
 REPORTS = ("GateState", "AuthorityChange", "CommandDropped")
 EXECUTIVE, LINK = "uxas/executive", "uxas/ics"
+HAND = "HandState"
 OF_THE_LINK = ("Heartbeat", "BridgeStatus", "ModeRefused")
 NUMBERS = {"UxAS": UXAS, "ICAROUS": ICAROUS}
 NAMES = {number: name for name, number in NUMBERS.items()}
@@ -19,25 +21,33 @@ Report = tuple[str, str, int, int]
 
 
 class VehicleModel:
-    """The state of all three, as far as the log tells; due: reports that must come next, in order."""
+    """The state of all three and of what is in hand, as far as the log tells; due: reports that must come next, in
+    order."""
 
-    def __init__(self, vehicle_id: int, has_instance: bool) -> None:
+    def __init__(self, vehicle_id: int, has_instance: bool, heartbeat_ms: int) -> None:
         self.vehicle_id = vehicle_id
         self.gate = Gate(UXAS, 0, False)
         self.uxas = UxasEnd()
         self.icarous = IcarousEnd() if has_instance else None
         self.due: list[Report] = []
+        self.hand = HandModel(heartbeat_ms)
 
     def event(self, short: str, source: str, body: Any, now_ms: int) -> None:
         """An event of this vehicle; Misfit if it is no step from any state that it can be in."""
-        teller = f"vehicle/{self.vehicle_id}" if short in REPORTS else LINK
-        if short in (*REPORTS, *OF_THE_LINK) and source != teller:
+        teller = LINK if short in OF_THE_LINK else f"vehicle/{self.vehicle_id}"
+        if short in (*REPORTS, *OF_THE_LINK, HAND) and source != teller:
             raise Misfit(f"the sender of a {short}", teller, source)
         if short in REPORTS:
             self._report(short, body, now_ms)
             return
         self.nothing_due(f"{short} of {source}")
         icarous = self.icarous
+        theirs = gate_accepts(self.gate, ICAROUS, self.gate.epoch)
+        if short == HAND:
+            self.hand.changes(body, theirs, now_ms)
+            return
+        if not theirs:
+            self.hand.handed_back(f"{short} of {source}")
         if icarous is not None and icarous.due and source != f"icarous/{self.vehicle_id}":
             raise Misfit(
                 "a heartbeat of ICAROUS", "its command, for it changed the authority", short
@@ -59,9 +69,9 @@ class VehicleModel:
         if self.due:
             raise Misfit("a report of the gate", _said(self.due[0]), got)
 
-    def end_of_heartbeat(self, now_ms: int) -> None:
+    def end_of_heartbeat(self, now_ms: int, stands_still: bool = False) -> None:
         """A heartbeat's instant is over: ICAROUS has commanded, or watched and done nothing; UxAS has sent
-        its own, and said so if nothing has come for too long."""
+        its own, and said so if nothing has come for too long. stands_still: the mission lets ICAROUS do so now."""
         icarous = self.icarous
         if icarous is None:
             return
@@ -73,7 +83,7 @@ class VehicleModel:
             raise Misfit(
                 "a heartbeat of ICAROUS", "its command after a change of authority", "none"
             )
-        if not icarous.has_beaten(now_ms):
+        if not icarous.has_beaten(now_ms) and not stands_still:
             icarous.is_silent(self.gate, now_ms)
         # lines of commands may be under way still once it has flown; before, heartbeats are all that comes
         if self.uxas.open and not icarous.flown and self.uxas.is_silent(now_ms):
@@ -93,6 +103,7 @@ class VehicleModel:
         after = Gate(NUMBERS[body.Owner.name], body.Epoch, body.Offered)
         self.icarous.wishes(self.gate, after, now_ms)
         before, self.gate = self.gate, after
+        self.hand.commands(now_ms)
         self.due += _changes(before, after)
 
     def _command(self, source: str, body: Any, now_ms: int) -> None:
@@ -108,6 +119,7 @@ class VehicleModel:
             if not gate_accepts(before, ICAROUS, body.Epoch):
                 expected = f"epoch {before.epoch}, the present one"
                 raise Misfit("a command of ICAROUS", expected, f"epoch {body.Epoch}")
+            self.hand.commands(now_ms)
         elif source == LINK:
             self.uxas.takes_back(before, body.Epoch)
         else:

@@ -18,6 +18,8 @@ class BridgeFaults:
     share of the exchanges, two a heartbeat, at which a SETMOD of any mode and an epoch from 0 to 5 comes to UxAS that ICAROUS did not send.
     cut_ms, reconnect_ms: every connection breaks, and is opened anew. stops_reading_ms, reads_again_ms:
     ICAROUS takes nothing from its connection from the one to the other, which breaks when too much waits.
+    silent_ms, speaks_again_ms: ICAROUS on board of every vehicle stands still from the one to the other: it looks at
+    nothing and commands nothing; lines to it wait.
     """
 
     seed: int = 0
@@ -32,6 +34,13 @@ class BridgeFaults:
     reconnect_ms: int | None = None
     stops_reading_ms: int | None = None
     reads_again_ms: int | None = None
+    silent_ms: int | None = None
+    speaks_again_ms: int | None = None
+
+    def icarous_is_silent(self, now_ms: int) -> bool:
+        """Whether ICAROUS stands still at an instant [ms]."""
+        begin, end = self.silent_ms, self.speaks_again_ms
+        return begin is not None and begin <= now_ms and (end is None or now_ms < end)
 
 
 SHARES = ("loss", "repeat", "reorder", "truncation", "corruption", "forged_modes")
@@ -40,6 +49,8 @@ INSTANTS = {
     "reconnect_ms": "opened anew",
     "stops_reading_ms": "ICAROUS stops reading",
     "reads_again_ms": "ICAROUS reads again",
+    "silent_ms": "ICAROUS falls silent",
+    "speaks_again_ms": "ICAROUS speaks again",
 }
 
 

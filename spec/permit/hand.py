@@ -70,3 +70,68 @@ def is_after_news(before: Hand, permitted: bool, now: int, after: Hand) -> bool:
     if permitted:
         return known and after.expiry_ms == before.expiry_ms and after.surprises == before.surprises
     return known and after.expiry_ms <= now and after.surprises == before.surprises + 1
+
+
+OFFERED, KNOWN, LEFT = 0, 1, 2
+
+
+def is_after_time(before: Hand, now: int, after: Hand) -> bool:
+    """Time has passed: what has not expired stays as it is; what has holds nothing, from this instant on."""
+    same = after.id == before.id and after.knowledge == before.knowledge
+    kept = same and after.surprises == before.surprises
+    if before.expiry_ms < now:
+        return kept and after.expiry_ms == now
+    return kept and after.expiry_ms == before.expiry_ms
+
+
+def is_after_leaving(before: Hand, now: int, after: Hand) -> bool:
+    """Another trajectory is flown: nothing is certain any more, and the hand is another one, on which nothing
+    begins that was offered before. Nothing has become known."""
+    other = after.id > before.id and after.expiry_ms <= now and after.expiry_ms <= before.expiry_ms
+    return other and after.knowledge == before.knowledge and after.surprises == before.surprises
+
+
+def is_news_for(hand: Hand, news: Offer) -> bool:
+    """What was asked about is the certificate in hand, up to its expiry, and the change is the next one."""
+    later = news.expiry_ms >= hand.expiry_ms
+    return news.id == hand.id and news.knowledge == hand.knowledge + 1 and later
+
+
+MOST = 1 << 60
+"""So many changes are counted; of a hand with more nothing is certain."""
+
+
+def is_worn(hand: Hand) -> bool:
+    """It has been changed too often to be counted once more."""
+    return hand.id >= MOST or hand.knowledge >= MOST or hand.surprises >= MOST
+
+
+class Clock(NamedTuple):
+    """When the last event was [ms], and whether each so far came no earlier than the one before."""
+
+    now_ms: int
+    in_order: bool
+
+
+def clock_step(
+    clock: Clock, kind: int, offer: Offer, permitted: bool, now: int, reserve: int
+) -> Clock:
+    """One more event."""
+    return Clock(now, clock.in_order and not now < clock.now_ms)
+
+
+def is_after_event(
+    before: Hand, kind: int, offer: Offer, permitted: bool, now: int, reserve: int, after: Hand
+) -> bool:
+    """Time has passed up to the event, and then what the event is for has happened to the hand."""
+    present = Hand(before.id, before.knowledge, max(before.expiry_ms, now), before.surprises)
+    if is_worn(present):
+        same = after.id == present.id and after.knowledge == present.knowledge
+        return same and after.surprises == present.surprises and after.expiry_ms == now
+    if kind == OFFERED:
+        return is_after_offer(present, offer, now, reserve, after)
+    if kind == KNOWN:
+        return is_after_news(present, permitted and is_news_for(present, offer), now, after)
+    if kind == LEFT:
+        return is_after_leaving(present, now, after)
+    return after == present

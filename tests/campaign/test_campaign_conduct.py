@@ -270,7 +270,7 @@ def test_parquet_says_what_csv_says(tmp_path: Path) -> None:
     for run, (speed, side) in zip(
         found["runs"], [(20, 1), (21.5, "left"), (22, None)], strict=True
     ):
-        run["drawn"] = {"speed": speed, "side": side}
+        run["drawn"] = {"speed": speed, "side": side, "large": 2**53 + 1}
     (tmp_path / "runs.parquet").write_bytes(parquet_bytes(found))
     table = pyarrow.parquet.read_table(tmp_path / "runs.parquet")
     texts = csv.reader(io.StringIO(csv_text(found)))
@@ -281,6 +281,7 @@ def test_parquet_says_what_csv_says(tmp_path: Path) -> None:
     assert table["why"].to_pylist()[2] == "=cmd", "as it is: programs run no formula"
     assert table["speed"].to_pylist() == [20.0, 21.5, 22.0]
     assert table["side"].to_pylist() == ["1", "left", None]
+    assert table["large"].to_pylist() == [str(2**53 + 1)] * 3, "no double is that number"
     kinds = {
         name: str(table.schema.field(name).type) for name in ("seed", "takeovers", "separation_m")
     }
@@ -296,6 +297,9 @@ def test_parquet_without_its_library_is_told_before_anything_is_flown(
     assert main(["campaign", str(file), "-o", str(tmp_path / "out"), "--parquet"]) == 2
     assert "pyarrow is not installed; expected the extra 'parquet'" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+    words = ["campaign", str(file), "-o", str(tmp_path / "out"), "--find", "G2", "--parquet"]
+    assert main(words) == 2
+    assert "not of --find" in capsys.readouterr().err
 
 
 def test_the_page_is_whole_and_loads_nothing(tmp_path: Path) -> None:

@@ -88,6 +88,19 @@ def not_of_the_language(report: dict[str, Any]) -> None:
     file["sha256"] = hashlib.sha256(b"nothing").hexdigest()
 
 
+HALF = TEXT + "#\ud800"
+
+
+def import_of(text: str, name: str = "export.json") -> dict[str, str]:
+    return {"file": name, "sha256": hashlib.sha256(text.encode()).hexdigest(), "text": text}
+
+
+def id_taken(report: dict[str, Any]) -> None:
+    (file,) = report["own"]["files"]
+    file["text"] = TEXT.replace("BANK", "G1")
+    file["sha256"] = hashlib.sha256(file["text"].encode()).hexdigest()
+
+
 TAMPERED: dict[str, tuple[Edit, str]] = {
     "a row left out": (row_left_out, "own lacks the requirement BANK"),
     "renamed": (changed("requirement", "TURN"), "own lacks the requirement BANK"),
@@ -107,6 +120,25 @@ TAMPERED: dict[str, tuple[Edit, str]] = {
     "an export": (
         lambda r: r["own"]["files"][0]["imports"][0].update(text="[]"), "own: export.json: its text has another digest",
     ),
+    "an import twice": (
+        lambda r: r["own"]["files"][0]["imports"].insert(0, import_of("nonsense")),
+        "own: own.req: its imports are others than it takes",
+    ),
+    "an import that it does not take": (
+        lambda r: r["own"]["files"][0]["imports"].append(import_of("[]", "z.json")),
+        "own: own.req: its imports are others than it takes",
+    ),
+    "two files of one name": (
+        lambda r: r["own"]["files"].append(r["own"]["files"][0]), "own: own.req: these files cannot be judged together",
+    ),
+    "an id of the guarantees": (id_taken, "own: own.req: G1: the id is taken"),
+    "half a character": (
+        lambda r: r["own"]["files"][0].update(text=HALF, sha256=hashlib.sha256(HALF.encode("utf-8", "surrogatepass")).hexdigest()),
+        "own: own.files: these are no files",
+    ),
+    "the order": (
+        lambda r: r["own"]["requirements"].reverse(), "own has its requirements in another order",
+    ),
     "a finding": (lambda r: r["own"]["findings"].clear(), "own.findings: written 0 entries, found 1"),
 }  # fmt: skip
 
@@ -125,6 +157,7 @@ def test_all_of_them_left_out_of_a_flight_with_them_is_found(with_own: Path, own
     report = read(with_own)
     del report["own"]
     assert own_faults(report, {}, with_own / "log.sqlite") == ([], 0)
+    assert own_faults(report, {"own": []}, with_own / "log.sqlite") == ([], 0)
     named = {"own": [own_file(own, own.name).named]}
     ((line,), _) = own_faults(report, named, with_own / "log.sqlite")
     assert "own: the flight was flown with own.req (SHA-256 " in line

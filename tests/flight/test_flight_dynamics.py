@@ -230,7 +230,7 @@ def test_vehicle_without_a_new_command_loiters_past_the_end() -> None:
     state, _ = after(Commanded(0, path))
     farthest = 0.0
     for _ in range(800):
-        state, _ = after(Choose(), Move(), state=state)
+        state, _ = after(Choose(0), Move(), state=state)
         farthest = max(farthest, math.hypot(*state.air.position[:2]))
     assert isinstance(state.command, Circle)
     assert farthest < 800.0

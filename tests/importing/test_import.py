@@ -124,6 +124,8 @@ def test_what_a_mission_lacks_is_asked_for(run: Run, tmp_path: Path) -> None:
     assert (code, "readme.md: not read" in err) == (0, True)
     assert run("import", tmp_path / "readme.md", "--speed", "9")[0] == 2
     assert run("import", tmp_path / "nothing")[0] == 2
+    code, _, err = run("import", "n" * 300)
+    assert (code, "cannot be read" in err) == (2, True)
     plan.rename(tmp_path / "plan.md")
     assert run("import", plan.with_suffix(".md"), "--origin", "1", "--speed", "9")[0] == 2
 

@@ -41,11 +41,16 @@ own 52.01 8.5 1000 60 0 40 0
 two 52.09 8.5 1000 60 180 60 600
 """
 AREA = {"type": "Polygon", "coordinates": [[[8, 52], [8.1, 52], [8.1, 52.1], [8, 52]]]}
+SEVERAL = {"type": "MultiPolygon", "coordinates": [AREA["coordinates"]]}
 ROUTE = {"type": "LineString", "coordinates": [[8, 52, 30], [8.1, 52, 40]]}
 KML = (
     '<kml xmlns="http://www.opengis.net/kml/2.2">\n<Placemark><name>way</name>\n<LineString>'
     "<altitudeMode>{mode}</altitudeMode><coordinates>8,52,30 8.1,52,40</coordinates></LineString>"
     "</Placemark></kml>"
+)
+MANY = (
+    "<kml><Placemark><name>wall</name><MultiGeometry><Polygon><LinearRing><coordinates>8,52 8.1,52 8.1,52.1 8,52"
+    "</coordinates></LinearRing></Polygon></MultiGeometry></Placemark></kml>"
 )
 
 
@@ -141,6 +146,11 @@ def test_zones_and_ways_of_maps(read: Callable[..., Parts]) -> None:
     assert read("m.geojson", features((AREA, {})), Reading(areas="keep_out")).fences[0].keep_out
     (way,) = read("m.kml", KML.format(mode="relativeToGround")).ways
     assert way.places[0] == Place(52, 8, 30.0, True)
+    bare = KML.format(mode="relativeToGround").replace(",30", "")
+    (way,) = read("m.kml", bare, Reading(alt_m=700.0)).ways
+    assert way.places == (Place(52, 8, 700.0, False), Place(52, 8.1, 40.0, True)), (
+        "--altitude is MSL"
+    )
 
 
 @pytest.mark.parametrize(
@@ -178,6 +188,10 @@ def test_zones_and_ways_of_maps(read: Callable[..., Parts]) -> None:
         ("m.json", features((AREA, {"kind": "lawn"})), 0, "features[0]", "keep_in or keep_out"),
         ("m.json", features(({**ROUTE, "coordinates": [[1, 2], [2, 3]]}, {})), 0, "features[0]",
          "--altitude M"),
+        ("m.json", features((SEVERAL, {"kind": "keep_out"})), 0, "features[0]", "a Polygon of its own"),
+        ("m.json", features((SEVERAL, {})), 0, "features[0]", "a Polygon of its own"),
+        ("m.json", features((ROUTE, {"kind": "keep_out"})), 0, "features[0]", "a Polygon of its own"),
+        ("m.kml", MANY, 1, "wall", "a Polygon of its own"),
         ("m.json", "[]", 0, "", "a FeatureCollection or a Feature"),
         ("m.kml", KML.format(mode="clampToGround"), 2, "way", "relativeToGround"),
         ("x.txt", "hello\n", 0, "", "a parameter file of ICAROUS"),

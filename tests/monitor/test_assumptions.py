@@ -96,8 +96,7 @@ BY_ICAROUS = {"VehicleID": 1, "Sender": "ICAROUS"}
 
 
 def taken_ms() -> int:
-    log = list(flown(WHOLE))
-    return log[at(log, "GateState", **TAKEN)].time_ms
+    return (log := list(flown(WHOLE)))[at(log, "GateState", **TAKEN)].time_ms
 
 
 def aside(number: int, since_ms: int, **off: float) -> Change:
@@ -208,6 +207,7 @@ BREAKS: dict[str, tuple[Change, str]] = {
         lambda log: aside(1, taken_ms() + 3000, Altitude=5.0)(log),
         "m beside and 5 m above or below the path",
     ),
+    "offers begin at once": (alter({"Sigma": 0}, "HandState", ID=3), "begins at 0.00 s"),
     "sensed within its bound": (seen_elsewhere, "what 1 sensed of aircraft 90 is"),
 }
 

@@ -14,10 +14,19 @@ from hypothesis import strategies as st
 from cratous.core.readings.machine import compiled
 from cratous.services.requirements import watch, whole
 from cratous.services.requirements.evaluation import Evaluation
-from cratous.services.requirements.formula import Always, Bounded, Formula, Join, Not, Reaches
+from cratous.services.requirements.formula import (
+    MAX_TIME,
+    Always,
+    Bounded,
+    Formula,
+    Join,
+    Not,
+    Reaches,
+)
 from cratous.services.requirements.outcome import Outcome
 from cratous.services.requirements.specification import Requirement, Signal, Specification
 from cratous.services.requirements.watch import Watch
+from cratous.spec.errors import BadInput
 
 SIDES = st.sampled_from(("x", "y", 0.0, 1.0))
 NAMES = st.sampled_from(("x", "y"))
@@ -134,6 +143,23 @@ def test_machine_code_says_the_same_and_is_used_where_it_is_worth_it(
     assert first.violated > 0 < first.unknown
     assert (second.violated, second.first_violated) == (1, 400)
     assert min((m.least, m.at) for m in second.margins) == (-1.0, 400)
+
+
+@pytest.mark.parametrize("later", [7, 6, MAX_TIME + 1, 2**63])
+def test_times_that_do_not_rise_are_refused_at_once_as_one_by_one(
+    later: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(whole, "WORTH", 0)
+    monkeypatch.setattr(compiled, "machine", plainly)
+    spec = Specification(SIGNALS, (Requirement("A", "", Reaches("x", 1.0)),))
+    row: dict[str, float | None] = {"x": 1.0}
+    one_by_one = Watch(spec)
+    one_by_one.sample(7, row)
+    with pytest.raises(BadInput) as wanted:
+        one_by_one.sample(later, row)
+    with pytest.raises(BadInput) as found:
+        Watch(spec).all([(7, row), (later, row)])
+    assert str(found.value) == str(wanted.value)
 
 
 def test_a_trace_longer_than_is_kept_goes_on_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -22,6 +22,15 @@ class Direction(LmcpEnum):
     Down = 0
     Up = 1
 
+class HandChange(LmcpEnum):
+    Offered = 0
+    Refused = 1
+    Known = 2
+    Left = 3
+    Flown = 4
+    Expired = 5
+    Missing = 6
+
 class Verdict(LmcpEnum):
     Holds = 0
     Violated = 1
@@ -418,4 +427,51 @@ class SensedState(LmcpObject):
         VerticalBound: float = ...,
         HorizontalRateBound: float = ...,
         VerticalRateBound: float = ...,
+    ) -> None: ...
+
+class HandState(LmcpObject):
+    """cratous.HandState: CRATOUS type 17."""
+
+    VehicleID: int
+    """int64, default 0."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    Change: _cratous.HandChange
+    """CRATOUS/HandChange, default Offered."""
+    Base: int
+    """int64, default 0."""
+    BaseExpiry: int
+    """int64 [milliseconds], default 0."""
+    ID: int
+    """int64, default 0."""
+    Sigma: int
+    """int64 [milliseconds], default 0."""
+    Knowledge: int
+    """int64, default 0."""
+    Expiry: int
+    """int64 [milliseconds], default 0."""
+    Surprises: int
+    """int64, default 0."""
+    Permitted: bool
+    """bool, default false."""
+    IntruderID: int
+    """int64, default 0."""
+    Reason: str
+    """string, default ''."""
+    def __init__(
+        self,
+        *,
+        VehicleID: int = ...,
+        Time: int = ...,
+        Change: _cratous.HandChange | str = ...,
+        Base: int = ...,
+        BaseExpiry: int = ...,
+        ID: int = ...,
+        Sigma: int = ...,
+        Knowledge: int = ...,
+        Expiry: int = ...,
+        Surprises: int = ...,
+        Permitted: bool = ...,
+        IntruderID: int = ...,
+        Reason: str = ...,
     ) -> None: ...
