@@ -21,10 +21,10 @@ def sentence(row: dict[str, Any]) -> str:
 
 
 def measured(row: dict[str, Any]) -> str:
-    """The worst that was seen and the worst that is assumed, with the unit; empty where there is no measure."""
+    """The worst that was seen and the worst that is assumed, with the unit if it has one; empty where there is no measure."""
     if row["observed"] is None or row["bound"] is None:
         return ""
-    return f"worst {row['observed']:.4g}, bound {row['bound']:.4g} {row['unit']}"
+    return f"worst {row['observed']:.4g}, bound {row['bound']:.4g} {row['unit']}".rstrip()
 
 
 def lines(rows: Iterable[dict[str, Any]]) -> Iterator[str]:

@@ -18,7 +18,7 @@ from cratous.spec.mission.sensing import EXACT_STATES
 
 NAME = "sensed within its bound"
 FEW = 5
-"""So many instants without a true state are told."""
+"""So many instants without a true state are told, and so many aircraft that were never sensed."""
 
 
 class SensedWatch:
@@ -27,6 +27,8 @@ class SensedWatch:
     def __init__(self, mission: Mission) -> None:
         self._gone = {t.id: t.vanishes_ms for t in mission.traffic if t.vanishes_ms is not None}
         self._waiting: dict[tuple[int, int], list[Message]] = {}
+        self._instances, self._there = mission.instances, set[int]()
+        self._sensed = set[tuple[int, int]]()
         none = "" if mission.instances else NO_INSTANCE
         if mission.instances and mission.sensing is None:
             none = EXACT_STATES
@@ -38,7 +40,9 @@ class SensedWatch:
         body = message.body
         if message.kind == "SensedState":
             self._waiting.setdefault((body.Time, body.VehicleID), []).append(message)
+            self._sensed.add((body.ObserverID, body.VehicleID))
         elif message.kind == "TruthState":
+            self._there.add(body.VehicleID)
             for one in self._waiting.pop((body.Time, body.VehicleID), ()):
                 self._hold(one, message)
 
@@ -59,7 +63,8 @@ class SensedWatch:
         self._record.check(holds, body.Time, body.ObserverID, text)
 
     def end(self, at_ms: int) -> None:
-        """What was sensed of an aircraft of which no true state came was not looked at, unless it has vanished."""
+        """What was sensed of an aircraft of which no true state came was not looked at, unless it has vanished; nor was
+        one that was never sensed."""
         left = [
             (time_ms, number)
             for time_ms, number in sorted(self._waiting)
@@ -69,6 +74,9 @@ class SensedWatch:
             self._record.gaps.append(
                 f"no true state of aircraft {number} of {time_ms / 1000:.2f} s came by {at_ms / 1000:.2f} s"
             )
+        pairs = ((own, other) for own in self._instances for other in sorted(self._there))
+        for own, other in [one for one in pairs if one not in self._sensed][:FEW]:
+            self._record.gaps.append(f"{own} never sensed aircraft {other}")
 
     def records(self) -> dict[str, Record]:
         """See `Watch`."""

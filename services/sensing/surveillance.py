@@ -65,14 +65,17 @@ def stepped(
 
 def arrived(carrier: Carrier, before: Surveillance, now_ms: int) -> Surveillance:
     """At a heartbeat: what has come by now is used."""
-    came = [one for one in before.under_way if lasted(one.due_ms, now_ms, 0)]
-    left = tuple(one for one in before.under_way if one not in came)
+    came, left = list[Detection](), list[Detection]()
+    for one in before.under_way:
+        (came if lasted(one.due_ms, now_ms, 0) else left).append(one)
     own = before.own
     for one in came:
         if one.source == carrier.own_id and own is not None:
             own = own_state.fixed(own, one.seen)
     others = [one for one in came if one.source != carrier.own_id]
-    return Surveillance(left, own, tracked(before.tracks, others, carrier.daa.sensing, now_ms))
+    return Surveillance(
+        tuple(left), own, tracked(before.tracks, others, carrier.daa.sensing, now_ms)
+    )
 
 
 def shown(carrier: Carrier, now: Surveillance, now_ms: int, air: Flown) -> tuple[Shown, ...]:
@@ -103,14 +106,12 @@ def given(carrier: Carrier, seen: tuple[Shown, ...], true: Sensed) -> Sensed:
     """What ICAROUS is given for the true states: of what is seen, its own first. What the airframe can do, and how the
     gate stands, the vehicle knows."""
     own, low, high = seen[0], true.ability.min_speed_m_s, true.ability.max_speed_m_s
-    v = own.known.velocity
-    motion = Motion(
-        own.known.position,
-        math.atan2(v.east_m_s, v.north_m_s),
-        # it flies no slower and no faster than it can
-        min(max(math.hypot(v.north_m_s, v.east_m_s), low), high),
-        -v.down_m_s,
-    )
+    v, off = own.known.velocity, own.spread.wide_m_s
+    seen_m_s = math.hypot(v.north_m_s, v.east_m_s)
+    # it flies no slower and no faster than it can, unless wind has just changed that
+    speed_m_s = min(max(min(max(seen_m_s, low), high), seen_m_s - off), seen_m_s + off)
+    course = math.atan2(v.east_m_s, v.north_m_s)
+    motion = Motion(own.known.position, course, speed_m_s, -v.down_m_s)
     others = tuple(
         Intruder(
             one.track,

@@ -84,14 +84,16 @@ def _scanned(before: Tracks, scan: Sequence[Detection], sensing: Sensing, now_ms
 def _nearest(
     left: Sequence[Detection], tracks: Sequence[Track], sensing: Sensing
 ) -> list[tuple[int, Detection]]:
-    """Pairs of a track and a measurement in its gate, the nearest first, each of them once."""
-    pairs = []
-    for k, one in enumerate(left):
-        for track in tracks:
+    """Pairs of a track and a measurement in its gate, the nearest first, each of them once. left: of one instant."""
+    if not left:
+        return []
+    pairs, at_ms = [], left[0].seen.at_ms
+    for track in tracks:
+        known = estimate(track, max(at_ms, track.base.at_ms), sensing.manoeuvre_m_s2)
+        for k, one in enumerate(left):
             # a track of an id is not of one that tells another
             if one.name and track.number in range(1, 2**31):
                 continue
-            known = estimate(track, max(one.seen.at_ms, track.base.at_ms), sensing.manoeuvre_m_s2)
             if _fits(known, one.seen, sensing.sigmas):
                 pairs.append((_apart_m(known, one.seen), k, track.number))
     taken, used = dict[int, int](), set[int]()

@@ -9,6 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cratous.core.authority.gate import Gate
+from cratous.core.avoidance.manoeuvre import Ability, Motion
+from cratous.core.avoidance.prediction import Spread
+from cratous.services.icarous.messages import Sensed
 from cratous.services.sensing import own as own_state
 from cratous.services.sensing.filter import (
     Estimate,
@@ -20,7 +24,9 @@ from cratous.services.sensing.filter import (
     later,
     measured,
 )
-from cratous.spec.mission import Position, Velocity
+from cratous.services.sensing.surveillance import Carrier, Shown, exactly
+from cratous.services.sensing.surveillance import given as given_to
+from cratous.spec.mission import Position, SensedDaa, Velocity, WellClear
 from cratous.spec.mission.sensing import Sensor, SensorKind
 
 Matrix = np.ndarray
@@ -108,3 +114,18 @@ def test_a_late_fix_is_carried_on_by_the_way_flown_since() -> None:
     # 39 fixes tell more than one
     assert deviations(own.estimate.wide)[0] < 1.0
     assert len(own.flown) == 3
+
+
+@pytest.mark.parametrize(
+    ("off", "low", "high"), [(0.0, 30.0, 30.0), (2.0, 28.0, 32.0), (9.0, 25.0, 35.0)]
+)
+def test_the_speed_that_is_sensed_is_moved_into_the_limits_by_no_more_than_its_bound(
+    off: float, low: float, high: float
+) -> None:
+    carrier = Carrier(1, SensedDaa(WellClear(150.0, 30.0, 15.0, 0.0)), 0, 250, frozenset())
+    fast = Flown(Position(0.0, 0.0, 300.0), Velocity(18.0, 24.0, 0.0))
+    seen = (Shown(1, 1, exactly(0, fast), Spread(wide_m_s=off)),)
+    for limits, wanted in (((15.0, 25.0), low), ((35.0, 40.0), high)):
+        ability = Ability(0.2, *limits, 5.0, 2.0, 0.0)
+        true = Sensed(0, Motion(fast.position, 0.0, 20.0, 0.0), ability, (), Gate(0, 0, False))
+        assert given_to(carrier, seen, true).motion.speed_m_s == pytest.approx(wanted)

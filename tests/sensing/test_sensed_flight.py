@@ -12,6 +12,7 @@ import pytest
 from flight_tools import meeting, of_type
 
 from cratous.bridge import lmcp
+from cratous.services.assumptions.said import measured
 from cratous.services.assumptions.watch import AssumptionWatch
 from cratous.services.bus import Bus, Envelope
 from cratous.services.certify.limits import of_states
@@ -107,6 +108,7 @@ def test_the_bounds_are_watched(
     assert (row["state"], row["bound"], row["note"]) == ("held", 1.0, "")
     assert row["checks"] == len(of(log, "SensedState"))
     assert 0.2 < row["observed"] < 1
+    assert measured(row).endswith(", bound 1")
     (k,) = [
         k
         for k, one in enumerate(log)
@@ -133,6 +135,9 @@ def test_the_bounds_are_watched(
     row = watched(sensed, unseen)
     assert (row["state"], row["since_ms"]) == ("not observed", None)
     assert row["note"].startswith("no true state of aircraft 101 of 60.00 s came by")
+    alone = [one for one in log if getattr(one.body, "TrackID", 0) != 101]
+    row = watched(sensed, alone)
+    assert (row["state"], row["note"]) == ("not observed", "1 never sensed aircraft 101")
 
 
 def test_an_intruder_that_radar_alone_sees_is_known_by_its_track(sensed: Mission) -> None:

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from cratous.core.kernel import Vec2
 from cratous.core.permit.association import in_gate
+from cratous.services.sensing import tracks as module
 from cratous.services.sensing.filter import Flown
 from cratous.services.sensing.sensors import Detection, detections
 from cratous.services.sensing.tracks import Tracks, estimate, tracked
@@ -168,3 +169,17 @@ def test_the_gate_is_so_many_deviations_wide(
     within = math.isqrt(x * x + y * y - 1) + 1 if x or y else 0
     expected = within <= sigmas * wide and abs(up) <= sigmas * high
     assert in_gate(Vec2(x, y), up, wide * wide, high * high, sigmas) == expected
+
+
+def test_a_scan_of_many_takes_each_track_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    sensing = replace(BOTH, sensors=(RADAR,))
+    others = {f"n{k}": (400.0 * k, 0.0, 0.0, 0.0) for k in range(2, 7)}
+    _, tracks = run(sensing, 1000, **others)[-1]
+    scan = detections(sensing, 0, OWN, 1500, STEP_MS, flown(1500, **others))
+    calls, real = list[int](), module.estimate
+    monkeypatch.setattr(
+        module, "estimate", lambda track, *more: calls.append(track.number) or real(track, *more)
+    )
+    tracked(tracks, scan, sensing, 1500)
+    # once to find whose measurements these are, and once to hold each against its own
+    assert len(calls) == len(scan) + len(tracks.tracks) == 10
