@@ -123,17 +123,19 @@ def monitor(
     from cratous.services.cli.progress import waiting
     from cratous.services.cli.show import requirement_table, say
     from cratous.services.logs.log import read_meta
+    from cratous.services.logs.source import DOUBTS, doubts
 
     with waiting("holding the code against its proofs", as_json) as wait:
         standing = ledger.require(allow_unproved=allow_unproved)
         wait.at("judging the messages of the log")
+        doubted = [DOUBTS[one] for one in doubts(log)]
         with counted() as calls:
             judged, assumptions, commands, end_ms = watch(log)
     evidence = inventory(standing, calls.data())
     rows = constraint_rows(judged, "flight")
     blame = blame_rows(rows, commands, assumptions, end_ms)
     groundless = without_ground(str(read_meta(log).get("command", "")), assumptions)
-    unproved = bool(standing.problems) or groundless
+    unproved = bool(standing.problems or doubted) or groundless
     code = exit_code([v.outcome for v in judged], unproved=unproved)
     required = requirement_rows(rows)
     if as_json:
@@ -142,6 +144,7 @@ def monitor(
             "constraints": rows,
             "assumptions": assumptions,
             "blame": blame,
+            "doubts": doubted,
             "proofs": standing.line,
             "evidence": evidence,
             "exit_code": code,
@@ -150,6 +153,8 @@ def monitor(
         for row in required:
             if row["verdict"] != Outcome.HOLDS:
                 say(f"{row['requirement']} {row['title']}: {row['verdict']}", err=True)
+        for line in doubted:
+            say(f"unknown at best: {line}", err=True)
         if groundless:
             say(GROUNDLESS, err=True)
         if standing.problems:
@@ -158,6 +163,8 @@ def monitor(
         requirement_table(required)
         for line in (*blame_lines(blame), *assumption_lines(assumptions)):
             say(line)
+        for line in doubted:
+            say(f"unknown at best: {line}")
         if groundless:
             say(GROUNDLESS)
         click.echo(f"proofs: {standing.line}")

@@ -22,6 +22,7 @@ def model(log: Path, as_json: bool, allow_unproved: bool) -> int:
     from cratous.services.certify.rejudge import subject
     from cratous.services.cli.show import say
     from cratous.services.logs.log import read_envelopes, read_meta
+    from cratous.services.logs.source import DOUBTS, doubts
     from cratous.services.system_model import coverage
     from cratous.services.system_model.replay import replay
     from cratous.spec.errors import BadInput
@@ -37,10 +38,11 @@ def model(log: Path, as_json: bool, allow_unproved: bool) -> int:
             expected="true or false",
             got=str(avoidance),
         )
+    doubted = [DOUBTS[one] for one in doubts(log)]
     with counted() as calls:
         found = replay(mission, avoidance, read_envelopes(log))
     asked = bool(found.vehicles)
-    code = 1 if found.finding is not None else 3 if standing.problems or not asked else 0
+    code = 1 if found.finding is not None else 3 if standing.problems or doubted or not asked else 0
     steps, unseen = coverage.steps(calls.data()), coverage.rows(found.passed)
     if as_json:
         data = {
@@ -50,10 +52,13 @@ def model(log: Path, as_json: bool, allow_unproved: bool) -> int:
             "vehicles_with_icarous": found.vehicles,
             "steps": steps,
             "not_covered": unseen,
+            "doubts": doubted,
             "proofs": standing.line,
             "exit_code": code,
         }
         click.echo(json_text(data))
+        for line in doubted:
+            say(f"unknown at best: {line}", err=True)
         if found.finding is None and not asked:
             say(UNASKED, err=True)
         if standing.problems:
@@ -72,5 +77,7 @@ def model(log: Path, as_json: bool, allow_unproved: bool) -> int:
         say(line)
     for row in unseen:
         say(f"not covered: {row}")
+    for line in doubted:
+        say(f"unknown at best: {line}")
     click.echo(f"proofs: {standing.line}")
     return code

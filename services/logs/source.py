@@ -166,3 +166,19 @@ def _file(path: Path, head: bytes) -> Source:
         expected="SQLite, MCAP, JSON lines, XML, sentinel frames or LMCP messages",
         got=repr(head[:16]),
     )
+
+
+DOUBTS = {
+    "open": "the log has no end: it is being written, or its writer was stopped",
+    "lost": "messages of the log are missing",
+}
+"""What keeps a log from being whole, in words."""
+
+
+def doubts(path: Path) -> list[str]:
+    """What keeps a log from being whole, of DOUBTS; BadInput where it is not what its writer left."""
+    with open_log(path) as source:
+        source.verify()
+        is_open = bool(source.end()) and source.closing() is None
+        is_lost = bool(source.holes() + sum(gap.missing for gap in source.gaps()))
+    return [kind for kind, is_so in (("open", is_open), ("lost", is_lost)) if is_so]

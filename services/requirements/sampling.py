@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from math import isfinite
 
+from cratous.services.logs.source import DOUBTS
 from cratous.services.requirements.specification import Signal, Specification
 
 Sample = dict[str, float | None]
@@ -22,8 +23,7 @@ SAYS = {
     "missing": "a sample has no value",
     "stale": "the newest value is older than it is held",
     "never": "no value ever came",
-    "open": "the log has no end: it is being written, or its writer was stopped",
-    "lost": "messages of the log are missing",
+    **DOUBTS,
     "cut": "the connection was lost, and messages with it",
     "silent": "nothing came any more before the watch ended",
     "refused": "bytes came that are no message",

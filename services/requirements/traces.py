@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from cratous.services.logs.entry import Entry, to_data
+from cratous.services.logs.source import doubts as doubts_of_log
 from cratous.services.logs.source import open_log
 from cratous.services.requirements.csv_trace import Cells, rows_of
 from cratous.services.requirements.field_units import unit_of
@@ -36,13 +37,7 @@ def rows(trace: Path, spec: Specification, names: Iterable[str]) -> Iterator[Row
 
 def doubts(trace: Path) -> list[str]:
     """What keeps a log from being whole: `open`, `lost`; BadInput where it is not what its writer left."""
-    if _is_csv(trace):
-        return []
-    with open_log(trace) as source:
-        source.verify()
-        is_open = bool(source.end()) and source.closing() is None
-        is_lost = bool(source.holes() + sum(gap.missing for gap in source.gaps()))
-    return [kind for kind, is_so in (("open", is_open), ("lost", is_lost)) if is_so]
+    return [] if _is_csv(trace) else doubts_of_log(trace)
 
 
 def _is_csv(trace: Path) -> bool:

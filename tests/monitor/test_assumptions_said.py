@@ -150,6 +150,7 @@ def test_monitor_as_data_says_on_stderr_why_its_exit_code_is_no_0(
     database = sqlite3.connect(log)
     with database:
         database.execute("DELETE FROM messages WHERE topic = 'cratous.MissionEnd'")
+        database.execute("DELETE FROM closing")
     database.close()
     assert main(["monitor", str(log), "--allow-unproved", "--json"]) == 3
     words = capsys.readouterr()
