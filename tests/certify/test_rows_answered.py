@@ -210,7 +210,7 @@ ASSUMED: dict[str, tuple[Edit, str]] = {
         lambda r: r["assumptions"].pop(1), "the assumption epochs told stands where reports of the gate",
     ),
     "the last is left out": (
-        lambda r: r["assumptions"].pop(), "the assumption none stands where sensed within its bound belongs",
+        lambda r: r["assumptions"].pop(), "the assumption none stands where permitted as offered belongs",
     ),
     "one is invented": (
         lambda r: r["assumptions"].append({**r["assumptions"][0], "name": "all is well"}),

@@ -79,7 +79,8 @@ ATTACKS = {
                                "the readings"),
     "a driver": ("core/geofence/mission_legs.py", "box[2] <= a.y <= box[3]", "box[2] < a.y <= box[3]", "leg_ok: changed"),
     "a driver's checker removed": (
-        "core/avoidance/prediction.py", '@driver(checked_by=("violation_within",))',
+        "core/avoidance/prediction.py",
+        '@driver(checked_by=("violation_within", "uncertain_conflict"))',
         '@driver(checked_by=())', "first_violation_s: changed since the proof: its source"),
     "a kernel's mark removed": (
         "core/well_clear/now.py",
