@@ -1,8 +1,8 @@
 """A whole trace at once, operator by operator: the kernels of the operators, step by step as sample by sample.
 
-Verdicts are arrays (n) of int64, 0 false, 1 unknown, 2 true; `known` (n) is at which sample each is decided, n for one
-that is not decided when the trace ends; times (n) rise. CPython runs these functions as they stand;
-`core.readings.machine.compiled.machine` compiles the same text.
+Times (n) rise. What is found of an operator is an array (2, n) of int64: of each sample the verdict, 0 false, 1 unknown,
+2 true, and at which sample it is decided, n for one that is not decided when the trace ends. CPython runs these
+functions as they stand; `core.readings.machine.compiled.machine` compiles the same text.
 """
 
 from math import isfinite
@@ -44,77 +44,72 @@ def not_of(phi: np.ndarray, verdict: np.ndarray) -> None:
         verdict[k] = negated(phi[k])
 
 
-def joined(
-    phi: np.ndarray, known_phi: np.ndarray, psi: np.ndarray, known_psi: np.ndarray, is_and: bool,
-    verdict: np.ndarray, known: np.ndarray,
-) -> None:  # fmt: skip
-    """Fill `verdict` and `known` (n) with phi and psi, or phi or psi: decided by one side alone where that suffices."""
+def joined(phi: np.ndarray, psi: np.ndarray, is_and: bool, found: np.ndarray) -> None:
+    """Fill `found` (2, n) with phi and psi, or phi or psi: decided by one side alone where that suffices."""
     alone, last = 0 if is_and else 2, 0
-    for k in range(len(verdict)):
-        at = max(known_phi[k], known_psi[k])
-        if phi[k] == alone:
-            at = min(at, known_phi[k])
-        if psi[k] == alone:
-            at = min(at, known_psi[k])
+    for k in range(found.shape[1]):
+        at = max(phi[1, k], psi[1, k])
+        if phi[0, k] == alone:
+            at = min(at, phi[1, k])
+        if psi[0, k] == alone:
+            at = min(at, psi[1, k])
         # verdicts come in the order of the samples
         last = max(last, at)
-        known[k] = last
-        if known_phi[k] > last:
-            verdict[k] = psi[k]
-        elif known_psi[k] > last:
-            verdict[k] = phi[k]
+        found[1, k] = last
+        if phi[1, k] > last:
+            found[0, k] = psi[0, k]
+        elif psi[1, k] > last:
+            found[0, k] = phi[0, k]
         elif is_and:
-            verdict[k] = both(phi[k], psi[k])
+            found[0, k] = both(phi[0, k], psi[0, k])
         else:
-            verdict[k] = either(phi[k], psi[k])
+            found[0, k] = either(phi[0, k], psi[0, k])
 
 
 def until_of(
-    times: np.ndarray, phi: np.ndarray, known_phi: np.ndarray, psi: np.ndarray,
-    known_psi: np.ndarray, low: int, high: int, verdict: np.ndarray, known: np.ndarray,
-) -> None:  # fmt: skip
-    """Fill `verdict` and `known` (n) with phi until psi between low and high ahead."""
+    times: np.ndarray, phi: np.ndarray, psi: np.ndarray, low: int, high: int, found: np.ndarray
+) -> None:
+    """Fill `found` (2, n) with phi until psi between low and high ahead."""
     n, head, last = len(times), 0, 0
     so_far = Times(NEVER, NEVER)
     for k in range(n):
-        verdict[k], known[k] = 1, n
+        found[0, k], found[1, k] = 1, n
     for k in range(n):
         # psi may decide before phi is known (`requirements_until_is_decided_ahead_of_phi`)
-        first = max(known_psi[k], last)
-        last = max(max(known_phi[k], known_psi[k]), last)
+        first = max(psi[1, k], last)
+        last = max(max(phi[1, k], psi[1, k]), last)
         if first < last and first < n:
             while head <= k:
-                found = until_decided(so_far, times[k], 2, psi[k], times[head], low, high)
-                if found == 3:
+                word = until_decided(so_far, times[k], 2, psi[0, k], times[head], low, high)
+                if word == 3:
                     break
-                verdict[head], known[head] = found, first
+                found[0, head], found[1, head] = word, first
                 head += 1
         if last >= n:
             break
         while head <= k:
-            found = until_decided(so_far, times[k], phi[k], psi[k], times[head], low, high)
-            if found == 3:
+            word = until_decided(so_far, times[k], phi[0, k], psi[0, k], times[head], low, high)
+            if word == 3:
                 break
-            verdict[head], known[head] = found, last
+            found[0, head], found[1, head] = word, last
             head += 1
-        so_far = until_times(so_far, times[k], phi[k], psi[k])
+        so_far = until_times(so_far, times[k], phi[0, k], psi[0, k])
 
 
 def since_of(
-    times: np.ndarray, phi: np.ndarray, known_phi: np.ndarray, psi: np.ndarray,
-    known_psi: np.ndarray, low: int, high: int, verdict: np.ndarray, known: np.ndarray,
-) -> None:  # fmt: skip
-    """Fill `verdict` and `known` (n) with phi since psi between low and high ago."""
+    times: np.ndarray, phi: np.ndarray, psi: np.ndarray, low: int, high: int, found: np.ndarray
+) -> None:
+    """Fill `found` (2, n) with phi since psi between low and high ago."""
     n, young, last = len(times), 0, 0
-    found, broken = Found(NEVER - 1, NEVER - 1), Broken(NEVER, NEVER)
+    latest, broken = Found(NEVER - 1, NEVER - 1), Broken(NEVER, NEVER)
     for k in range(n):
-        last = max(max(known_phi[k], known_psi[k]), last)
-        known[k] = last
+        last = max(max(phi[1, k], psi[1, k]), last)
+        found[1, k] = last
         if last >= n:
-            verdict[k], known[k] = 1, n
+            found[0, k], found[1, k] = 1, n
             continue
         while young <= k and is_due(times[young], times[k], low):
-            found = since_found(found, times[young], psi[young])
+            latest = since_found(latest, times[young], psi[0, young])
             young += 1
-        broken = since_broken(broken, times[k], phi[k])
-        verdict[k] = since_decided(found, broken, times[k], high)
+        broken = since_broken(broken, times[k], phi[0, k])
+        found[0, k] = since_decided(latest, broken, times[k], high)

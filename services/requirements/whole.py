@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
 from cratous.services.requirements.evaluation import FALSE, TRUE, in_order
 from cratous.services.requirements.formula import (
@@ -71,13 +71,6 @@ def is_worth(formulas: Iterable[Formula], samples: int) -> bool:
     )
 
 
-class _Found(NamedTuple):
-    """Of one part: its verdicts, and at which sample each was decided (the number of samples: at none)."""
-
-    verdict: np.ndarray
-    known: np.ndarray
-
-
 class Whole:
     """Formulas over columns that are complete."""
 
@@ -92,7 +85,7 @@ class Whole:
     def fill(self, outcome: Outcome, formula: Formula) -> None:
         """Count the verdicts of a formula, and measure its margins, into an outcome that has none yet."""
         found = self._parts(formula)
-        verdict, known = found[id(formula)]
+        verdict, known = found[id(formula)]  # as `core.requirements.whole_trace` has them
         decided = known < self.count
         for name, word in (("holds", TRUE), ("violated", FALSE)):
             setattr(outcome, name, int(((verdict == word) & decided).sum()))
@@ -107,10 +100,12 @@ class Whole:
         for margin in outcome.margins:
             self._measure(margin)
 
-    def _why(self, formula: Formula, found: Mapping[int, _Found], k: int, at: int) -> list[Part]:
+    def _why(
+        self, formula: Formula, found: Mapping[int, np.ndarray], k: int, at: int
+    ) -> list[Part]:
         def verdict(part: Formula) -> int | None:
-            one = found[id(part)]
-            return int(one.verdict[k]) if one.known[k] <= at else None
+            word, known = found[id(part)][:, k]
+            return int(word) if known <= at else None
 
         return why(formula, verdict)
 
@@ -132,33 +127,31 @@ class Whole:
 
         return self.values[side] if isinstance(side, str) else np.array([side], np.float64)
 
-    def _parts(self, formula: Formula) -> dict[int, _Found]:
-        found: dict[int, _Found] = {}
+    def _parts(self, formula: Formula) -> dict[int, np.ndarray]:
+        found: dict[int, np.ndarray] = {}
         for part in parts(formula):
             found[id(part)] = self._found(part, [found[id(child)] for child in children(part)])
         return found
 
-    def _found(self, part: Formula, below: list[_Found]) -> _Found:
+    def _found(self, part: Formula, below: list[np.ndarray]) -> np.ndarray:
         import numpy as np
 
         from cratous.core.readings.machine.compiled import machine
         from cratous.core.requirements import whole_trace as loops
 
-        verdict = np.empty(self.count, np.int64)
-        if isinstance(part, Always):
-            verdict.fill(part.verdict)
-            return _Found(verdict, self.at_once)
-        if isinstance(part, Reaches):
-            machine(loops.reached)(self._side(part.left), self._side(part.right), verdict)
-            return _Found(verdict, self.at_once)
-        if isinstance(part, Not):
-            machine(loops.not_of)(below[0].verdict, verdict)
-            return _Found(verdict, below[0].known)
-        known = np.empty(self.count, np.int64)
-        given: list[Any] = [*below[0], *below[1]]
+        found = np.empty((2, self.count), np.int64)
         if isinstance(part, Join):
-            machine(loops.joined)(*given, part.is_and, verdict, known)
-        else:
-            loop = loops.since_of if part.past else loops.until_of
-            machine(loop)(self.times, *given, part.low, part.high, verdict, known)
-        return _Found(verdict, known)
+            machine(loops.joined)(*below, part.is_and, found)
+            return found
+        if isinstance(part, Always | Reaches | Not):
+            found[1] = below[0][1] if isinstance(part, Not) else self.at_once
+            if isinstance(part, Always):
+                found[0] = part.verdict
+            elif isinstance(part, Reaches):
+                machine(loops.reached)(self._side(part.left), self._side(part.right), found[0])
+            else:
+                machine(loops.not_of)(below[0][0], found[0])
+            return found
+        loop = loops.since_of if part.past else loops.until_of
+        machine(loop)(self.times, *below, part.low, part.high, found)
+        return found
