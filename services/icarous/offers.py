@@ -3,7 +3,8 @@
 The manoeuvre is followed up to the look-ahead, or to a quarter, half or three quarters of it, and then a circle is
 flown, to the right or to the left: the one of these that is permitted for longest, and of those the longest
 manoeuvre. Where no circle is permitted the manoeuvre alone is offered, for as long as it is permitted. Zones are kept
-by the drift of the turn, and the disc of the hold keeps them at its height.
+by the drift of the turn and by how far the vehicle may be from where it is taken to be, and the disc of the hold keeps
+them at its height.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ class Refused(NamedTuple):
 def certified(sensed: Sensed, scene: Scene, choice: Choice, daa: Daa) -> Certificate | Refused:
     """A certificate for the manoeuvre that is commanded now, or why there is none."""
     whole = fly_to(sensed.motion, sensed.ability, *choice[1:5], scene.lookahead_s)
-    drift = drift_of(sensed.motion, sensed.ability, *choice[1:4])
+    drift = drift_of(sensed.motion, sensed.ability, *choice[1:4], scene.here)
     near_s = turn_back_s(sensed.motion, sensed.ability)
     bare: list[Certificate] = []
     held: list[Certificate] = []
@@ -74,7 +75,7 @@ def _with_hold(
     end_s, hand = pieces[-1].start_s + pieces[-1].duration_s, sensed.hand
     room, volume = (daa.buffer - 1) / 2, daa.well_clear
     aside_m = drift.aside_m(end_s)
-    rise_m = aside_m * drift.rise_m_per_m
+    rise_m = drift.rise_m(end_s)
     wide_m, high_m = room * volume.dthr_m, room * volume.zthr_m
     speed, disc_m = _speed_m_s(pieces), 0.0
     if hold is not None:

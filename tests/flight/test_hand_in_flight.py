@@ -9,9 +9,13 @@ from typing import Any
 import pytest
 import yaml
 from flight_tools import meeting
+from icarous_tools import ABILITY, NORTH, WIDE
 from loading_tools import small
 
 from cratous.bridge import lmcp
+from cratous.core.authority.gate import ICAROUS, Gate
+from cratous.core.avoidance.drift import Off
+from cratous.core.avoidance.resolution import Choice, Scene
 from cratous.core.permit.hand import Hand
 from cratous.services.bus import Bus
 from cratous.services.flight import holding
@@ -19,8 +23,10 @@ from cratous.services.flight.autopilot import Circle, Fly
 from cratous.services.flight.holding import Ground, InHand
 from cratous.services.flight.loop import fly
 from cratous.services.flight.vehicle import VehicleNode
+from cratous.services.icarous.certificate import Certificate
 from cratous.services.icarous.instance import Instance
-from cratous.services.icarous.messages import Offers
+from cratous.services.icarous.messages import Offers, Sensed
+from cratous.services.icarous.offers import Refused, certified
 from cratous.services.loading import load
 from cratous.services.monitor import Monitor
 from cratous.services.pipeline.plan import make_plan
@@ -152,6 +158,19 @@ def certificate() -> Any:
         patch.setattr(Instance, "_offer", caught)
         flown(replace(mission, simulation=replace(mission.simulation, limit_ms=42_000)))
     return offers[0].certificate
+
+
+def test_a_certificate_keeps_zones_from_all_places_where_the_vehicle_may_be() -> None:
+    """A straight flight 100 m beside a zone, by a vehicle that is where it is taken to be, or up to 120 m off."""
+    corners = ((-500.0, 100.0), (1500.0, 100.0), (1500.0, 400.0), (-500.0, 400.0))
+    beside = Zone(7, ZoneKind.KEEP_OUT, corners, 0.0, 1000.0)
+    straight = Choice("heading", 0.0, 22.0, 0.0, 0.0, True, None)
+    for here, permitted in ((Off(0.0, 0.0), True), (Off(120.0, 0.0), False)):
+        sensed = Sensed(0, NORTH, ABILITY, (), Gate(ICAROUS, 1, False), here)
+        scene = Scene((), (beside,), WIDE, 40.0, here)
+        found = certified(sensed, scene, straight, meeting().daa)
+        assert isinstance(found, Certificate) is permitted
+        assert permitted or found == Refused(0, "a zone is in the way of the manoeuvre")
 
 
 def in_hand(certificate: Any) -> InHand:
