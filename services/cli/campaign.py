@@ -213,6 +213,8 @@ def _write(summary: dict[str, Any], place: Path, links: dict[str, str]) -> None:
     }  # fmt: skip
     for name, text in texts.items():
         write_atomically(place / name, text, "the summary")
+    # one that is there speaks of the runs of before; it is made anew where it is asked for
+    (place / "runs.parquet").unlink(missing_ok=True)
 
 
 def _write_parquet(summary: dict[str, Any], place: Path) -> None:

@@ -24,6 +24,7 @@ from cratous.services.campaign.runs import runs_of
 from cratous.services.campaign.store import Store
 from cratous.services.campaign.summary import build, text_of
 from cratous.services.campaign.tables import csv_text, junit_text, parquet_bytes
+from cratous.services.cli import campaign as command
 from cratous.services.cli import main
 from cratous.spec.errors import BadInput, Refused
 
@@ -287,6 +288,13 @@ def test_parquet_says_what_csv_says(tmp_path: Path) -> None:
     }
     assert kinds == {"seed": "int64", "takeovers": "int64", "separation_m": "double"}
     assert parquet_bytes(found) == (tmp_path / "runs.parquet").read_bytes()
+
+
+def test_a_parquet_table_of_other_runs_does_not_stay(tmp_path: Path) -> None:
+    (tmp_path / "runs.parquet").write_bytes(b"of the runs of before")
+    command._write(summary_of(tmp_path, [flown({"G2": 10.5})]), tmp_path, {})
+    assert not (tmp_path / "runs.parquet").exists()
+    assert (tmp_path / "runs.csv").exists()
 
 
 def test_parquet_without_its_library_is_told_before_anything_is_flown(
