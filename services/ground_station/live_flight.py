@@ -18,6 +18,7 @@ from typing import Any
 from cratous.bridge import lmcp
 from cratous.services.certify.verdicts import constraint_rows, plan_rows, requirement_rows
 from cratous.services.ground_station.flown import FlownRecording
+from cratous.services.ground_station.held_signals import held_back
 from cratous.services.ground_station.pace import RATES, Pace
 from cratous.services.ground_station.verdicts import shown
 from cratous.services.logs.entry import Entry
@@ -150,7 +151,8 @@ class LiveFlight:
         if self._monitor is None or self._now_ms == self._asked_ms or not self._reap(wait=False):
             return
         self._asked_s, self._asked_ms = time.monotonic(), self._now_ms
-        child = os.fork()
+        with held_back():
+            child = os.fork()
         if child:
             self._judge = child
             return
