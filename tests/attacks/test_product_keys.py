@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -23,7 +24,7 @@ def test_keys_are_the_same(more: str, shared: bool, tmp_path: Path) -> None:
     if more:
         (tmp_path / "keyed" / "changes.py").write_text(more)
 
-    def both() -> tuple[list[object], list[object], bool]:
+    def both() -> tuple[list[Any], list[Any], bool]:
         sys.path.insert(0, str(tmp_path))
         home = Home("keyed", tmp_path / "keyed")
         gate.package("keyed")
