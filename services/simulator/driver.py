@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import degrees, isfinite, radians
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.services.simulator import course, payload
@@ -13,6 +13,9 @@ from cratous.services.simulator.driving import Chassis, chassis_of, move
 from cratous.services.simulator.guidance import DIRECTED, LOITER
 from cratous.services.simulator.motion import Motion
 from cratous.spec.errors import BadInput
+
+if TYPE_CHECKING:
+    from cratous.services.simulator.terrain import Terrain
 
 STATES = {
     "GroundVehicleConfiguration": "GroundVehicleState",
@@ -35,9 +38,13 @@ class Driver(NamedTuple):
 
 
 class Drivers:
-    """The vehicles of a world that drive or sail, by id. said: what they were asked for and do not do, to be told."""
+    """The vehicles of a world that drive or sail, by id. said: what they were asked for and do not do, to be told.
 
-    def __init__(self) -> None:
+    terrain: what drives stands on it; without one at the altitude of its state, as what sails does.
+    """
+
+    def __init__(self, terrain: Terrain | None = None) -> None:
+        self._terrain = terrain
         self.there: dict[int, Driver] = {}
         self.said: list[str] = []
         self._warned: set[str] = set()
@@ -87,6 +94,9 @@ class Drivers:
         before = self.there.get(body.ID)
         held = before.course if before else Course()
         told = body.CurrentCommand, body.CurrentWaypoint
+        if self._terrain is not None and not chassis.sails:
+            motion = _on(self._terrain, motion)
+            body = body.copy(Location=at.copy(AltitudeType="MSL"))
         self.there[body.ID] = Driver(kind, chassis, motion, held, body, told)
         self._mounted[body.ID] = payload.placed(self._mounted[body.ID], body)
 
@@ -139,6 +149,8 @@ class Drivers:
         for key, one in self.there.items():
             held, heading, speed = course.steer(one.course, one.motion, one.chassis, dt_s)
             motion = move(one.motion, heading, speed, one.chassis, dt_s)
+            if self._terrain is not None and not one.chassis.sails:
+                motion = _on(self._terrain, motion)
             self.there[key] = one._replace(motion=motion, course=held)
             if held.fired:
                 self._fire(key)
@@ -160,9 +172,14 @@ class Drivers:
     def states(self, time_ms: int, ground_m: float) -> Iterator[Any]:
         """The states of all, as they are now."""
         for key, one in self.there.items():
-            seen = payload.states(self._mounted[key], one.motion, ground_m)
+            seen = payload.states(self._mounted[key], one.motion, ground_m, self._terrain)
             self.there[key], body = state(one, time_ms, seen)
             yield body
+
+
+def _on(terrain: Terrain, m: Motion) -> Motion:
+    """The motion, on the ground."""
+    return m._replace(alt_m=terrain.elevation(m.lat_rad, m.lon_rad))
 
 
 def state(d: Driver, time_ms: int, payloads: tuple[Any, ...]) -> tuple[Driver, Any]:

@@ -9,22 +9,26 @@ from __future__ import annotations
 
 from collections import Counter, deque
 from collections.abc import Iterable
-from math import cos, isfinite, radians, sin
-from typing import Any, NamedTuple
+from math import cos, degrees, isfinite, radians, sin
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.services.simulator import payload
 from cratous.services.simulator.aircraft import Aircraft, aircraft_of, receive, state, step
 from cratous.services.simulator.commands import check_command, present
 from cratous.services.simulator.driver import STATES, Drivers
+from cratous.services.simulator.motion import Motion
 from cratous.services.simulator.performance import Airframe, airframe_of
 from cratous.spec.errors import BadInput
+
+if TYPE_CHECKING:
+    from cratous.services.simulator.terrain import Terrain
 
 TICK_S = 0.01
 STEP_S = 1 / 30
 TELL_S = 0.5
 GROUND_M = 0.0
-"""No terrain is known: the ground is at mean sea level, as it is in AMASE without elevation data."""
+"""Without terrain the ground is at mean sea level, as it is in AMASE without elevation data."""
 MOST_VEHICLES = 1000
 
 
@@ -39,11 +43,17 @@ class Event(NamedTuple):
 class World:
     """See the module. compatible: AMASE's defects are kept. duration_s: when the scenario ends.
 
-    unheard: kinds of messages that were told to others, but that mean nothing here, counted.
+    terrain: the ground, at mean sea level without one. unheard: kinds of messages that were told to
+    others, but that mean nothing here, counted.
     """
 
     def __init__(
-        self, events: Iterable[Event], duration_s: float, *, compatible: bool = False
+        self,
+        events: Iterable[Event],
+        duration_s: float,
+        *,
+        compatible: bool = False,
+        terrain: Terrain | None = None,
     ) -> None:
         self.time_s = 0.0
         self.duration_s = duration_s
@@ -54,7 +64,10 @@ class World:
         self._airframes: dict[int, Airframe] = {}
         self._mounted: dict[int, tuple[payload.Gimbal, ...]] = {}
         self.aircraft: dict[int, Aircraft] = {}
-        self.drivers = Drivers()
+        self.terrain = terrain
+        self.drivers = Drivers(terrain)
+        self._said: list[str] = []
+        self._grounded: set[int] = set()
         self.wind_m_s = 0.0, 0.0
         self._part = 0.0  # of a step that is due already
         self._told_s = 0.0
@@ -98,9 +111,11 @@ class World:
         return told
 
     def _move(self) -> None:
-        wind = self.wind_m_s
+        wind, ground_m = self.wind_m_s, GROUND_M
         for key, one in self.aircraft.items():
-            one = step(one, wind, GROUND_M, STEP_S)
+            if self.terrain is not None:
+                ground_m = self._ground_m(key, one.motion)
+            one = step(one, wind, ground_m, STEP_S)
             if one.guidance.fired:
                 for body in one.guidance.fired:
                     self._act(key, body)
@@ -110,6 +125,21 @@ class World:
             if mounted:
                 self._mounted[key] = tuple(payload.step(p, one.motion, STEP_S) for p in mounted)
         self.drivers.step(STEP_S)
+
+    def _ground_m(self, key: int, m: Motion) -> float:
+        """Height of the terrain below an aircraft; it is said once that one has met it, and stands."""
+        ground_m = (
+            GROUND_M if self.terrain is None else self.terrain.elevation(m.lat_rad, m.lon_rad)
+        )
+        if m.alt_m > ground_m:
+            self._grounded.discard(key)
+        elif key not in self._grounded:
+            self._grounded.add(key)
+            at = f"{degrees(m.lat_rad):.5f}, {degrees(m.lon_rad):.5f}, {m.alt_m:.0f} m MSL"
+            self._said.append(
+                f"vehicle {key} has met the terrain at {at}, {self.time_s:.1f} s: it stands"
+            )
+        return ground_m
 
     def status(self, state_name: str, rate: float = 1.0) -> Any:
         """The SessionStatus of now."""
@@ -125,14 +155,20 @@ class World:
         told = []
         for key, one in self.aircraft.items():
             mounted = self._mounted.get(key, ())
-            seen = payload.states(mounted, one.motion, GROUND_M) if mounted else ()
+            seen = ()
+            if mounted:
+                seen = payload.states(mounted, one.motion, GROUND_M, self.terrain)
             self.aircraft[key], body = state(one, self.wind_m_s, self.time_ms, seen)
             told.append(body)
         return [*told, *self.drivers.states(self.time_ms, GROUND_M)]
 
     def warnings(self) -> list[str]:
         """What vehicles were asked for and do not do, since it was asked last; each is said once."""
-        said, self.drivers.said = self.drivers.said, []
+        said = [*self._said, *self.drivers.said]
+        self._said, self.drivers.said = [], []
+        if self.terrain is not None:
+            said += self.terrain.said
+            self.terrain.said = []
         return said
 
     def receive(self, body: Any, where: str = "") -> None:
@@ -174,6 +210,7 @@ class World:
                 self.aircraft.pop(key, None)
                 self._airframes.pop(key, None)
                 self._mounted.pop(key, None)
+                self._grounded.discard(key)
         else:
             self.unheard[kind] += 1
 
