@@ -12,6 +12,8 @@ from cratous.services.simulator.course import Course
 from cratous.services.simulator.driving import Chassis, chassis_of, move
 from cratous.services.simulator.guidance import DIRECTED, LOITER
 from cratous.services.simulator.motion import Motion
+from cratous.services.simulator.perception import Body
+from cratous.services.simulator.tracking import Tracks
 from cratous.spec.errors import BadInput
 
 if TYPE_CHECKING:
@@ -43,8 +45,9 @@ class Drivers:
     terrain: what drives stands on it; without one at the altitude of its state, as what sails does.
     """
 
-    def __init__(self, terrain: Terrain | None = None) -> None:
+    def __init__(self, terrain: Terrain | None = None, tracks: Tracks | None = None) -> None:
         self._terrain = terrain
+        self._tracks = tracks or Tracks()
         self.there: dict[int, Driver] = {}
         self.said: list[str] = []
         self._warned: set[str] = set()
@@ -162,12 +165,23 @@ class Drivers:
         """The actions that were set off, for what is mounted."""
         one, mounted = self.there[key], self._mounted[key]
         for body in one.course.fired:
+            if self._tracks.act(key, mounted, body):
+                continue
             if payload.is_for(mounted, body):
                 mounted = tuple(payload.act(p, body) for p in mounted)
             else:
                 self._say(key, f"has nothing mounted for a {type(body).__name__}: it is left out")
         self._mounted[key] = mounted
         self.there[key] = one._replace(course=one.course._replace(fired=()))
+
+    def bodies(self) -> Iterator[Body]:
+        """All of them, as they see and are seen."""
+        for key, one in self.there.items():
+            yield Body(key, one.motion, self._mounted[key])
+
+    def stare(self, key: int, body: Any) -> None:
+        """Have a gimbal stare at what it tracks."""
+        self._mounted[key] = tuple(payload.act(p, body) for p in self._mounted[key])
 
     def states(self, time_ms: int, ground_m: float) -> Iterator[Any]:
         """The states of all, as they are now."""

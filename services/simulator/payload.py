@@ -104,6 +104,15 @@ def _clamp(value: float, low: float, high: float) -> float:
     return max(low, min(high, value))
 
 
+def gimbal_with(mounted: tuple[Gimbal, ...], number: int) -> int | None:
+    """The id of the gimbal that a sensor is, or is on; None for a sensor that is not mounted."""
+    for g in mounted:
+        on_it = (c.configuration.PayloadID for c in g.cameras)
+        if number in (g.configuration.PayloadID, *on_it):
+            return int(g.configuration.PayloadID)
+    return None
+
+
 def is_for(mounted: tuple[Gimbal, ...], body: Any) -> bool:
     """Whether an action is one for a gimbal or camera that is mounted."""
     number = getattr(body, "PayloadID", None)
@@ -239,6 +248,30 @@ _POINTING = {
 def _ratio(camera: Any) -> float:
     wide, high = camera.VideoStreamHorizontalResolution, camera.VideoStreamVerticalResolution
     return wide / high if wide and high else 4 / 3
+
+
+class Picture(NamedTuple):
+    """The axes of a camera ahead, right and down, by their parts north, east and down; half of its width and height
+    at depth 1."""
+
+    ahead: tuple[float, float, float]
+    right: tuple[float, float, float]
+    down: tuple[float, float, float]
+    wide: float
+    high: float
+
+
+def picture(g: Gimbal, c: Camera, m: Motion) -> Picture:
+    """What a camera has in its picture, as its footprint has it."""
+    (a0, a1, a2), (b0, b1, b2), (c0, c1, c2) = axes(m.heading_rad, m.pitch_rad, m.roll_rad)
+    sensor = axes(radians(g.azimuth_deg), radians(g.elevation_deg), 0.0)
+    ahead, right, down = (
+        (x * a0 + y * b0 + z * c0, x * a1 + y * b1 + z * c1, x * a2 + y * b2 + z * c2)
+        for x, y, z in sensor
+    )
+    wide = tan(radians(c.fov_deg) / 2)
+    high = tan(radians(c.fov_deg / _ratio(c.configuration)) / 2)
+    return Picture(ahead, right, down, wide, high)
 
 
 def _place(point: Place) -> Any:

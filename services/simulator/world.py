@@ -9,16 +9,18 @@ from __future__ import annotations
 
 from collections import Counter, deque
 from collections.abc import Iterable
-from math import cos, degrees, isfinite, radians, sin
+from math import cos, degrees, isfinite, radians, sin, tan
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.services.simulator import payload
 from cratous.services.simulator.aircraft import Aircraft, aircraft_of, receive, state, step
-from cratous.services.simulator.commands import check_command, present
+from cratous.services.simulator.commands import check_command, check_place, present
 from cratous.services.simulator.driver import STATES, Drivers
-from cratous.services.simulator.motion import Motion
+from cratous.services.simulator.motion import GRAVITY_M_S2, Motion
+from cratous.services.simulator.perception import Body, perceptions
 from cratous.services.simulator.performance import Airframe, airframe_of
+from cratous.services.simulator.tracking import Track, Tracks
 from cratous.spec.errors import BadInput
 
 if TYPE_CHECKING:
@@ -30,6 +32,10 @@ TELL_S = 0.5
 GROUND_M = 0.0
 """Without terrain the ground is at mean sea level, as it is in AMASE without elevation data."""
 MOST_VEHICLES = 1000
+LEAST_RADIUS_M = 10.0
+"""Of a circle about what was lost, at least."""
+STEERING = {"LoiterAction", "GoToWaypointAction", "FlightDirectorAction"}
+"""Actions that tell a vehicle where to go."""
 
 
 class Event(NamedTuple):
@@ -65,7 +71,8 @@ class World:
         self._mounted: dict[int, tuple[payload.Gimbal, ...]] = {}
         self.aircraft: dict[int, Aircraft] = {}
         self.terrain = terrain
-        self.drivers = Drivers(terrain)
+        self._tracks = Tracks()
+        self.drivers = Drivers(terrain, self._tracks)
         self._said: list[str] = []
         self._grounded: set[int] = set()
         self.wind_m_s = 0.0, 0.0
@@ -105,7 +112,7 @@ class World:
             return told
         if self.time_s - self._told_s > TELL_S:
             self._told_s = self.time_s
-            told += [self.status("Running"), *self.states()]
+            told += [self.status("Running"), *self.states(), *self._perceive()]
         told += self._happen()
         self._move()
         return told
@@ -162,6 +169,68 @@ class World:
             told.append(body)
         return [*told, *self.drivers.states(self.time_ms, GROUND_M)]
 
+    def _perceive(self) -> list[Any]:
+        """What is perceived now, which trackers hear of; AMASE tells nothing of it."""
+        told: list[Any] = []
+        if not self.compatible:
+            flying = (
+                Body(key, one.motion, self._mounted.get(key, ()))
+                for key, one in self.aircraft.items()
+            )
+            bodies = *flying, *self.drivers.bodies()
+            told += perceptions(bodies, self.time_ms, self.terrain)
+        for body in told:
+            self._perceived(body)
+        for key, track in list(self._tracks.lost(self.time_s)):
+            self._fall_back(key, track)
+        return told
+
+    def _perceived(self, body: Any) -> bool:
+        """Have the gimbals that track an entity stare at where it is; whether one does."""
+        stares = list(self._tracks.perceived(body, self.time_s))
+        for key, stare in stares:
+            if key in self.drivers.there:
+                self.drivers.stare(key, stare)
+            else:
+                self._mounted[key] = tuple(payload.act(g, stare) for g in self._mounted[key])
+        return bool(stares)
+
+    def _fall_back(self, key: int, track: Track) -> None:
+        """A vehicle that has lost what it tracks goes to a waypoint of its route, or stays about the place."""
+        said = f"vehicle {key} has lost entity {track.entity} at {self.time_s:.1f} s"
+        if track.return_to is None:
+            self._said.append(f"{said}: it does what it was told since")
+            return
+        driver = self.drivers.there.get(key)
+        if driver is not None:
+            route, command = driver.course.route, driver.told[0]
+        else:
+            one = self.aircraft[key]
+            route, command = one.guidance.route or {}, one.shown_command
+        if track.return_to in route:
+            said += f": it goes to waypoint {track.return_to}"
+            action = lmcp.new("GoToWaypointAction", WaypointNumber=track.return_to)
+        else:
+            said += ": it stays about the place"
+            action = lmcp.new("LoiterAction", **self._about(key, track.at))
+        self._said.append(said)
+        body = lmcp.new("VehicleActionCommand", CommandID=command, VehicleID=key,
+                        VehicleActionList=[action])  # fmt: skip
+        self._obey(body)
+
+    def _about(self, key: int, at: Any) -> dict[str, Any]:
+        """A loiter about a place for ever, at the altitude and speed that a vehicle has."""
+        found = {"LoiterType": "Hover", "Location": at}
+        if key not in self.aircraft:
+            return found
+        one = self.aircraft[key]
+        at = at.copy(Altitude=one.motion.alt_m, AltitudeType="MSL")
+        speed = max(one.motion.airspeed_m_s, one.guidance.command.speed_m_s)
+        speed = speed or one.airframe.levels[0].airspeed_m_s
+        radius = 2 * speed * speed / (GRAVITY_M_S2 * tan(one.max_bank_rad))
+        more = {"Radius": max(LEAST_RADIUS_M, radius), "Airspeed": speed}
+        return {**found, **more, "Location": at}
+
     def warnings(self) -> list[str]:
         """What vehicles were asked for and do not do, since it was asked last; each is said once."""
         said = [*self._said, *self.drivers.said]
@@ -211,6 +280,11 @@ class World:
                 self._airframes.pop(key, None)
                 self._mounted.pop(key, None)
                 self._grounded.discard(key)
+                self._tracks.removed(key)
+        elif kind == "EntityPerception":
+            check_place(body.Location, where, f"{kind} of {body.PerceivedEntityID}")
+            if not self._perceived(body):
+                self.unheard[kind] += 1
         else:
             self.unheard[kind] += 1
 
@@ -248,6 +322,12 @@ class World:
 
     def _command(self, body: Any, where: str) -> None:
         self._check(body, where)
+        kinds = {type(one).__name__ for one in body.VehicleActionList}
+        if type(body).__name__ != "VehicleActionCommand" or kinds & STEERING:
+            self._tracks.steered(body.VehicleID)
+        self._obey(body)
+
+    def _obey(self, body: Any) -> None:
         if body.VehicleID in self.drivers.there:
             self.drivers.command(body)
             return
@@ -259,6 +339,8 @@ class World:
     def _act(self, key: int, body: Any) -> None:
         """An action for what is mounted on a vehicle."""
         mounted = self._mounted.get(key, ())
+        if self._tracks.act(key, mounted, body):
+            return
         if not payload.is_for(mounted, body):
             self.unheard[type(body).__name__] += 1
             return
