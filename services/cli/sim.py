@@ -96,7 +96,9 @@ def sim(
 
     def make() -> World:
         compatible = compatibility == "amase"
-        return World(plan.events, end_s, compatible=compatible, terrain=terrain)
+        return World(
+            plan.events, end_s, start_s=plan.start_s, compatible=compatible, terrain=terrain
+        )
 
     if listen is not None:
         return _serve(make, plan, listen, how | {"only": only or 0, "vehicles": _ports(vehicles)})
@@ -105,9 +107,9 @@ def sim(
     _write(world, output)
     took_s = max(1e-9, time.monotonic() - began_s)
     _tell_unheard(world)
+    played_s = world.time_s - world.start_s
     click.echo(
-        f"{plan.name}: {world.time_s:.0f} s of {_count(world)}, "
-        f"{world.time_s / took_s:.0f} times real time"
+        f"{plan.name}: {played_s:.0f} s of {_count(world)}, {played_s / took_s:.0f} times real time"
     )
     return 0
 

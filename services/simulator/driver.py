@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import degrees, isfinite, radians
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -10,7 +10,8 @@ from cratous.bridge import lmcp
 from cratous.services.simulator import course, payload
 from cratous.services.simulator.course import Course
 from cratous.services.simulator.driving import Chassis, chassis_of, move
-from cratous.services.simulator.guidance import DIRECTED, LOITER
+from cratous.services.simulator.earth import ahead
+from cratous.services.simulator.guidance import DIRECTED, LOITER, NOTHING
 from cratous.services.simulator.motion import Motion
 from cratous.services.simulator.perception import Body
 from cratous.services.simulator.tracking import Tracks
@@ -108,24 +109,27 @@ class Drivers:
         for held in (self.there, self._chassis, self._mounted):
             held.pop(key, None)
 
-    def takes(self, body: Any) -> bool:
-        """Whether an object is a FollowPathCommand for one that is there."""
-        return type(body).__name__ == "FollowPathCommand" and body.VehicleID in self.there
-
-    def command(self, body: Any) -> None:
-        """Take a MissionCommand, VehicleActionCommand or FollowPathCommand for one that is there."""
+    def command(self, body: Any, told: Mapping[int, int] = NOTHING) -> None:
+        """Take a MissionCommand, with what its waypoints are told as, or a VehicleActionCommand for one that is there."""
         key = body.VehicleID
         one = self.there[key]
-        if type(body).__name__ == "FollowPathCommand":
-            if body.StartTime or body.StopTime or body.RepeatMode.name == "ReverseCourse":
-                what = "a FollowPathCommand with StartTime, StopTime or ReverseCourse"
-                self._say(key, f"does not do {what}: it is left out")
-                return
-            body = course.along_path(body)
-        take = course.mission if type(body).__name__ == "MissionCommand" else course.command
         self._warn(body)
-        self.there[key] = one._replace(course=take(one.course, body, one.motion, one.chassis))
+        if type(body).__name__ == "MissionCommand":
+            held = course.mission(one.course, body, one.motion, one.chassis, told)
+        else:
+            held = course.command(one.course, body, one.motion, one.chassis)
+        self.there[key] = one._replace(course=held)
         self._fire(key)
+
+    def halt(self, key: int) -> Any:
+        """Where one that brakes at once comes to stand."""
+        one = self.there[key]
+        m = one.motion
+        braking_m = m.airspeed_m_s**2 / (2 * one.chassis.along_m_s2)
+        lat, lon = ahead(m.lat_rad, m.lon_rad, braking_m, m.heading_rad)
+        return one.first.Location.copy(
+            Latitude=degrees(lat), Longitude=degrees(lon), Altitude=m.alt_m
+        )
 
     def _warn(self, body: Any) -> None:
         actions = [*body.VehicleActionList]

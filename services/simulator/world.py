@@ -8,16 +8,26 @@ depends on the machine's time.
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Iterable
-from math import cos, degrees, isfinite, radians, sin, tan
+from collections.abc import Iterable, Mapping
+from functools import partial
+from math import cos, degrees, isfinite, radians, sin
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.services.simulator import payload
-from cratous.services.simulator.aircraft import Aircraft, aircraft_of, receive, state, step
+from cratous.services.simulator.aircraft import (
+    Aircraft,
+    aircraft_of,
+    circle_m,
+    receive,
+    state,
+    step,
+)
 from cratous.services.simulator.commands import check_command, check_place, present
 from cratous.services.simulator.driver import STATES, Drivers
-from cratous.services.simulator.motion import GRAVITY_M_S2, Motion
+from cratous.services.simulator.guidance import NOTHING
+from cratous.services.simulator.motion import Motion
+from cratous.services.simulator.paths import Paths, check_times, path_of, steers
 from cratous.services.simulator.perception import Body, perceptions
 from cratous.services.simulator.performance import Airframe, airframe_of
 from cratous.services.simulator.tracking import Track, Tracks
@@ -32,10 +42,6 @@ TELL_S = 0.5
 GROUND_M = 0.0
 """Without terrain the ground is at mean sea level, as it is in AMASE without elevation data."""
 MOST_VEHICLES = 1000
-LEAST_RADIUS_M = 10.0
-"""Of a circle about what was lost, at least."""
-STEERING = {"LoiterAction", "GoToWaypointAction", "FlightDirectorAction"}
-"""Actions that tell a vehicle where to go."""
 
 
 class Event(NamedTuple):
@@ -47,7 +53,8 @@ class Event(NamedTuple):
 
 
 class World:
-    """See the module. compatible: AMASE's defects are kept. duration_s: when the scenario ends.
+    """See the module. duration_s: how long the scenario lasts, start_s: at which time it begins: what is
+    due before happens then. compatible: AMASE's defects are kept.
 
     terrain: the ground, at mean sea level without one. unheard: kinds of messages that were told to
     others, but that mean nothing here, counted.
@@ -58,11 +65,12 @@ class World:
         events: Iterable[Event],
         duration_s: float,
         *,
+        start_s: float = 0.0,
         compatible: bool = False,
         terrain: Terrain | None = None,
     ) -> None:
-        self.time_s = 0.0
-        self.duration_s = duration_s
+        self.time_s = self.start_s = start_s
+        self.ends_s = start_s + duration_s
         self.compatible = compatible
         self.unheard: Counter[str] = Counter()
         # events of the same time happen in the order of the file
@@ -72,12 +80,13 @@ class World:
         self.aircraft: dict[int, Aircraft] = {}
         self.terrain = terrain
         self._tracks = Tracks()
+        self._paths = Paths()
         self.drivers = Drivers(terrain, self._tracks)
         self._said: list[str] = []
         self._grounded: set[int] = set()
         self.wind_m_s = 0.0, 0.0
         self._part = 0.0  # of a step that is due already
-        self._told_s = 0.0
+        self._told_s = start_s
 
     @property
     def time_ms(self) -> int:
@@ -87,10 +96,10 @@ class World:
     @property
     def over(self) -> bool:
         """True when the scenario's duration has passed."""
-        return self.time_s >= self.duration_s
+        return self.time_s >= self.ends_s
 
     def begin(self) -> list[Any]:
-        """What happens at time 0, done before the clock goes, as AMASE does it; those events."""
+        """What happens at the start, done before the clock goes, as AMASE does it; those events."""
         return self._happen()
 
     def _happen(self) -> list[Any]:
@@ -114,6 +123,8 @@ class World:
             self._told_s = self.time_s
             told += [self.status("Running"), *self.states(), *self._perceive()]
         told += self._happen()
+        if self._paths:
+            self._keep_to_times()
         self._move()
         return told
 
@@ -227,8 +238,7 @@ class World:
         at = at.copy(Altitude=one.motion.alt_m, AltitudeType="MSL")
         speed = max(one.motion.airspeed_m_s, one.guidance.command.speed_m_s)
         speed = speed or one.airframe.levels[0].airspeed_m_s
-        radius = 2 * speed * speed / (GRAVITY_M_S2 * tan(one.max_bank_rad))
-        more = {"Radius": max(LEAST_RADIUS_M, radius), "Airspeed": speed}
+        more = {"Radius": circle_m(one, speed), "Airspeed": speed}
         return {**found, **more, "Location": at}
 
     def warnings(self) -> list[str]:
@@ -260,7 +270,7 @@ class World:
             before = self.aircraft.get(body.ID)
             self.aircraft[body.ID] = aircraft_of(body, airframe, before, where)
             self._mounted[body.ID] = payload.placed(self._mounted[body.ID], body)
-        elif kind in ("MissionCommand", "VehicleActionCommand") or self.drivers.takes(body):
+        elif kind in ("MissionCommand", "VehicleActionCommand") or self._follows(body):
             self._command(body, where)
         elif kind == "AutomationResponse":
             commands = (*body.MissionCommandList, *body.VehicleCommandList)
@@ -281,6 +291,7 @@ class World:
                 self._mounted.pop(key, None)
                 self._grounded.discard(key)
                 self._tracks.removed(key)
+                self._paths.drop(key)
         elif kind == "EntityPerception":
             check_place(body.Location, where, f"{kind} of {body.PerceivedEntityID}")
             if not self._perceived(body):
@@ -309,6 +320,8 @@ class World:
 
     def _check(self, body: Any, where: str) -> None:
         """BadInput for a command that cannot be done."""
+        if type(body).__name__ == "FollowPathCommand":
+            check_times(body, where)
         check_command(body, where, flies=body.VehicleID not in self.drivers.there)
         if body.VehicleID not in self.aircraft and body.VehicleID not in self.drivers.there:
             there = [*self.aircraft, *self.drivers.there]
@@ -322,16 +335,42 @@ class World:
 
     def _command(self, body: Any, where: str) -> None:
         self._check(body, where)
-        kinds = {type(one).__name__ for one in body.VehicleActionList}
-        if type(body).__name__ != "VehicleActionCommand" or kinds & STEERING:
+        if steers(body):
             self._tracks.steered(body.VehicleID)
-        self._obey(body)
+            self._paths.drop(body.VehicleID)
+        if self._follows(body):
+            self._paths.hold(body)
+            self._keep_to_times()
+        else:
+            self._obey(body)
 
-    def _obey(self, body: Any) -> None:
+    def _follows(self, body: Any) -> bool:
+        """Whether an object is a path for who takes one: all but AMASE's aircraft."""
+        if type(body).__name__ != "FollowPathCommand":
+            return False
+        flies = body.VehicleID in self.aircraft and not self.compatible
+        return flies or body.VehicleID in self.drivers.there
+
+    def _keep_to_times(self) -> None:
+        """Paths begin and end when they are due."""
+        for body, begins in self._paths.due(self.time_ms):
+            key = body.VehicleID
+            one = self.aircraft.get(key)
+            if begins:
+                path = path_of(body, None if one is None else partial(circle_m, one))
+                self._obey(path.mission, path.told)
+                continue
+            at = self.drivers.halt(key) if one is None else _here(one.motion)
+            action = lmcp.new("LoiterAction", **self._about(key, at))
+            body = lmcp.new("VehicleActionCommand", CommandID=body.CommandID, VehicleID=key,
+                            VehicleActionList=[action])  # fmt: skip
+            self._obey(body)
+
+    def _obey(self, body: Any, told: Mapping[int, int] = NOTHING) -> None:
         if body.VehicleID in self.drivers.there:
-            self.drivers.command(body)
+            self.drivers.command(body, told)
             return
-        one = receive(self.aircraft[body.VehicleID], body)
+        one = receive(self.aircraft[body.VehicleID], body, told)
         for fired in one.guidance.fired:
             self._act(body.VehicleID, fired)
         self.aircraft[body.VehicleID] = one._replace(guidance=one.guidance._replace(fired=()))
@@ -345,3 +384,9 @@ class World:
             self.unheard[type(body).__name__] += 1
             return
         self._mounted[key] = tuple(payload.act(one, body) for one in mounted)
+
+
+def _here(m: Motion) -> Any:
+    """Where a vehicle is."""
+    return lmcp.new("Location3D", Latitude=degrees(m.lat_rad), Longitude=degrees(m.lon_rad),
+                    Altitude=m.alt_m, AltitudeType="MSL")  # fmt: skip

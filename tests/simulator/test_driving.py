@@ -91,28 +91,6 @@ def test_it_stands_at_a_waypoint_for_as_long_as_is_asked() -> None:
     assert track(states)[-1] == pytest.approx((120.0, 0.0), abs=0.3)
 
 
-def test_a_path_is_followed_with_its_pauses_once_or_in_a_loop() -> None:
-    ways = [
-        lmcp.new("PathWaypoint", Number=k, NextWaypoint=k + 1, PauseTime=9000 * (k == 2), **at(*p))
-        for k, p in ((1, (40.0, 0.0)), (2, (40.0, 40.0)), (3, (0.0, 0.0)))
-    ]
-    path = lmcp.new(
-        "FollowPathCommand", CommandID=7, VehicleID=1, FirstWaypoint=1, WaypointList=ways
-    )
-    once = driven(vehicle(), (0.5, path), seconds=90.0)
-    stood = [s.Time for s in once if s.CurrentWaypoint == 2 and s.Groundspeed == 0]
-    assert 8_500 <= stood[-1] - stood[0] <= 10_000
-    assert (once[-1].CurrentWaypoint, once[-1].Groundspeed, once[-1].CurrentCommand) == (3, 0, 7)
-    loop = driven(vehicle(), (0.5, path.copy(RepeatMode="Loop")), seconds=90.0)
-    numbers = [n for n, _ in itertools.groupby(s.CurrentWaypoint for s in loop)]
-    assert numbers[:6] == [0, 1, 2, 3, 1, 2]
-    world = World((), 10)
-    for body in (*vehicle(), path.copy(RepeatMode="ReverseCourse"), path.copy(VehicleID=2)):
-        world.receive(body)
-    assert "does not do a FollowPathCommand with StartTime" in world.warnings()[0]
-    assert world.unheard == {"FollowPathCommand": 1}, "of a vehicle that is not there"
-
-
 def test_a_stand_for_ever_ends_by_command_and_one_by_command_goes_there() -> None:
     ways = mission((60.0, 0.0), (120.0, 0.0), stand=1, actions=[hover(60, 0, -1)])
     on = order(lmcp.new("GoToWaypointAction", WaypointNumber=2))
@@ -201,6 +179,10 @@ def test_a_camera_on_a_car_looks_where_it_is_told() -> None:
         ),
         ([*vehicle(), order(hover(math.nan, 0, 0))], "a place that cannot be flown to"),
         ([*vehicle(), order().copy(VehicleID=2)], r"expected one of \[1\]"),
+        (
+            [*vehicle(), lmcp.new("FollowPathCommand", VehicleID=1, StartTime=9, StopTime=9)],
+            "ends before it begins",
+        ),
     ],
 )
 def test_what_cannot_be_driven_is_refused_by_name(bodies: list[Any], text: str) -> None:

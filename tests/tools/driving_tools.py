@@ -45,3 +45,13 @@ def order(*actions: Any) -> Any:
     return lmcp.new(
         "VehicleActionCommand", CommandID=8, VehicleID=1, VehicleActionList=list(actions)
     )
+
+
+def path(*places: tuple[float, float], **more: Any) -> Any:
+    """To follow along places, with a pause of 9 s at the second one."""
+    ways = [
+        lmcp.new("PathWaypoint", Number=k, NextWaypoint=k + 1, PauseTime=9000 * (k == 2), **at(*p))
+        for k, p in enumerate(places, 1)
+    ]
+    values = {"CommandID": 7, "VehicleID": 1, "FirstWaypoint": 1, "WaypointList": ways, **more}
+    return lmcp.new("FollowPathCommand", **values)
