@@ -200,10 +200,9 @@ def aim(m: Motion, point: Any) -> tuple[float, float]:
     away = distance_m(m.lat_rad, m.lon_rad, lat, lon)
     course = bearing_rad(m.lat_rad, m.lon_rad, lat, lon)
     down = m.alt_m - point.Altitude + EQUATOR_M * (1 - cos(away / EQUATOR_M))
-    seen = away * cos(course), away * sin(course), down
+    north, east = away * cos(course), away * sin(course)
     x, y, z = (
-        sum(a * b for a, b in zip(axis, seen, strict=True))
-        for axis in axes(m.heading_rad, m.pitch_rad, m.roll_rad)
+        a * north + b * east + c * down for a, b, c in axes(m.heading_rad, m.pitch_rad, m.roll_rad)
     )
     return degrees(atan2(y, x)), degrees(atan2(-z, hypot(x, y)))
 
@@ -287,16 +286,18 @@ def footprint(
 
     Order: top left, top right, bottom right, bottom left, middle.
     """
-    body = axes(m.heading_rad, m.pitch_rad, m.roll_rad)
-    sensor = axes(radians(g.azimuth_deg), radians(g.elevation_deg), 0.0)
+    b0, b1, b2 = axes(m.heading_rad, m.pitch_rad, m.roll_rad)
+    s0, s1, s2 = axes(radians(g.azimuth_deg), radians(g.elevation_deg), 0.0)
     wide = tan(radians(c.fov_deg) / 2)
     high = tan(radians(c.fov_deg / _ratio(c.configuration)) / 2)
     height = max(0.0, m.alt_m - ground_m)
     horizon = horizon_m(height)
     corners: list[Place] = []
     for right, down in ((-wide, -high), (wide, -high), (wide, high), (-wide, high), (0.0, 0.0)):
-        ray = [sensor[0][k] + right * sensor[1][k] + down * sensor[2][k] for k in range(3)]
-        north, east, below = (sum(ray[k] * body[k][n] for k in range(3)) for n in range(3))
+        x, y, z = (s0[k] + right * s1[k] + down * s2[k] for k in range(3))
+        north = x * b0[0] + y * b1[0] + z * b2[0]
+        east = x * b0[1] + y * b1[1] + z * b2[1]
+        below = x * b0[2] + y * b1[2] + z * b2[2]
         if terrain is not None:
             from cratous.services.simulator.sight import meets
 

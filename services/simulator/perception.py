@@ -7,7 +7,7 @@ ground that is the footprint. Places and velocities are the true ones, without e
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from math import cos, degrees, hypot, radians
+from math import cos, degrees, hypot, pi
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cratous.bridge import lmcp
@@ -41,47 +41,67 @@ def perceptions(
     there = tuple(bodies)
     if len(there) < 2:
         return
+    places = [(one.motion.lat_rad, one.motion.lon_rad, one.motion.alt_m) for one in there]
     for one in there:
-        if not 0 < one.id <= MOST_ID:
+        pictures = _pictures(one) if 0 < one.id <= MOST_ID else []
+        if not pictures:
             continue
-        pictures = [
-            (c.configuration.PayloadID, payload.picture(g, c, one.motion))
-            for g in one.mounted
-            for c in g.cameras
-        ]
-        if pictures:
-            for other in there:
-                if other.id == one.id:
-                    continue
-                by = _seen_by(one.motion, pictures, other.motion, terrain)
-                if by:
-                    yield _perception(one.id, by, other, time_ms)
+        lat, lon, alt = one.motion.lat_rad, one.motion.lon_rad, one.motion.alt_m
+        for other, place in zip(there, places, strict=True):
+            north, east, below = place[0] - lat, place[1] - lon, alt - place[2]
+            if abs(east) > pi:
+                east = bound_pi(east)
+            by = [number for number, seen in pictures if seen.has(north, east, below)]
+            if by and other is not one and _in_sight(one.motion, place, terrain):
+                yield _perception(one.id, by, other, time_ms)
 
 
-def _seen_by(
-    m: Motion, pictures: list[tuple[int, payload.Picture]], other: Motion, terrain: Terrain | None
-) -> list[int]:
-    """The cameras of a vehicle that see another."""
-    north = (other.lat_rad - m.lat_rad) * EQUATOR_M
-    east = bound_pi(other.lon_rad - m.lon_rad) * EQUATOR_M * cos(m.lat_rad)
-    below = m.alt_m - other.alt_m
-    by = []
-    for number, (ahead, right, down, wide, high) in pictures:
-        depth = north * ahead[0] + east * ahead[1] + below * ahead[2]
-        if (
-            depth > 0
-            and abs(north * right[0] + east * right[1] + below * right[2]) <= wide * depth
-            and abs(north * down[0] + east * down[1] + below * down[2]) <= high * depth
-        ):
-            by.append(number)
-    if by and hypot(north, east) > horizon_m(m.alt_m) + horizon_m(other.alt_m):
-        return []
-    if by and terrain is not None:
-        from cratous.services.simulator.sight import in_sight
+class _Picture(NamedTuple):
+    """What a camera has in its picture: its axes ahead, right and down by parts for latitude, longitude [rad] and
+    height [m] below; half of its width and height at depth 1."""
 
-        if not in_sight(terrain, m, (other.lat_rad, other.lon_rad, other.alt_m)):
-            return []
-    return by
+    ahead: Place
+    right: Place
+    down: Place
+    wide: float
+    high: float
+
+    def has(self, north_rad: float, east_rad: float, below_m: float) -> bool:
+        """Whether what is so far away from the camera is in it."""
+        ahead = self.ahead
+        depth = north_rad * ahead[0] + east_rad * ahead[1] + below_m * ahead[2]
+        if depth <= 0:
+            return False
+        x, y, z = self.right
+        if abs(north_rad * x + east_rad * y + below_m * z) > self.wide * depth:
+            return False
+        x, y, z = self.down
+        return abs(north_rad * x + east_rad * y + below_m * z) <= self.high * depth
+
+
+def _pictures(one: Body) -> list[tuple[int, _Picture]]:
+    """The ids of a vehicle's cameras, and what they have in their pictures."""
+    found = []
+    around = EQUATOR_M * cos(one.motion.lat_rad)
+    for g in one.mounted:
+        for c in g.cameras:
+            *axes, wide, high = payload.picture(g, c, one.motion)
+            ahead, right, down = ((x * EQUATOR_M, y * around, z) for x, y, z in axes)
+            found.append((c.configuration.PayloadID, _Picture(ahead, right, down, wide, high)))
+    return found
+
+
+def _in_sight(m: Motion, place: Place, terrain: Terrain | None) -> bool:
+    """Whether neither the horizon nor the terrain hides a place from a vehicle."""
+    north = (place[0] - m.lat_rad) * EQUATOR_M
+    east = bound_pi(place[1] - m.lon_rad) * EQUATOR_M * cos(m.lat_rad)
+    if hypot(north, east) > horizon_m(m.alt_m) + horizon_m(place[2]):
+        return False
+    if terrain is None:
+        return True
+    from cratous.services.simulator.sight import in_sight
+
+    return in_sight(terrain, m, place)
 
 
 def _perception(perceiver: int, by: list[int], seen: Body, time_ms: int) -> Any:
@@ -104,9 +124,3 @@ def _perception(perceiver: int, by: list[int], seen: Body, time_ms: int) -> Any:
         ),
         TimeLastSeen=time_ms,
     )
-
-
-def place_of(body: Any) -> Place:
-    """Where an EntityPerception has its entity."""
-    at = body.Location
-    return radians(at.Latitude), radians(at.Longitude), at.Altitude
