@@ -24,13 +24,14 @@ from cratous.services.simulator.aircraft import (
     step,
 )
 from cratous.services.simulator.commands import check_command, check_place, present
-from cratous.services.simulator.driver import STATES, Drivers
+from cratous.services.simulator.driver import STATES, Driver, Drivers
 from cratous.services.simulator.guidance import NOTHING
 from cratous.services.simulator.motion import Motion
 from cratous.services.simulator.paths import Paths, check_times, path_of, steers
 from cratous.services.simulator.perception import Body, perceptions
 from cratous.services.simulator.performance import Airframe, airframe_of
-from cratous.services.simulator.tracking import Track, Tracks
+from cratous.services.simulator.staying import fall_back, here, stay
+from cratous.services.simulator.tracking import Tracks
 from cratous.spec.errors import BadInput
 
 if TYPE_CHECKING:
@@ -193,7 +194,10 @@ class World:
         for body in told:
             self._perceived(body)
         for key, track in list(self._tracks.lost(self.time_s)):
-            self._fall_back(key, track)
+            said, body = fall_back(key, track, self.time_s, self._one(key))
+            self._said.append(said)
+            if body is not None:
+                self._obey(body)
         return told
 
     def _perceived(self, body: Any) -> bool:
@@ -205,41 +209,6 @@ class World:
             else:
                 self._mounted[key] = tuple(payload.act(g, stare) for g in self._mounted[key])
         return bool(stares)
-
-    def _fall_back(self, key: int, track: Track) -> None:
-        """A vehicle that has lost what it tracks goes to a waypoint of its route, or stays about the place."""
-        said = f"vehicle {key} has lost entity {track.entity} at {self.time_s:.1f} s"
-        if track.return_to is None:
-            self._said.append(f"{said}: it does what it was told since")
-            return
-        driver = self.drivers.there.get(key)
-        if driver is not None:
-            route, command = driver.course.route, driver.told[0]
-        else:
-            one = self.aircraft[key]
-            route, command = one.guidance.route or {}, one.shown_command
-        if track.return_to in route:
-            said += f": it goes to waypoint {track.return_to}"
-            action = lmcp.new("GoToWaypointAction", WaypointNumber=track.return_to)
-        else:
-            said += ": it stays about the place"
-            action = lmcp.new("LoiterAction", **self._about(key, track.at))
-        self._said.append(said)
-        body = lmcp.new("VehicleActionCommand", CommandID=command, VehicleID=key,
-                        VehicleActionList=[action])  # fmt: skip
-        self._obey(body)
-
-    def _about(self, key: int, at: Any) -> dict[str, Any]:
-        """A loiter about a place for ever, at the altitude and speed that a vehicle has."""
-        found = {"LoiterType": "Hover", "Location": at}
-        if key not in self.aircraft:
-            return found
-        one = self.aircraft[key]
-        at = at.copy(Altitude=one.motion.alt_m, AltitudeType="MSL")
-        speed = max(one.motion.airspeed_m_s, one.guidance.command.speed_m_s)
-        speed = speed or one.airframe.levels[0].airspeed_m_s
-        more = {"Radius": circle_m(one, speed), "Airspeed": speed}
-        return {**found, **more, "Location": at}
 
     def warnings(self) -> list[str]:
         """What vehicles were asked for and do not do, since it was asked last; each is said once."""
@@ -355,16 +324,19 @@ class World:
         """Paths begin and end when they are due."""
         for body, begins in self._paths.due(self.time_ms):
             key = body.VehicleID
-            one = self.aircraft.get(key)
+            one = self._one(key)
             if begins:
-                path = path_of(body, None if one is None else partial(circle_m, one))
+                circle = partial(circle_m, one) if isinstance(one, Aircraft) else None
+                path = path_of(body, circle)
                 self._obey(path.mission, path.told)
-                continue
-            at = self.drivers.halt(key) if one is None else _here(one.motion)
-            action = lmcp.new("LoiterAction", **self._about(key, at))
-            body = lmcp.new("VehicleActionCommand", CommandID=body.CommandID, VehicleID=key,
-                            VehicleActionList=[action])  # fmt: skip
-            self._obey(body)
+            else:
+                flies = isinstance(one, Aircraft)
+                at = here(one.motion) if flies else self.drivers.halt(key)
+                self._obey(stay(key, body.CommandID, one, at))
+
+    def _one(self, key: int) -> Aircraft | Driver:
+        """A vehicle that is there."""
+        return self.aircraft[key] if key in self.aircraft else self.drivers.there[key]
 
     def _obey(self, body: Any, told: Mapping[int, int] = NOTHING) -> None:
         if body.VehicleID in self.drivers.there:
@@ -384,9 +356,3 @@ class World:
             self.unheard[type(body).__name__] += 1
             return
         self._mounted[key] = tuple(payload.act(one, body) for one in mounted)
-
-
-def _here(m: Motion) -> Any:
-    """Where a vehicle is."""
-    return lmcp.new("Location3D", Latitude=degrees(m.lat_rad), Longitude=degrees(m.lon_rad),
-                    Altitude=m.alt_m, AltitudeType="MSL")  # fmt: skip
