@@ -59,7 +59,14 @@ def _trajectory(report: Data, chains: Data) -> Iterator[document.Part]:
              LEVELS.get(a["level"], str(a["level"])), f"{a['least_s']:.1f} s")
             for a in alerts
         ]  # fmt: skip
-        columns = ("Vehicle", "Intruder", "From", "To", "Highest level", "Least time to a violation")
+        columns = (
+            "Vehicle",
+            "Intruder",
+            "From",
+            "To",
+            "Highest level",
+            "Least time to a violation",
+        )
         yield document.Table(columns, tuple(spans), (12, 12, 14, 14, 24, 24), (2, 3, 5))
     yield _authority(report)
     yield from loss_parts(report)
