@@ -20,7 +20,6 @@ from cratous.core.avoidance.prediction import Intruder, buffered
 from cratous.core.daa.session import Instant, Session
 from cratous.core.daa.state import ALT, DIMENSIONS, HDIR, HS, VS, Aircraft, Sigma
 from cratous.services.icarous.messages import Sensed
-from cratous.services.icarous.state import Config
 from cratous.services.icarous.traffic_monitor import nearest
 from cratous.spec.daa.parameters import (
     DCPA,
@@ -38,7 +37,7 @@ from cratous.spec.daa.parameters import (
     Parameters,
     Volume,
 )
-from cratous.spec.mission import Position, Velocity, WellClear
+from cratous.spec.mission import Daa, Position, Velocity, WellClear
 
 PERIOD_MS = 1000
 """Alerts and bands are looked for so often [ms]."""
@@ -66,12 +65,11 @@ class Bands(NamedTuple):
     instant: Instant
 
 
-def parameters_of(config: Config, ability: Ability, sum_volumes: bool) -> Parameters:
+def parameters_of(daa: Daa, heartbeat_ms: int, ability: Ability, sum_volumes: bool) -> Parameters:
     """What a vehicle is guided by. sum_volumes: an intruder is known within bounds only."""
-    daa = config.daa
     own, kind = daa.well_clear, TAUMOD_SUM if sum_volumes else TAUMOD
     wide = buffered(own, daa.buffer)
-    acts_s = nearest(ability, wide, config.heartbeat_ms).last_s
+    acts_s = nearest(ability, wide, heartbeat_ms).last_s
     climb = ability.max_climb_m_s
     reach_m = max(climb * daa.lookahead_s, own.zthr_m)
 
@@ -128,18 +126,20 @@ def parameters_of(config: Config, ability: Ability, sum_volumes: bool) -> Parame
     )
 
 
-def watched(config: Config, before: Bands | None, sensed: Sensed) -> Bands | None:
-    """What is said now; what was said last where a second has not gone by since, None where nobody is seen."""
+def watched(
+    vehicle_id: int, daa: Daa, heartbeat_ms: int, before: Bands | None, sensed: Sensed
+) -> Bands | None:
+    """What is said to a vehicle now; what was said last where a second has not gone by since, None where nobody is seen."""
     if before is not None and not lasted(before.at_ms, sensed.now_ms, PERIOD_MS):
         return before
     if not sensed.intruders:
         return None
     wide = any(other.spread.wide_m or other.spread.wide_m_s for other in sensed.intruders)
-    parameters = parameters_of(config, sensed.ability, wide)
+    parameters = parameters_of(daa, heartbeat_ms, sensed.ability, wide)
     session = Session(parameters)
     if before is not None and before.session.parameters == parameters:
         session = copy.deepcopy(before.session)
-    own = _own(config.vehicle_id, sensed.motion)
+    own = _own(vehicle_id, sensed.motion)
     others = [_other(one) for one in sensed.intruders]
     instant = session.step(sensed.now_ms / 1000, own, others, _dimensions(sensed.ability))
     return Bands(sensed.now_ms, session, instant)

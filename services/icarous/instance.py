@@ -226,7 +226,8 @@ class Instance:
         # not needed in a flight without conflicts
         from cratous.services.icarous.bands import watched
 
-        return replace(state, bands=watched(self.config, state.bands, sensed))
+        vid, daa, beat_ms = self.config.vehicle_id, self.config.daa, self.config.heartbeat_ms
+        return replace(state, bands=watched(vid, daa, beat_ms, state.bands, sensed))
 
     def _guides(self, sensed: Sensed, bands: Bands) -> Guides:
         """What it has said, for the record."""

@@ -37,7 +37,7 @@ def sensed(now_ms: int, *others: Intruder) -> Sensed:
 
 
 def bands(*others: Intruder) -> Bands:
-    found = watched(CONFIG, None, sensed(0, *others))
+    found = watched(1, CONFIG.daa, 500, None, sensed(0, *others))
     assert found is not None
     return found
 
@@ -135,7 +135,7 @@ def test_the_record_has_the_alert_and_the_bands() -> None:
 def test_an_airframe_that_cannot_climb_has_no_bands_of_climbs() -> None:
     level = sensed(0, crossing(1.0))
     level = level._replace(ability=level.ability._replace(max_climb_m_s=0.0))
-    found = watched(CONFIG, None, level)
+    found = watched(1, CONFIG.daa, 500, None, level)
     assert found is not None
     assert [g.dimension for g in found.instant.guidance] == ["hdir", "hs"]
     assert all(b.region >= NONE for g in found.instant.guidance for b in g.bands)
