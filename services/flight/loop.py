@@ -154,7 +154,7 @@ class Flight:
         self.vehicle_states = {vid: node.first() for vid, node in self.vehicles.items()}
         configs = {
             vid: icarous.Config(
-                vid, mission.daa, projection, simulation.heartbeat_ms, certifies=True
+                vid, mission.daa, projection, simulation.heartbeat_ms, certifies=True, records=True
             )
             for vid in instances
         }

@@ -57,6 +57,16 @@ STABLE_S = 3.0
 RTCA DO-365B."""
 
 
+class Whose(NamedTuple):
+    """Whose bands: the vehicle, what it keeps clear of, its heartbeat [ms]; told: somebody reads them, so all that the
+    airframe can change is looked at, and not headings alone."""
+
+    vehicle_id: int
+    daa: Daa
+    heartbeat_ms: int
+    told: bool
+
+
 class Bands(NamedTuple):
     """What was said last, and the history that the next look goes on from. at_ms: when [ms]."""
 
@@ -65,8 +75,9 @@ class Bands(NamedTuple):
     instant: Instant
 
 
-def parameters_of(daa: Daa, heartbeat_ms: int, ability: Ability, sum_volumes: bool) -> Parameters:
+def parameters_of(whose: Whose, ability: Ability, sum_volumes: bool) -> Parameters:
     """What a vehicle is guided by. sum_volumes: an intruder is known within bounds only."""
+    daa, heartbeat_ms = whose.daa, whose.heartbeat_ms
     own, kind = daa.well_clear, TAUMOD_SUM if sum_volumes else TAUMOD
     wide = buffered(own, daa.buffer)
     acts_s = nearest(ability, wide, heartbeat_ms).last_s
@@ -126,22 +137,21 @@ def parameters_of(daa: Daa, heartbeat_ms: int, ability: Ability, sum_volumes: bo
     )
 
 
-def watched(
-    vehicle_id: int, daa: Daa, heartbeat_ms: int, before: Bands | None, sensed: Sensed
-) -> Bands | None:
+def watched(whose: Whose, before: Bands | None, sensed: Sensed) -> Bands | None:
     """What is said to a vehicle now; what was said last where a second has not gone by since, None where nobody is seen."""
     if before is not None and not lasted(before.at_ms, sensed.now_ms, PERIOD_MS):
         return before
     if not sensed.intruders:
         return None
     wide = any(other.spread.wide_m or other.spread.wide_m_s for other in sensed.intruders)
-    parameters = parameters_of(daa, heartbeat_ms, sensed.ability, wide)
+    parameters = parameters_of(whose, sensed.ability, wide)
     session = Session(parameters)
     if before is not None and before.session.parameters == parameters:
         session = copy.deepcopy(before.session)
-    own = _own(vehicle_id, sensed.motion)
+    own = _own(whose.vehicle_id, sensed.motion)
     others = [_other(one) for one in sensed.intruders]
-    instant = session.step(sensed.now_ms / 1000, own, others, _dimensions(sensed.ability))
+    dimensions = _dimensions(sensed.ability) if whose.told else [HDIR]
+    instant = session.step(sensed.now_ms / 1000, own, others, dimensions)
     return Bands(sensed.now_ms, session, instant)
 
 

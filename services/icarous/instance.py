@@ -127,7 +127,7 @@ class Instance:
         else:
             state, out = self._fly(state, sensed, in_turn)
         beat = Heartbeat(sequence=state.beats, time_s=sensed.now_ms / 1000)
-        if state.bands is not None and state.bands is not said:
+        if self.config.records and state.bands is not None and state.bands is not said:
             out = (self._guides(sensed, state.bands), *out)
         return state, (*out, Up(self.config.vehicle_id, beat))
 
@@ -224,10 +224,11 @@ class Instance:
     def _guided(self, state: State, sensed: Sensed) -> State:
         """With what detect and avoid says, once a second."""
         # not needed in a flight without conflicts
-        from cratous.services.icarous.bands import watched
+        from cratous.services.icarous.bands import Whose, watched
 
-        vid, daa, beat_ms = self.config.vehicle_id, self.config.daa, self.config.heartbeat_ms
-        return replace(state, bands=watched(vid, daa, beat_ms, state.bands, sensed))
+        config = self.config
+        whose = Whose(config.vehicle_id, config.daa, config.heartbeat_ms, config.records)
+        return replace(state, bands=watched(whose, state.bands, sensed))
 
     def _guides(self, sensed: Sensed, bands: Bands) -> Guides:
         """What it has said, for the record."""

@@ -29,7 +29,7 @@ class Config(NamedTuple):
     """What does not change: whose instance, what it keeps clear of, and the heartbeat [ms].
 
     original: UxAS's end is the original's, whose WAYPT lines carry a running count; certifies: what it commands is
-    offered to the gate with a certificate."""
+    offered to the gate with a certificate; records: alerts and bands go to a record."""
 
     vehicle_id: int
     daa: Daa
@@ -37,6 +37,7 @@ class Config(NamedTuple):
     heartbeat_ms: int
     original: bool = False
     certifies: bool = False
+    records: bool = False
 
 
 class Met(NamedTuple):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import pytest
 from icarous_tools import ABILITY, NORTH, PROJECTION, VOLUME
@@ -13,7 +12,7 @@ from cratous.core.authority.gate import UXAS, Gate
 from cratous.core.avoidance.prediction import Intruder, Spread
 from cratous.services.certify.alerted import AlertReader
 from cratous.services.flight.notices import guidance
-from cratous.services.icarous.bands import STEP_DEG, Bands, resolutions, watched
+from cratous.services.icarous.bands import STEP_DEG, Bands, Whose, resolutions, watched
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Guides, Sensed
@@ -22,7 +21,8 @@ from cratous.services.icarous.state import Config, State
 from cratous.spec.daa.parameters import MID, NONE
 from cratous.spec.mission import Daa, Position, Velocity
 
-CONFIG = Config(1, Daa(VOLUME, buffer=1.25), PROJECTION, 500)
+CONFIG = Config(1, Daa(VOLUME, buffer=1.25), PROJECTION, 500, records=True)
+WHOSE = Whose(1, CONFIG.daa, 500, True)
 WAY = (Position(-1000.0, 0.0, 300.0), Position(9000.0, 0.0, 300.0))
 
 
@@ -37,7 +37,7 @@ def sensed(now_ms: int, *others: Intruder) -> Sensed:
 
 
 def bands(*others: Intruder) -> Bands:
-    found = watched(1, CONFIG.daa, 500, None, sensed(0, *others))
+    found = watched(WHOSE, None, sensed(0, *others))
     assert found is not None
     return found
 
@@ -135,8 +135,17 @@ def test_the_record_has_the_alert_and_the_bands() -> None:
 def test_an_airframe_that_cannot_climb_has_no_bands_of_climbs() -> None:
     level = sensed(0, crossing(1.0))
     level = level._replace(ability=level.ability._replace(max_climb_m_s=0.0))
-    found = watched(1, CONFIG.daa, 500, None, level)
+    found = watched(WHOSE, None, level)
     assert found is not None
     assert [g.dimension for g in found.instant.guidance] == ["hdir", "hs"]
     assert all(b.region >= NONE for g in found.instant.guidance for b in g.bands)
-    assert replace(State(), bands=found).bands is found
+
+
+def test_where_nobody_reads_them_headings_alone_are_looked_at_and_the_turns_are_the_same() -> None:
+    untold = watched(WHOSE._replace(told=False), None, sensed(0, crossing(1.0)))
+    assert untold is not None
+    assert [g.dimension for g in untold.instant.guidance] == ["hdir"]
+    assert resolutions(untold, 0.3) == resolutions(bands(crossing(1.0)), 0.3)
+    state = State(told=Told(waypoints=WAY, next_index=1, speed_m_s=22.0))
+    _, out = Instance(CONFIG._replace(records=False)).handle(state, sensed(0, crossing(1.0)))
+    assert not any(isinstance(one, Guides) for one in out)
