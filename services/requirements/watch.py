@@ -11,7 +11,7 @@ from itertools import chain, islice
 from pathlib import Path
 
 from cratous.services.requirements.csv_trace import samples
-from cratous.services.requirements.evaluation import Evaluation
+from cratous.services.requirements.evaluation import FALSE, TRUE, Evaluation
 from cratous.services.requirements.formula import horizon, signals
 from cratous.services.requirements.outcome import Outcome, margins_of
 from cratous.services.requirements.sampling import Finding, Row, Sample, Sampling
@@ -42,10 +42,18 @@ class Watch:
         self.count = 0
         self.needed: set[str] = set()
         self._watched: list[tuple[Outcome, Evaluation]] = []
+        self._reading: dict[str, list[int]] = {}
+        """Of each signal the requirements that read it, by their number."""
+        self._row: Sample = {}
+        self.news: list[tuple[str, Outcome]] = []
+        """What was so for the first time: a requirement is `violated` at a sample, or `unknown`; who reads it empties it."""
         for one in spec.requirements:
             if isinstance(one.formula, NotRead):
                 raise one.formula
-            self.needed |= set(signals(one.formula))
+            read = signals(one.formula)
+            self.needed |= set(read)
+            for name in read:
+                self._reading.setdefault(name, []).append(len(self._watched))
             outcome = Outcome(one, horizon(one.formula), margins=margins_of(one.formula, spec))
             self._watched.append((outcome, Evaluation(one.formula, blames=True)))
         self.sampling = Sampling(spec, self.needed)
@@ -63,17 +71,41 @@ class Watch:
 
     def sample(self, time: int, row: Sample) -> None:
         """Take one sample more."""
-        for outcome, evaluation in self._watched:
-            for margin in outcome.margins:
-                margin.add(row, time)
-            for sample, verdict in evaluation.sample(time, row):
-                outcome.add(sample, verdict, time)
+        changed = self._changed(row)
+        for number, (outcome, evaluation) in enumerate(self._watched):
+            same = number not in changed
+            if not same:
+                for margin in outcome.margins:
+                    margin.add(row, time)
+            for sample, verdict in evaluation.sample(time, row, same):
+                if verdict == TRUE:
+                    outcome.holds += 1
+                else:
+                    self._bad(outcome, sample, verdict, time)
                 if self.verdicts is not None:
                     at = f"{sample / 1e9:.9g}" if self.spec.timed else str(sample)
                     self.verdicts.append(f"{outcome.name}:{at},{'F?T'[verdict]}")
             if outcome.violated and not outcome.blamed:
                 outcome.blamed = evaluation.blamed
         self.count += 1
+
+    def _changed(self, row: Sample) -> set[int]:
+        """The numbers of the requirements of which a signal is not as it was at the sample before."""
+        before, self._row = self._row, dict(row)
+        if not before:
+            return set(range(len(self._watched)))
+        found: set[int] = set()
+        for name, reading in self._reading.items():
+            # what is no number differs from itself
+            if row.get(name) != before.get(name):
+                found.update(reading)
+        return found
+
+    def _bad(self, outcome: Outcome, sample: int, verdict: int, time: int) -> None:
+        outcome.add(sample, verdict, time)
+        event = "violated" if verdict == FALSE else "unknown"
+        if getattr(outcome, event) == 1:
+            self.news.append((event, outcome))
 
     def all(self, samples: Iterable[tuple[int, Sample]]) -> None:
         """Take all samples of a trace that has ended, of which none was taken yet: over whole columns where that is
