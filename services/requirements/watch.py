@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from itertools import chain, islice
 from pathlib import Path
 
+from cratous.services.requirements.arithmetic import Calculated, sources
 from cratous.services.requirements.csv_trace import samples
 from cratous.services.requirements.evaluation import FALSE, TRUE, Evaluation
 from cratous.services.requirements.formula import horizon, signals
@@ -41,6 +42,7 @@ class Watch:
         self.spec, self.verdicts = spec, verdicts
         self.count = 0
         self.needed: set[str] = set()
+        names: set[str] = set()
         self._watched: list[tuple[Outcome, Evaluation]] = []
         self._reading: dict[str, list[int]] = {}
         """Of each signal the requirements that read it, by their number."""
@@ -51,12 +53,15 @@ class Watch:
             if isinstance(one.formula, NotRead):
                 raise one.formula
             read = signals(one.formula)
-            self.needed |= set(read)
+            self.needed |= sources(read, spec.signals)
+            names |= set(read)
             for name in read:
                 self._reading.setdefault(name, []).append(len(self._watched))
             outcome = Outcome(one, horizon(one.formula), margins=margins_of(one.formula, spec))
             self._watched.append((outcome, Evaluation(one.formula, blames=True)))
         self.sampling = Sampling(spec, self.needed)
+        self._names = self.needed | names
+        self._calculated = Calculated(names, spec.signals)
 
     @property
     def outcomes(self) -> list[Outcome]:
@@ -66,11 +71,14 @@ class Watch:
     def rows(self, rows: Iterable[Row]) -> Iterator[int]:
         """Take rows with times; the time [ns] of each sample that is taken."""
         for time, row in self.sampling.samples(rows):
-            self.sample(time, row)
+            self._sample(time, self._calculated.row(row))
             yield time
 
     def sample(self, time: int, row: Sample) -> None:
-        """Take one sample more."""
+        """Take one sample more, of the signals that are in the trace."""
+        self._sample(time, self._calculated.row(row))
+
+    def _sample(self, time: int, row: Sample) -> None:
         changed = self._changed(row)
         for number, (outcome, evaluation) in enumerate(self._watched):
             same = number not in changed
@@ -110,19 +118,20 @@ class Watch:
     def all(self, samples: Iterable[tuple[int, Sample]]) -> None:
         """Take all samples of a trace that has ended, of which none was taken yet: over whole columns where that is
         sooner (`whole`), with the same outcome."""
-        taken, kept = iter(samples), Columns(self.needed)
+        whole = ((time, self._calculated.row(row)) for time, row in samples)
+        taken, kept = iter(whole), Columns(self._names)
         if self.verdicts is None:
             for time, row in islice(taken, MOST):
                 kept.add(time, row)
         formulas = [evaluation.formula for _, evaluation in self._watched]
         if len(kept.times) < MOST and is_worth(formulas, len(kept.times)):
-            whole = Whole(kept)
+            columns = Whole(kept)
             for outcome, evaluation in self._watched:
-                whole.fill(outcome, evaluation.formula)
+                columns.fill(outcome, evaluation.formula)
             self.count = len(kept.times)
             return
         for time, row in chain(kept.samples(), taken):
-            self.sample(time, row)
+            self._sample(time, row)
 
     def result(self) -> Watched:
         """What can be said where the trace ends here."""
