@@ -62,7 +62,7 @@ from cratous.services.flight.messages import (
     Watch,
     Wished,
 )
-from cratous.services.flight.notices import conflict, truth
+from cratous.services.flight.notices import conflict, guidance, truth
 from cratous.services.flight.result import FlightResult
 from cratous.services.flight.vehicle import VehicleNode
 from cratous.services.icarous import state as icarous
@@ -70,6 +70,7 @@ from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import (
     Foresees,
     FromInstance,
+    Guides,
     Line,
     Offers,
     Sensed,
@@ -153,7 +154,7 @@ class Flight:
         self.vehicle_states = {vid: node.first() for vid, node in self.vehicles.items()}
         configs = {
             vid: icarous.Config(
-                vid, mission.daa, projection, simulation.heartbeat_ms, certifies=True
+                vid, mission.daa, projection, simulation.heartbeat_ms, certifies=True, records=True
             )
             for vid in instances
         }
@@ -325,6 +326,9 @@ class Flight:
                     self._vehicle(vid, Held(self.now_ms, answer))
                 case Foresees(vid):
                     self._publish(conflict(answer), f"icarous/{vid}")
+                case Guides(vid):
+                    projection = self.icarous[vid].config.projection
+                    self._publish(guidance(answer, projection), f"icarous/{vid}")
                 case Steer(vid, epoch, velocity):
                     self.commands += 1
                     command = velocity_command(vid, self.commands, velocity)

@@ -100,15 +100,28 @@ def _soonest(
         return found
 
     last = 2 * STEPS // 3
-    found = first((0.0, *_either_side(TURNS_DEG)), last)
+    told = _told(state, course)
+    right_first = not told or told[0] >= 0
+    found = first((0.0, *told, *_either_side(TURNS_DEG, right_first)), last)
     until = found.step - SOONER if found is not None and found.lasting else last
-    wide = first(_either_side(WIDE_DEG), until)
+    wide = first(_either_side(WIDE_DEG, right_first), until)
     return wide if wide is not None and wide.lasting else found
 
 
-def _either_side(turns_deg: Sequence[int]) -> list[float]:
-    """Turns to the right and to the left [rad]."""
-    return [side * math.radians(k) for k in turns_deg for side in (1, -1)]
+def _told(state: State, course_rad: float) -> tuple[float, ...]:
+    """The turns off the course that the bands resolve with, the preferred one first, as far as small turns go [rad]."""
+    if state.bands is None:
+        return ()
+    from cratous.services.icarous.bands import resolutions
+
+    most = math.radians(TURNS_DEG[-1])
+    return tuple(turn for turn in resolutions(state.bands, course_rad) if abs(turn) <= most)
+
+
+def _either_side(turns_deg: Sequence[int], right_first: bool) -> list[float]:
+    """Turns to the right and to the left [rad], or to the left and to the right."""
+    sides = (1, -1) if right_first else (-1, 1)
+    return [side * math.radians(k) for k in turns_deg for side in sides]
 
 
 def _later(sensed: Sensed, choice: Choice, t_s: float) -> Sensed:
