@@ -14,6 +14,8 @@ from math import cos, radians, sin
 from random import Random
 from typing import Any
 
+from cratous.core.kernel import Vec2
+from cratous.core.permit.tubes import disc_within
 from cratous.services.campaign.changing import changing_mission
 
 Ranges = dict[str, tuple[float, float]]
@@ -34,9 +36,13 @@ KINDS: dict[str, Ranges] = {
 }
 CHANGES, MOST_CHANGES = "changes", 6
 """The kind of `services.campaign.changing`, which has no ranges; it draws so many changes at most."""
-COUNTS = ("intruders", "zones_beside", "zones_across", "bends", "keep_in", "cooperative")
+COUNTS = (
+    "intruders", "zones_beside", "zones_across", "bends", "keep_in", "cooperative", "apart_m",
+)  # fmt: skip
 """What a case may change beside ranges and values of the mission."""
 CASES = "cases"
+AGAIN = 100
+"""So often an intruder is drawn at most where it would start nearer than it may."""
 KEEP_IN = 50
 """The number of the keep-in."""
 BEND = 1000
@@ -71,11 +77,13 @@ class Draw:
         own = {name: tuple(bounds) for name, bounds in ranges.items()}
         self._ranges = {**COMMON, **KINDS.get(self.kind, {}), **own}
 
-    def __call__(self, name: str, number: int = 0) -> float:
-        """A parameter; number: of which intruder or zone, from 1, 0 if there is one for all."""
+    def __call__(self, name: str, number: int = 0, again: int = 0) -> float:
+        """A parameter; number: of which intruder or zone, from 1, 0 if there is one for all; again: how often it was drawn
+        before."""
         low, high = self._ranges[name]
         key = f"{name}[{number}]" if number else name
-        value = round(Random(f"{self._seed} {key}").uniform(low, high), 3)
+        once = f" again {again}" * bool(again)
+        value = round(Random(f"{self._seed} {key}{once}").uniform(low, high), 3)
         value = self._given.get(key, value)
         if name == "angle_deg" and self.kind in MIRRORED:
             value *= self.side(key)
@@ -113,7 +121,7 @@ def mission_of(
     tasks = [*_bends(draw, data, way), _task(1, (way, 0.0, ALTITUDE_M))]
     traffic = []
     for k in range(1, data.get("intruders", 1) + 1):
-        start, course_deg, fast = _intruder(draw, k, time)
+        start, course_deg, fast = _far_intruder(draw, k, time, way)
         if data.get("cooperative", False):
             vehicles.append(vehicle_at(k + 1, start, course_deg, fast))
             tasks.append(_task(k + 1, _ahead(start, course_deg, 2 * fast * time)))
@@ -137,9 +145,20 @@ def mission_of(
 Point = tuple[float, float, float]
 
 
-def _intruder(draw: Draw, k: int, time: float) -> tuple[Point, float, float]:
+def _far_intruder(draw: Draw, k: int, time: float, way: float) -> tuple[Point, float, float]:
+    """The first that is drawn of those that start at least `apart_m` from the vehicle; the last one of
+    AGAIN if none does."""
+    for again in range(AGAIN):
+        found = _intruder(draw, k, time, again)
+        north, east, _ = found[0]
+        if not disc_within(Vec2(north + way, east), 0.0, float(draw.data.get("apart_m", 0.0))):
+            break
+    return found
+
+
+def _intruder(draw: Draw, k: int, time: float, again: int) -> tuple[Point, float, float]:
     """Where it starts, its course [degrees] and its speed [m/s]."""
-    course_deg, fast = draw("angle_deg", k), draw("speed_m_s", k)
+    course_deg, fast = draw("angle_deg", k, again), draw("speed_m_s", k, again)
     alt = ALTITUDE_M + draw("height_m", k)
     if draw.kind == "random":
         draw_north, draw_east = _anywhere(draw, k)

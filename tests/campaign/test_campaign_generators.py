@@ -154,6 +154,22 @@ def test_each_seed_draws_one_of_the_cases(tmp_path: Path) -> None:
     assert seen == {"small", "large"}
 
 
+def test_an_intruder_that_would_start_too_near_is_drawn_anew() -> None:
+    generator = {"kind": "overtaking", "intruders": 2}
+    drawn_anew = 0
+    for seed in range(1, 13):
+        (usual, before), (far, draw) = (
+            mission_of({**generator, **more}, "a", seed) for more in ({}, {"apart_m": 1100})
+        )
+        own = far["vehicles"][0]["position"]["north_m"]
+        for one in (t["position"] for t in far["traffic"]):
+            assert hypot(one["north_m"] - own, one["east_m"]) > 1100
+        drawn_anew += usual["traffic"] != far["traffic"]
+        same = {name for name in draw.drawn if not name.startswith(("angle", "speed"))}
+        assert all(draw.drawn[name] == before.drawn[name] for name in same)
+    assert drawn_anew > 3
+
+
 def test_a_search_is_not_over_several_spaces() -> None:
     generator = {"kind": "aimed", "cases": CASES}
     campaign = Campaign("made", generator=generator, seeds=range(1, 2))
