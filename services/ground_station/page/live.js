@@ -82,6 +82,7 @@ export class Live {
   take(update) {
     const { tracks } = this.recording;
     for (const [key, rows] of Object.entries(update.more || {})) this.recording[key].push(...rows);
+    for (const [id, rows] of Object.entries(update.bands || {})) (this.recording.bands[id] ??= []).push(...rows);
     if (update.heads) for (const id of Object.keys(this.heads)) if (tracks[id].at(-1) === this.heads[id]) tracks[id].pop();
     for (const [id, rows] of Object.entries(update.tracks || {})) (tracks[id] ??= []).push(...rows);
     if (update.heads) {

@@ -1,6 +1,6 @@
 // The tables beside the map. All text is set as text, never as markup.
 
-import { authorityAt, lastOf, pairsAt, positionAt } from "./instant.js";
+import { alertsAt, authorityAt, lastOf, pairsAt, positionAt } from "./instant.js";
 import { seconds } from "./units.js";
 
 const FEW = 6;
@@ -28,7 +28,7 @@ export function row(...cells) {
 
 export function aircraft(recording, state, words) {
   by("at").textContent = seconds(state.time);
-  const names = new Map(recording.vehicles.map(v => [String(v.id), v]));
+  const alerts = alertsAt(recording, state), names = new Map(recording.vehicles.map(v => [String(v.id), v]));
   const rows = Object.keys(recording.tracks).flatMap(id => {
     const at = positionAt(recording.tracks[id], state.time), ours = names.get(id), seen = at && at.seen;
     const name = ours ? `${id} ${ours.label || ""}` : `${id} (traffic)`;
@@ -47,6 +47,7 @@ export function aircraft(recording, state, words) {
     } else {
       told.append(seen ? "others' traffic" : at ? `not seen since ${seconds(at.last)}` : "not there yet");
     }
+    if (seen && alerts[id]) told.append(alarm(alerts[id]));
     for (const made of [first, second]) {
       made.dataset.aircraft = id;
       made.classList.toggle("picked", state.picked === id);
@@ -54,6 +55,13 @@ export function aircraft(recording, state, words) {
     return [first, second];
   });
   table("aircraft", [["aircraft"], ["altitude", "n"], ["speed", "n"], ["climb", "n"], ["course", "n"]], rows);
+}
+
+function alarm({ level, time_s, own }) {
+  const badge = document.createElement("b");
+  badge.className = `alert level-${Math.min(Math.ceil(level), 3)}`;
+  badge.textContent = `alert ${level} for ${own}${time_s === null ? "" : `, violation in ${time_s.toFixed(1)} s`}`;
+  return badge;
 }
 
 function link(recording, id, time) {
