@@ -1,6 +1,7 @@
 // The tables beside the map. All text is set as text, never as markup.
 
 import { alertsAt, authorityAt, lastOf, pairsAt, positionAt } from "./instant.js";
+import * as proofs from "./proofs.js";
 import { seconds } from "./units.js";
 
 const FEW = 6;
@@ -111,13 +112,22 @@ export function verdicts(recording, state, go) {
     if (one.time_ms !== null && (one.margin !== null || one.verdict !== "holds")) {
       const jump = document.createElement("button");
       jump.type = "button";
+      jump.className = "jump";
       jump.textContent = seconds(one.time_ms);
       jump.addEventListener("click", () => go(one.time_ms));
       when.append(jump);
     }
+    if (said.proofs) {
+      const parts = [...said.details.keys()].filter(n => whole ? said.details[n].requirement === one.requirement : said.details[n] === one);
+      const why = document.createElement("button");
+      why.type = "button";
+      why.textContent = "proofs";
+      why.addEventListener("click", () => proofs.show(recording, whole ? `${one.requirement} ${one.title}: ${one.verdict}` : `${one.requirement}: ${one.verdict}`, parts));
+      cell(made, "", "n").append(why);
+    }
     return made;
   });
-  table("verdicts", [["requirement"], ["verdict"], ["margin", "n"], ["at", "n"]], rows);
+  table("verdicts", [["requirement"], ["verdict"], ["margin", "n"], ["at", "n"], ...(said.proofs ? [["why", "n"]] : [])], rows);
 }
 
 export function tasks(recording, state) {

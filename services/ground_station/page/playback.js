@@ -100,7 +100,7 @@ export class Playback {
   }
 
   key(event) {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest?.("dialog")) return;
     const tag = event.target.tagName, onMap = this.maps.find(map => map.canvas === event.target);
     if (tag === "SELECT" || (tag === "BUTTON" && [" ", "Enter"].includes(event.key))) return;
     const time = event.shiftKey ? 10000 : 1000;
