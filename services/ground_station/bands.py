@@ -79,6 +79,23 @@ class Bands:
         """
         return {vehicle: [rows[k] for k in sorted(rows)] for vehicle, rows in self._rows.items()}
 
+    def forget(self, before_ms: int) -> None:
+        """Let go of what is older."""
+        first = before_ms // PERIOD_MS
+        for vehicle, rows in list(self._rows.items()):
+            self._rows[vehicle] = {k: row for k, row in rows.items() if k >= first}
+            if not self._rows[vehicle]:
+                del self._rows[vehicle]
+
+    @property
+    def size(self) -> int:
+        """How many rows, bands and intruders are kept."""
+        return sum(
+            1 + sum(map(len, row["bands"].values())) + len(row["intruders"])
+            for rows in self._rows.values()
+            for row in rows.values()
+        )
+
     def take_new(self) -> dict[str, list[dict[str, Any]]]:
         """What came since the last time that this was asked."""
         taken, self._new = self._new, {}

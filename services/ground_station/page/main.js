@@ -46,6 +46,7 @@ class Station extends Playback {
 
   grown(updates) {
     const { recording } = this, go = time => this.go(time);
+    if (this.live?.forgot) { this.map.trails.forget(); this.live.forgot = false; }
     this.map.grown();
     this.chart.grown();
     this.spectrum.grown();
@@ -61,7 +62,7 @@ class Station extends Playback {
     super.go(time);
   }
 
-  play(on) { if (this.live) this.live.toggle(); else super.play(on); }
+  play(on) { if (this.recording.attached) this.go(this.end_ms); else if (this.live) this.live.toggle(); else super.play(on); }
 
   rate(by_) { if (this.live) this.live.rate(by_); else super.rate(by_); }
 

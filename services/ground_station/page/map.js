@@ -44,7 +44,7 @@ export class FlightMap {
     const { time } = state, recording = this.recording;
     for (const zone of recording.zones) if (zone.from_ms <= time && time < (zone.to_ms ?? Infinity)) this.zone(zone);
     for (const seen of recording.footprints) if (seen.time_ms <= time) this.footprint(seen);
-    for (const task of recording.tasks) this.task(task);
+    for (const task of recording.tasks) if (time < (task.to_ms ?? Infinity)) this.task(task);
     for (const [id, route] of routesAt(recording, time)) this.route(id, route);
     this.past(pen, width, height, time);
     for (const takeover of recording.takeovers) if (takeover.from_ms <= time) this.takeover(takeover);
