@@ -246,3 +246,10 @@ def test_the_command_takes_terrain_and_warns(
     arguments = ["sim", str(tmp_path / "s.xml"), "--until", "20", "--terrain", str(only)]
     assert main(arguments) == 0
     assert capsys.readouterr().err.count("WARN: the terrain has no tile for 45.00") == 1
+    bad = tmp_path / "bad.dt0"
+    bad.write_bytes(tile.read_bytes()[:-1] + b"\xff")
+    out = tmp_path / "told.bin"
+    arguments = ["sim", str(tmp_path / "s.xml"), "--terrain", str(bad), "-o", str(out)]
+    assert main(arguments) == 2
+    assert "bad.dt0: record 120 of 121" in capsys.readouterr().err
+    assert not out.exists(), "nothing half told"
