@@ -102,7 +102,7 @@ def fly_encounter(mission: Mission, *, daa: bool = True) -> Encounter:
 def ways_of(mission: Mission) -> dict[int, tuple[Position, ...]]:
     """The way of each vehicle: from where it is through its must_fly points, in the order of the file.
 
-    BadInput for relations, changes in flight, faults of the bridge, sensors, other tasks, tasks that are not for exactly one
+    BadInput for relations, changes in flight, faults of the bridge, sensors, `link_loss`, other tasks, tasks that are not for exactly one
     vehicle, and vehicles without a task: an encounter flies nothing of the kind; and where no vehicle is protected,
     since nothing would be judged.
     """
@@ -111,6 +111,7 @@ def ways_of(mission: Mission) -> dict[int, tuple[Position, ...]]:
         ("changes", mission.changes),
         ("simulation.bridge_faults", isinstance(mission.simulation, FaultySimulation)),
         ("sensing", mission.sensing is not None),
+        ("link_loss", mission.link_loss is not None),
     ):
         if there:
             raise _not_flown(mission, item, "none", "some")

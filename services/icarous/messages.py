@@ -69,6 +69,18 @@ class Foresees(NamedTuple):
     resolution: str
 
 
+class WithoutLink(NamedTuple):
+    """To the record. mode, chosen: what is flown from now on while UxAS is not heard, and what the mission wants, by
+    the numbers of `core.authority.link_loss`; heard_ms: when UxAS was last heard."""
+
+    vehicle_id: int
+    now_ms: int
+    mode: int
+    chosen: int
+    heard_ms: int
+    reason: str
+
+
 class Offers(NamedTuple):
     """To the gate: a certificate for what is commanded next."""
 
@@ -100,4 +112,4 @@ class Up(NamedTuple):
 
 
 ToInstance = Line | Sensed
-FromInstance = Wish | Foresees | Offers | Uncertified | Steer | Up
+FromInstance = Wish | Foresees | WithoutLink | Offers | Uncertified | Steer | Up
