@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import math
 from dataclasses import replace
@@ -18,6 +19,7 @@ from cratous.services.flight.encounter import ways_of
 from cratous.services.flight.loop import fly
 from cratous.services.loading import load
 from cratous.services.monitor import Monitor
+from cratous.services.parameters.listing import parameters_of
 from cratous.services.pipeline.plan import make_plan
 from cratous.services.processes.coverage import told_of
 from cratous.services.system_model.replay import replay
@@ -112,8 +114,8 @@ def test_it_finishes_the_known_way(root: Path, tmp_path: Path) -> None:
 
 
 def test_what_is_not_permitted_waits_in_a_circle(root: Path, tmp_path: Path) -> None:
-    faults = {"cut_s": 30, "reconnect_s": 60}
-    shorter = {"limit_s": 62, "bridge_faults": faults}
+    faults = {"cut_s": 30, "reconnect_s": 80}
+    shorter = {"limit_s": 82, "bridge_faults": faults}
     found = flown(mission_file(root, tmp_path, traffic=[AHEAD], simulation=shorter))
     assert [name for _, name in found.modes()] == ["Loiter", "Return", "Linked"]
     first = found.told("LinkLossState")[0]
@@ -121,6 +123,18 @@ def test_what_is_not_permitted_waits_in_a_circle(root: Path, tmp_path: Path) -> 
     verdicts = found.verdicts()
     for name in ("G1", "G2", "G4", ROW):
         assert verdicts[name].outcome is Outcome.HOLDS, verdicts[name]
+
+
+def test_a_circle_keeps_the_thresholds_of_time(root: Path, tmp_path: Path) -> None:
+    """The disc of the circle is clear of who passes; a lap of it would still head for them, so another way is flown."""
+    passing = {"id": 10, "position": {"north_m": 2715.8, "east_m": 1439.4, "alt_m": 290.7}, "velocity": {"north_m_s": -15.41, "east_m_s": -12.34}}  # fmt: skip
+    shorter = {"limit_s": 125, "bridge_faults": {"cut_s": 45}}
+    found = flown(mission_file(
+        root, tmp_path, link_loss={"choice": "loiter", "after_s": 6}, traffic=[passing], simulation=shorter,
+    ))  # fmt: skip
+    assert [name for _, name in found.modes()] == ["Loiter"]
+    assert found.verdicts()["G2"].outcome is Outcome.HOLDS
+    assert any("heading" in body.Resolution for body in found.told("Conflict"))
 
 
 def test_a_short_break_is_no_loss(root: Path, tmp_path: Path) -> None:
@@ -180,9 +194,27 @@ def test_what_makes_no_sense_is_refused(
     assert item in str(caught.value)
 
 
+def test_how_long_uxas_may_be_silent_is_a_parameter(returned: Flown, root: Path) -> None:
+    path = root / "tests/missions/link_loss.yaml"
+    found = {row.name: row for row in parameters_of(returned.mission, path)}
+    row = found["link_loss.after_s"]
+    assert (row.value, row.default, row.low, row.high) == (3, 5, 1, 3600)
+
+
 def test_it_is_not_flown_in_processes_nor_as_an_encounter(returned: Flown) -> None:
     mission = replace(returned.mission, simulation=Simulation(), relations="")
     for flies in (told_of, ways_of):
         with pytest.raises(BadInput) as caught:
             flies(mission)
         assert "link_loss" in str(caught.value)
+
+
+def test_the_diagram_in_the_guide_is_the_kernel_s(root: Path) -> None:
+    spec = importlib.util.spec_from_file_location(
+        "machine", root / "docs/tools/link_loss_machine.py"
+    )
+    assert spec is not None
+    assert spec.loader is not None
+    machine = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(machine)
+    assert machine.block() in (root / "docs/guides/detect-and-avoid.md").read_text("utf-8")
