@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from cratous.core.authority.cycle import Cycle
 from cratous.core.authority.timeliness import lasted
@@ -19,6 +19,9 @@ from cratous.services.mission.frames import Projection
 from cratous.spec.authority.cycle import MONITOR
 from cratous.spec.mission import Daa, Position
 
+if TYPE_CHECKING:
+    from cratous.services.icarous.bands import Bands
+
 START = Cycle(MONITOR, 0, False, 0, False, 0)
 """UxAS flies, and has always done so."""
 
@@ -27,8 +30,8 @@ class Config(NamedTuple):
     """What does not change: whose instance, what it keeps clear of, and the heartbeat [ms].
 
     original: UxAS's end is the original's, whose WAYPT lines carry a running count; certifies: what it commands is
-    offered to the gate with a certificate; lost_link: what it does while UxAS is not heard, None where the mission does
-    not say."""
+    offered to the gate with a certificate; records: alerts and bands go to a record; lost_link: what it does while UxAS
+    is not heard, None where the mission does not say."""
 
     vehicle_id: int
     daa: Daa
@@ -36,6 +39,7 @@ class Config(NamedTuple):
     heartbeat_ms: int
     original: bool = False
     certifies: bool = False
+    records: bool = False
     lost_link: LostLink | None = None
 
 
@@ -74,8 +78,8 @@ class State:
     """cycle: who flies, as the kernels have it; told: what has come over the bridge; threats and
     courses: of the last heartbeat; held: the manoeuvre being flown; goal: index of the waypoint that
     it makes for; beats: heartbeats so far; met: the intruders because of which it has taken over; search: of the
-    manoeuvre that is over soonest; ways: of the other vehicles of ours; asking: UxAS for a way back; no_link: what it does while UxAS is not
-    heard."""
+    manoeuvre that is over soonest; ways: of the other vehicles of ours; asking: UxAS for a way back; bands: what detect
+    and avoid said last, while a loss is foreseen or ICAROUS flies; no_link: what it does while UxAS is not heard."""
 
     cycle: Cycle = START
     told: Told = field(default_factory=Told)
@@ -88,6 +92,7 @@ class State:
     search: Search = IDLE
     ways: Ways = ()
     asking: Asking = field(default_factory=Asking)
+    bands: Bands | None = None
     no_link: NoLink = field(default_factory=NoLink)
 
     @property
