@@ -7,7 +7,9 @@ from typing import Any
 from cratous.core.authority.cycle import Cycle
 from cratous.core.authority.gate import Gate
 from cratous.core.authority.link_end import LinkEnd
+from cratous.core.authority.link_loss import Loss
 from cratous.proofs.claim import Claim
+from cratous.spec.authority import link_loss
 
 
 def any_gate(c: Claim) -> Gate:
@@ -40,3 +42,13 @@ def any_times(c: Claim) -> tuple[Any, ...]:
     )
     c.premise(c.all_of(soon >= 0, bound >= 0, least >= 0, least <= 2**56))
     return now, soon, heard, bound, least
+
+
+def any_loss(c: Claim) -> tuple[Loss, tuple[Any, ...]]:
+    """Any mode of a vehicle whose link may be lost, with whatever `loss_step` is told at a heartbeat: what is
+    chosen, when UxAS was heard, the time, the bound, whether a way is permitted, and whether it is ended."""
+    loss = Loss(c.integer("mode_without"), c.integer("since_ms"))
+    chosen, heard, now, bound = (c.integer(n) for n in ("chosen", "heard", "now", "silence"))
+    c.premise(c.define(link_loss.is_mode, loss.mode))
+    c.premise(c.all_of(c.define(link_loss.may_be_chosen, chosen), bound >= 0))
+    return loss, (chosen, heard, now, bound, c.boolean("permitted"), c.boolean("ended"))

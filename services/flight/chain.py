@@ -80,7 +80,7 @@ class Chain:
 
     join_m: arc length on `track` at which the planned path begins again after an interruption;
     base_m: arc length of the task's path that `track` stands for beyond join_m; away: the path
-    of the task has been left and is not reached again yet; leg: what ICAROUS did on it; told_version: the route_version that
+    of the task has been left and is not reached again yet; unlinked: its vehicle is not heard; leg: what ICAROUS did on it; told_version: the route_version that
     ICAROUS was told, -1 for none.
     """
 
@@ -99,6 +99,7 @@ class Chain:
     route_version: int = 0
     told_version: int = -1
     suspended: bool = False
+    unlinked: bool = False
     away: bool = False
     leg: Leg = field(default_factory=Leg)
 

@@ -116,7 +116,7 @@ def fly_encounter(mission: Mission, *, daa: bool = True) -> Encounter:
 def ways_of(mission: Mission) -> dict[int, tuple[Position, ...]]:
     """The way of each vehicle: from where it is through its must_fly points, in the order of the file.
 
-    BadInput for relations, changes in flight, faults of the bridge, other tasks, tasks that are not for exactly one
+    BadInput for relations, changes in flight, faults of the bridge, `link_loss`, other tasks, tasks that are not for exactly one
     vehicle, and vehicles without a task: an encounter flies nothing of the kind; and where no vehicle is protected,
     since nothing would be judged.
     """
@@ -124,6 +124,7 @@ def ways_of(mission: Mission) -> dict[int, tuple[Position, ...]]:
         ("relations", mission.relations),
         ("changes", mission.changes),
         ("simulation.bridge_faults", isinstance(mission.simulation, FaultySimulation)),
+        ("link_loss", mission.link_loss is not None),
     ):
         if there:
             raise _not_flown(mission, item, "none", "some")

@@ -30,6 +30,8 @@ from cratous.services.flight.messages import (
     Begin,
     Closing,
     FromExecutive,
+    HeardAgain,
+    NotHeard,
     NotPlanned,
     Over,
     Planned,
@@ -94,6 +96,10 @@ class Executive:
                 interruption.propose(self.config, state, message, out)
             case TakeBack():
                 state = interruption.take_back(self.config, state, message, out)
+            case NotHeard():
+                state = interruption.unlinked(state, message)
+            case HeardAgain():
+                state = interruption.linked(self.config, state, message, out)
             case Report(now_ms):
                 state = self._report(state, now_ms, out)
             case Closing():

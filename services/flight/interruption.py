@@ -1,4 +1,4 @@
-"""ICAROUS takes a vehicle and offers it back: what becomes of its chain."""
+"""ICAROUS takes a vehicle and offers it back, or is not heard: what becomes of its chain."""
 
 from __future__ import annotations
 
@@ -9,13 +9,16 @@ from cratous.services.flight.executive_outputs import command, route
 from cratous.services.flight.executive_state import Config, Out, State
 from cratous.services.flight.messages import (
     Because,
+    HeardAgain,
     Left,
+    NotHeard,
     Proposed,
     RouteAsked,
     Suspend,
     TakeBack,
 )
 from cratous.services.flight.remaining_path import leaving_m
+from cratous.services.flight.task_transitions import NAME as EXECUTIVE
 from cratous.services.flight.task_transitions import NO_WAY, circling, fail, progress
 from cratous.spec.authority.cycle import TAKE_OVER
 from cratous.spec.executive import FAIL_TASK
@@ -85,6 +88,35 @@ def take_back(config: Config, state: State, message: TakeBack, out: Out) -> Stat
     if chain.suspended:
         chain = replace(chain, leg=chain.leg.given_back(now_ms))
     chain = replace(chain, suspended=suspended_after(chain.suspended, message.act))
+    return _flown_back(config, state, chain, now_ms, NAME, out)
+
+
+def unlinked(state: State, message: NotHeard) -> State:
+    """A vehicle is not heard: it acts by itself, and UxAS lets go of it. What ICAROUS flies meanwhile gives up no leg."""
+    chain = state.find(message.vehicle_id)
+    if chain is None:
+        return state
+    leg = chain.leg.given_back(message.now_ms) if chain.suspended else chain.leg
+    return state.put(replace(chain, suspended=True, unlinked=True, leg=leg))
+
+
+def linked(config: Config, state: State, message: HeardAgain, out: Out) -> State:
+    """A vehicle is heard again. If UxAS still has it it is flown on from where it is; else ICAROUS hands it back."""
+    vid, now_ms, by_uxas = message
+    chain = state.find(vid)
+    if chain is None or not chain.unlinked:
+        return state
+    chain = replace(chain, unlinked=False, leg=chain.leg._replace(taken_ms=now_ms))
+    if not by_uxas:
+        return state.put(chain)
+    return _flown_back(config, state, replace(chain, suspended=False), now_ms, EXECUTIVE, out)
+
+
+def _flown_back(
+    config: Config, state: State, chain: Chain, now_ms: int, source: str, out: Out
+) -> State:
+    """UxAS flies the vehicle of a chain again, in the epoch that it knows."""
+    vid = chain.vehicle.id
     ways, air = config.ways(state.zones), state.air(vid)
     back = ways.back(chain, air)
     act = way_act(back is not None, chain.item is not None)
@@ -99,4 +131,4 @@ def take_back(config: Config, state: State, message: TakeBack, out: Out) -> Stat
         if chain.phase is Phase.TASK:
             entered = replace(entered, join_m=back.join_m, base_m=back.flown_m, away=True)
         state = state.put(entered)
-    return command(config, route(state, vid, out), vid, message.epoch, out, NAME)
+    return command(config, route(state, vid, out), vid, state.epoch(vid), out, source)

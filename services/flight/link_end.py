@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from cratous.bridge.text_protocol import (
@@ -33,15 +32,21 @@ from cratous.bridge.text_protocol import (
     Waypoint,
     WaypointReached,
 )
-from cratous.core.authority.gate import UXAS, Gate
-from cratous.core.authority.link_end import LinkEnd, link_mode, link_sign
+from cratous.core.authority.link_end import link_mode, link_sign
 from cratous.core.routing.polylines import Track
 from cratous.services.flight import link_lines
 from cratous.services.flight.link_lines import MOST_AGAIN
+from cratous.services.flight.link_peers import (
+    Peer,
+    State,
+    down_to,
+    links,
+    of_others,
+    to_others,
+)
 from cratous.services.flight.messages import (
     Beat,
     Connected,
-    Down,
     Flown,
     FromLinkEnd,
     GateIs,
@@ -75,61 +80,13 @@ from cratous.spec.authority.link_end import (
     SUSPEND,
     TAKE_BACK,
 )
-from cratous.spec.mission import Position, Velocity, Zone
+from cratous.spec.mission import Velocity, Zone
 from cratous.spec.records import replace
 
 LINK_LOST_MS = 2000
 """A vehicle's ICAROUS counts as silent when nothing came up for this long [ms]."""
-START = LinkEnd(False, 0, True)
-"""UxAS commands and the instance is heard."""
-UNTOUCHED = Gate(UXAS, 0, False)
-"""The gate of a vehicle that has not reported anything yet."""
 NAME = "uxas/ics"
 """The sender of what this end publishes."""
-
-
-@dataclass(frozen=True)
-class Peer:
-    """What this end knows of one instance.
-
-    end: who commands and whether it is heard, as the kernels have it; open: the connection stands;
-    marks_m: arc length of each waypoint told, from from_m of the vehicle's track on; reached: how
-    many of them are told to be reached; down: heartbeats sent; heard_ms: when it was last heard; gate: as
-    the vehicle has reported it last; way: the lines of the way told last; again: how often lines of the
-    plan and of which zone were sent again, ((tag, zone), times); flies: the way by which UxAS flies it, steered: to which
-    velocity ICAROUS does, as the others' instances are told.
-    """
-
-    vehicle_id: int
-    heard_ms: int
-    end: LinkEnd = START
-    open: bool = True
-    marks_m: tuple[float, ...] = ()
-    from_m: float = 0.0
-    reached: int = 0
-    down: int = 0
-    gate: Gate = UNTOUCHED
-    way: tuple[Message, ...] = ()
-    again: tuple[tuple[tuple[str, int], int], ...] = ()
-    flies: tuple[Position, ...] = ()
-    steered: Velocity | None = None
-
-
-@dataclass(frozen=True)
-class State:
-    """All that this end remembers: the zones in force, and its peers by id."""
-
-    zones: tuple[Zone, ...] = ()
-    peers: tuple[Peer, ...] = ()
-
-    def peer(self, vehicle_id: int) -> Peer | None:
-        """What is known of a vehicle's instance; None if it has none."""
-        return next((p for p in self.peers if p.vehicle_id == vehicle_id), None)
-
-    def with_peer(self, peer: Peer) -> State:
-        """The same with this peer in the place of the one of its vehicle."""
-        peers = (peer if p.vehicle_id == peer.vehicle_id else p for p in self.peers)
-        return replace(self, peers=tuple(peers))
 
 
 Step = tuple[State, tuple[FromLinkEnd, ...]]
@@ -137,13 +94,22 @@ Step = tuple[State, tuple[FromLinkEnd, ...]]
 
 @dataclass(frozen=True)
 class UxasEnd:
-    """The service; what does not change: the projection of the mission frame. live: ICAROUS may ask for ways back."""
+    """The service; what does not change: the projection of the mission frame. live: ICAROUS may ask for ways back;
+    alone: a vehicle acts by itself without the link, so UxAS lets go of it meanwhile."""
 
     projection: Projection
     live: bool = False
+    alone: bool = False
 
     def handle(self, state: State, message: ToLinkEnd) -> Step:
         """One step: the state afterwards, and what to send, in order."""
+        after, out = self._handled(state, message)
+        if not self.alone:
+            return after, out
+        now_ms = getattr(message, "now_ms", 0)
+        return after, (*out, *links(state, after, now_ms))
+
+    def _handled(self, state: State, message: ToLinkEnd) -> Step:
         match message:
             case Heard(_, now_ms, LinesMissing() as line) if state.peer(message.vehicle_id):
                 return self._again(state, message.vehicle_id, line, now_ms)
@@ -167,7 +133,7 @@ class UxasEnd:
         after, out = step
         state = state.with_peer(after)
         if (after.flies, after.steered) != (peer.flies, peer.steered):
-            out = (*_to_others(state, after, self.projection), *out)
+            out = (*to_others(state, after, self.projection), *out)
         return state, out
 
     def _watch(self, state: State, now_ms: int) -> Step:
@@ -202,7 +168,7 @@ class UxasEnd:
         if not told:
             note = f"{text} are asked for again, and there are none"
         elif times in range(MOST_AGAIN):
-            out, note = (*out, *_down(peer, told)), f"{text} are sent again"
+            out, note = (*out, *down_to(peer, told)), f"{text} are sent again"
             peer = replace(peer, again=tuple({**dict(peer.again), key: times + 1}.items()))
         else:
             note = f"{text} are missing after they were sent again {times} times: not in force"
@@ -234,11 +200,11 @@ class UxasEnd:
             case Seen():
                 return self._seen(peer, message)
             case Left(_, position):
-                return peer, _down(peer, [link_lines.reset_to(position, self.projection)])
+                return peer, down_to(peer, [link_lines.reset_to(position, self.projection)])
             case Heard(_, now_ms, line):
                 return _heard(peer, line, now_ms)
             case Proposed(_, number, way, speed):
-                return peer, _down(peer, link_lines.proposal(way, speed, number, self.projection))
+                return peer, down_to(peer, link_lines.proposal(way, speed, number, self.projection))
             case GateIs(_, gate):
                 return replace(peer, gate=gate), ()
             case Unreadable(_, now_ms, text):
@@ -261,7 +227,7 @@ class UxasEnd:
                 state = replace(state, peers=(*state.peers, peer))
             told: list[Message] = [UxasPlans()] if self.live else []
             told += [*self._fences(state.zones, 0), *link_lines.onward(peer.way, peer.reached)]
-            out += _down(peer, told + _of_others(state, vid, self.projection))
+            out += down_to(peer, told + of_others(state, vid, self.projection))
             out.append(_status(peer, True, now_ms, "connected again" if old else "connected"))
         return state, tuple(out)
 
@@ -271,9 +237,9 @@ class UxasEnd:
         fences = self._fences(zones, known if more else 0)
         out: list[FromLinkEnd] = []
         for peer in state.peers:
-            others = _of_others(state, peer.vehicle_id, self.projection)
+            others = of_others(state, peer.vehicle_id, self.projection)
             anew = [HardReset(), *fences, *link_lines.onward(peer.way, peer.reached), *others]
-            out += _down(peer, fences if more else anew)
+            out += down_to(peer, fences if more else anew)
             state = state.with_peer(replace(peer, again=()))
         return replace(state, zones=zones), tuple(out)
 
@@ -289,7 +255,7 @@ class UxasEnd:
         told = link_lines.way(track.points, route.speed_m_s, self.projection)
         after = replace(peer, marks_m=track.s_m, from_m=route.from_m, reached=0, again=())
         after = replace(after, way=tuple(told), flies=track.points, steered=None)
-        return after, _down(peer, told)
+        return after, down_to(peer, told)
 
     def _seen(self, peer: Peer, seen: Seen) -> OfOne:
         """POSTN, ATTUD and OBJCT to one instance."""
@@ -298,7 +264,7 @@ class UxasEnd:
         told = link_lines.states(peer.vehicle_id, seen.aircraft, places, seen.time_ms, attitude)
         after = replace(peer, down=peer.down + peer.open)
         beat = (_heartbeat(after, seen.now_ms, "Down", after.down),) if peer.open else ()
-        return after, (*_down(peer, told), *beat)
+        return after, (*down_to(peer, told), *beat)
 
     def _beat(self, state: State, beat: Beat) -> Step:
         """POSTN, ATTUD and OBJCT to every instance; what to publish of it."""
@@ -309,7 +275,7 @@ class UxasEnd:
             told = link_lines.states(peer.vehicle_id, aircraft, places, beat.now_ms, lines=lines)
             count = peer.down + peer.open
             peers.append(replace(peer, down=count))
-            out += _down(peer, told)
+            out += down_to(peer, told)
             if peer.open:
                 out.append(_heartbeat(peer, beat.now_ms, "Down", count))
         return replace(state, peers=tuple(peers)), tuple(out)
@@ -319,25 +285,11 @@ ToOne = Route | Flown | Seen | Left | Heard | Unreadable | Lost | GateIs | Propo
 OfOne = tuple[Peer, tuple[FromLinkEnd, ...]]
 
 
-def _to_others(state: State, peer: Peer, projection: Projection) -> tuple[Down, ...]:
-    """How a vehicle flies, to the instances of the others."""
-    told = link_lines.way_of_another(peer.vehicle_id, peer.steered or peer.flies, projection)
-    others = (p for p in state.peers if p.vehicle_id != peer.vehicle_id)
-    return tuple(down for p in others for down in _down(p, told))
-
-
-def _of_others(state: State, vehicle_id: int, projection: Projection) -> list[Message]:
-    """How the others fly, to the instance of one vehicle."""
-    known = {p.vehicle_id: p.steered or p.flies for p in state.peers if p.vehicle_id != vehicle_id}
-    told = (link_lines.way_of_another(vid, how, projection) for vid, how in known.items() if how)
-    return [line for lines in told for line in lines]
-
-
 def _flown(peer: Peer, s_m: float) -> OfOne:
     """WPRCH for every waypoint that has been passed since the last time."""
     passed = bisect_right(peer.marks_m, s_m - peer.from_m + 1e-6)
     reached = [WaypointReached(k) for k in range(peer.reached, passed)]
-    return replace(peer, reached=max(peer.reached, passed)), _down(peer, reached)
+    return replace(peer, reached=max(peer.reached, passed)), down_to(peer, reached)
 
 
 def _heard(peer: Peer, line: Message, now_ms: int) -> OfOne:
@@ -385,11 +337,6 @@ def _sign(peer: Peer, event: int, now_ms: int, note: str) -> OfOne:
     if linked.act in (SAY_HEARD, SAY_LOST, SAY_SILENT):
         return after, (_status(after, after.end.alive, now_ms, note),)
     return after, ()
-
-
-def _down(peer: Peer, told: Sequence[Message]) -> tuple[Down, ...]:
-    """Lines for an instance, if there are any and its connection stands."""
-    return (Down(peer.vehicle_id, tuple(told)),) if told and peer.open else ()
 
 
 def _status(peer: Peer, alive: bool, now_ms: int, note: str) -> Say:

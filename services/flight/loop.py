@@ -19,7 +19,7 @@ from cratous.bridge import lmcp
 from cratous.bridge.loopback import Bridge
 from cratous.core.authority.gate import ICAROUS
 from cratous.services.bus import Bus
-from cratous.services.flight import executive_state, link_end
+from cratous.services.flight import executive_state, link_end, link_peers
 from cratous.services.flight.arrivals import arrivals
 from cratous.services.flight.commands import gated, velocity_command
 from cratous.services.flight.dynamics import AirState, floor_of, traffic_state
@@ -40,10 +40,12 @@ from cratous.services.flight.messages import (
     FromExecutive,
     FromLinkEnd,
     FromVehicle,
+    HeardAgain,
     Held,
     LimitsAre,
     Look,
     Move,
+    NotHeard,
     NotPlanned,
     OnBoard,
     Over,
@@ -62,9 +64,10 @@ from cratous.services.flight.messages import (
     Watch,
     Wished,
 )
-from cratous.services.flight.notices import conflict, guidance, truth
+from cratous.services.flight.notices import conflict, guidance, link_loss_state, truth
 from cratous.services.flight.result import FlightResult
 from cratous.services.flight.vehicle import VehicleNode
+from cratous.services.flight.without_link import lost_link
 from cratous.services.icarous import state as icarous
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import (
@@ -79,6 +82,7 @@ from cratous.services.icarous.messages import (
     Uncertified,
     Up,
     Wish,
+    WithoutLink,
 )
 from cratous.services.mission.frames import Projection
 from cratous.services.sensing import surveillance
@@ -137,7 +141,8 @@ class Flight:
         self.executive = Executive(Config(mission, projection, instances))
         self.executive_state = executive_state.first_state(mission, plan)
         live = isinstance(mission, LivePlanningMission)
-        self.link, self.link_state = UxasEnd(projection, live), link_end.State()
+        alone = mission.link_loss is not None
+        self.link, self.link_state = UxasEnd(projection, live, alone), link_peers.State()
         self.vehicles = {
             v.id: VehicleNode(v, projection, simulation.step_ms / 1000, floor, ground)
             for v in sorted(mission.vehicles, key=lambda v: v.id)
@@ -145,7 +150,13 @@ class Flight:
         self.vehicle_states = {vid: node.first() for vid, node in self.vehicles.items()}
         configs = {
             vid: icarous.Config(
-                vid, mission.daa, projection, simulation.heartbeat_ms, certifies=True, records=True
+                vid,
+                mission.daa,
+                projection,
+                simulation.heartbeat_ms,
+                certifies=True,
+                records=True,
+                lost_link=lost_link(mission, vid),
             )
             for vid in instances
         }
@@ -300,7 +311,7 @@ class Flight:
             match answer:
                 case Say(body, source):
                     self._publish(body, source)
-                case Suspend() | TakeBack() | RouteAsked():
+                case Suspend() | TakeBack() | RouteAsked() | NotHeard() | HeardAgain():
                     self._executive(answer)
                 case LimitsAre(vid) | Look(vid):
                     self._vehicle(vid, answer)
@@ -316,6 +327,8 @@ class Flight:
                     self._vehicle(vid, Held(self.now_ms, answer))
                 case Foresees(vid):
                     self._publish(conflict(answer), f"icarous/{vid}")
+                case WithoutLink(vid):
+                    self._publish(link_loss_state(answer), f"icarous/{vid}")
                 case Guides(vid):
                     projection = self.icarous[vid].config.projection
                     self._publish(guidance(answer, projection), f"icarous/{vid}")

@@ -202,6 +202,21 @@ class TakeBack(NamedTuple):
     epoch: int
 
 
+class NotHeard(NamedTuple):
+    """Where the mission says what is flown without the link: a vehicle's ICAROUS is not heard any more."""
+
+    vehicle_id: int
+    now_ms: int
+
+
+class HeardAgain(NamedTuple):
+    """It is heard again. by_uxas: UxAS has the vehicle, as its gate says."""
+
+    vehicle_id: int
+    now_ms: int
+    by_uxas: bool
+
+
 # from the executive -----------------------------------------------------------------------------
 
 
@@ -259,7 +274,7 @@ ToLinkEnd = (
     | Watch
     | Proposed
 )
-FromLinkEnd = Say | Down | Suspend | TakeBack | RouteAsked
+FromLinkEnd = Say | Down | Suspend | TakeBack | RouteAsked | NotHeard | HeardAgain
 
 
 # to a vehicle -----------------------------------------------------------------------------------
@@ -351,6 +366,8 @@ ToExecutive = (
     | Suspend
     | TakeBack
     | RouteAsked
+    | NotHeard
+    | HeardAgain
 )
 FromExecutive = (
     Proposed | Say | ZonesKnown | Route | Flown | Left | Look | LimitsAre | AskPlan | Over

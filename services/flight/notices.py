@@ -10,7 +10,7 @@ from cratous.core.authority.gate import ICAROUS, UXAS, Gate, epoch_given
 from cratous.services.flight.commands import SENDERS
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.holding import Change
-from cratous.services.icarous.messages import Foresees, Guides
+from cratous.services.icarous.messages import Foresees, Guides, WithoutLink
 from cratous.services.logs.records import fingerprint, to_data
 from cratous.services.mission.frames import Projection, compass
 from cratous.spec.mission.plan import Plan
@@ -111,6 +111,19 @@ def conflict(foreseen: Foresees) -> Any:
         Time=foreseen.now_ms,
         TimeToViolation_s=foreseen.first_violation_s,
         Resolution=foreseen.resolution,
+    )
+
+
+def link_loss_state(said: WithoutLink) -> Any:
+    """What a vehicle flies while UxAS is not heard, or that it is heard again, as a `LinkLossState`."""
+    return lmcp.new(
+        "LinkLossState",
+        VehicleID=said.vehicle_id,
+        Time=said.now_ms,
+        Mode=said.mode,
+        Chosen=said.chosen,
+        Heard=said.heard_ms,
+        Reason=said.reason,
     )
 
 

@@ -62,6 +62,7 @@ def begin(config: Config, state: State, out: Out) -> State:
         old = state.find(vehicle.id)
         if old is not None:
             chain = replace(chain, version=old.version, suspended=old.suspended, leg=old.leg)
+            chain = replace(chain, unlinked=old.unlinked)
         state = next_item(config, state.put(chain), chain, state.now_ms, out)
     return settle(config, state, out)
 

@@ -15,11 +15,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from cratous.bridge.text_protocol import Heartbeat, SetMode, SetVelocity
-from cratous.core.authority.cycle import cycle_begun, cycle_flown, cycle_watched, gate_wished
+from cratous.core.authority.cycle import (
+    Cycled,
+    cycle_begun,
+    cycle_flown,
+    cycle_watched,
+    gate_wished,
+)
 from cratous.core.authority.gate import ICAROUS, gate_accepts
+from cratous.core.authority.link_loss import LINKED, loss_lets_go, loss_takes
 from cratous.core.avoidance.manoeuvre import velocity_of
 from cratous.core.avoidance.resolution import Choice
-from cratous.services.icarous import asking, permits
+from cratous.services.icarous import asking, link_loss, permits
 from cratous.services.icarous.ending import TURN_MARGIN
 from cratous.services.icarous.foresight import (
     points_back,
@@ -69,6 +76,7 @@ REASONS = {
     OFFER: "the way back is free",
     WITHDRAW: "offer withdrawn: the way back is no longer free",
 }
+NO_LINK = "link: UxAS is not heard"
 UXAS_WAY = "the way back that UxAS's planner has found is free"
 
 Step = tuple[State, tuple[FromInstance, ...]]
@@ -122,6 +130,7 @@ class Instance:
             state = permits.resumed(self.config, state, sensed, in_turn)
         said = state.bands
         state = replace(state, cycle=cycle, courses=now, ways=ways, beats=state.beats + 1)
+        state, lost = link_loss.heartbeat(self.config, state, sensed)
         if watches:
             state, out = self._watch(state, sensed, in_turn)
         else:
@@ -129,14 +138,17 @@ class Instance:
         beat = Heartbeat(sequence=state.beats, time_s=sensed.now_ms / 1000)
         if self.config.records and state.bands is not None and state.bands is not said:
             out = (self._guides(sensed, state.bands), *out)
-        return state, (*out, Up(self.config.vehicle_id, beat))
+        return state, (*lost, *out, Up(self.config.vehicle_id, beat))
 
     def _watch(self, state: State, sensed: Sensed, in_turn: frozenset[int]) -> Step:
-        """MONITOR: take over if a conflict is foreseen that is ours to act on."""
+        """MONITOR: take over if a conflict is foreseen that is ours to act on, or the link is lost."""
         state, conflict = self._foreseen(state, sensed, in_turn)
-        cycled = cycle_watched(state.cycle, conflict is not None, sensed.now_ms, RELAPSE_MS)
-        if cycled.act == NOTHING or conflict is None:
+        takes = loss_takes(state.no_link.loss, conflict is not None)
+        cycled = cycle_watched(state.cycle, takes, sensed.now_ms, RELAPSE_MS)
+        if cycled.act == NOTHING:
             return replace(state, cycle=cycled.cycle), ()
+        if conflict is None or state.no_link.loss.mode != LINKED:
+            return self._without_link(state, sensed, in_turn, cycled)
         vid, first_s = self.config.vehicle_id, conflict.first_s
         reason = f"{conflict.why}: loss predicted in {first_s:.1f} s"
         if conflict.intruder_id:
@@ -148,6 +160,16 @@ class Instance:
         wish = Wish(vid, cycled.act, reason, conflict.intruder_id)
         offer = self._offer(state, sensed, choice)
         return state, (wish, foresees, *offer, *self._commands(sensed, choice, cycled.act))
+
+    def _without_link(
+        self, state: State, sensed: Sensed, in_turn: frozenset[int], cycled: Cycled
+    ) -> Step:
+        """Take over since UxAS is not heard."""
+        state = replace(state, cycle=cycled.cycle, goal=state.told.next_index)
+        state, choice = link_loss.flown(self.config, state, sensed, in_turn)
+        wish = Wish(self.config.vehicle_id, cycled.act, NO_LINK, 0)
+        offer = self._offer(state, sensed, choice)
+        return state, (wish, *offer, *self._commands(sensed, choice, cycled.act))
 
     def _foreseen(
         self, state: State, sensed: Sensed, in_turn: frozenset[int]
@@ -172,21 +194,29 @@ class Instance:
     def _fly(self, state: State, sensed: Sensed, in_turn: frozenset[int]) -> Step:
         """AVOID and HANDBACK: fly the manoeuvre, and see whether the way back is free."""
         state = self._guided(state, sensed)
+        lost = state.no_link.loss.mode != LINKED
         lasting = state.search.waits(sensed.now_ms)
-        free = way_back_is_free(self.config, state, sensed, in_turn, lasting)
-        state, proposed, asked = self._proposed(state, sensed, in_turn, free)
+        free = not lost and way_back_is_free(self.config, state, sensed, in_turn, lasting)
+        proposed, asked = None, list[FromInstance]()
+        if not lost:
+            state, proposed, asked = self._proposed(state, sensed, in_turn, free)
         heard_ms, before = state.told.heard_ms, state.held
-        free = free or proposed is not None
+        free = loss_lets_go(state.no_link.loss, free or proposed is not None)
         cycled = cycle_flown(state.cycle, free, heard_ms, sensed.now_ms, LINK_LOST_MS, PERSIST_MS)
         state = replace(state, cycle=cycled.cycle)
-        state, choice = manoeuvre(self.config, state, sensed, in_turn, free)
+        if lost:
+            state, choice = link_loss.flown(self.config, state, sensed, in_turn)
+        else:
+            state, choice = manoeuvre(self.config, state, sensed, in_turn, free)
         out: list[FromInstance] = []
         vid, text = self.config.vehicle_id, describe(choice)
         if cycled.act != NOTHING:
             of_uxas = cycled.act == OFFER and proposed is not None
             reason = f"{UXAS_WAY} (request {proposed})" if of_uxas else REASONS[cycled.act]
             out.append(Wish(vid, cycled.act, reason, 0))
-        changed = before is None or describe(before) != text
+        # along a course the heading changes at each heartbeat
+        on_course = lost and state.no_link.course is not None
+        changed = not on_course and (before is None or describe(before) != text)
         said = f"offer withdrawn; {text}" if cycled.act == WITHDRAW else text
         if changed or cycled.act == WITHDRAW:
             out.append(Foresees(vid, sensed.now_ms, 0, -1.0, said))

@@ -72,6 +72,18 @@ class Foresees(NamedTuple):
     resolution: str
 
 
+class WithoutLink(NamedTuple):
+    """To the record. mode, chosen: what is flown from now on while UxAS is not heard, and what the mission wants, by
+    the numbers of `core.authority.link_loss`; heard_ms: when UxAS was last heard."""
+
+    vehicle_id: int
+    now_ms: int
+    mode: int
+    chosen: int
+    heard_ms: int
+    reason: str
+
+
 class Guides(NamedTuple):
     """To the record: the alerts and bands of a vehicle that flies so at now_ms [ms]."""
 
@@ -112,4 +124,4 @@ class Up(NamedTuple):
 
 
 ToInstance = Line | Sensed
-FromInstance = Wish | Foresees | Guides | Offers | Uncertified | Steer | Up
+FromInstance = Wish | Foresees | Guides | WithoutLink | Offers | Uncertified | Steer | Up

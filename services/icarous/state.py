@@ -12,6 +12,7 @@ from cratous.core.avoidance.resolution import Choice
 from cratous.core.permit.encounter import Encounter
 from cratous.services.icarous.asking import Asking
 from cratous.services.icarous.inbox import Told
+from cratous.services.icarous.lost import LostLink, NoLink
 from cratous.services.icarous.others import Ways
 from cratous.services.icarous.traffic_monitor import Threat, Tracks
 from cratous.services.mission.frames import Projection
@@ -29,7 +30,8 @@ class Config(NamedTuple):
     """What does not change: whose instance, what it keeps clear of, and the heartbeat [ms].
 
     original: UxAS's end is the original's, whose WAYPT lines carry a running count; certifies: what it commands is
-    offered to the gate with a certificate; records: alerts and bands go to a record."""
+    offered to the gate with a certificate; records: alerts and bands go to a record; lost_link: what it does while UxAS
+    is not heard, None where the mission does not say."""
 
     vehicle_id: int
     daa: Daa
@@ -38,6 +40,7 @@ class Config(NamedTuple):
     original: bool = False
     certifies: bool = False
     records: bool = False
+    lost_link: LostLink | None = None
 
 
 class Met(NamedTuple):
@@ -76,7 +79,7 @@ class State:
     courses: of the last heartbeat; held: the manoeuvre being flown; goal: index of the waypoint that
     it makes for; beats: heartbeats so far; met: the intruders because of which it has taken over; search: of the
     manoeuvre that is over soonest; ways: of the other vehicles of ours; asking: UxAS for a way back; bands: what detect
-    and avoid said last, while a loss is foreseen or ICAROUS flies."""
+    and avoid said last, while a loss is foreseen or ICAROUS flies; no_link: what it does while UxAS is not heard."""
 
     cycle: Cycle = START
     told: Told = field(default_factory=Told)
@@ -90,6 +93,7 @@ class State:
     ways: Ways = ()
     asking: Asking = field(default_factory=Asking)
     bands: Bands | None = None
+    no_link: NoLink = field(default_factory=NoLink)
 
     @property
     def avoided(self) -> frozenset[int]:

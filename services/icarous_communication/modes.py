@@ -16,8 +16,8 @@ from cratous.core.authority.gate import (
     gate_takeover,
 )
 from cratous.core.authority.link_end import link_mode
-from cratous.services.flight.link_end import UNTOUCHED, Peer
 from cratous.services.flight.link_lines import MOST_SAID
+from cratous.services.flight.link_peers import UNTOUCHED, Peer
 from cratous.services.flight.messages import Down
 from cratous.services.icarous_communication.state import Out, Refuse
 from cratous.spec.authority.link_end import OVERTAKEN, REFUSED

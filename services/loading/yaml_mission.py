@@ -28,6 +28,8 @@ from cratous.services.loading.problems import refuse
 from cratous.services.loading.schema import schema_problems
 from cratous.services.loading.start_distances import close_starts
 from cratous.services.loading.yaml_bridge_faults import yaml_bridge_faults
+from cratous.services.loading.yaml_link_loss import words as link_loss_words
+from cratous.services.loading.yaml_link_loss import yaml_link_loss
 from cratous.services.loading.yaml_sensing import yaml_sensing
 from cratous.services.loading.yaml_task import yaml_task
 from cratous.spec.errors import BadInput
@@ -37,6 +39,8 @@ from cratous.spec.mission import (
     Daa,
     FaultySimulation,
     Frame,
+    LinkLoss,
+    LinkLossDaa,
     LivePlanningMission,
     Mission,
     OrderedDaa,
@@ -124,6 +128,8 @@ def finish(mission: Mission, where: Any) -> Mission:
         notes.append(words(mission.simulation.bridge_faults))
     if mission.sensing is not None:
         notes.append(sensing_words(mission.sensing))
+    if mission.link_loss is not None:
+        notes.append(link_loss_words(mission.link_loss))
     mission = replace(mission, zones=zones, changes=known)
     refuse(list(start_problems(mission, where)))
     said = [*mission.notes, *notes, *warnings_of(mission)]
@@ -148,6 +154,7 @@ def _mission(document: Document, seed: int) -> Mission:
     live = bool(data.get("bridge", {}).get("uxas_route_planner", False))
     instances, simulation = _instances(document, vehicles), _simulation(document)
     sensing = yaml_sensing(document, simulation, len(instances))
+    link_loss = yaml_link_loss(document, places, simulation, len(instances))
     kind = LivePlanningMission if live else Mission
     return kind(
         name=data["name"],
@@ -157,7 +164,7 @@ def _mission(document: Document, seed: int) -> Mission:
         tasks=tuple(
             yaml_task(entry, places, document.where, k) for k, entry in enumerate(data["tasks"])
         ),
-        daa=_daa(data.get("daa", {}), sensing),
+        daa=_daa(data.get("daa", {}), sensing, link_loss),
         zones=tuple(_zone(entry, places) for entry in data.get("zones", [])),
         traffic=tuple(_traffic(entry, places) for entry in data.get("traffic", [])),
         relations=data.get("relations", "").strip(),
@@ -265,12 +272,14 @@ def _traffic(data: dict[str, Any], places: Places) -> Traffic:
     )
 
 
-def _daa(data: dict[str, Any], sensing: Sensing | None) -> Daa:
+def _daa(data: dict[str, Any], sensing: Sensing | None, link_loss: LinkLoss | None) -> Daa:
     volume = {name: float(value) for name, value in data.get("well_clear", {}).items()}
     kept: dict[str, Any] = {"close_starts": bool(data.get("close_starts", False))}
     kept |= {name: float(data[name]) for name in ("lookahead_s", "buffer") if name in data}
     volume_kept = replace(DEFAULT_WELL_CLEAR, **volume)
     first = Resolution(data.get("resolution", Resolution.HEADING))
+    if link_loss is not None:
+        return LinkLossDaa(volume_kept, **kept, resolution=first, link_loss=link_loss)
     if first is Resolution.HEADING:  # the usual: what is flown so is named as it always was
         return (
             Daa(volume_kept, **kept)

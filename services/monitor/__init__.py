@@ -17,6 +17,7 @@ from cratous.services.monitor.bridge import BridgeWatch
 from cratous.services.monitor.completion import CompletionWatch
 from cratous.services.monitor.constraints import ConstraintWatch
 from cratous.services.monitor.hand import HandWatch
+from cratous.services.monitor.link_loss import LinkLossWatch
 from cratous.services.monitor.observation import Ending, Presence
 from cratous.services.monitor.required_rows import missing, promised, watched
 from cratous.services.monitor.samples import Sample, Sampler
@@ -53,6 +54,7 @@ class Monitor:
         self.authority = AuthorityWatch(mission)
         self.bridge = BridgeWatch(mission, says_beats)
         self.hand = HandWatch.of(mission)
+        self.link_loss = LinkLossWatch(mission)
         self._assumed = AssumptionWatch(mission)
         self._last_ms, self._over = 0, False
         self._tell, self._tell_broken = on_violation, on_broken
@@ -85,6 +87,9 @@ class Monitor:
         elif short == "BridgeStatus":
             self.bridge.status(body)
             self.authority.status(body)
+            self.link_loss.status(body)
+        elif short == "LinkLossState":
+            self.link_loss.state(body)
         elif short == "MissionEnd":
             for step in self._sampler.flush():
                 self._step(*step)
@@ -92,6 +97,7 @@ class Monitor:
             self.completion.end(body)
             self.authority.end(body)
             self.bridge.end(body)
+            self.link_loss.end(body)
             self.hand.end(body.Time)
         if self._tell is not None:
             for k, events in enumerate((self.separation.violations, self.constraints.violations)):
@@ -135,6 +141,7 @@ class Monitor:
             *self.completion.verdicts(seen),
             *self.authority.verdicts(),
             *self.bridge.verdicts(),
+            *self.link_loss.verdicts(),
         ]
         there = {v.item for v in found if v.requirement == "G1"}
         return found + missing(promised(seen, there), ((v.requirement, v.item) for v in found))

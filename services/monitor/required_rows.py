@@ -94,6 +94,11 @@ def authority_item(vehicle: int) -> str:
     return f"authority over vehicle {vehicle}"
 
 
+def alone_without_link_item(vehicle: int) -> str:
+    """The row of G5 on what a vehicle flies without the link."""
+    return f"what vehicle {vehicle} flies without the link"
+
+
 def beat_item(vehicle: int, way: str) -> str:
     """The row on the heartbeats of a vehicle in one direction, `Down` or `Up`."""
     return f"heartbeat {WAYS[way]} the ICAROUS instance of {vehicle}"
@@ -165,6 +170,9 @@ def promised(seen: Watched, present: Collection[str] = ()) -> Iterator[Row]:
     for vehicle in guarded:
         yield Row("G4", authority_item(vehicle), (vehicle,))
         yield from (Row("G5", beat_item(vehicle, way), (vehicle,)) for way in WAYS)
+    if mission.link_loss is not None:
+        for vehicle in mission.instances:
+            yield Row("G5", alone_without_link_item(vehicle), (vehicle,))
 
 
 def missing(rows: Iterable[Row], present: Iterable[tuple[str, str]]) -> list[Verdict]:

@@ -49,6 +49,7 @@ def parameters_of(mission: Mission, path: Path) -> tuple[Parameter, ...]:
     read again."""
     written = _written(path)
     rows = [*_of_mission(mission, written), *_of_sensing(mission, written)]
+    rows += _of_link_loss(mission, written)
     for k, vehicle in enumerate(mission.vehicles):
         rows += _of_vehicle(vehicle, _at(written, ("vehicles", k)))
         if vehicle.id in mission.instances:
@@ -115,6 +116,15 @@ def _of_sensing(mission: Mission, written: Any) -> Iterator[Parameter]:
         said = written is None or _at(written, row.path) is not None
         made = _may_be_given(name, 0, row.value, row.facts.get("default"), row.facts, said)
         yield made._replace(name=row.name)
+
+
+def _of_link_loss(mission: Mission, written: Any) -> Iterator[Parameter]:
+    if mission.link_loss is None:
+        return
+    facts = mission_schema()["properties"]["link_loss"]["properties"]["after_s"]
+    value = mission.link_loss.after_ms / 1000
+    said = written is None or _at(written, ("link_loss", "after_s")) is not None
+    yield _may_be_given("link_loss.after_s", 0, value, facts["default"], facts, said)
 
 
 def _of_vehicle(vehicle: Vehicle, written: Any) -> Iterator[Parameter]:

@@ -52,6 +52,8 @@ def _asked(mission: Mission) -> Iterator[tuple[str, bool, str, str]]:
     yield "simulation.bridge_faults", faulty, "the bridge is made to fail", "no bridge_faults"
     sensed = mission.sensing is not None
     yield "sensing", sensed, "ICAROUS is given what sensors see", "no sensing"
+    lost = mission.link_loss is not None
+    yield "link_loss", lost, "the mission says what is flown without the link", "no link_loss"
     high = mission.frame.terrain_m != 0
     yield "frame.terrain_m", high, "the ground is not at mean sea level", "0"
     other = mission.cost not in COSTS

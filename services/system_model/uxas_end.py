@@ -18,7 +18,8 @@ from cratous.core.authority.link_end import (
     suspended_after,
     track_is_told,
 )
-from cratous.services.flight.link_end import LINK_LOST_MS, START
+from cratous.services.flight.link_end import LINK_LOST_MS
+from cratous.services.flight.link_peers import START
 from cratous.services.system_model.finding import Misfit
 from cratous.spec.authority import link_end as ends
 

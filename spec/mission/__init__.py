@@ -13,6 +13,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from cratous.spec.mission.bridge_faults import BridgeFaults
+from cratous.spec.mission.link_loss import WithoutLink
 from cratous.spec.mission.sensing import Sensing
 
 
@@ -281,6 +282,26 @@ class OrderedSensedDaa(SensedDaa):
 
 
 @dataclass(frozen=True)
+class LinkLoss:
+    """What every vehicle with an ICAROUS instance flies once UxAS has been silent for more than after_ms [ms].
+
+    to: where to return to, None: where each vehicle started; name: of that place.
+    """
+
+    choice: WithoutLink
+    after_ms: int = 5000
+    to: Position | None = None
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class LinkLossDaa(OrderedDaa):
+    """The same where the mission says what is flown while UxAS is not heard."""
+
+    link_loss: LinkLoss = field(default_factory=lambda: LinkLoss(WithoutLink.LOITER))
+
+
+@dataclass(frozen=True)
 class Simulation:
     """Virtual time: length of a physics step, heartbeat period, and the end of patience."""
 
@@ -341,6 +362,11 @@ class Mission:
     def sensing(self) -> Sensing | None:
         """The sensors of its ICAROUS instances; None: they are given the true states."""
         return self.daa.sensing if isinstance(self.daa, SensedDaa) else None
+
+    @property
+    def link_loss(self) -> LinkLoss | None:
+        """What is flown while UxAS is not heard; None: the mission does not say."""
+        return self.daa.link_loss if isinstance(self.daa, LinkLossDaa) else None
 
     def vehicle(self, vehicle_id: int) -> Vehicle:
         """The vehicle with this id; KeyError if there is none."""

@@ -31,7 +31,8 @@ from cratous.core.authority.link_end import Linked
 from cratous.services.bus import Bus
 from cratous.services.flight import link_end, messages
 from cratous.services.flight.dynamics import AirState
-from cratous.services.flight.link_end import State, UxasEnd
+from cratous.services.flight.link_end import UxasEnd
+from cratous.services.flight.link_peers import State
 from cratous.services.flight.loop import FlightResult, fly
 from cratous.services.logs.records import from_data, to_data
 from cratous.services.mission.frames import Projection

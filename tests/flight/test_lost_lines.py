@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from icarous_tools import PROJECTION, VOLUME
 
 from cratous.bridge import text_protocol as tp
-from cratous.services.flight import link_end
+from cratous.services.flight import link_end, link_peers
 from cratous.services.flight.dynamics import AirState, Limits
 from cratous.services.flight.link_lines import MOST_AGAIN
 from cratous.services.flight.messages import (
@@ -42,7 +42,7 @@ class Wire:
         dialect = tp.Dialect.ORIGINAL if original else tp.Dialect.CRATOUS
         self.icarous = IcarousEnd(Craft(config, limits, 60.0, dialect=dialect))
         self.uxas = link_end.UxasEnd(PROJECTION)
-        self.up, self.down = link_end.State(), State()
+        self.up, self.down = link_peers.State(), State()
         self.lost, self.count, self.now_ms = lost, 0, 0
         self.said: list[Any] = []
         self.answers: list[Any] = []

@@ -31,6 +31,13 @@ class HandChange(LmcpEnum):
     Expired = 5
     Missing = 6
 
+class WithoutLink(LmcpEnum):
+    Linked = 0
+    Finish = 1
+    Loiter = 2
+    Return = 3
+    Over = 4
+
 class Verdict(LmcpEnum):
     Holds = 0
     Violated = 1
@@ -473,5 +480,31 @@ class HandState(LmcpObject):
         Surprises: int = ...,
         Permitted: bool = ...,
         IntruderID: int = ...,
+        Reason: str = ...,
+    ) -> None: ...
+
+class LinkLossState(LmcpObject):
+    """cratous.LinkLossState: CRATOUS type 18."""
+
+    VehicleID: int
+    """int64, default 0."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    Mode: _cratous.WithoutLink
+    """CRATOUS/WithoutLink, default Linked."""
+    Chosen: _cratous.WithoutLink
+    """CRATOUS/WithoutLink, default Linked."""
+    Heard: int
+    """int64 [milliseconds], default 0."""
+    Reason: str
+    """string, default ''."""
+    def __init__(
+        self,
+        *,
+        VehicleID: int = ...,
+        Time: int = ...,
+        Mode: _cratous.WithoutLink | str = ...,
+        Chosen: _cratous.WithoutLink | str = ...,
+        Heard: int = ...,
         Reason: str = ...,
     ) -> None: ...

@@ -1,0 +1,54 @@
+"""The machine that a vehicle flies by while UxAS is not heard, drawn from the kernel that decides.
+
+    python docs/tools/link_loss_machine.py
+
+prints the block of docs/guides/detect-and-avoid.md: `loss_step` is asked for each mode and each answer to what it
+asks (is UxAS heard, is what is chosen permitted, is the vehicle at its end), and an arrow is drawn where the mode changes.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+
+from cratous.core.authority.link_loss import LINKED, LOITER, OVER, Loss, loss_step
+
+NAMES = ("Linked", "Finish", "Loiter", "Return", "Over")
+EITHER = (False, True)
+NOW, BOUND = 10, 5
+
+
+def arrows() -> dict[tuple[int, int], set[str]]:
+    """From which mode to which, and when."""
+    found: dict[tuple[int, int], set[str]] = {}
+    for chosen in range(LINKED + 1, OVER):
+        for mode in {LINKED, LOITER, chosen, OVER}:
+            for heard, permitted, ended in product(EITHER, EITHER, EITHER):
+                heard_ms = NOW if heard else 0
+                step = loss_step(Loss(mode, 0), chosen, heard_ms, NOW, BOUND, permitted, ended)
+                after = step.loss.mode
+                if after != mode:
+                    why = _why(after, chosen, heard)
+                    found.setdefault((mode, after), set()).add(why)
+    return found
+
+
+def _why(after: int, chosen: int, heard: bool) -> str:
+    if heard:
+        return "UxAS is heard"
+    if after == OVER:
+        return "flown to its end"
+    if after == LOITER:
+        return "chosen" if chosen == LOITER else "what is chosen is not permitted"
+    return "chosen and permitted"
+
+
+def block() -> str:
+    """The diagram, as Mermaid text."""
+    lines = ["stateDiagram-v2", "  [*] --> Linked"]
+    for (mode, after), why in sorted(arrows().items()):
+        lines.append(f"  {NAMES[mode]} --> {NAMES[after]}: {' / '.join(sorted(why))}")
+    return "\n".join(("```mermaid", *lines, "```"))
+
+
+if __name__ == "__main__":
+    print(block())

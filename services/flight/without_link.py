@@ -1,0 +1,45 @@
+"""What a vehicle's ICAROUS is told before the flight about acting without UxAS."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from cratous.core.authority.link_loss import FINISH, LOITER, RETURN
+from cratous.services.flight.dynamics import AirState
+from cratous.services.flight.rejoining import Router
+from cratous.services.icarous.lost import LostLink
+from cratous.spec.mission import Mission, Position, Zone
+from cratous.spec.mission.link_loss import WithoutLink, words
+from cratous.spec.mission.plan import Pose
+
+CHOICES = {
+    WithoutLink.FINISH: FINISH,
+    WithoutLink.LOITER: LOITER,
+    WithoutLink.RETURN: RETURN,
+}
+
+
+def lost_link(mission: Mission, vehicle_id: int) -> LostLink | None:
+    """What the mission wants of one vehicle, None if it does not say."""
+    loss = mission.link_loss
+    if loss is None:
+        return None
+    goal = loss.to or mission.vehicle(vehicle_id).position
+    returns = loss.choice is WithoutLink.RETURN
+    choice = CHOICES[loss.choice]
+    return LostLink(
+        choice, loss.after_ms, words(loss.choice, loss.name), _way, goal if returns else None
+    )
+
+
+def _way(
+    start: Pose, end: Pose, radius_m: float, slope: float, zones: tuple[Zone, ...]
+) -> tuple[Position, ...]:
+    place = Position(start.north_m, start.east_m, start.alt_m)
+    state = AirState(place, start.heading_rad, 0.0, 0.0)
+    return _router(zones).way_to(state, radius_m, end, slope)
+
+
+@cache
+def _router(zones: tuple[Zone, ...]) -> Router:
+    return Router(zones)

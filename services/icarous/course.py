@@ -1,0 +1,96 @@
+"""A way that an instance flies by itself, with the circle that ends it, or a circle alone, and how it is steered."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from cratous.core.avoidance.manoeuvre import Motion
+from cratous.core.avoidance.resolution import Choice
+from cratous.core.routing.polylines import Track
+from cratous.services.icarous.ending import TURN_MARGIN
+from cratous.services.icarous.messages import Sensed
+from cratous.spec.mission import Position
+from cratous.spec.mission.plan import Hold, Pose
+
+
+class Course(NamedTuple):
+    """hold: the circle at the end; speed_m_s: flown at; track: the way to it, None where there is none; s_m: how much
+    of that has been flown; offset_m: how far off it the vehicle is [m]."""
+
+    hold: Hold
+    speed_m_s: float
+    track: Track | None = None
+    s_m: float = 0.0
+    offset_m: float = 0.0
+
+    @property
+    def middle(self) -> Position:
+        """Of the circle."""
+        return Position(self.hold.north_m, self.hold.east_m, self.hold.alt_m)
+
+    @property
+    def left(self) -> tuple[Position, ...]:
+        """The points of the way that are still to be flown; () at its end."""
+        return () if self.track is None else self.track.rest(self.s_m)[1:]
+
+    def flown(self, motion: Motion, beat_s: float) -> Course:
+        """The same with the vehicle where it is a heartbeat later."""
+        if self.track is None:
+            return self
+        window_m = 2 * motion.speed_m_s * beat_s + abs(self.offset_m)
+        near = self.track.nearest(motion.position, self.s_m, window_m)
+        return self._replace(s_m=near.s_m, offset_m=near.offset_m)
+
+
+def courses(
+    end: Pose, motion: Motion, radius_m: float, track: Track | None
+) -> tuple[Course, Course]:
+    """The way with the circle that touches its end to the right, and to the left."""
+    right, left = (
+        Hold(
+            end.north_m - side * radius_m * math.sin(end.heading_rad),
+            end.east_m + side * radius_m * math.cos(end.heading_rad),
+            end.alt_m,
+            radius_m,
+            side > 0,
+        )
+        for side in (1, -1)
+    )
+    return Course(right, motion.speed_m_s, track), Course(left, motion.speed_m_s, track)
+
+
+def radius_m(sensed: Sensed) -> float:
+    """Of the turns and circles that are flown [m]."""
+    return TURN_MARGIN * sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s
+
+
+def steered(course: Course, sensed: Sensed, beat_s: float) -> Choice:
+    """The velocity until the next heartbeat: to where the vehicle is then on its way, as the autopilot aims."""
+    motion, ability = sensed.motion, sensed.ability
+    p, step_m = motion.position, motion.speed_m_s * beat_s
+    wide_m = 1.5 * motion.speed_m_s / ability.turn_rate_rad_s
+    if course.left and course.track is not None:
+        ahead_m = max(step_m, math.sqrt(abs(course.offset_m) * wide_m))
+        aim = course.track.at(course.s_m + ahead_m)
+        height_m = course.track.at(course.s_m + step_m).alt_m
+    else:
+        aim = _on_circle(course.hold, p, step_m, wide_m)
+        height_m = course.hold.alt_m
+    most = ability.max_climb_m_s
+    climb = min(max((height_m - p.alt_m) / beat_s, -most), most)
+    heading = math.atan2(aim.east_m - p.east_m, aim.north_m - p.north_m)
+    return Choice("heading", heading, course.speed_m_s, climb, beat_s, True, None)
+
+
+def _on_circle(hold: Hold, p: Position, step_m: float, wide_m: float) -> Position:
+    north, east = p.north_m - hold.north_m, p.east_m - hold.east_m
+    off_m = abs(math.hypot(north, east) - hold.radius_m)
+    ahead_m = max(step_m, min(math.sqrt(off_m * wide_m), hold.radius_m))
+    side = 1 if hold.clockwise else -1
+    angle = math.atan2(east, north) + side * ahead_m / hold.radius_m
+    return Position(
+        hold.north_m + hold.radius_m * math.cos(angle),
+        hold.east_m + hold.radius_m * math.sin(angle),
+        hold.alt_m,
+    )

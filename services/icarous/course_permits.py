@@ -1,0 +1,74 @@
+"""Whether a way that an instance flies by itself is permitted, with the circle that ends it.
+
+It is put to the kernels at each heartbeat, from where the vehicle is: each leg keeps the zones by how far it may
+be off it, the rest of the way and the laps of the look-ahead after it keep the buffered volume of everybody who is
+known, straight on or along a told way, with its thresholds of time, and the disc of the circle keeps its cylinder.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from cratous.core.avoidance.manoeuvre import Motion, way_along
+from cratous.core.avoidance.prediction import Piece, after, first_violation_s
+from cratous.core.avoidance.resolution import Scene
+from cratous.core.geofence.clearance import leg_keeps
+from cratous.core.permit.remainder import hold_at, hold_permits, zones_permit
+from cratous.core.routing.polylines import circle_points
+from cratous.services.icarous.course import Course
+from cratous.services.icarous.ending import TRACKING_S
+from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.permits import way_is_clear
+from cratous.spec.mission import Daa, Position, Zone
+
+LEGS = 24
+"""A lap is looked at as so many legs: 1 % of its radius off."""
+
+
+def refused(course: Course, sensed: Sensed, scene: Scene, daa: Daa, beat_s: float) -> str:
+    """Why a course is not permitted from here on; "" if it is."""
+    return next(_refused(course, sensed, scene, daa, beat_s), "")
+
+
+def _refused(
+    course: Course, sensed: Sensed, scene: Scene, daa: Daa, beat_s: float
+) -> Iterator[str]:
+    motion, ability = sensed.motion, sensed.ability
+    pieces = way_along(motion, course.left, math.inf).pieces
+    # between two commands the vehicle flies straight on where the way may turn
+    aside_m = motion.speed_m_s * beat_s / 2
+    for zone in scene.zones:
+        if not all(_keeps(piece, zone, aside_m) for piece in pieces):
+            yield f"zone {zone.id} is in the way"
+    disc_m = course.hold.radius_m + TRACKING_S * motion.speed_m_s
+    if not zones_permit(course.middle, scene.zones, disc_m):
+        yield "no circle there keeps the zones"
+    begin_s = sum(piece.duration_s for piece in pieces)
+    laps = way_along(motion, _points(course, motion, scene), begin_s + scene.lookahead_s).pieces
+    for other in sensed.intruders:
+        meets = first_violation_s(laps, other, scene.volume) is not None
+        if meets or not way_is_clear(pieces, other, daa):
+            yield f"it is not permitted against {other.id}"
+    hold = hold_at(course.middle, begin_s, begin_s + scene.lookahead_s)
+    rise_m = TRACKING_S * ability.max_climb_m_s
+    for other in sensed.intruders:
+        if not hold_permits(hold, other, scene.volume, disc_m, rise_m):
+            yield f"the circle is not permitted against {other.id}"
+
+
+def _points(course: Course, motion: Motion, scene: Scene) -> list[Position]:
+    """The rest of the way, and as many laps as are flown in the look-ahead."""
+    hold, left = course.hold, course.left
+    here = left[-1] if left else motion.position
+    north, east = here.north_m - hold.north_m, here.east_m - hold.east_m
+    share = hold.radius_m / max(math.hypot(north, east), 1e-6)
+    begin = Position(hold.north_m + share * north, hold.east_m + share * east, hold.alt_m)
+    middle = (hold.north_m, hold.east_m)
+    lap = circle_points(middle, hold.radius_m, hold.clockwise, begin, LEGS)
+    lap_s = 2 * math.pi * hold.radius_m / motion.speed_m_s
+    return [*left, *lap[:-1] * math.ceil(scene.lookahead_s / lap_s), begin]
+
+
+def _keeps(piece: Piece, zone: Zone, aside_m: float) -> bool:
+    return leg_keeps(piece.position, after(piece, piece.duration_s), zone, aside_m)

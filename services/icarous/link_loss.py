@@ -1,0 +1,169 @@
+"""What an instance does by itself while UxAS is not heard: what the mission chooses, if it is permitted, else a circle.
+
+Which mode is flown, since when, and until when is answered by the kernel `loss_step` at each heartbeat. What is
+chosen and the circle are courses (`services.icarous.course`), permitted from where the vehicle is; where not even a
+circle is, the manoeuvre that deviates least is flown, as in any takeover. A way that was not permitted is looked for
+anew after AGAIN_MS.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from cratous.core.authority.link_loss import FINISH, LINKED, LOITER, RETURN, loss_step
+from cratous.core.authority.timeliness import in_time, lasted
+from cratous.core.avoidance.resolution import Choice
+from cratous.core.avoidance.way_ahead import near_line
+from cratous.core.routing.polylines import Track
+from cratous.services.icarous import course as courses
+from cratous.services.icarous.course import Course
+from cratous.services.icarous.course_permits import refused
+from cratous.services.icarous.foresight import ON_PATH_M, scene_of
+from cratous.services.icarous.lost import LostLink, NoLink
+from cratous.services.icarous.messages import Sensed, WithoutLink
+from cratous.services.icarous.proposal import AGAIN_MS, manoeuvre
+from cratous.services.icarous.return_to_path import bearing_rad, flat, onto, rejoin
+from cratous.services.icarous.state import IDLE, Config, State
+from cratous.spec.authority.link_loss import BEGIN, END, FALL_BACK, NOTHING, REJOIN
+from cratous.spec.mission import Position
+from cratous.spec.mission.plan import Pose
+from cratous.spec.records import replace
+
+WAITS = "; a circle is flown until it is"
+
+
+class Tried(NamedTuple):
+    """A course of what is chosen that is permitted, None for none, and why there is none."""
+
+    course: Course | None
+    why: str = ""
+
+
+def heartbeat(
+    config: Config, state: State, sensed: Sensed
+) -> tuple[State, tuple[WithoutLink, ...]]:
+    """The mode at this heartbeat, with the course that is flown in it, and what is new."""
+    plan, now_ms, before = config.lost_link, sensed.now_ms, state.no_link
+    if plan is None:
+        return state, ()
+    heard_ms, tried = state.told.heard_ms, Tried(None)
+    linked = in_time(heard_ms, now_ms, plan.after_ms)
+    course = before.course
+    if course is not None:
+        course = course.flown(sensed.motion, _beat_s(config))
+    chosen, mode, due = plan.choice, before.loss.mode, False
+    if not linked and chosen != LOITER:
+        due = mode in (LINKED, chosen) or lasted(before.tried_ms, now_ms, AGAIN_MS)
+        going = course if mode == chosen else None
+        tried = _tried(config, state, sensed, plan, going) if due else tried
+    ended = mode == chosen and course is not None and not course.left
+    stepped = loss_step(
+        before.loss, chosen, heard_ms, now_ms, plan.after_ms, tried.course is not None, ended
+    )
+    mode = stepped.loss.mode
+    if stepped.act == REJOIN:
+        course = None
+    elif mode == chosen and chosen != LOITER:
+        course = tried.course
+    elif mode != LINKED:
+        course = _circle(config, state, sensed, None if stepped.act == FALL_BACK else course)
+    tried_ms = now_ms if due else before.tried_ms
+    after = replace(state, no_link=NoLink(stepped.loss, course, tried_ms))
+    if stepped.act == NOTHING:
+        return after, ()
+    if stepped.act == REJOIN:
+        after = replace(after, held=None, search=IDLE)
+    vid, why = config.vehicle_id, _words(stepped.act, plan, tried, heard_ms, now_ms)
+    return after, (WithoutLink(vid, now_ms, mode, chosen, heard_ms, why),)
+
+
+def _words(act: int, plan: LostLink, tried: Tried, heard_ms: int, now_ms: int) -> str:
+    silent = f"nothing was heard of UxAS for {(now_ms - heard_ms) / 1000:g} s"
+    if act == BEGIN:
+        return f"{silent}: {plan.words}"
+    if act == FALL_BACK:
+        return f"{silent}: {plan.words}: {tried.why}{WAITS}"
+    if act == END:
+        return f"{plan.words}: done, a circle is flown there"
+    return "UxAS is heard again"
+
+
+def flown(
+    config: Config, state: State, sensed: Sensed, in_turn: frozenset[int]
+) -> tuple[State, Choice]:
+    """The manoeuvre to fly now without the link: along the course, or around what is in the way of all of them."""
+    course, goal = state.no_link.course, config.lost_link.goal if config.lost_link else None
+    if course is not None:
+        choice = courses.steered(course, sensed, _beat_s(config))
+        return replace(state, held=None, search=IDLE), choice
+    told = state.told
+    # whoever returns makes for that place; else for nothing
+    points = () if goal is None else (goal,)
+    alone = replace(told, waypoints=points, next_index=0, resume=None)
+    after, choice = manoeuvre(config, replace(state, told=alone, goal=0), sensed, in_turn, False)
+    return replace(after, told=told, goal=state.goal), choice
+
+
+def _beat_s(config: Config) -> float:
+    return config.heartbeat_ms / 1000
+
+
+def _tried(
+    config: Config, state: State, sensed: Sensed, plan: LostLink, going: Course | None
+) -> Tried:
+    """The course that is flown if it is permitted still, else another one from here."""
+    scene, why = scene_of(config, state, sensed), ""
+    for course in _candidates(state, sensed, plan, going):
+        why = refused(course, sensed, scene, config.daa, _beat_s(config))
+        if not why:
+            return Tried(course)
+    return Tried(None, why or "no way there was found")
+
+
+def _candidates(
+    state: State, sensed: Sensed, plan: LostLink, going: Course | None
+) -> Iterator[Course]:
+    if going is not None:
+        yield going
+    motion, wide_m = sensed.motion, courses.radius_m(sensed)
+    points = _known_way(state, sensed, wide_m) if plan.choice == FINISH else ()
+    if plan.choice == RETURN and plan.goal is not None:
+        start = Pose(*motion.position, motion.heading_rad)
+        end = Pose(*plan.goal, bearing_rad(motion.position, plan.goal))
+        slope = sensed.ability.max_climb_m_s / motion.speed_m_s
+        points = plan.find(start, end, wide_m, slope, state.told.zones)
+    if not points:
+        return
+    track = Track(points, motion.heading_rad)
+    end = Pose(*track.points[-1], track.heading_rad(track.length_m))
+    yield from courses.courses(end, motion, wide_m, track)
+
+
+def _known_way(state: State, sensed: Sensed, wide_m: float) -> tuple[Position, ...]:
+    """The rest of the way that was told, from here; how far it was flown was last told before the silence."""
+    told, motion = state.told, sensed.motion
+    known = told.waypoints[max(told.next_index - 1, 0) :]
+    if not known:
+        return ()
+    track = Track(known, motion.heading_rad)
+    silent_s = (sensed.now_ms - told.heard_ms) / 1000
+    near = track.nearest(motion.position, 0.0, 2 * motion.speed_m_s * silent_s + ON_PATH_M)
+    rest = track.rest(near.s_m)
+    here, place = flat(motion.position), flat(track.at(near.s_m))
+    if near_line(here, place, place, ON_PATH_M):
+        return (motion.position, *rest[1:])
+    ahead = onto(rest, motion, wide_m)
+    back = rejoin(motion, wide_m, ahead[0], ahead[1] if ahead[1:] else None)
+    return (*back, *ahead[1:])
+
+
+def _circle(config: Config, state: State, sensed: Sensed, going: Course | None) -> Course | None:
+    """The circle that is flown if it is permitted still, else one from here; None where none is."""
+    motion, scene = sensed.motion, scene_of(config, state, sensed)
+    here, wide_m = Pose(*motion.position, motion.heading_rad), courses.radius_m(sensed)
+    found = [going] if going is not None else []
+    for course in (*found, *courses.courses(here, motion, wide_m, None)):
+        if not refused(course, sensed, scene, config.daa, _beat_s(config)):
+            return course
+    return None

@@ -1,0 +1,71 @@
+"""The section `link_loss` of a mission file as `LinkLoss`; the schema has its bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cratous.core.authority.timeliness import lasted
+from cratous.services.loading.document import Document, item_name
+from cratous.services.loading.places import Places
+from cratous.services.loading.problems import refuse
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import LinkLoss, Simulation
+from cratous.spec.mission.link_loss import WithoutLink
+from cratous.spec.mission.link_loss import words as choice_words
+
+FEWEST_BEATS = 2
+"""A silence that is shorter than so many heartbeats says nothing."""
+Found = tuple[tuple[str, ...], str, str, str]
+
+
+def yaml_link_loss(
+    document: Document, places: Places, simulation: Simulation, instances: int
+) -> LinkLoss | None:
+    """What the mission wants without the link; BadMission where it does not make sense.
+
+    instances: how many vehicles it is about.
+    """
+    data = document.data.get("link_loss")
+    if data is None:
+        return None
+    to = data.get("to")
+    loss = LinkLoss(
+        WithoutLink(data["choice"]),
+        round(1000 * float(data.get("after_s", LinkLoss.after_ms / 1000))),
+        None if to is None else places.position(to["position"]),
+        "" if to is None else to["name"],
+    )
+    sensed = "sensing" in document.data
+    refuse([_problem(document, *one) for one in _found(loss, simulation, instances, sensed)])
+    return loss
+
+
+def words(loss: LinkLoss) -> str:
+    """The section in words, for reports."""
+    silence = f"without a word of UxAS for more than {loss.after_ms / 1000:g} s"
+    what = choice_words(loss.choice, loss.name)
+    return f"{silence}, each vehicle with ICAROUS acts by itself: {what}"
+
+
+def _found(loss: LinkLoss, simulation: Simulation, instances: int, sensed: bool) -> Iterator[Found]:
+    if not instances:
+        yield (), "nobody would act by it", "a vehicle with an ICAROUS instance", "none"
+    if sensed:
+        # what is flown without the link is permitted against straight tracks of no width
+        what = "what is flown without the link is not permitted against sensed tracks"
+        yield (), what, "no section sensing beside it", "both"
+    if loss.to is not None and loss.choice is not WithoutLink.RETURN:
+        yield ("to",), "nothing returns there", "choice return", loss.choice.value
+    if not lasted(0, loss.after_ms, FEWEST_BEATS * simulation.heartbeat_ms):
+        least = FEWEST_BEATS * simulation.heartbeat_ms / 1000
+        expected = f"at least {least:g} s, {FEWEST_BEATS} heartbeats"
+        yield ("after_s",), "this silence says nothing", expected, f"{loss.after_ms / 1000:g} s"
+
+
+def _problem(
+    document: Document, key: tuple[str, ...], what: str, expected: str, got: str
+) -> BadInput:
+    full = ("link_loss", *key)
+    return BadInput(
+        what, where=document.where(full), item=item_name(full), expected=expected, got=got
+    )

@@ -1,0 +1,80 @@
+"""What a vehicle does by itself while UxAS is not heard: one mode at a time, begun, left and ended by rule.
+
+The mission chooses what is flown without the link. Where nothing permits that, the vehicle loiters until
+something does. It is heard again: what was chosen is over, and UxAS gets the vehicle back as from any takeover
+(`spec.authority.cycle`). Milliseconds.
+"""
+
+from typing import NamedTuple
+
+from cratous.spec.authority.link_end import too_old
+
+LINKED, FINISH, LOITER, RETURN, OVER = 0, 1, 2, 3, 4
+"""UxAS is heard; the known way is flown to its end; a circle is flown; a way to a named place is flown; what was
+chosen has been flown to its end, and a circle is flown there."""
+NOTHING, BEGIN, FALL_BACK, END, REJOIN = 0, 1, 2, 3, 4
+"""What is new: nothing; what is chosen begins; nothing permits it, a circle is flown; it has ended; UxAS is heard."""
+
+
+class Loss(NamedTuple):
+    """mode; since_ms: since when [ms]."""
+
+    mode: int
+    since_ms: int
+
+
+def is_mode(mode: int) -> bool:
+    """It is one of the five."""
+    return not (mode < LINKED or mode > OVER)
+
+
+def may_be_chosen(mode: int) -> bool:
+    """A mission can ask for it."""
+    return is_mode(mode) and mode != LINKED and mode != OVER
+
+
+def wanted(chosen: int, permitted: bool) -> int:
+    """What is to be flown: what is chosen if its way is permitted, else a circle."""
+    if permitted:
+        return chosen
+    return LOITER
+
+
+def is_after_heartbeat(
+    before: Loss,
+    chosen: int,
+    heard: int,
+    now: int,
+    bound: int,
+    permitted: bool,
+    ended: bool,
+    after: Loss,
+    act: int,
+) -> bool:
+    """Heard in time there is no mode. Else what was chosen and flown to its end stays so, and of the others the
+    one that is wanted is flown, since it was wanted first. permitted: the way of what is chosen is, and what is
+    flown is ended once the vehicle is at its end."""
+    if not too_old(heard, now, bound):
+        if before.mode == LINKED:
+            return after == before and act == NOTHING
+        return after == Loss(LINKED, now) and act == REJOIN
+    if before.mode == OVER:
+        return after == before and act == NOTHING
+    if ended and before.mode == chosen and chosen != LOITER:
+        return after == Loss(OVER, now) and act == END
+    mode = wanted(chosen, permitted)
+    if before.mode == mode:
+        return after == before and act == NOTHING
+    if mode == chosen:
+        return after == Loss(mode, now) and act == BEGIN
+    return after == Loss(mode, now) and act == FALL_BACK
+
+
+def must_fly(loss: Loss, foreseen: bool) -> bool:
+    """ICAROUS has a reason to have the vehicle: a conflict is foreseen, or the link is lost."""
+    return foreseen or loss.mode != LINKED
+
+
+def may_go_back(loss: Loss, free: bool) -> bool:
+    """UxAS may be offered the vehicle: the way back is free, and the link is not lost."""
+    return not (loss.mode != LINKED or not free)
