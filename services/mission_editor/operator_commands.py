@@ -13,6 +13,8 @@ from cratous.services.ground_station.live_session import NotObeyed
 from cratous.services.loading.document import parse_document
 from cratous.services.loading.yaml_mission import loaded
 from cratous.services.mission_editor.text_edits import MissionText
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Mission
 
 KEEP_OUT, GO_TO, LOITER, DROP, END_ZONE = KINDS = (
     "keep_out", "go_to", "loiter", "drop_task", "end_zone",
@@ -56,8 +58,26 @@ def commanded(text: str, where: str, seed: int, now_ms: int, asked: Any) -> Comm
         found, said = {"task_added": number}, f"task {number} for vehicle {asked['vehicle']}"
     new = mission.added("changes", {"at_s": at_s, **found})
     new = f"{new if new.startswith(HEAD) else HEAD + new}"
-    loaded(parse_document(new, where), seed)
+    _refuse_moved(loaded(parse_document(new, where), seed), found, asked)
     return Commanded(new, at_ms, f"{said}, commanded at {at_s:g} s")
+
+
+def _refuse_moved(mission: Mission, found: dict[str, Any], asked: dict[str, Any]) -> None:
+    """Raises BadInput where the variant of the mission has what is commanded at another place."""
+    places: Any = ()
+    if "task_added" in found:
+        places = next(task.points for task in mission.tasks if task.id == found["task_added"])
+    elif "zone" in found:
+        places = next(
+            c.zone.vertices for c in mission.changes if c.zone and c.zone.id == found["zone"]["id"]
+        )
+    for place, wanted in zip(places, asked.get("places", ()), strict=False):
+        if [round(x - y, 1) for x, y in zip(place[:2], wanted, strict=True)] != [0, 0]:
+            raise BadInput(
+                "the variant of this mission has tasks and zones at other places than its file",
+                where=mission.source, item="--seed", expected="0, for commands that name a place",
+                got=str(mission.seed),
+            )  # fmt: skip
 
 
 def _with_task(mission: MissionText, what: str, asked: dict[str, Any]) -> tuple[MissionText, int]:

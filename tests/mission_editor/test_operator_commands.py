@@ -82,6 +82,13 @@ def test_what_is_no_command_or_not_possible_is_refused(asked: Any, error: type[E
         commanded(TEXT, "m.yaml", 0, 24_000, asked)
 
 
+def test_a_variant_that_would_have_it_elsewhere_is_refused() -> None:
+    asked = {"what": "go_to", "vehicle": 1, "places": [[900, 300]]}
+    with pytest.raises(BadInput, match="other places"):
+        commanded(TEXT, "m.yaml", 7, 24_000, asked)
+    assert commanded(TEXT, "m.yaml", 7, 24_000, {"what": "drop_task", "id": 1}).at_ms > 24_000
+
+
 @pytest.mark.slow
 def test_a_flight_with_a_command_is_that_of_the_mission_that_it_writes(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
