@@ -147,8 +147,19 @@ def _editing(mission: Path, port: int, allow_unproved: bool, stack: ExitStack) -
 def _flying(mission: Path, port: int, flight: dict[str, Any], stack: ExitStack) -> GroundStation:
     from cratous.services.ground_station.live_session import LiveSession
     from cratous.services.ground_station.server import GroundStation, LiveRecorded
+    from cratous.services.mission_editor.operator_commands import commanded
+    from cratous.spec.files.limits import MISSION_BYTES
+    from cratous.spec.files.text_file import text_of
 
-    live = stack.enter_context(closing(LiveSession(FLIGHT, _asked(mission, **flight))))
+    asked = {**_asked(mission, **flight), "text": text_of(mission, MISSION_BYTES, "a mission file")}
+
+    def amended(now_ms: int, command: Any) -> dict[str, Any]:
+        nonlocal asked
+        found = commanded(asked["text"], str(mission), asked["seed"], now_ms, command)
+        asked = {**asked, "text": found.text, "until_ms": found.at_ms, "commanded": True}
+        return asked
+
+    live = stack.enter_context(closing(LiveSession(FLIGHT, asked, amended)))
     flown = LiveRecorded(live, lambda folder: _replayed(Path(folder)))
     return stack.enter_context(GroundStation(flown, port, live))
 
@@ -187,10 +198,10 @@ def _asked(
     """What the flight's process is asked for; its report names the command that does the same."""
     from cratous.services.cli.show import shown_path
 
-    command = ["cratous", "run", shown_path(mission)]
-    command += ["--no-daa"] * no_daa + ["--allow-unproved"] * allow_unproved
-    command += ["--seed", str(seed)] if seed else []
+    options = ["--no-daa"] * no_daa + ["--allow-unproved"] * allow_unproved
+    options += ["--seed", str(seed)] if seed else []
+    command = ["cratous", "run", shown_path(mission), *options]
     return {
         "path": str(mission), "out": str(out or "out"), "seed": seed or 0, "daa": not no_daa,
-        "allow_unproved": allow_unproved, "command": shlex.join(command),
+        "allow_unproved": allow_unproved, "command": shlex.join(command), "options": options,
     }  # fmt: skip

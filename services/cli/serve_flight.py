@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import sys
 import threading
 from contextlib import suppress
@@ -12,15 +13,19 @@ from typing import Any
 
 from cratous.services.cli.job import Settings, folder_name, run_mission
 from cratous.services.cli.json_lines import end_main_thread, told_on_stdout
+from cratous.services.cli.show import shown_path
 from cratous.services.cli.stopping import Stopped, stoppable
 from cratous.services.ground_station.live_flight import LiveFlight, forward
 from cratous.services.ground_station.pace import Ended
 from cratous.services.results.folder import results_folder
+from cratous.services.results.names import COMMANDED_NAME
 from cratous.spec.errors import BadInput, CratousError
 
 
 def main(asked: dict[str, Any]) -> int:
-    """Fly a mission. asked: path, seed, out, and what `Settings` takes; returns the exit code."""
+    """Fly a mission. asked: path, seed, out, and what `Settings` takes; text: of the mission, None where it comes
+    first on stdin; until_ms: flown so far as fast as it goes; commanded: whether it has commands of an operator.
+    Returns the exit code."""
     send = told_on_stdout()
 
     def status(state: str, **more: Any) -> None:
@@ -29,6 +34,8 @@ def main(asked: dict[str, Any]) -> int:
     with suppress(BrokenPipeError):  # who started this is gone: there is nobody to tell
         try:
             with stoppable():
+                if asked.get("text") is None:
+                    asked = {**asked, **json.loads(sys.stdin.readline())}
                 return _fly(asked, send, status)
         except (Stopped, Ended):
             status("stopped", text="The flight was stopped; no results were written.")
@@ -40,15 +47,17 @@ def main(asked: dict[str, Any]) -> int:
 
 
 def _fly(asked: dict[str, Any], send: Any, status: Any) -> int:
-    from cratous.services.loading import load
+    from cratous.services.loading.document import parse_document
+    from cratous.services.loading.yaml_mission import loaded
 
-    mission = load(Path(asked["path"]), asked["seed"])
+    mission = loaded(parse_document(asked["text"], asked["path"]), asked["seed"])
     target = Path(asked["out"]) / folder_name(mission)
     read, write = os.pipe()
     live = LiveFlight(mission, send, write)
+    if "until_ms" in asked:
+        live.pace.fly_to(asked["until_ms"])
     judged = forward(read, send)
     threading.Thread(target=_commands, args=(live,), daemon=True).start()
-    settings = Settings(asked["daa"], asked["allow_unproved"], asked["command"])
 
     def tell(text: str) -> None:
         if not text.startswith("\r") or "of flight" not in text:
@@ -57,6 +66,12 @@ def _fly(asked: dict[str, Any], send: Any, status: Any) -> int:
     try:
         status("planning")
         with results_folder(target, tell) as folder:
+            command = asked["command"]
+            if asked.get("commanded"):
+                (folder / COMMANDED_NAME).write_text(asked["text"], encoding="utf-8")
+                again = ["run", shown_path(target / COMMANDED_NAME), "--out", "again"]
+                command = shlex.join(["cratous", *again, *asked["options"]])
+            settings = Settings(asked["daa"], asked["allow_unproved"], command)
             report = run_mission(mission, folder, settings, tell, live)
         live.tell()
     finally:

@@ -179,7 +179,7 @@ class AttachedSession:
         with self._changed:
             self._flush(self._attached.now_ms())
             return {
-                "live": True, "attached": self._where.text, "next": self._count,
+                "live": True, "flight": 0, "attached": self._where.text, "next": self._count,
                 "name": self._where.text, "source": "messages",
                 "frame": to_data(self._positions.frame or Frame(0.0, 0.0)),
                 "end_ms": self._attached.now_ms(), "outcome": "watched", "volume": None,
@@ -199,7 +199,7 @@ class AttachedSession:
             again = not oldest <= first <= self._count
             found = [] if again else list(self._updates)[first - oldest :]
             return {
-                "updates": found, "next": self._count, "more": False, "again": again,
+                "updates": found, "next": self._count, "more": False, "again": again, "flight": 0,
                 "status": self.status,
             }  # fmt: skip
 

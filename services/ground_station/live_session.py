@@ -7,6 +7,7 @@ import json
 import secrets
 import threading
 import time
+from collections.abc import Callable
 from typing import Any
 
 from cratous.services.ground_station.json_process import JsonProcess
@@ -19,7 +20,12 @@ MOST_TOLD = 300
 """Updates in one answer."""
 OVER = ("ended", "stopped", "failed", "lost")
 ORDERS = ("play", "pause", "step", "rate", "stop", "take")
+COMMAND = "command"
+"""An order of the page that changes the mission: the flight is flown anew up to now, and then with it."""
 ENDING_S = 20.0
+
+
+Amend = Callable[[int, Any], dict[str, Any]]
 
 
 class NotObeyed(Exception):
@@ -36,18 +42,40 @@ class LiveSession:
     token: whoever has it may command, one page at a time. status: state and text for the page.
     """
 
-    def __init__(self, module: str, asked: dict[str, Any]) -> None:
-        """module: what flies, as `python -m` takes it; asked: its argument."""
+    def __init__(self, module: str, asked: dict[str, Any], commanded: Amend | None = None) -> None:
+        """module: what flies, as `python -m` takes it; asked: its argument; commanded: gives, for a time of the
+        flight [ms] and a command, the argument of the flight with it. Raises NotObeyed or BadInput."""
         self.token = secrets.token_urlsafe(24)
         self.status: dict[str, Any] = {"state": "loading", "rate": 1.0, "text": ""}
         self._updates: list[str] = []
         self._begin: dict[str, Any] | None = None
         self._changed = threading.Condition()
+        self._commanding = threading.Lock()
         self._operator, self._seen_s = "", 0.0
-        self._process = JsonProcess(module, self._heard, self._ended, json.dumps(asked))
+        self._module, self._commanded = module, commanded
+        self._flight = self._now_ms = 0
+        self._process = self._start(asked)
+
+    def _start(self, asked: dict[str, Any]) -> JsonProcess:
+        """A process that flies; what one that was before it still says is not heard."""
+        number = self._flight
+
+        def heard(told: dict[str, Any], line: str) -> None:
+            if number == self._flight:
+                self._heard(told, line)
+
+        def ended(how: str) -> None:
+            if number == self._flight:
+                self._ended(how)
+
+        process = JsonProcess(self._module, heard, ended, json.dumps({**asked, "text": None}))
+        if "text" in asked:
+            process.say({"text": asked["text"]})
+        return process
 
     def _heard(self, told: dict[str, Any], line: str) -> None:
         with self._changed:
+            self._now_ms = told.get("set", {}).get("end_ms", self._now_ms)
             if "begin" in told:
                 self._begin = told["begin"]
             elif "status" in told:
@@ -76,7 +104,7 @@ class LiveSession:
                     key: str(error.get(key, "")) for key in ("where", "item", "expected", "got")
                 }
                 raise BadInput(str(error.get("error")), **known)
-            return self._begin
+            return {**self._begin, "flight": self._flight}
 
     def told(self, first: int) -> dict[str, Any]:
         """The updates from a number on, some hundreds at most, and how the flight is."""
@@ -87,6 +115,7 @@ class LiveSession:
             "updates": [json.loads(line) for line in found],
             "next": first + len(found),
             "more": first + len(found) < total,
+            "flight": self._flight,
             "status": status,
         }
 
@@ -111,7 +140,7 @@ class LiveSession:
             raise NotObeyed(
                 403, "commands need the token of the address that `cratous serve` printed"
             )
-        if not isinstance(asked, dict) or asked.get("do") not in ORDERS or not page:
+        if not isinstance(asked, dict) or asked.get("do") not in (*ORDERS, COMMAND) or not page:
             raise NotObeyed(400, f"expected one of {', '.join(ORDERS)}")
         if asked["do"] == "rate" and asked.get("rate") not in RATES:
             raise NotObeyed(400, f"expected a rate of {', '.join(f'{rate:g}' for rate in RATES)}")
@@ -123,7 +152,30 @@ class LiveSession:
             raise NotObeyed(409, "another page commands this flight")
         if self.status["state"] in OVER:
             raise NotObeyed(409, "the flight is over")
+        if asked["do"] == COMMAND:
+            self._command(asked.get("command"))
+            return
         self._process.say({key: asked[key] for key in ("do", "rate") if key in asked})
+
+    def _command(self, command: Any) -> None:
+        """Fly anew with a command, up to where it is known; a page that asks next commands on."""
+        if self._commanded is None:
+            raise NotObeyed(409, "this flight takes no commands that change its mission")
+        with self._commanding:
+            if self.status["state"] != "paused":
+                raise NotObeyed(409, "the flight has to be paused for a command")
+            asked = self._commanded(self._now_ms, command)
+            with self._changed:
+                before = self._process
+                self._flight += 1
+                self._updates, self._begin, self._operator = [], None, ""
+                self.status = {
+                    **self.status,
+                    "state": "loading",
+                    "text": "flying anew up to the command",
+                }
+            before.end(ENDING_S)
+            self._process = self._start(asked)
 
     def close(self) -> None:
         """End the process if it flies; a flight that is not over leaves no results."""

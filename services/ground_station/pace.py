@@ -55,6 +55,12 @@ class Pace:
             self._ended = True
             self._changed.notify_all()
 
+    def fly_to(self, time_ms: int) -> None:
+        """Fly up to a time as fast as it goes, then stand."""
+        with self._changed:
+            self._paused, self._until_ms = True, time_ms
+            self._changed.notify_all()
+
     def step(self) -> None:
         """Fly a second as fast as it goes, then stand."""
         with self._changed:

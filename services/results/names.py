@@ -10,6 +10,8 @@ FORMER = "cratous-report/1"
 REPORT_NAME, HTML_NAME, MAP_NAME = "report.json", "report.html", "map.svg"
 LOG_NAME, CERTIFICATE_NAME = "log.sqlite", "certificate.json"
 MANIFEST_NAME = "manifest.json"
+COMMANDED_NAME = "mission.yaml"
+"""The mission with what an operator commanded in flight, of a flight with commands."""
 NAMES = (REPORT_NAME, HTML_NAME, MAP_NAME, LOG_NAME, CERTIFICATE_NAME, MANIFEST_NAME)
 BESIDE_LOG = tuple(LOG_NAME + end for end in ("-journal", "-wal", "-shm"))
 """SQLite would take these for part of a new log."""

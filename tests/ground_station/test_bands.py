@@ -14,9 +14,12 @@ from log_tools import write
 
 from cratous.bridge import lmcp
 from cratous.services.ground_station.bands import BANDS, Bands
+from cratous.services.ground_station.live_flight import LiveFlight
 from cratous.services.ground_station.recording import recording
+from cratous.services.loading import load
 from cratous.services.logs.entry import Entry
 
+CROSSING = Path(__file__).resolve().parents[2] / "examples" / "crossing" / "mission.yaml"
 READY = "document.getElementById('bands-note')?.textContent"
 
 
@@ -109,6 +112,18 @@ def test_the_first_message_of_each_second_stays() -> None:
     assert bands.take_new() == bands.found
     assert bands.take_new() == {}
     assert bands.unread == 0
+
+
+def test_a_live_flight_tells_its_bands_once() -> None:
+    sent: list[dict[str, Any]] = []
+    live = LiveFlight(load(CROSSING), sent.append, -1)
+    live._recording.add(Entry(0, 500, "", BANDS, json.dumps(_body())))
+    live.tell()
+    live.tell()
+    told = [update["bands"] for update in sent if "bands" in update]
+    assert [rows[0]["bands"] for one in told for rows in one.values()] == [
+        {"heading": [(350.0, 20.0, "NEAR")]}
+    ]
 
 
 @pytest.mark.parametrize(

@@ -26,7 +26,7 @@ export class Live {
     this.status = { state: "loading", rate: 1, text: "" };
     this.who = "watch";
     by("live").hidden = false;
-    for (const id of ["fly", "fly-step", "live-rate-box", "stop"]) by(id).hidden = Boolean(recording.attached);
+    for (const id of ["fly", "fly-step", "live-rate-box", "stop", "operate"]) by(id).hidden = Boolean(recording.attached);
     by("live-rate").append(...RATES.map(rate => new Option(`${rate}×`, rate)));
     const on = (id, act) => by(id).addEventListener("click", act);
     on("fly", () => this.toggle());
@@ -64,6 +64,11 @@ export class Live {
     this.show();
   }
 
+  // once a pause that was asked for is there
+  async settled() {
+    while (this.status.state === "flying" && this.who === "you" && this.failures < PATIENCE) await new Promise(done => setTimeout(done, EVERY_MS));
+  }
+
   async poll() {
     let told = null;
     try {
@@ -72,7 +77,7 @@ export class Live {
     } catch { /* counted below */ }
     this.failures = told ? 0 : this.failures + 1;
     if (told) {
-      if (told.again) { location.reload(); return; } // too far behind: all of it anew
+      if (told.again || told.flight !== this.recording.flight) { location.reload(); return; } // too far behind: all of it anew
       told.updates.forEach(update => this.take(update));
       this.next = told.next;
       this.status = told.status;
@@ -124,6 +129,7 @@ export class Live {
     by("fly").textContent = state === "flying" ? "Pause" : "Fly";
     for (const id of ["fly", "fly-step", "live-rate"]) by(id).disabled = !ready;
     by("stop").disabled = !may;
+    by("operate").disabled = !ready;
     by("take").hidden = this.who !== "other" || this.over;
     by("results").hidden = state !== "ended";
     if (document.activeElement !== by("live-rate") || !ready) by("live-rate").value = rate;

@@ -5,6 +5,7 @@ import { AltitudeChart } from "./altitude.js";
 import { panel } from "./bands.js";
 import { Live } from "./live.js";
 import { FlightMap } from "./map.js";
+import { Operator } from "./operate.js";
 import { open, source, theme } from "./opening.js";
 import * as panels from "./panels.js";
 import { Playback } from "./playback.js";
@@ -42,6 +43,7 @@ class Station extends Playback {
     this.follow = true;
     for (const id of ["play", "rate-box"]) by(id).hidden = true;
     this.live = new Live(this.recording, updates => this.grown(updates));
+    if (!this.recording.attached) this.operator = new Operator(this.live, this.map, this.recording, () => this.draw(true));
   }
 
   grown(updates) {
@@ -72,6 +74,7 @@ class Station extends Playback {
     theme(state.theme);
     this.spectrum.draw(state, said); // first: where it comes up, the map gets smaller
     this.map.draw(state, said);
+    this.operator?.draw();
     this.chart.draw(state, said);
     if (!this.bar(whole)) return;
     panels.aircraft(recording, state, said);

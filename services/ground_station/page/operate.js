@@ -1,0 +1,86 @@
+// Commands of the operator that change the mission in flight: picked, drawn on the map, confirmed, and sent.
+
+const by = id => document.getElementById(id);
+// what is drawn for each: least and most places; null: it is picked from a list
+const DRAWN = { keep_out: [3, 50], go_to: [1, 1], loiter: [1, 1], drop_task: null, end_zone: null };
+const HINTS = { keep_out: "Click the corners of the keep-out on the map; Enter ends it, Esc gives it up.", go_to: "Click the place on the map; Esc gives it up.", loiter: "Click the place on the map; Esc gives it up." };
+const NAMES = { keep_out: "A keep-out zone", go_to: "A task to fly through a place", loiter: "A task to loiter at a place", drop_task: "A task is dropped", end_zone: "A zone ends" };
+
+export class Operator {
+  // live: the flight; map: on which is drawn; redraw: draws it
+  constructor(live, map, recording, redraw) {
+    Object.assign(this, { live, map, recording, redraw, what: null, places: [] });
+    by("operate").addEventListener("change", () => this.begin(by("operate").value));
+    by("command-not").addEventListener("click", () => this.end());
+    by("command-yes").addEventListener("click", () => this.send());
+    by("confirm-command").addEventListener("cancel", () => this.end());
+    let from = null;
+    map.canvas.addEventListener("pointerdown", event => { from = [event.clientX, event.clientY]; });
+    map.canvas.addEventListener("click", event => {
+      const still = from && Math.hypot(event.clientX - from[0], event.clientY - from[1]) < 5; // else the map was moved
+      if (this.what && DRAWN[this.what] && still) this.place(map.under(event.offsetX, event.offsetY));
+    });
+    window.addEventListener("keydown", event => {
+      if (!this.what || by("confirm-command").open) return;
+      if (event.key === "Escape") this.end();
+      else if (event.key === "Enter" && this.places.length >= DRAWN[this.what][0]) this.confirm();
+      else return;
+      event.preventDefault();
+    });
+  }
+
+  async begin(what) {
+    by("operate").value = "";
+    if (!(what in DRAWN)) return;
+    if (this.live.status.state === "flying") await this.live.order({ do: "pause" });
+    Object.assign(this, { what, places: [] });
+    by("operate-hint").textContent = HINTS[what] ?? "";
+    if (!DRAWN[what]) this.confirm();
+  }
+
+  place(place) {
+    this.places.push(place.map(x => Math.round(x * 10) / 10));
+    if (this.places.length >= DRAWN[this.what][1]) this.confirm(); else this.redraw();
+  }
+
+  draw() {
+    if (!this.places.length) return;
+    const { map } = this;
+    map.path(this.places, false);
+    map.stroke("#888", 3, [6, 6]);
+    for (const place of this.places) map.label("×", ...map.xy(...place), "#888");
+  }
+
+  confirm() {
+    const { recording, what } = this, fill = (id, rows) => by(id).replaceChildren(...rows.map(([value, text]) => new Option(text, value)));
+    const now = recording.end_ms, vehicles = recording.vehicles.map(one => [one.id, `${one.id} ${one.label || ""}`]);
+    fill("command-vehicle", vehicles);
+    const listed = what === "end_zone" ? recording.zones.filter(one => one.from_ms <= now && (one.to_ms ?? Infinity) > now) : recording.tasks;
+    fill("command-id", listed.map(one => [one.id, `${one.id} ${one.label || ""}`]));
+    by("command-vehicle-box").hidden = !["go_to", "loiter"].includes(what);
+    by("command-seconds-box").hidden = what !== "loiter";
+    by("command-id-box").hidden = DRAWN[what] !== null;
+    by("command-yes").disabled = DRAWN[what] === null && !listed.length;
+    by("command-text").textContent = `${NAMES[what]}${this.places.length ? `, at ${this.places.map(([n, e]) => `north ${n} m, east ${e} m`).join("; ")}` : ""}. It is known from the next step on, and what is left is planned anew where it asks for that. The flight is flown anew up to now, stands there, and its results have the mission with this command.`;
+    by("confirm-command").showModal();
+  }
+
+  async send() {
+    const { what, places } = this, command = { what };
+    if (places.length) command.places = places;
+    if (!by("command-vehicle-box").hidden) command.vehicle = Number(by("command-vehicle").value);
+    if (!by("command-seconds-box").hidden) command.duration_s = Number(by("command-seconds").value);
+    if (!by("command-id-box").hidden) command.id = Number(by("command-id").value);
+    by("command-yes").disabled = true;
+    await this.live.settled();
+    await this.live.order({ do: "command", command });
+    this.end();
+  }
+
+  end() {
+    Object.assign(this, { what: null, places: [] });
+    by("operate-hint").textContent = "";
+    by("confirm-command").close();
+    this.redraw();
+  }
+}

@@ -1,0 +1,140 @@
+"""What an operator commands in flight: a change of the mission's text, flown anew, and the same flown again."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from chromium_tools import browsing
+from ground_station_tools import flying
+
+from cratous.services.cli import main
+from cratous.services.ground_station.live_session import NotObeyed
+from cratous.services.loading.document import parse_document
+from cratous.services.loading.yaml_mission import loaded
+from cratous.services.mission_editor.operator_commands import HEAD, commanded
+from cratous.spec.errors import BadInput
+
+ROOT = Path(__file__).resolve().parents[2]
+TEXT = (ROOT / "examples" / "crossing" / "mission.yaml").read_text(encoding="utf-8")
+SHORT = TEXT.replace("east_m: 2500", "east_m: -1500").replace("north_m: 2500", "north_m: -600")
+"""Of a crossing that is over before the two meet."""
+STATE = "document.getElementById('live-state')?.textContent"
+
+
+def _command(text: str = TEXT, now_ms: int = 24_000, **asked: Any) -> Any:
+    found = commanded(text, "m.yaml", 0, now_ms, asked)
+    return found, loaded(parse_document(found.text, "m.yaml"))
+
+
+def test_a_place_is_a_task_of_its_vehicle_from_the_next_step_on() -> None:
+    found, mission = _command(what="go_to", vehicle=2, places=[[100.04, -50]])
+    assert found.text.startswith(HEAD)
+    assert TEXT.split("tasks:")[0] in found.text  # all else stands as it stood
+    (change,) = mission.changes
+    assert (change.kind, change.task) == ("task_added", 3)
+    assert 24_000 < change.at_ms == found.at_ms <= 24_000 + mission.simulation.step_ms
+    task = next(one for one in mission.tasks if one.id == 3)
+    assert (task.kind.value, task.eligible, task.label) == ("must_fly", (2,), "by the operator")
+    assert task.points[0][:3] == (100.0, -50.0, 300.0)
+    assert mission.relations == "|(|(p1 p2) p3)"
+    # a second one takes the next numbers, and keeps the first
+    again, both = _command(
+        found.text, 40_000, what="loiter", vehicle=1, places=[[0, 0]], duration_s=30
+    )
+    assert again.text.count(HEAD) == 1
+    assert [one.task for one in both.changes] == [3, 4]
+    assert "task 4 for vehicle 1" in again.what
+
+
+def test_zones_and_tasks_are_added_and_taken_away() -> None:
+    corners = [[0, 900], [300, 900], [300, 1200]]
+    found, mission = _command(what="keep_out", places=corners)
+    zone = mission.changes[0].zone
+    assert zone is not None
+    assert (zone.id, zone.label) == (1, "by the operator")
+    assert [list(map(float, one[:2])) for one in zone.vertices] == corners
+    _, ended = _command(found.text, 50_000, what="end_zone", id=1)
+    assert ended.changes[1].kind == "zone_ends"
+    _, dropped = _command(what="drop_task", id=2)
+    assert (dropped.changes[0].kind, dropped.changes[0].task) == ("task_removed", 2)
+
+
+@pytest.mark.parametrize(
+    ("asked", "error"),
+    [
+        (None, NotObeyed), ({"what": "land"}, NotObeyed),
+        ({"what": "keep_out", "places": [[0, 0], [1, 1]]}, NotObeyed),
+        ({"what": "keep_out", "places": [[0, 0], [9, 9], [9, "x"]]}, NotObeyed),
+        ({"what": "go_to", "vehicle": 7, "places": [[0, 0]]}, NotObeyed),
+        ({"what": "go_to", "vehicle": 1, "places": [[0, float("nan")]]}, NotObeyed),
+        ({"what": "loiter", "vehicle": 1, "places": [[0, 0]], "duration_s": 0}, NotObeyed),
+        ({"what": "drop_task"}, NotObeyed), ({"what": "drop_task", "id": 9}, BadInput),
+        ({"what": "end_zone", "id": 1}, BadInput),
+        # two edges of it cross
+        ({"what": "keep_out", "places": [[0, 0], [900, 900], [900, 0], [0, 900]]}, BadInput),
+    ],
+)  # fmt: skip
+def test_what_is_no_command_or_not_possible_is_refused(asked: Any, error: type[Exception]) -> None:
+    with pytest.raises(error):
+        commanded(TEXT, "m.yaml", 0, 24_000, asked)
+
+
+def test_a_variant_that_would_have_it_elsewhere_is_refused() -> None:
+    asked = {"what": "go_to", "vehicle": 1, "places": [[900, 300]]}
+    with pytest.raises(BadInput, match="other places"):
+        commanded(TEXT, "m.yaml", 7, 24_000, asked)
+    assert commanded(TEXT, "m.yaml", 7, 24_000, {"what": "drop_task", "id": 1}).at_ms > 24_000
+
+
+@pytest.mark.slow
+def test_a_flight_with_a_command_is_that_of_the_mission_that_it_writes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mission = tmp_path / "crossing.yaml"
+    mission.write_text(SHORT, encoding="utf-8")
+    with flying(mission, tmp_path / "live") as live, browsing(tmp_path / "profile") as page:
+        page.go(live.url)
+        page.until(f"{STATE} === 'paused' && !document.getElementById('fly').disabled")
+        page.click("#fly-step")
+        page.until("Number(document.getElementById('slider').max) === 1000")
+        before = live.told()["updates"]
+        page.value(
+            "(s => { s.value = 'go_to'; s.dispatchEvent(new Event('change')); })"
+            "(document.getElementById('operate'))"
+        )
+        page.until("document.getElementById('operate-hint').textContent.startsWith('Click')")
+        page.click("#map")
+        page.until("document.getElementById('confirm-command').open")
+        page.value("document.getElementById('command-vehicle').value = 2")
+        page.click("#command-yes")
+        # it is flown anew up to the command, and stands there
+        page.until("document.getElementById('events')?.textContent.includes('task 3 is requested')")
+        page.until(f"{STATE} === 'paused' && !document.getElementById('fly').disabled")
+        assert page.text("live-who") == "This page commands the flight."
+        again = live.told()["updates"]
+        assert _rows(again)[: len(_rows(before))] == _rows(before)  # what was flown is the same
+        assert live.order("a", do="command", command={"what": "drop_task", "id": 1}).status == 409
+        assert live.order("a", do="take").status == 200
+        wrong = live.order("a", do="command", command={"what": "drop_task", "id": 9})
+        assert (wrong.status, "9" in wrong.data()["error"]) == (422, True)
+        assert live.until("paused")["state"] == "paused"  # nothing has happened to the flight
+        live.order("a", do="rate", rate=1000)
+        live.order("a", do="play")
+        assert live.until("ended", "failed", "lost")["state"] == "ended"
+        assert page.logged == []
+    results = tmp_path / "live" / "crossing"
+    report = json.loads((results / "report.json").read_text(encoding="utf-8"))
+    assert report["command"].endswith("mission.yaml --out again")
+    assert "by the operator" in (results / "mission.yaml").read_text(encoding="utf-8")
+    words = ["run", str(results / "mission.yaml"), "--quiet", "--out", str(tmp_path / "again")]
+    assert main(words) == report["exit_code"]
+    second = json.loads((tmp_path / "again" / "crossing" / "report.json").read_text("utf-8"))
+    assert second["log"]["digest"] == report["log"]["digest"]
+    capsys.readouterr()
+
+
+def _rows(updates: list[Any]) -> list[Any]:
+    return [row for one in updates for row in one.get("tracks", {}).get("2", ())]
