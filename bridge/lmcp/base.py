@@ -44,9 +44,10 @@ class LmcpObject:
     _restore: ClassVar[Any] = None  # `objects.again`: it knows the classes by their names
 
     def __init__(self, **given: Any) -> None:
-        for name, make, constant in self._makers:
-            if name not in given:
-                setattr(self, name, constant if make is None else make())
+        if len(given) < len(self._makers):  # else each is given, or one that there is not
+            for name, make, constant in self._makers:
+                if name not in given:
+                    setattr(self, name, constant if make is None else make())
         for name, value in given.items():
             check = self._checks.get(name)
             if check is None:

@@ -15,8 +15,9 @@ from typing import Any
 
 from cratous.services.requirements import fret_formula, fretish_read
 from cratous.services.requirements.formula import Formula
+from cratous.services.requirements.fret_definitions import with_definitions
 from cratous.services.requirements.fret_formula import Kind
-from cratous.services.requirements.fret_terms import Meaning, Names, Unread, Wrong, number
+from cratous.services.requirements.fret_terms import Defined, Meaning, Names, Unread, Wrong, number
 from cratous.services.requirements.specification import (
     NotRead,
     Requirement,
@@ -60,7 +61,7 @@ def read(text: str, where: str = "FRET") -> Specification:
     Raises BadInput for a text that is no export, and for one of whose requirements none is told.
     """
     export = read_export(text, where)
-    names = Names(export.variables, export.defined, counted=True)
+    names = with_definitions(Names(export.variables, export.defined, counted=True))
     made = tuple(requirement(one, names, export.where, timed=False) for one in export.requirements)
     if not made:
         raise BadInput("there is no requirement", where=where, expected="requirements")
@@ -142,7 +143,9 @@ def _definition(one: Mapping[str, Any]) -> Meaning | None:
     if text.lower() in ("true", "false"):
         return text.lower() == "true"
     if DEFINED.fullmatch(text) is None:
-        return Unread("this variable is defined by a formula")
+        return Defined(
+            "this variable is defined by a formula", text, _kind(one.get("dataType")) == "bool"
+        )
     try:
         return number(text)
     except Wrong as no:

@@ -16,6 +16,7 @@ from typing import Any
 
 from cratous.services.requirements import fret, fretish_read
 from cratous.services.requirements.formula import Formula
+from cratous.services.requirements.fret_definitions import with_definitions
 from cratous.services.requirements.fret_terms import Meaning, Names, Wrong
 from cratous.services.requirements.specification import Requirement, Signal
 from cratous.services.requirements.units import Quantity
@@ -46,7 +47,8 @@ def imported(item: Any, signals: dict[str, Signal], files: Files | None) -> Iter
         raise Wrong("a text that lies in no folder imports nothing", token.start_pos)
     parts = {str(one.data): one.children for one in item.children[2:]}
     export = fret.read_export(*_export(files, _text(token)))
-    names = Names(signals, {**export.defined, **_bound(parts.get("variables", ()), signals)})
+    bound = _bound(parts.get("variables", ()), signals)
+    names = with_definitions(Names(signals, {**export.defined, **bound}))
     rows = {str(one["reqid"]): one for one in export.requirements}
     wanted = [(_text(one), one.start_pos) for one in parts.get("only", ())]
     for name, at in wanted or [(name, token.start_pos) for name in rows]:

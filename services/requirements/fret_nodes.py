@@ -29,10 +29,11 @@ CALCULATING = ("compare", "negative", *SIGNS)
 PLAIN = {"truth": "name", "constant": "word"}
 
 
-def settled(tree: Any) -> None:
+def settled(tree: Any, is_number: bool = False) -> None:
     """Say of each name and constant whether it is a number or a truth value there; Wrong where the other stands."""
     for node in tree.iter_subtrees_topdown():
-        kind, numeric = str(node.data), _is_calculating(node)
+        kind = str(node.data)
+        numeric = _is_calculating(node) or (is_number and kind == "start")
         for child in node.children:
             if not hasattr(child, "data"):
                 continue
@@ -55,10 +56,13 @@ def _is_calculating(node: Any, but: str = "") -> bool:
     return kind in CALCULATING and kind != but
 
 
-def tree_of(parser: Lark, text: str, language: str) -> Any:
-    """The tree of a text, in which names and constants are numbers where numbers stand; Wrong for what is none."""
+def tree_of(parser: Lark, text: str, language: str, is_number: bool = False) -> Any:
+    """The tree of a text, in which names and constants are numbers where numbers stand; Wrong for what is none.
+
+    is_number: the whole is a number.
+    """
     tree = parsed(parser, text, language)
-    settled(tree)
+    settled(tree, is_number)
     return tree
 
 
@@ -180,7 +184,7 @@ class _Numbers:
         """(text, unit, whether it is an integer) of a signal or a term."""
         if isinstance(side, Term):
             return side.text, side.unit, side.whole
-        if isinstance(side, bool) or self.names.signals[side].kind == "bool":
+        if not isinstance(side, str) or self.names.signals[side].kind == "bool":
             raise self._wrong("a truth value is calculated with", "a number", str(side))
         return side, self.names.signals[side].unit, self.names.signals[side].kind == "int"
 

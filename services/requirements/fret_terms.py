@@ -43,8 +43,18 @@ class Unread:
     why: str
 
 
-Meaning = str | Quantity | bool | Unread
-"""What a variable is: a signal of this name, a number with its unit (none: that of the other side), a constant."""
+@dataclass(frozen=True)
+class Defined(Unread):
+    """One that is defined by a formula, which may be read; is_bool: the variable is a truth value."""
+
+    text: str
+    is_bool: bool
+
+
+Meaning = str | Quantity | bool | Unread | Term | formulas.Formula
+"""What a variable is: a signal of this name, a number with its unit (none: that of the other side), a constant, or what
+its definition says."""
+TRUTHS = (formulas.Always, formulas.Reaches, formulas.Not, formulas.Join, formulas.Bounded)
 
 
 @dataclass(frozen=True)
@@ -75,6 +85,8 @@ class Names:
         found = self.of(token)
         if isinstance(found, bool):
             return formulas.TRUE if found else formulas.FALSE
+        if isinstance(found, TRUTHS):
+            return found
         if isinstance(found, str) and self.signals[found].kind == "bool":
             return formulas.Reaches(found, 1.0)
         raise Wrong("this variable is no truth value", token.start_pos, "a bool", str(token))
@@ -82,7 +94,7 @@ class Names:
     def compared(self, left: Any, relation: Any, right: Any) -> formulas.Formula:
         """A comparison of two sides: of truth values whether they are equal, else of numbers."""
         at = relation.start_pos
-        truths = [isinstance(s, bool) or self._kind(s) == "bool" for s in (left, right)]
+        truths = [isinstance(s, (bool, *TRUTHS)) or self._kind(s) == "bool" for s in (left, right)]
         if any(truths):
             if not all(truths) or relation not in ("=", "!="):
                 raise Wrong("a truth value is compared", at, "= or != with another", str(relation))
@@ -113,7 +125,9 @@ class Names:
         return self.signals[side].kind if isinstance(side, str) else ""
 
 
-def _truth(side: str | bool) -> formulas.Formula:
+def _truth(side: Any) -> formulas.Formula:
+    if isinstance(side, TRUTHS):
+        return side
     if isinstance(side, str):
         return formulas.Reaches(side, 1.0)
     return formulas.TRUE if side else formulas.FALSE

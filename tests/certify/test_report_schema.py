@@ -40,6 +40,17 @@ def test_mission_and_plan_are_those_of_the_records() -> None:
     assert {name: SCHEMA["$defs"][name] for name in found} == found
 
 
+def test_tracks_are_looked_at_apart_as_the_schema_has_them() -> None:
+    """What `report_schema` asks of them itself is all that the schema asks."""
+    tracks = SCHEMA["properties"]["flight"]["properties"]["tracks"]
+    rows = {"type": "array", "items": {"type": "number"}, "minItems": 5, "maxItems": 5}
+    assert {k: v for k, v in tracks.items() if k != "description"} == {
+        "type": "object",
+        "propertyNames": {"pattern": "^-?[0-9]+$"},
+        "additionalProperties": {"type": "array", "items": rows},
+    }
+
+
 def test_a_hint_that_no_record_uses_is_refused() -> None:
     class Odd(tuple):
         _fields = ("field",)
@@ -78,6 +89,19 @@ def test_a_report_fits_and_its_edits_do_not(flown: Path) -> None:
         (("constraints", 0, "added"), 1, "constraints[0]: Additional properties"),
         (("log", "digest"), "x" * 64, "log.digest: "),
         (("flight", "tracks", "1", 0), [1, 2, 3], "flight.tracks.1[0]: [1, 2, 3] is too short"),
+        (
+            ("flight", "tracks", "1", 0),
+            [1, 2, 3, "4", 5],
+            "flight.tracks.1[0][3]: '4' is not of type",
+        ),
+        (
+            ("flight", "tracks", "1", 0),
+            [1, 2, True, 4, 5],
+            "flight.tracks.1[0][2]: True is not of type",
+        ),
+        (("flight", "tracks", "1", 0, 4), None, "flight.tracks.1[0][4]: None is not of type"),
+        (("flight", "tracks", "2"), {}, "flight.tracks.2: {} is not of type"),
+        (("flight", "tracks", "x"), [], "flight.tracks: 'x' does not match"),
         (("mission", "frame"), None, "mission.frame: None is not of type"),
         (("environment", "packages", "numpy"), 2, "environment.packages.numpy: 2 is not"),
     ]

@@ -156,3 +156,65 @@ def test_a_long_trace_is_judged_the_same_at_once(
     at_once = watch(spec, trace).outcomes
     assert [vars(one) for one in at_once] == [vars(one) for one in one_by_one]
     assert one_by_one[0].unknown == 2
+
+
+def defined(name: str, text: str, kind: str = "boolean") -> dict[str, str]:
+    return {"variable_name": name, "idType": "Internal", "dataType": kind, "assignment": text}
+
+
+def over(formula: str, *more: dict[str, str]) -> Specification:
+    row = {"reqid": "A", "semantics": {"ftInfAUExpanded": formula}}
+    return fret.read(
+        json.dumps({"requirements": [row], "variables": [*VARIABLES, *more]}), "e.json"
+    )
+
+
+@settings(max_examples=25, deadline=None)
+@given(rows=st.lists(ROW, min_size=1, max_size=3))
+def test_variables_that_are_defined_by_a_formula(rows: list[dict[str, float]]) -> None:
+    more = [
+        defined("high", "fast and not (x <= 1.0) or same"), defined("fast", "sum > 2.0"), defined("also", "b"),
+        defined("sum", "x + HALF * y", "double"), defined("same", "b xor b"), defined("z2", "z", "double"),
+    ]  # fmt: skip
+    for formula, asked in {
+        "(G (high -> (z2 > 0.0)))": lambda r: (
+            not (r["x"] + r["y"] / 2 > 2 and r["x"] > 1) or r["z"] > 0
+        ),
+        "(G (fast = also))": lambda r: (r["x"] + r["y"] / 2 > 2) == (r["b"] == 1),
+        "(G (sum - 1.0 < x))": lambda r: r["x"] + r["y"] / 2 - 1 < r["x"],
+    }.items():
+        assert bad(over(formula, *more), rows) == [not asked(row) for row in rows], formula
+
+
+@pytest.mark.parametrize(
+    ("texts", "why"),
+    [
+        (("m1", "not m0"), "defined by itself"),
+        (("if x > 1.0 then b else b",), "not read"),
+        (("pre b",), "not read"),
+        (("b -> b",), "not read"),
+        (("x + y",), "a number stands for a truth value"),
+        (("nowhere and b",), "nothing says which signal"),
+        ((*(f"m{k} and m{k}" for k in range(1, 40)), "b"), "too long"),
+    ],
+)
+def test_definitions_that_are_not_read(texts: tuple[str, ...], why: str) -> None:
+    no = (
+        over("(G m0)", *(defined(f"m{k}", text) for k, text in enumerate(texts)))
+        .requirements[0]
+        .formula
+    )
+    assert isinstance(no, NotRead)
+    assert why in str(no)
+
+
+def test_a_definition_counts_in_a_file_with_units_and_of_two_none_does(tmp_path: Path) -> None:
+    row = {"reqid": "A", "fulltext": "the a shall always satisfy near"}
+    near = defined("near", "absReal(x - far) <= 10.0")
+    for more, why in (([], ""), ([defined("near", "x > 1.0")], "in two ways")):
+        data = {"requirements": [row], "variables": [near, *more]}
+        (tmp_path / "e.json").write_text(json.dumps(data))
+        text = f'{HEAD}fret "e.json" with far is y'
+        (one,) = language.read(text, "own.req", tmp_path).requirements
+        assert isinstance(one.formula, NotRead) == bool(why)
+        assert why in str(one.formula)
