@@ -14,6 +14,7 @@ from itertools import islice
 from typing import Any
 
 from cratous.spec.files.printable import printable
+from cratous.spec.files.schema_fits import Check, fits
 
 SCHEMA_NAME = "report.schema.json"
 FEW = 20
@@ -27,15 +28,26 @@ def schema_text() -> str:
 
 
 @cache
+def _schema() -> dict[str, Any]:
+    schema: dict[str, Any] = json.loads(schema_text())
+    return schema
+
+
+@cache
+def _fits() -> Check:
+    return fits(_schema())
+
+
+@cache
 def _validator() -> Any:
     from jsonschema import Draft202012Validator
 
-    return Draft202012Validator(json.loads(schema_text()))
+    return Draft202012Validator(_schema())
 
 
 def departures(report: Any) -> list[str]:
     """Where a report is not what the schema says, FEW places at most: path, and what is wrong there."""
-    return list(islice(_departures(report), FEW))
+    return [] if _fits()(report) else list(islice(_departures(report), FEW))
 
 
 def _departures(report: Any) -> Iterator[str]:

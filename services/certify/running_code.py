@@ -10,6 +10,7 @@ import base64
 import hashlib
 import importlib.metadata
 import inspect
+import os
 import sys
 from collections.abc import Iterator
 from functools import cache
@@ -24,9 +25,16 @@ SHOWN = 3
 
 
 def _files() -> dict[str, bytes]:
-    """The sources of both parts by their place."""
-    found = (file for part in PARTS for file in (ROOT / part).rglob("*.py"))
-    return {file.relative_to(ROOT).as_posix(): file.read_bytes() for file in sorted(found)}
+    """The sources of both parts by their place, in the order of the names on their paths."""
+    found = {}
+    for part in PARTS:
+        for folder, _, names in os.walk(ROOT / part):
+            above = Path(folder).relative_to(ROOT).parts
+            for name in names:
+                if name.endswith(".py"):
+                    with open(os.path.join(folder, name), "rb") as file:
+                        found[(*above, name)] = file.read()
+    return {"/".join(parts): found[parts] for parts in sorted(found)}
 
 
 def _listed(names: list[str]) -> str:
@@ -72,8 +80,12 @@ def against(files: dict[str, bytes], recorded: dict[str, str], version: str) -> 
 @cache
 def code_digest() -> str:
     """SHA-256 of the files of services and bridge, as first asked."""
+    return _digest(_files())
+
+
+def _digest(files: dict[str, bytes]) -> str:
     sha = hashlib.sha256()
-    for place, data in _files().items():
+    for place, data in files.items():
         sha.update(f"{place} {len(data)}\n".encode() + data)
     return sha.hexdigest()
 
@@ -90,4 +102,4 @@ def running_code() -> dict[str, str]:
         release = NO_RELEASE
     other = list(_other_code())
     running = f"not what its files say: {_listed(other)}" if other else "as its files say"
-    return {"digest": code_digest(), "running": running, "release": release}
+    return {"digest": _digest(files), "running": running, "release": release}

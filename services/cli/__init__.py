@@ -103,6 +103,8 @@ def main(argv: list[str] | None = None) -> int:
     arguments = [part for part in arguments if part != "--debug"]
     as_json = "--json" in arguments
     if argv is None:
+        # most of what a command makes stays or goes without the collector: it need not look so often
+        gc.set_threshold(20_000, 5, 10)
         # the process ends with the command: what is still there needs no last collection
         atexit.register(gc.freeze)
     try:

@@ -9,6 +9,7 @@ from typing import Any
 
 from cratous.services.loading.document import Document, Key, item_name
 from cratous.spec.errors import BadInput
+from cratous.spec.files.schema_fits import fits
 
 _KINDS = {
     "object": "a mapping",
@@ -30,10 +31,13 @@ def mission_schema() -> dict[str, Any]:
 
 def schema_problems(document: Document, schema: dict[str, Any] | None = None) -> list[BadInput]:
     """All departures from a schema (the mission's unless another is given), in the order of the file."""
+    asked = schema or mission_schema()
+    if fits(asked)(document.data):
+        return []
     from jsonschema import Draft202012Validator
 
     found: list[tuple[Key, BadInput]] = []
-    for error in Draft202012Validator(schema or mission_schema()).iter_errors(document.data):
+    for error in Draft202012Validator(asked).iter_errors(document.data):
         found.extend(_problems(document, error))
     order = [(document.lines.get(key, 0), str(key), problem) for key, problem in found]
     return [problem for _, _, problem in sorted(order, key=lambda row: row[:2])]

@@ -31,6 +31,7 @@ from cratous.services.logs.records import from_data
 from cratous.services.planning.assign_problem import Part, arrays, check, parts, settler
 from cratous.services.planning.assign_replay import replayed
 from cratous.services.planning.assign_vectors import rows_of
+from cratous.services.planning.assign_witness import witnessed
 from cratous.spec.assignment.search import AssignmentProblem, Solution, Step
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import STATES, json_of
@@ -148,7 +149,7 @@ def read(file: Path) -> dict[str, Any]:
 
 
 def verify(body: dict[str, Any]) -> Verdict:
-    """Check a certificate from the problem on: digest, schedule by kernels and z3, bounds, claim."""
+    """Check a certificate from the problem on: digest, schedule by kernels and by its meaning, bounds, claim."""
     status, cost, bound = "", None, 0
     try:
         status, cost, bound = from_data(_Claim, body.get("claim"), "claim")
@@ -160,10 +161,7 @@ def verify(body: dict[str, Any]) -> Verdict:
             got = replayed(problem, steps)
             if got != cost:
                 return Verdict(status, cost, bound, f"the schedule costs {got}, not {cost}")
-            from cratous.services.planning.assign_solvers import schedule_holds
-
-            right, text = schedule_holds(problem, steps)
-            if not right:
+            if text := _what_fails(problem, steps):
                 return Verdict(status, cost, bound, f"z3 finds that it does not hold: {text}")
         low, wrong = _bounds(problem, proofs, cost)
     except BadInput as error:
@@ -173,6 +171,15 @@ def verify(body: dict[str, Any]) -> Verdict:
     if wrong:
         return Verdict(status, cost, bound, wrong)
     return Verdict(status, cost, bound, _claims(status, cost, bound, low))
+
+
+def _what_fails(problem: AssignmentProblem, steps: Sequence[Step]) -> str:
+    """The words of the first constraint, by its meaning, that the schedule does not keep; else nothing."""
+    if witnessed(problem, steps):
+        return ""
+    from cratous.services.planning.assign_solvers import schedule_holds
+
+    return schedule_holds(problem, steps)[1]
 
 
 class _Claim(NamedTuple):

@@ -22,6 +22,7 @@ from cratous.services.planning.assign_meaning import (
     past,
     place,
     start,
+    windows,
 )
 from cratous.services.planning.assign_problem import Part, check, parts
 from cratous.services.planning.assign_replay import branch_of
@@ -32,6 +33,29 @@ EFFORT = 60_000_000
 SECOND_MS = 60_000
 
 
+class _Terms:
+    """Formulas as z3's terms (`assign_logic.Logic`)."""
+
+    number = staticmethod(z3.Int)
+    truth = staticmethod(z3.Bool)
+    each = staticmethod(z3.And)
+    some = staticmethod(z3.Or)
+    follows = staticmethod(z3.Implies)
+    differ = staticmethod(z3.Distinct)
+
+    def one(self, formulas: Sequence[Any]) -> Any:
+        return z3.PbEq([(f, 1) for f in formulas], 1) if formulas else z3.BoolVal(False)
+
+    def few(self, formulas: Sequence[Any]) -> Any:
+        return z3.AtMost(*formulas, 1)
+
+    def laps(self, name: str, _wait: Any, _lap_ms: int) -> Any:
+        return z3.Int(name)
+
+
+_Z3 = _Terms()
+
+
 def schedule_holds(problem: AssignmentProblem, steps: Sequence[Step]) -> tuple[bool, str]:
     """Whether z3 finds the schedule right by the problem's own constraints; the words of the first
     constraint that is not."""
@@ -39,40 +63,31 @@ def schedule_holds(problem: AssignmentProblem, steps: Sequence[Step]) -> tuple[b
     times: list[Any] = []
     for number, step in enumerate(steps):
         begin, stop = step.start_ms, step.end_ms
-        times += [start(step.task_id) == begin, end(step.task_id) == stop]
-        times.append(place(step.task_id) == number)
+        times += [start(_Z3, step.task_id) == begin, end(_Z3, step.task_id) == stop]
+        times.append(place(_Z3, step.task_id) == number)
         v = problem.vehicles.index(step.vehicle_id)
         for k in branch.choices:
             one = problem.choices[k]
             if (one.task_id, one.option_id) == (step.task_id, step.option_id):
-                times.append(choice(k, v))
+                if step.vehicle_id not in one.vehicles:
+                    return False, "what the vehicles can fly"
+                times.append(choice(_Z3, k, v))
     gone = [task for task, _, _ in problem.done]
-    times += past(problem)
-    said = list(meaning(branch.term, problem.semantics, gone))
-    said += [
-        (n.text, f) for n in _windows(problem) for b, f in n.formulas if _same(problem, b, branch)
-    ]
-    for text, formula in said:
+    times += past(_Z3, problem)
+    said = meaning(_Z3, branch.term, problem.semantics, gone)
+    for text, formula in (*said, *windows(_Z3, problem, branch)):
         if _ask([*times, z3.Not(formula)]) != z3.unsat:
             return False, text
     # the choices that are not taken are flown by nobody, so they need not be spoken of
     taken = {(step.task_id, step.option_id) for step in steps}
     few = [k for k in branch.choices if _name(problem, k) in taken]
-    if _ask([*times, *flights(problem, replace(branch, choices=tuple(few)))]) != z3.sat:
+    if _ask([*times, *flights(_Z3, problem, replace(branch, choices=tuple(few)))]) != z3.sat:
         return False, "what the vehicles can fly"
     return True, ""
 
 
 def _name(problem: AssignmentProblem, k: int) -> tuple[int, int]:
     return problem.choices[k].task_id, problem.choices[k].option_id
-
-
-def _windows(problem: AssignmentProblem) -> list[Named]:
-    return [n for n in constraints(problem)[0] if n.text.startswith("task ")]
-
-
-def _same(problem: AssignmentProblem, number: int, branch: Part) -> bool:
-    return parts(problem)[0][number].term == branch.term
 
 
 def _ask(formulas: Sequence[Any], effort: int = EFFORT) -> Any:
@@ -88,10 +103,10 @@ def none_below(problem: AssignmentProblem, limit: int) -> tuple[bool, str]:
     said, gone = [], [task for task, _, _ in problem.done]
     for number, branch in enumerate(parts(problem)[0]):
         formulas = [
-            *[f for _, f in meaning(branch.term, problem.semantics, gone)],
-            *[f for n in _windows(problem) for b, f in n.formulas if b == number],
-            *flights(problem, branch),
-            *costs_less(problem, branch, limit),
+            *[f for _, f in meaning(_Z3, branch.term, problem.semantics, gone)],
+            *[f for _, f in windows(_Z3, problem, branch)],
+            *flights(_Z3, problem, branch),
+            *costs_less(_Z3, problem, branch, limit),
         ]
         one = str(_ask(formulas))
         two = _cvc5(formulas) if one == "unsat" else "not asked"
@@ -142,7 +157,7 @@ def why_infeasible(problem: AssignmentProblem) -> tuple[tuple[str, ...], bool]:
     (travel, durations, eligibility) are taken as they are.
     """
     check(problem)
-    named, branches = constraints(problem)
+    named, branches = constraints(_Z3, problem)
     answer, core = _clash(problem, named, branches)
     if answer != z3.unsat:
         return (), bool(answer == z3.sat)
@@ -170,7 +185,7 @@ def _clash(
         solver = z3.SolverFor("QF_LIA")
         solver.set("rlimit", EFFORT)
         solver.set("unsat_core", True)
-        solver.add(*flights(problem, branch))
+        solver.add(*flights(_Z3, problem, branch))
         for k, one in enumerate(named):
             for b, formula in one.formulas:
                 if b == number:
