@@ -6,7 +6,7 @@ STAMP := $(VENV)/.ready
 # byte code of these is kept: where PYTHONDONTWRITEBYTECODE is set, each command would compile hundreds of them again
 MODULES := $(addprefix src/cratous/,spec core proofs services bridge judge)
 
-.PHONY: help venv demo test test-fast test-long test-web lint types prove recheck mutate crosshair fuzz daa-fuzz bench docs dist changelog lock clean
+.PHONY: help venv demo test rewritten test-fast test-long test-web lint types prove recheck mutate crosshair fuzz daa-fuzz bench docs dist changelog lock clean
 
 help:
 	@echo "make demo      set up, then plan, prove, fly, monitor and certify the crossing mission"
@@ -49,6 +49,10 @@ test-long: venv
 
 test-web: venv
 	$(BIN)/python -m pytest tests/ground_station
+
+# pytest rewrites what tests assert: kept here once, else each of its processes does it again
+rewritten: venv
+	PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest --collect-only -qq > /dev/null
 
 test-fast: venv
 	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder -m "not slow and not long"

@@ -50,7 +50,7 @@ def left(pieces: list[Piece], meeting: Meeting, gone: Fraction) -> tuple[list[Pi
     return rest, later
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(ANY.pieces, ANY.meetings, GONE)
 def test_from_an_instant_on_is_what_is_left_then(
     pieces: list[Piece], meeting: Meeting, gone: Fraction
@@ -100,7 +100,7 @@ def test_what_is_over_does_not_count() -> None:
     assert permitted_from([flight[0]._replace(duration_s=70.0)], grown, 60.0)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(ANY.vectors, ANY.velocities, ANY.small, ANY.rates)
 @example(Vec2(20, 0), Vec2(1, 0), Fraction(10), Fraction(1))
 @example(Vec2(20, 0), Vec2(0, 0), Fraction(20), Fraction(0))
@@ -121,7 +121,7 @@ def test_beside_for_ever_is_exact(s: Vec2, v: Vec2, start: Fraction, rate: Fract
     assert not beside_for_ever(s, v, Growth(start, rate, Fraction(1, 10**6)))  # type: ignore[arg-type]
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(ANY.places, ANY.speeds, ANY.small, ANY.rates)
 @example(Fraction(20), Fraction(1), Fraction(10), Fraction(1))
 @example(Fraction(10), Fraction(1), Fraction(10), Fraction(1))
@@ -134,7 +134,7 @@ def test_above_for_ever_is_exact(
     assert not above_for_ever(sz, vz, Growth(start, rate, Fraction(1, 10**6)))  # type: ignore[arg-type]
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(ANY.meetings, ANY.small, st.sampled_from(ROUND), st.sampled_from(ROUND), st.integers(0, 400))
 def test_a_hold_that_is_clear_is_never_hit(
     meeting: Meeting,

@@ -66,7 +66,7 @@ def test_both_verdicts_occur() -> None:
     assert not permitted(flight, far._replace(wide=Growth(0.5, 0.0, 0.0)))
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(ANY.vectors, ANY.velocities, ANY.small, ANY.rates, st.fractions(0, 60, max_denominator=4))
 @example(Vec2(20, 0), Vec2(0, 0), Fraction(10), Fraction(1), Fraction(10))
 def test_beside_is_exact_where_the_radius_grows_steadily(
@@ -82,20 +82,20 @@ def test_beside_is_exact_where_the_radius_grows_steadily(
     assert beside_during(s, v, growth, d) == (min(apart(t) for t in instants) > 0)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(ANY.places, ANY.speeds, ANY.growths, st.fractions(0, 60, max_denominator=4))
 def test_above_is_exact(sz: Fraction, vz: Fraction, growth: Growth, d: Fraction) -> None:
     least = min(sz + t * vz - reach_after(growth, t) for t in (d * k / 32 for k in range(33)))
     assert above_during(sz, vz, growth, d) == (least > 0)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(ANY.growths, ANY.small, ANY.small)
 def test_growth_is_counted_on(growth: Growth, t: Fraction, more: Fraction) -> None:
     assert reach_after(growth_after(growth, t), more) == reach_after(growth, t + more)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(
     ANY.vectors,
     ANY.velocities,
