@@ -37,17 +37,6 @@ def machine_for_pass(instance: Any, function: Callable[..., Any]) -> Callable[..
     return _plainly(function)
 
 
-WAYS_MOST = 60_000
-"""Vehicles times pairs of options that CPython goes over in less time than the compiler takes for it."""
-
-
-def machine_for_ways(instance: Any, function: Callable[..., Any]) -> Callable[..., Any]:
-    """`machine_for` of a function that goes over all ways between options once: compiled where they are very many."""
-    if instance.may.size * instance.duration.size > WAYS_MOST:
-        return machine_for(instance, function)
-    return _plainly(function)
-
-
 def is_brief(instance: Any) -> bool:
     """Whether tasks can be dealt out in few ways, so that no question to `deals` takes long."""
     ways = instance.tasks * len(instance.may)

@@ -18,7 +18,6 @@ from cratous.core.assignment.compiled import (
     machine_after,
     machine_for,
     machine_for_pass,
-    machine_for_ways,
 )
 from cratous.core.assignment.instance import FAR, TABLE_MAX_MS, Instance, horizon
 from cratous.core.assignment.lower_bounds import (
@@ -83,11 +82,11 @@ def look_ahead(instance: Instance) -> Ahead:
             kinds[key] = len(kinds)
             leader.append(v)
         kind_of[v] = kinds[key]
-    least_over = machine_for_ways(i, nearest_ways)
+    least_over = machine_for(i, nearest_ways)
     nearest, cheapest = least_over(reach, i.may), least_over(i.added, i.may)
     return Ahead(  # type: ignore[call-arg]  # numba's results have no types
-        *machine_for_ways(i, ways_to_tasks)(reach, cheapest, i.duration, i.task, i.may, i.tasks),
-        *machine_for_ways(i, ways_between_tasks)(nearest, cheapest, i.duration, i.task, i.tasks),
+        *machine_for(i, ways_to_tasks)(reach, cheapest, i.duration, i.task, i.may, i.tasks),
+        *machine_for(i, ways_between_tasks)(nearest, cheapest, i.duration, i.task, i.tasks),
         least, head, tail, able, kind_of, np.array(leader, np.int64),
     )  # fmt: skip
 
