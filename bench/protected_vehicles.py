@@ -28,16 +28,7 @@ from cratous.services.logs.message_logger import MessageLogger
 from cratous.services.pipeline.plan import make_plan
 from cratous.services.uxas.daidalus.detection import DaidalusDetection
 from cratous.spec.daa.presets import preset
-from cratous.spec.mission import (
-    Daa,
-    Frame,
-    Mission,
-    Position,
-    Task,
-    TaskKind,
-    Vehicle,
-    WellClear,
-)
+from cratous.spec.mission import Daa, Frame, Mission, Position, Task, TaskKind, Vehicle, WellClear
 
 APART_M = 600.0
 BANDS_MS = 1000

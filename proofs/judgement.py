@@ -16,6 +16,9 @@ from cratous.core.ledger.status import Grounds
 from cratous.proofs import ledger
 from cratous.proofs.engine.cache import Cache
 from cratous.proofs.ledger.proof_recall import Recall
+from cratous.proofs.phases import COMPARING, COMPILING, STATEMENTS, THEOREMS, Phases
+from cratous.proofs.running.compiling import compile_ahead
+from cratous.proofs.running.theorem import Function
 from cratous.proofs.statements import definitions
 from cratous.proofs.statements.relation_cache import Kept
 from cratous.proofs.statements.status_evidence import grounds
@@ -64,6 +67,30 @@ class Memory(NamedTuple):
 NOTHING = Memory()
 
 
+@dataclass
+class _Ahead:
+    """Hears how far the theorems are; when all are done their kernels are compiled, then compared."""
+
+    left: int
+    tell: ledger.Listener | None
+    jobs: int
+    phases: Phases
+    masks: dict[Function, frozenset[int]] = field(default_factory=dict)
+
+    def __call__(self, progress: ledger.Progress) -> None:
+        if self.tell is not None:
+            self.tell(progress)
+        if progress.theorem is None:
+            return
+        for key, bits in progress.functions.masks.items() if progress.functions else ():
+            self.masks[key] = self.masks.get(key, frozenset()) | bits
+        self.left -= 1
+        if self.left == 0:
+            self.phases.ended(THEOREMS)
+            compile_ahead(self.masks, self.jobs)
+            self.phases.ended(COMPILING)
+
+
 def judge(
     names: Iterable[str],
     home: Home,
@@ -73,26 +100,30 @@ def judge(
     jobs: int | None = None,
     memory: Memory = NOTHING,
     machine: bool = True,
+    phases: Phases | None = None,
 ) -> Judgement:
     """Prove these theorems of a home, and look at its kernels and definitions.
 
     whole: they are all that it has; memory: what is remembered from run to run;
-    machine: compare kernels with their machine code too.
+    machine: compare kernels with their machine code too; phases: told which part has ended.
     Raises BadInput for a theorem that cannot be stated.
     """
+    wanted, parts = list(names), phases or Phases()
     inventory = ledger.prove_all(
-        names,
-        tell,
+        wanted,
+        _Ahead(len(wanted), tell, jobs or ledger.jobs_default(), parts) if machine else tell,
         home=home,
         jobs=jobs,
         cache=memory.cache,
         recall=memory.recall,
         machine=machine,
     )
+    parts.ended(COMPARING)
     findings = [str(finding) for finding in inventory.findings]
     # what is outside of the subset is not read any further
     kept, stated = Kept(memory.relations, home), [t.name for t in inventory.theorems]
     read = {} if findings else kept.all(stated, jobs or ledger.jobs_default())
+    parts.ended(STATEMENTS)
     statements = {name: found.statement for name, found in read.items()}
     if not whole:
         return Judgement(inventory, tuple(findings), (), statements=statements)

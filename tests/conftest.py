@@ -14,16 +14,19 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
+from cratous.core.readings import tiered
 from cratous.services.cli import progress
 
 # what is told of work that takes long has tests of its own (tests/cli/test_waiting.py)
 progress.PATIENCE_S = 3600.0
+# one process runs hundreds of commands, and what is compiled is kept: to load it pays at once
+tiered.MUCH = tiered.SOON
 # a machine under load is no reason to fail; CI draws the same cases every time
 settings.register_profile("default", deadline=None)
 settings.register_profile("ci", deadline=None, derandomize=True)
 settings.load_profile("ci" if os.environ.get("CI") else "default")
 # half a million objects live to the end: looking for garbage in them is a third of collecting the tests
-gc.set_threshold(2_000, 20, 50)
+gc.set_threshold(10_000, 20, 50)
 
 ROOT = Path(__file__).resolve().parent.parent
 SHARED = ROOT.parent / "shared"
@@ -47,6 +50,15 @@ def shared() -> Path:
     if not SHARED.is_dir():
         pytest.skip("the reference vectors (../shared) are not on this machine")
     return SHARED
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _gate_once() -> Iterator[None]:
+    from gate_once import ask_once
+
+    with pytest.MonkeyPatch.context() as patch:
+        ask_once(patch)
+        yield
 
 
 @pytest.fixture(scope="session")

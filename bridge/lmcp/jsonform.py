@@ -27,6 +27,7 @@ _encode = json.JSONEncoder(
     separators=(",", ":"), ensure_ascii=False, allow_nan=False, check_circular=False
 ).encode
 _NON_FINITE = ("NaN", "Infinity", "-Infinity")
+_NUMBERS, _NESTED = (int, float, bool), ("struct", "any", "enum")
 _MAX_DEPTH = 64
 
 
@@ -128,20 +129,29 @@ def _object(data: Any, depth: int) -> LmcpObject:
         raise BadInput("not an LMCP object", expected='{"$type": ...}', got=repr(data)[:60])
     if depth > _MAX_DEPTH:
         raise BadInput("nested too deeply", expected=f"at most {_MAX_DEPTH} levels")
-    cls = types[data["$type"]]
-    kinds = {f.name: f for f in cls.fields}
+    cls: Any = types[data["$type"]]
+    kinds = _kinds(cls)
     values = {}
     for name, value in data.items():
         if name == "$type":
             continue
-        field = kinds.get(name)
-        if field is None:
+        kind = kinds.get(name)
+        if kind is None:
             raise unknown_field(cls, name)
+        if type(value) in _NUMBERS and kind not in _NESTED:
+            values[name] = value
+            continue
         try:
-            values[name] = _value(field.kind, value, depth)
+            values[name] = _value(kind, value, depth)
         except BadInput as err:
             raise within(err, f"{cls.__name__}.{name}") from None
     return cls(**values)
+
+
+@cache
+def _kinds(cls: Any) -> dict[str, str]:
+    """The kind of each field of a class."""
+    return {field.name: field.kind for field in cls.fields}
 
 
 def _value(kind: str, value: Any, depth: int) -> Any:

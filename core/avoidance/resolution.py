@@ -2,7 +2,8 @@
 
 Candidates: headings to the left and right of the course in steps of 5 degrees, flown with the
 real turn rate; if none is free of conflict, level changes (climb or descend past the intruder's
-layer) and changes of speed, also together with turns. Each piece of each candidate is checked
+layer) and changes of speed, also together with turns. Where the scene asks for another kind of manoeuvre
+first, flight on course comes first, then those of that kind with turns of up to 60 degrees. Each piece of each candidate is checked
 against every intruder by `violation_within` and against every zone by `leg_keeps`. The one that
 deviates least from the course wins (ties to the right); a manoeuvre already begun is kept as long
 as it holds, unless one that is nearer to the course by more than 10 degrees has become free.
@@ -20,10 +21,14 @@ from cratous.core.avoidance.manoeuvre import Ability, Motion, fly_to, smallest_t
 from cratous.core.avoidance.prediction import Intruder, Piece, after, first_violation_s, violated_s
 from cratous.core.geofence.clearance import leg_keeps
 from cratous.core.kernel import driver
-from cratous.spec.mission import WellClear, Zone
+from cratous.spec.mission import Resolution, WellClear, Zone
 
 STEP_DEG = 5
 KEEP_RAD = math.radians(10)
+TURNS_DEG = (0, 30, -30, 60, -60, 90, -90, 135, -135, 180)
+SMALL_TURNS_DEG = TURNS_DEG[:5]
+"""Turns off the course that changes of altitude and of speed are looked at with; those where such a change is looked
+for first."""
 
 
 class Choice(NamedTuple):
@@ -44,13 +49,14 @@ class Choice(NamedTuple):
 
 class Scene(NamedTuple):
     """What a manoeuvre is judged against: traffic, zones, the buffered volume, and how far. here: how far the vehicle
-    may be from where it is taken to be."""
+    may be from where it is taken to be; first: the kind of manoeuvre that is looked for first."""
 
     intruders: tuple[Intruder, ...]
     zones: tuple[Zone, ...]
     volume: WellClear
     lookahead_s: float
     here: Off = NONE.here
+    first: Resolution = Resolution.HEADING
 
 
 @driver(checked_by=("keep_out_leg_ok", "keep_in_leg_ok", "locate", "comes_within"))
@@ -187,15 +193,35 @@ def _candidates(
     held: Choice | None,
 ) -> Iterator[Choice]:
     level = Choice("heading", course_rad, speed, 0.0, 0.0, False, None)
+    if scene.first is not Resolution.HEADING:
+        yield level
+        if held is not None and held.kind == scene.first:
+            yield held
+        yield from of_kind(scene.first, now, ability, scene, level)
     for heading in _headings(course_rad, held):
         yield level._replace(heading_rad=heading)
+    yield from _changes(now, ability, scene, level, TURNS_DEG)
+
+
+def of_kind(
+    kind: Resolution, now: Motion, ability: Ability, scene: Scene, level: Choice
+) -> tuple[Choice, ...]:
+    """Changes of altitude, or of speed, together with small turns off the heading of `level`, the smallest first."""
+    changes = _changes(now, ability, scene, level, SMALL_TURNS_DEG)
+    return tuple(one for one in changes if one.kind == kind)
+
+
+def _changes(
+    now: Motion, ability: Ability, scene: Scene, level: Choice, turns_deg: Sequence[int]
+) -> Iterator[Choice]:
+    """Changes of altitude and of speed, together with turns."""
+    _, course_rad, speed, *_ = level
     # past the layer of the volume, twice, so that the climb itself does not end at its edge
     climb_for_s = 2 * scene.volume.zthr_m / ability.max_climb_m_s if ability.max_climb_m_s else 0
     climbs = [ability.max_climb_m_s, -ability.max_climb_m_s] if climb_for_s else []
     if now.position.alt_m - ability.max_climb_m_s * climb_for_s < ability.floor_m:
         climbs = climbs[:1]
-    turns = [math.radians(d) for d in (0, 30, -30, 60, -60, 90, -90, 135, -135, 180)]
-    for turn in turns:
+    for turn in map(math.radians, turns_deg):
         for climb in climbs:
             yield Choice("altitude", course_rad + turn, speed, climb, climb_for_s, False, None)
         for other in (ability.min_speed_m_s, ability.max_speed_m_s):

@@ -6,6 +6,8 @@ to the prover itself is gone with it, and no verdict depends on the cases before
 
 from __future__ import annotations
 
+import contextlib
+import ctypes
 import functools
 import gc
 import importlib
@@ -26,6 +28,7 @@ from cratous.proofs import ledger
 from cratous.proofs.engine import definition_subset, prover, symbolic, worker_processes
 from cratous.proofs.judgement import Judgement, judge
 from cratous.proofs.ledger.report_formats import failure_text
+from cratous.proofs.self_test import product_keys
 from cratous.proofs.self_test.case import Case
 from cratous.spec.errors import BadInput, CratousError
 
@@ -151,17 +154,75 @@ def attempt(case: Case) -> Trial:
 def attempts(cases: Sequence[Case], jobs: int = 1) -> Iterator[Trial]:
     """Try these cases, so many at once; the trials come as they are done."""
     prepare()
+    if jobs == 1:
+        yield from map(attempt, cases)  # nothing of a case is run here: `attempt` forks for that
+        return
     tried: Sequence[Callable[[], Trial]] = [partial(attempt, case) for case in cases]
     for _, trial in worker_processes.each(tried, jobs):
         yield trial
+
+
+USED = (
+    "numba", "multiprocessing.popen_fork", "cratous.proofs.claim", "cratous.proofs.methods.runs",
+    "cratous.proofs.running.inductions",
+)  # fmt: skip
+"""What cases import: the compiler takes as long as several of them."""
+CONTEXTS = 8
+"""So many questions of a forked process find a solver's context ready in which nothing was asked."""
+NEW = z3.Context
+READY: list[z3.Context] = []
+TAKEN: list[z3.Context] = []
+"""Taking one of these apart would copy all of it: it ends with its process."""
+TRIM, TOP_PAD, MMAP = -1, -2, -3
+"""Names of glibc's `mallopt`."""
+COLLAPSE, LARGE = 25, 1 << 21
+"""Linux's advice to put memory into large pages, and the size of one [bytes]."""
 
 
 @functools.cache
 def prepare() -> None:
     """Read what every ledger hashes, and wake the solver, so that forked processes find it done."""
     gate.check()
-    _ = gate.Keys().shared  # the tables of all modules that a key is made from
+    product_keys.hold()
     z3.Solver(ctx=z3.main_ctx()).check()
-    importlib.import_module("numba")  # as long as several cases
+    for module in USED:
+        importlib.import_module(module)
+    _keep_memory()
+    READY.extend(NEW() for _ in range(CONTEXTS))
+    vars(z3)["Context"] = _context
     gc.collect()
+    _in_large_pages()
     gc.freeze()  # else each process copies what its collector looks at
+
+
+def _context() -> z3.Context:
+    """A context that nothing was asked in: one made before the fork, as long as there are any."""
+    if not READY:
+        return NEW()
+    TAKEN.append(READY.pop())
+    return TAKEN[-1]
+
+
+def _keep_memory() -> None:
+    """Memory that a solver's context gave back stays with the process for the next one.
+
+    A context takes 17 MB: fetched from the system each time, that takes longer than most answers.
+    """
+    with contextlib.suppress(OSError, AttributeError):  # another C library does as it likes
+        tune = ctypes.CDLL(None).mallopt
+        tune(TRIM, 1 << 29), tune(TOP_PAD, 1 << 24), tune(MMAP, 1 << 29)
+
+
+def _in_large_pages() -> None:
+    """Put what this process holds into large pages: a fork copies one entry for 512 small ones.
+
+    Where the system does not know the advice, forking takes longer and nothing else changes.
+    """
+    with contextlib.suppress(OSError, AttributeError):
+        advise = ctypes.CDLL(None).madvise
+        for line in Path("/proc/self/maps").read_text().splitlines():
+            span, rights, _, _, _, name = [*line.split(), ""][:6]
+            if rights == "rw-p" and name in ("", "[heap]"):
+                begin, end = (int(part, 16) // LARGE for part in span.split("-"))
+                for page in range(begin + 1, end):
+                    advise(ctypes.c_void_p(page * LARGE), ctypes.c_size_t(LARGE), COLLAPSE)

@@ -16,6 +16,7 @@ from cratous.services.argument.elements import (
     worst,
 )
 from cratous.services.argument.guarantees import Guarantees
+from cratous.services.argument.own import Own
 from cratous.services.argument.proved import Proofs
 from cratous.services.certify.trace import traced
 from cratous.spec.mission.guarantees import REQUIREMENTS, Outcome
@@ -33,8 +34,8 @@ def argument(
     kept: the ledger as it is now, of `ledger.read`; read here if it is not given.
     """
     found = Argument()
-    records = (ledger.read() if kept is None else kept)["theorems"]
-    proofs = Proofs(found, report["proofs"], records)
+    kept = ledger.read() if kept is None else kept
+    proofs = Proofs(found, report["proofs"], kept["theorems"])
     known = assumptions.assumed(report)
     by_id = {
         found.add(element): one
@@ -53,17 +54,19 @@ def argument(
         guarantees.add(wanted, [pair for pair in rows if pair[0]["requirement"] == wanted.id])
         for wanted in REQUIREMENTS
     ]
-    _top(found, report, goals, unshown)
+    _top(found, report, goals, Own(found, report, kept), unshown)
     return _reachable(found.elements)
 
 
 def _top(
-    found: Argument, report: Data, goals: list[str], unshown: Iterable[tuple[str, str]]
+    found: Argument, report: Data, goals: list[str], own: Own, unshown: Iterable[tuple[str, str]]
 ) -> None:
     """The goal over all, with what it is about and what is trusted."""
     states = [found.state(goal) for goal in goals]
+    of_own = own.add()
     # the report's own verdict counts too: kernels without a proof make it unknown
-    state = worst([*states, OF_VERDICT[Outcome(report["verdict"])]])
+    verdict = OF_VERDICT[Outcome(report["verdict"])]
+    state = worst([*states, *map(found.state, of_own), verdict])
     context = [*_subject(report), trust.trusted(), *trust.limits(report), *trust.not_shown(unshown)]
     strategy = found.add(
         Element(
@@ -73,12 +76,17 @@ def _top(
         )
     )  # fmt: skip
     held = [goal for goal, one in zip(goals, states, strict=True) if one is State.SUPPORTED]
+    held += own.names(State.SUPPORTED)
     text = f"In this run of {report['mission']['name']} {', '.join(goals)} hold for the protected vehicles"
+    if of_own:
+        text += f", and so do {', '.join(row['requirement'] for row in own.rows)} of one's own"
+        if untested := own.names(State.NOTHING):
+            text += f", of which nothing tested {', '.join(untested)}"
     if state is not State.SUPPORTED:
         text += f". Supported here: {', '.join(held) or 'none'}"
         text += f". Verdict of the report: {report['verdict']}"
     names = tuple(found.add(element) for element in context)
-    found.add(Element(ROOT, Kind.GOAL, text, (strategy,), names, state))
+    found.add(Element(ROOT, Kind.GOAL, text, (strategy, *of_own), names, state))
 
 
 def _subject(report: Data) -> list[Element]:

@@ -66,10 +66,10 @@ class Panel:
 
 
 def panels(elements: dict[str, Element]) -> list[Panel]:
-    """The drawing of the top, and one for each goal below its strategy."""
+    """The drawing of the top, and one for each goal below its strategies."""
     root = next(iter(elements))
-    (strategy,) = elements[root].supported_by
-    goals = elements[strategy].supported_by
+    strategies = elements[root].supported_by
+    goals = [goal for strategy in strategies for goal in elements[strategy].supported_by]
     return [Panel(elements, root, goals), *(Panel(elements, goal) for goal in goals)]
 
 

@@ -20,15 +20,19 @@ def plain(name: str) -> str:
 class Proofs:
     """Adds what is proved to an argument.
 
-    argument: that it is added to; proofs: of the report; records: the theorems of the ledger as it is now.
+    argument: that it is added to; proofs: of the report; records: the theorems of the ledger as it is now; ran: what
+    those kernels of a theorem did that are among the proofs'.
     """
 
-    def __init__(self, argument: Argument, proofs: Data, records: Data) -> None:
+    def __init__(
+        self, argument: Argument, proofs: Data, records: Data, ran: str = "ran in this run"
+    ) -> None:
         self._argument = argument
         self._theorems = proofs["theorems"]
         self._solver = proofs["solver"]
         self._called = proofs["kernels"]
         self._records = records
+        self._ran = ran
         self.context: dict[str, tuple[str, ...]] = {}
         self.without: dict[str, str] = {}
         self._whole: set[str] = set()
@@ -139,7 +143,7 @@ class Proofs:
                 f"Record in the ledger: proved by {self._solver}, "
                 f"{counted(found['obligations'], 'obligation')}, premises {found['premises']}, "
                 f"{counted(len(found['assumptions']), 'assumption')} in the proof; {known} of its "
-                f"{counted(len(found['kernels']), 'kernel')} ran in this run",
+                f"{counted(len(found['kernels']), 'kernel')} {self._ran}",
             )
         )
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
+from functools import lru_cache
 from typing import NamedTuple
 
 SIZE, LINE = 11.0, 14.0
@@ -36,23 +37,43 @@ class Line(NamedTuple):
 
 def width(text: str, *, bold: bool = False) -> float:
     """No less than a text is wide, in drawing units."""
+    return _wide(_hundredths(text), bold)
+
+
+def _hundredths(text: str) -> int:
     units = 0
     for c in text:
         place = ord(c) - FIRST
         units += HUNDREDTHS[place] if 0 <= place < len(HUNDREDTHS) else 100
+    return units
+
+
+def _wide(units: int, bold: bool) -> float:
     return units * SIZE / 100 * (BOLD if bold else 1.0)
 
 
-def _pieces(text: str) -> list[tuple[str, str]]:
-    """(what stands before it, piece): words, and of long ones what may stand on a line of its own."""
+class _Piece(NamedTuple):
+    """What stands before it unless it begins a line, the piece, and how wide both are in hundredths."""
+
+    before: str
+    text: str
+    space: int
+    units: int
+
+
+@lru_cache(maxsize=256)  # one text is tried in circles of many sizes
+def _pieces(text: str) -> tuple[_Piece, ...]:
+    """Words, and of long ones what may stand on a line of its own."""
     found = []
     for word in text.split():
         parts = [word]
         if width(word, bold=True) > WIDEST:
             marked = re.findall(r"[^-_./;:,]*[-_./;:,]|[^-_./;:,]+", word)
             parts = [m[i : i + LONGEST] for m in marked for i in range(0, len(m), LONGEST)]
-        found += [(" " if not number else "", part) for number, part in enumerate(parts)]
-    return found
+        for number, part in enumerate(parts):
+            before = " " if not number else ""
+            found.append(_Piece(before, part, _hundredths(before), _hundredths(part)))
+    return tuple(found)
 
 
 def wrapped(
@@ -64,17 +85,19 @@ def wrapped(
     """
     found: list[Line] = []
     for paragraph in paragraphs:
-        line = ""
-        for before, piece in _pieces(paragraph.text):
-            longer = line + before + piece if line else piece
-            if width(longer, bold=paragraph.bold) <= fits(len(found)):
-                line = longer
+        line, units, bold = "", 0, paragraph.bold
+        for piece in _pieces(paragraph.text):
+            if line and _wide(units + piece.space + piece.units, bold) <= fits(len(found)):
+                line += piece.before + piece.text
+                units += piece.space + piece.units
                 continue
             if line:
-                found.append(Line(line, paragraph.bold))
-            line = piece
-            if width(line, bold=paragraph.bold) > fits(len(found)):
+                found.append(Line(line, bold))
+                if len(found) == most:  # and there is more
+                    return None
+            line, units = piece.text, piece.units
+            if _wide(units, bold) > fits(len(found)):
                 return None
         if line:
-            found.append(Line(line, paragraph.bold))
+            found.append(Line(line, bold))
     return None if most is not None and len(found) > most else found

@@ -33,8 +33,9 @@ class ClockWatch:
             ok = in_time(self._last_ms, time_ms, ANY_LATER)
             if own or not ok:
                 self._record.see(max(0, self._last_ms - time_ms) / 1000)
-            text = f"a {message.kind} of {_s(time_ms)} after a message of {_s(self._last_ms)}"
-            self._record.check(ok, self._last_ms, 0, text)
+            if not ok:
+                text = f"a {message.kind} of {_s(time_ms)} after a message of {_s(self._last_ms)}"
+                self._record.check(ok, self._last_ms, 0, text)
         self._last_ms = message.time_ms
 
     def end(self, at_ms: int) -> None:
@@ -71,8 +72,9 @@ class PeriodWatch:
             gap_ms = max(0, now_ms - last_ms)
             self._record.see(gap_ms / 1000)
             ok = in_time(0, gap_ms, self._period_ms)
-            text = f"no heartbeat to the ICAROUS of {number} from {_s(last_ms)} to {_s(now_ms)}"
-            self._record.check(ok, last_ms + self._period_ms, number, text)
+            if not ok:
+                text = f"no heartbeat to the ICAROUS of {number} from {_s(last_ms)} to {_s(now_ms)}"
+                self._record.check(ok, last_ms + self._period_ms, number, text)
 
     def end(self, at_ms: int) -> None:
         """The time since the last one counts too."""
@@ -129,8 +131,8 @@ class DeliveryWatch:
             ok = in_time(sent_ms, max(sent_ms, now_ms), self._bound_ms)
             if not ok:
                 self._record.see((now_ms - sent_ms) / 1000)
-            text = f"heartbeat {number} of {_s(sent_ms)} had not come by {_s(now_ms)}"
-            self._record.check(ok, sent_ms + self._bound_ms, vehicle, text)
+                text = f"heartbeat {number} of {_s(sent_ms)} had not come by {_s(now_ms)}"
+                self._record.check(ok, sent_ms + self._bound_ms, vehicle, text)
 
     def end(self, at_ms: int) -> None:
         """What has not come by now, and is late, has not been delivered."""

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from cratous.services.campaign.encounters import REQUIREMENTS as HELD
-from cratous.services.campaign.generators import CHANGES
+from cratous.services.campaign.generators import CASES, CHANGES
 from cratous.services.campaign.recorded import ENDINGS, mission_of_states
 from cratous.services.loading import load
 from cratous.services.loading.document import Document, parse_document, read_document
@@ -204,8 +204,10 @@ def _check(campaign: Campaign, document: Document) -> None:
                 expected,
                 item,
             )
-    for name, (low, high) in made.get("ranges", {}).items():
-        _ordered(document, ("generator", "ranges", name), low, high)
+    _check_ranges(document, ("generator",), made)
+    for what, cases in made.get(CASES, {}).items():
+        for name, case in cases.items():
+            _check_ranges(document, ("generator", CASES, what, name), case)
     if (campaign.generator or campaign.vary) and not campaign.seeds:
         expected = "seeds: [first, last], or --seeds A-B"
         raise _wrong(document, ("seeds",), "nothing to draw with", expected, "no seeds")
@@ -225,6 +227,11 @@ def _check(campaign: Campaign, document: Document) -> None:
     runs = max(1, len(campaign.missions)) * len(campaign.options) * max(1, len(campaign.seeds))
     if runs > MOST_RUNS:
         raise _wrong(document, ("seeds",), "too many runs", f"at most {MOST_RUNS}", str(runs))
+
+
+def _check_ranges(document: Document, key: tuple[str | int, ...], made: dict[str, Any]) -> None:
+    for name, (low, high) in made.get("ranges", {}).items():
+        _ordered(document, (*key, "ranges", name), low, high)
 
 
 def _check_kind(campaign: Campaign, document: Document) -> None:

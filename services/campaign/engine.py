@@ -20,6 +20,12 @@ LOOK = 0.5
 """Seconds after which whoever waits looks up."""
 
 
+CHANGED = (
+    "this machine, where CRATOUS, Python or its packages have changed since the campaign was begun,"
+)
+"""Who has another version, where that is the machine that asks."""
+
+
 class Answer(NamedTuple):
     """What came of an attempt; died: attempts at it that its engine lost and made again by itself."""
 
@@ -36,8 +42,8 @@ def refuse_other_version(answer: dict[str, Any], who: str) -> None:
     """Raise if it was another version that was asked."""
     if "other version" in answer:
         raise Refused(
-            f"{who} has another version of CRATOUS, Python or its packages "
-            f"({answer['other version'][:12]}): results of two versions are not mixed"
+            f"{who} has another version ({answer['other version'][:12]}): results of two versions are "
+            "not mixed; what is stored stays, and the same command flies what this version has not flown"
         )
 
 
@@ -48,7 +54,7 @@ def here() -> Iterator[Engine]:
     def made(feed: Feed) -> Iterator[Answer | None]:
         while (task := feed()) is not None:
             answer = worker.attempt(task)
-            refuse_other_version(answer, "this machine, whose files have changed since the start,")
+            refuse_other_version(answer, CHANGED)
             yield Answer(task, answer)
 
     try:

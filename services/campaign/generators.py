@@ -1,6 +1,7 @@
 """Missions that are made, of most kinds: one protected vehicle that flies north, others that meet it, zones about its way.
 
-The vehicle would be at the frame's origin after `time_s`, and goes on to a point as far behind it. An
+The vehicle would be at the frame's origin after `time_s`, and goes on to a point as far behind it. `cases` are
+alternatives by name, of which one is drawn for each seed: other counts, ranges and values of the mission. An
 intruder's course is `angle_deg` against the vehicle's; it passes the origin at the same instant,
 `miss_m` beside it and `height_m` above. Each parameter of a seed has a draw of its own, so that another
 range of one leaves the others as they were.
@@ -13,6 +14,8 @@ from math import cos, radians, sin
 from random import Random
 from typing import Any
 
+from cratous.core.kernel import Vec2
+from cratous.core.permit.tubes import disc_within
 from cratous.services.campaign.changing import changing_mission
 
 Ranges = dict[str, tuple[float, float]]
@@ -22,7 +25,7 @@ FRAME = {"latitude_deg": 45.0, "longitude_deg": -120.0}
 COMMON: Ranges = {
     "own_speed_m_s": (18, 28), "speed_m_s": (15, 40), "time_s": (70, 110), "miss_m": (-50, 50),
     "height_m": (-20, 20), "area_m": (-3000, 3000), "zone_gap_m": (100, 600), "zone_size_m": (200, 600),
-    "zone_place": (-0.6, 0.4), "bend_m": (-150, 150),
+    "zone_place": (-0.6, 0.4), "bend_m": (-150, 150), "room_m": (400, 800),
 }  # fmt: skip
 KINDS: dict[str, Ranges] = {
     "aimed": {"angle_deg": (0, 360), "miss_m": (0, 0), "height_m": (0, 0)},
@@ -33,6 +36,15 @@ KINDS: dict[str, Ranges] = {
 }
 CHANGES, MOST_CHANGES = "changes", 6
 """The kind of `services.campaign.changing`, which has no ranges; it draws so many changes at most."""
+COUNTS = (
+    "intruders", "zones_beside", "zones_across", "bends", "keep_in", "cooperative", "apart_m",
+)  # fmt: skip
+"""What a case may change beside ranges and values of the mission."""
+CASES = "cases"
+AGAIN = 100
+"""So often an intruder is drawn at most where it would start nearer than it may."""
+KEEP_IN = 50
+"""The number of the keep-in."""
 BEND = 1000
 """Tasks where the way bends are numbered from here on."""
 SIDES = (-1, 1)
@@ -51,23 +63,39 @@ class Draw:
         self, data: dict[str, Any], seed: int, given: Mapping[str, Any] | None = None
     ) -> None:
         self.kind: str = data["kind"]
-        own = {name: tuple(bounds) for name, bounds in data.get("ranges", {}).items()}
-        self._ranges = {**COMMON, **KINDS.get(self.kind, {}), **own}
         self._seed, self._given = seed, given or {}
-        self.drawn: dict[str, float] = {}
+        self.drawn: dict[str, Any] = {}
         self.bounds: dict[str, tuple[float, float]] = {}
         self.choices: dict[str, tuple[Any, ...]] = {}
+        self.data, self.values = dict(data), dict[str, Any]()  # of the mission, by their path
+        ranges = dict(data.get("ranges", {}))
+        for what, cases in sorted(data.get(CASES, {}).items()):
+            case = cases[self.chosen(what, tuple(sorted(cases)))]
+            self.data |= {name: case[name] for name in COUNTS if name in case}
+            ranges |= case.get("ranges", {})
+            self.values |= case.get("set", {})
+        own = {name: tuple(bounds) for name, bounds in ranges.items()}
+        self._ranges = {**COMMON, **KINDS.get(self.kind, {}), **own}
 
-    def __call__(self, name: str, number: int = 0) -> float:
-        """A parameter; number: of which intruder or zone, from 1, 0 if there is one for all."""
+    def __call__(self, name: str, number: int = 0, again: int = 0) -> float:
+        """A parameter; number: of which intruder or zone, from 1, 0 if there is one for all; again: how often it was drawn
+        before."""
         low, high = self._ranges[name]
         key = f"{name}[{number}]" if number else name
-        value = round(Random(f"{self._seed} {key}").uniform(low, high), 3)
+        once = f" again {again}" * bool(again)
+        value = round(Random(f"{self._seed} {key}{once}").uniform(low, high), 3)
         value = self._given.get(key, value)
         if name == "angle_deg" and self.kind in MIRRORED:
             value *= self.side(key)
         self.drawn[key], self.bounds[key] = value, (low, high)
         return value
+
+    def chosen(self, what: str, names: tuple[str, ...]) -> str:
+        """Which of some cases."""
+        self.choices[what] = names
+        drawn = Random(f"{self._seed} case {what}").choice(names)
+        self.drawn[what] = self._given.get(what, drawn)
+        return str(self.drawn[what])
 
     def side(self, key: str) -> int:
         """Left (-1) or right (1)."""
@@ -86,13 +114,14 @@ def mission_of(
         made = changing_mission(name, seed, data.get("most_changes", MOST_CHANGES))
         draw.drawn = {what: len(made[what]) for what in ("vehicles", "tasks", "changes")}
         return made, draw
+    data = draw.data
     time, speed = draw("time_s"), draw("own_speed_m_s")
     way = speed * time
     vehicles = [vehicle_at(1, (-way, 0.0, ALTITUDE_M), 0.0, speed)]
     tasks = [*_bends(draw, data, way), _task(1, (way, 0.0, ALTITUDE_M))]
     traffic = []
     for k in range(1, data.get("intruders", 1) + 1):
-        start, course_deg, fast = _intruder(draw, k, time)
+        start, course_deg, fast = _far_intruder(draw, k, time, way)
         if data.get("cooperative", False):
             vehicles.append(vehicle_at(k + 1, start, course_deg, fast))
             tasks.append(_task(k + 1, _ahead(start, course_deg, 2 * fast * time)))
@@ -107,7 +136,7 @@ def mission_of(
         "vehicles": vehicles,
         "tasks": tasks,
         "traffic": traffic,
-        "zones": list(_zones(draw, data, way)),
+        "zones": [*_zones(draw, data, way), *_keep_in(draw, data, way)],
         "simulation": {"limit_s": round(6 * time)},
     }
     return {key: value for key, value in mission.items() if value != []}, draw
@@ -116,9 +145,20 @@ def mission_of(
 Point = tuple[float, float, float]
 
 
-def _intruder(draw: Draw, k: int, time: float) -> tuple[Point, float, float]:
+def _far_intruder(draw: Draw, k: int, time: float, way: float) -> tuple[Point, float, float]:
+    """The first that is drawn of those that start at least `apart_m` from the vehicle; the last one of
+    AGAIN if none does."""
+    for again in range(AGAIN):
+        found = _intruder(draw, k, time, again)
+        north, east, _ = found[0]
+        if not disc_within(Vec2(north + way, east), 0.0, float(draw.data.get("apart_m", 0.0))):
+            break
+    return found
+
+
+def _intruder(draw: Draw, k: int, time: float, again: int) -> tuple[Point, float, float]:
     """Where it starts, its course [degrees] and its speed [m/s]."""
-    course_deg, fast = draw("angle_deg", k), draw("speed_m_s", k)
+    course_deg, fast = draw("angle_deg", k, again), draw("speed_m_s", k, again)
     alt = ALTITUDE_M + draw("height_m", k)
     if draw.kind == "random":
         draw_north, draw_east = _anywhere(draw, k)
@@ -149,6 +189,15 @@ def _zones(draw: Draw, data: dict[str, Any], way: float) -> Iterator[dict[str, A
             "kind": "keep_out",
             "vertices": [[round(value, 3) for value in corner] for corner in corners],
         }
+
+
+def _keep_in(draw: Draw, data: dict[str, Any], way: float) -> Iterator[dict[str, Any]]:
+    """A rectangle about the whole straight path, with as much room at its ends as at its sides."""
+    if data.get("keep_in", False):
+        room = draw("room_m")
+        north, east = round(way + room, 3), round(room, 3)
+        corners = [[-north, -east], [-north, east], [north, east], [north, -east]]
+        yield {"id": KEEP_IN, "kind": "keep_in", "vertices": corners}
 
 
 def vehicle_at(number: int, start: Point, course_deg: float, speed: float) -> dict[str, Any]:

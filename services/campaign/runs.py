@@ -76,6 +76,8 @@ class Made:
             self.data, draw = mission_of(campaign.generator or {}, campaign.name, seed, given)
             self.drawn, self.bounds = dict(draw.drawn), dict(draw.bounds)
             self.choices = dict(draw.choices)
+            for item, value in draw.values.items():
+                put(self.data, item, value)
         else:
             self._name, self._own_seed = source.name, seed if source.varies else 0
             unchanged = not campaign.vary and not option.changes and campaign.kind == MISSIONS
@@ -94,6 +96,9 @@ class Made:
             put(self.data, "simulation.limit_s", campaign.duration_s)
         for item, value in option.changes:
             put(self.data, item, value)
+        if source is None and isinstance(self.data.get("sensing"), dict):
+            # each mission that is made has errors of its own, the same under all options
+            self.data["sensing"].setdefault("seed", seed)
 
     def of(self, data: dict[str, Any]) -> Made:
         """The same with another mission file."""

@@ -16,6 +16,7 @@ from statistics import fmean, pstdev
 from typing import Any
 
 from cratous.services.campaign.definition import Campaign
+from cratous.services.campaign.generators import CASES
 from cratous.services.campaign.outcomes import Row
 from cratous.services.campaign.runs import Made, Run
 from cratous.spec.errors import BadInput
@@ -60,6 +61,12 @@ class Search:
                 "a search is in one space", item="missions, options",
                 expected="one mission or a generator, and one option",
                 got=f"{len(campaign.missions)} missions, {len(campaign.options)} options",
+            )  # fmt: skip
+        made = (campaign.generator or {}).get(CASES, {})
+        if any(set(case) - {"set"} for cases in made.values() for case in cases.values()):
+            raise BadInput(
+                "a search is in one space", item=f"generator.{CASES}",
+                expected="cases that set values of the mission alone", got="other ranges or counts",
             )  # fmt: skip
         self._campaign, self._requirement = campaign, requirement
         self._version, self._allow_unproved = version, allow_unproved

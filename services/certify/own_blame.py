@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
+from cratous.services.requirements.arithmetic import sources
 from cratous.services.requirements.formula import signals
 from cratous.services.requirements.outcome import Outcome
 from cratous.services.requirements.said import facts
@@ -61,6 +62,7 @@ def _vehicles(one: Requirement, spec: Specification) -> list[int]:
     """The vehicles that the messages of its signals are chosen by; none where no signal names one."""
     if isinstance(one.formula, NotRead):
         return []
-    chosen = [pair for name in signals(one.formula) for pair in spec.signals[name].chosen]
+    read = sources(signals(one.formula), spec.signals)
+    chosen = [pair for name in read for pair in spec.signals[name].chosen]
     found = {value for field, value in chosen if field in ("ID", "VehicleID")}
     return sorted(int(value) for value in found if re.fullmatch("[0-9]{1,9}", value))

@@ -30,7 +30,7 @@ def inventory(standing: ledger.Standing, calls: dict[str, Any] | None) -> dict[s
         "kernels": kernels,
         "loops": dict((calls or {}).get("loops", {})),
         "uncounted": list((calls or {}).get("uncounted", [])),
-        "theorems": _theorems(kernels, data["theorems"]),
+        "theorems": theorems_of(kernels, data["theorems"]),
         "definitions": _definitions(kernels),
     }
 
@@ -72,7 +72,7 @@ def _kernels(calls: dict[str, Any], known: dict[str, Any]) -> dict[str, Any]:
     return found
 
 
-def _theorems(kernels: dict[str, Any], known: dict[str, Any]) -> dict[str, Any]:
+def theorems_of(kernels: dict[str, Any], known: dict[str, Any]) -> dict[str, Any]:
     """The theorems about some kernels, and the lemmas that they rest on."""
     todo = [t for one in kernels.values() for t in (*one["theorems"], *one["against"])]
     found: dict[str, Any] = {}

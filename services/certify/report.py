@@ -142,6 +142,7 @@ def build_report(
             "track_columns": ["time_ms", "north_m", "east_m", "alt_m", "owner (0 UxAS, 1 ICAROUS)"],
             "bars": bars(flight),
             "takeovers": flight.takeovers,
+            **({"alerts": flight.alerts} if flight.alerts else {}),
             "authority": flight.authority,
             "events": flight.events,
             "changes": flight.changes,

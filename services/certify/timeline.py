@@ -12,6 +12,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
+from cratous.services.certify.alerted import TOPIC, AlertReader
 from cratous.services.logs.log import Row
 
 TRACK_PERIOD_MS = 1000
@@ -40,6 +41,8 @@ class Flight:
     in_phase: list[dict[str, Any]] = field(default_factory=list)
     """What was told of a task again, in the phase in which it was."""
     takeovers: list[dict[str, Any]] = field(default_factory=list)
+    alerts: list[dict[str, Any]] = field(default_factory=list)
+    """Whom detect and avoid has told of whom, from when to when, the highest level, the least time to a violation."""
     events: list[dict[str, Any]] = field(default_factory=list)
     event_kinds: list[str] = field(default_factory=list)
     """Of each event AUTHORITY, TASK, PLAN or END, which other lists tell too, or OTHER."""
@@ -82,6 +85,8 @@ class FlightReader:
         self.last: dict[int, list[float]] = {}
         self._owners = dict.fromkeys(vehicles, "UxAS")
         self._open_takeover: dict[int, dict[str, Any]] = {}
+        self._alerts = AlertReader()
+        self.flight.alerts = self._alerts.found
 
     def add(self, row: Row) -> None:
         """Take the next message."""
@@ -91,6 +96,8 @@ class FlightReader:
         flight.end_ms = max(flight.end_ms, row.time_ms)
         if short == "AirVehicleState" and row.time_ms % FOOTPRINT_PERIOD_MS == 0:
             _footprints(flight, row.time_ms, json.loads(row.body))
+        if row.topic == TOPIC:
+            self._alerts.add(json.loads(row.body), row.time_ms)
         if not row.topic.startswith("cratous."):
             return
         if short == "TruthState":

@@ -98,7 +98,7 @@ def traced(report: Data) -> Data:
     A row that is unknown and names no kernel decides nothing, so nothing is missing in it.
     """
     rows = chains(report)
-    definition = cache(_definition)  # the same kernel stands in many rows
+    definition = cache(definition_of)  # the same kernel stands in many rows
     unproved = {problem["kernel"] for problem in report["proofs"]["problems"]}
     names = short([*report["proofs"]["kernels"], *(c["kernel"] for r in rows for c in r["chains"])])
     for row in rows:
@@ -123,7 +123,7 @@ def traced(report: Data) -> Data:
     }
 
 
-def _definition(package: str, definition: str) -> tuple[str, str]:
+def definition_of(package: str, definition: str) -> tuple[str, str]:
     """(file of a definition, what is wrong with it)."""
     if not definition:
         return "", ""

@@ -153,6 +153,7 @@ def _reports(
     from cratous.core.files.whole_file import write_atomically
     from cratous.services.campaign import worker
     from cratous.services.campaign.definition import MISSIONS
+    from cratous.services.campaign.engine import CHANGED, refuse_other_version
     from cratous.services.campaign.summary import worst
     from cratous.services.results.names import HTML_NAME
     from cratous.spec.errors import Refused
@@ -172,6 +173,7 @@ def _reports(
             if "lost" in answer:
                 tell(f"no report of {row.run.name}: {answer['lost']}")
                 continue
+            refuse_other_version(answer, CHANGED)
             if answer.get("result") != stored:
                 raise Refused(
                     f"{row.run.name} flown again gives another result: {_other(answer, stored)}; "

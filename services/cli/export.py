@@ -59,16 +59,15 @@ def export(
     constraints or leaves tasks out (written, and told) or does not exist, 3 something is unknown.
     """
     from cratous.core.files.whole_file import write_atomically
-    from cratous.services.exporting.exported import MAPS, UXAS, beside, exported
+    from cratous.services.exporting.exported import ROUTED, UXAS, beside, exported
     from cratous.services.exporting.folder import write_folder
     from cratous.services.exporting.icarous import QGC
     from cratous.services.loading import load
 
     if form == UXAS and out is None:
         raise click.UsageError("--format uxas writes a folder: name it with -o")
-    ways = (*MAPS, QGC)
-    if planned and form not in ways:
-        raise click.UsageError(f"--plan goes with --format {' or '.join(ways)}")
+    if planned and form not in ROUTED:
+        raise click.UsageError(f"--plan goes with --format {' or '.join(ROUTED)}")
     if vehicle is not None and form != QGC:
         raise click.UsageError(f"--vehicle goes with --format {QGC}")
     loaded = load(mission, 0, request)

@@ -21,11 +21,9 @@ if TYPE_CHECKING:
     from cratous.services.logs.entry import Entry
     from cratous.services.logs.store import LogStore
     from cratous.services.requirements.outcome import Outcome
-    from cratous.services.requirements.watch import Watch
 
 WAIT_S = 60.0
 """So long nobody may listen at the address."""
-EVENTS = ("violated", "unknown")
 
 
 class Live(NamedTuple):
@@ -91,15 +89,15 @@ def attach(
         if live.keep is not None:
             stores.append(stack.enter_context(LogStore(live.keep, origin=where.text)))
             messages = _recorded(messages, stores[0])
-        told: set[tuple[str, str]] = set()
         rows = rows_of_messages(
             messages, wanted, lambda entry: find("refused", entry.time_ms * 10**6)
         )
         for _ in watch.rows(rows):
-            for event, one in _news(watch, told):
+            for event, one in watch.news:
                 _tell(event, one, as_json)
                 if event == "violated" and words:
                     _run(words, one)
+            watch.news.clear()
         if watch.sampling.is_late(attached.now_ms() * 10**6):
             find("silent", watch.sampling.last)
     found = watch.result()
@@ -111,15 +109,6 @@ def _recorded(messages: Iterator[Entry], store: LogStore) -> Iterator[Entry]:
     for entry in messages:
         store.write(entry)
         yield entry
-
-
-def _news(watch: Watch, told: set[tuple[str, str]]) -> Iterator[tuple[str, Outcome]]:
-    """What is so for the first time: a requirement is violated at a sample, or unknown."""
-    for one in watch.outcomes:
-        for event in EVENTS:
-            if getattr(one, event) and (one.name, event) not in told:
-                told.add((one.name, event))
-                yield event, one
 
 
 def _tell(event: str, one: Outcome, as_json: bool) -> None:

@@ -186,6 +186,7 @@ def prove(
     from cratous.proofs.ledger.proof_recall import Recall
     from cratous.proofs.ledger.text_cache import Remembered
     from cratous.proofs.lint import decisions
+    from cratous.proofs.phases import REST, SECOND, Phases, TimedCache
 
     as_json, junit, sarif, smt2_folder, jobs, verbose = Output(**output)
     # thousands of syntax trees live to the end: looking for garbage in them is a third of a warm run
@@ -227,7 +228,7 @@ def prove(
     if not every:
         raise BadInput("the package has no theorems", where=home.name, expected="one file a claim")
     workers = jobs or ledger.jobs_default()
-    store = cache.standard()
+    store, phases = TimedCache(cache.standard().folder), Phases(since=begun)
     recall = Recall(private_cache() / "theorems", home)
     remembered = Remembered(private_cache() / "remembered", home)
     bar = Bar("proving", len(names), not as_json and sys.stderr.isatty())
@@ -239,6 +240,7 @@ def prove(
             tell=lambda progress: bar.step(progress.name, progress.done, progress.of),
             jobs=workers,
             memory=Memory(store, recall, private_cache() / "relations"),
+            phases=phases,
         )
     inventory = judged.inventory
     theorems = list(inventory.theorems)
@@ -256,7 +258,9 @@ def prove(
     data: dict[str, Any] = {}
     if recheck:
         keep = home.product and not check
+        phases.ended(REST)
         data["recheck"] = second_solver(theorems, folder, workers, as_json, keep, whole, new)
+        phases.ended(SECOND)
     if mutate:
         functions = only or (("*",) if whole else ())
         keep = home.product and not check
@@ -285,6 +289,7 @@ def prove(
     dead = ledger.dead_paths(theorems) if whole else []
     second = data.get("recheck", {}).get("theorems", {})
     assumed = sum(len(t.assumptions) for t in theorems)
+    phases.ended(REST)
     if as_json:
         shown = {
             "proved": proved,
@@ -301,6 +306,8 @@ def prove(
             "assumptions": assumed,
             "solver": gate.solver_version(),
             "seconds": round(time.monotonic() - begun, 2),
+            "parts": {part: round(taken, 2) for part, taken in phases.seconds.items()},
+            "z3_cpu_seconds": round(store.seconds, 2),
             **data,
         }
         click.echo(json.dumps(shown, indent=1))
@@ -317,6 +324,7 @@ def prove(
         click.secho(f"{assumed} assumptions", fg="red" if assumed else None, nl=False)
         click.echo(f", {gate.solver_version()}")
         _tell_ran(theorems, verbose)
+        click.echo(phases.line(store.seconds), err=True)
         if statuses:
             click.echo("; ".join(f"{number} {status}" for status, number in statuses.items()))
         before = [

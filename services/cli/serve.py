@@ -8,35 +8,40 @@ import signal
 import threading
 from contextlib import ExitStack, closing
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
+
+if TYPE_CHECKING:
+    from cratous.services.ground_station.server import GroundStation, Recorded
 
 MISSIONS = (".yaml", ".yml")
 FLIGHT, PLANNER = "cratous.services.cli.serve_flight", "cratous.services.cli.serve_plan"
 
 
 @click.command()
-@click.argument("run", metavar="RUN|MISSION", type=click.Path(path_type=Path))
+@click.argument("run", metavar="RUN|MISSION", required=False, type=click.Path(path_type=Path))
 @click.argument("other", metavar="[RUN_B]", required=False, type=click.Path(path_type=Path))
 @click.option(
     "--port", type=click.IntRange(0, 65535), default=8760, show_default=True,
     help="Port on 127.0.0.1; 0 takes a free one.",
 )  # fmt: skip
 @click.option("--edit", is_flag=True, help="MISSION: edit and plan it; nothing flies.")
+@click.option(
+    "--attach", metavar="HOST:PORT",
+    help="Watch a running system instead: a TCP bridge of UxAS, or AMASE.",
+)  # fmt: skip
 @click.option("--out", type=click.Path(path_type=Path), help="MISSION: folder for results. [out]")
 @click.option("--seed", type=click.IntRange(0), help="MISSION: variant; 0 is as written.")
 @click.option("--no-daa", is_flag=True, help="MISSION: avoidance off; the requirements stay.")
 @click.option("--allow-unproved", is_flag=True, help="MISSION: fly kernels without proof.")
 def serve(
-    run: Path,
+    run: Path | None,
     other: Path | None,
     port: int,
     edit: bool,
-    out: Path | None,
-    seed: int | None,
-    no_daa: bool,
-    allow_unproved: bool,
+    attach: str | None,
+    **flight: Any,
 ) -> int:
     """Replay a RUN in the browser, or two side by side, or fly a MISSION there.
 
@@ -49,6 +54,10 @@ def serve(
     each, and a table of what only one of them has or what is not the same in both, such as takeovers
     and verdicts, with instants to jump to.
 
+    With --attach a running UxAS or AMASE is watched: aircraft, plans, zones and tasks as it tells them
+    on sentinel frames, the last hour of it. Nothing is sent to it; a connection that is lost is made
+    again.
+
     With --edit the mission is edited: on the map, as text, its relations with the place of an error
     while they are typed; it is planned as it stands, and saved to its file.
 
@@ -60,65 +69,34 @@ def serve(
     Example:  cratous serve out/crossing
               cratous serve out/crossing bare/crossing
               cratous serve examples/crossing/mission.yaml --edit
+              cratous serve --attach tcp://127.0.0.1:5555
 
     Exit codes: 0 asked to end (Ctrl-C, SIGTERM), 2 bad input.
     """
-    from cratous.services.ground_station.comparison import check_comparable, comparison
-    from cratous.services.ground_station.live_session import LiveSession
-    from cratous.services.ground_station.recording import recording
-    from cratous.services.ground_station.server import (
-        PAGE_OF_EDITOR,
-        PAGE_OF_TWO,
-        Commands,
-        GroundStation,
-        LiveRecorded,
-        ReadAnew,
-        Recorded,
-    )
-    from cratous.services.logs.source import open_log
-    from cratous.spec.errors import BadInput
     from cratous.spec.files.printable import printable
 
-    def failed(error: Exception) -> None:
-        name = "" if isinstance(error, BadInput) else f"{type(error).__name__}: "
-        click.echo(printable(f"cratous: {name}{error}"), err=True)
-
-    def replayed(path: Path) -> Recorded:
-        return Recorded(lambda: recording(path), failed)
-
+    if (run is None) == (attach is None):
+        raise click.UsageError("one of them is shown: RUN or MISSION, or --attach HOST:PORT")
     missions = [path for path in (run, other) if path and _is_mission(path)]
     if other is not None and missions:
         raise click.UsageError(f"two runs are shown side by side, and {missions[0]} is a mission")
-    if edit and (not missions or out is not None or seed is not None or no_daa):
+    alone = {name: value for name, value in flight.items() if name != "allow_unproved"}
+    if edit and (not missions or any(_is_given(value) for value in alone.values())):
         raise click.UsageError("--edit needs a MISSION, and goes without --out, --seed, --no-daa")
+    if not missions and any(_is_given(value) for value in flight.values()):
+        raise click.UsageError("--out, --seed, --no-daa, --allow-unproved need a MISSION")
     with ExitStack() as stack:
-        if edit:
-            from cratous.services.mission_editor.editor import LONGEST, Editor
-
-            editor = stack.enter_context(closing(Editor(run, PLANNER, allow_unproved)))
-            commands = Commands(editor.orders, LONGEST, {"/planned.json": editor.planned})
-            shown = ReadAnew(editor.opened)
-            server = stack.enter_context(
-                GroundStation(shown, port, first=PAGE_OF_EDITOR, commands=commands)
-            )
-            url = f"{server.url}?token={editor.token}"
-        elif missions:
-            asked = _asked(run, out or Path("out"), seed or 0, no_daa, allow_unproved)
-            live = stack.enter_context(closing(LiveSession(FLIGHT, asked)))
-            flown = LiveRecorded(live, lambda folder: replayed(Path(folder)))
-            server = stack.enter_context(GroundStation(flown, port, live))
-            url = f"{server.url}?token={live.token}"
+        if attach is not None:
+            server, name = _watching(attach, port, stack), attach
         else:
-            if out is not None or seed is not None or no_daa or allow_unproved:
-                raise click.UsageError("--out, --seed, --no-daa, --allow-unproved need a MISSION")
-            open_log(run).close()  # what is no log is told before anything listens
-            if other is None:
-                server = stack.enter_context(GroundStation(replayed(run), port))
+            assert run is not None
+            name = f"{run}" if other is None else f"{run} and {other}"
+            if edit:
+                server = _editing(run, port, flight["allow_unproved"], stack)
+            elif missions:
+                server = _flying(run, port, flight, stack)
             else:
-                check_comparable(run, other)
-                both = Recorded(functools.partial(comparison, run, other), failed)
-                server = stack.enter_context(GroundStation(both, port, first=PAGE_OF_TWO))
-            url = server.url
+                server = _replaying(run, other, port, stack)
 
         def stop(*_: object) -> None:
             # from a thread: it waits for the loop that this signal interrupts
@@ -126,10 +104,77 @@ def serve(
 
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             signal.signal(number, stop)
-        name = f"{run}" if other is None else f"{run} and {other}"
-        click.echo(printable(f"{name}: {url} (Ctrl-C ends it)"))
+        token = f"?token={server.token}" if server.token else ""
+        click.echo(printable(f"{name}: {server.url}{token} (Ctrl-C ends it)"))
         server.serve_forever(poll_interval=0.2)
     return 0
+
+
+def _is_given(value: Any) -> bool:
+    return value is not None and value is not False
+
+
+def _failed(error: Exception) -> None:
+    from cratous.spec.errors import BadInput
+    from cratous.spec.files.printable import printable
+
+    name = "" if isinstance(error, BadInput) else f"{type(error).__name__}: "
+    click.echo(printable(f"cratous: {name}{error}"), err=True)
+
+
+def _replayed(path: Path) -> Recorded:
+    from cratous.services.ground_station.recording import recording
+    from cratous.services.ground_station.server import Recorded
+
+    return Recorded(lambda: recording(path), _failed)
+
+
+def _editing(mission: Path, port: int, allow_unproved: bool, stack: ExitStack) -> GroundStation:
+    from cratous.services.ground_station.server import (
+        PAGE_OF_EDITOR,
+        Commands,
+        GroundStation,
+        ReadAnew,
+    )
+    from cratous.services.mission_editor.editor import LONGEST, Editor
+
+    editor = stack.enter_context(closing(Editor(mission, PLANNER, allow_unproved)))
+    commands = Commands(editor.orders, LONGEST, {"/planned.json": editor.planned}, editor.token)
+    shown = ReadAnew(editor.opened)
+    return stack.enter_context(GroundStation(shown, port, first=PAGE_OF_EDITOR, commands=commands))
+
+
+def _flying(mission: Path, port: int, flight: dict[str, Any], stack: ExitStack) -> GroundStation:
+    from cratous.services.ground_station.live_session import LiveSession
+    from cratous.services.ground_station.server import GroundStation, LiveRecorded
+
+    live = stack.enter_context(closing(LiveSession(FLIGHT, _asked(mission, **flight))))
+    flown = LiveRecorded(live, lambda folder: _replayed(Path(folder)))
+    return stack.enter_context(GroundStation(flown, port, live))
+
+
+def _watching(address: str, port: int, stack: ExitStack) -> GroundStation:
+    from cratous.bridge.port import address as read_address
+    from cratous.services.ground_station.attached_session import AttachedSession
+    from cratous.services.ground_station.server import GroundStation, ReadAnew
+
+    text = address if "://" in address else f"tcp://{address}"
+    where = read_address(text, ("tcp",), item="--attach")
+    session = stack.enter_context(closing(AttachedSession(where)))
+    return stack.enter_context(GroundStation(ReadAnew(session.begun), port, session))
+
+
+def _replaying(run: Path, other: Path | None, port: int, stack: ExitStack) -> GroundStation:
+    from cratous.services.ground_station.comparison import check_comparable, comparison
+    from cratous.services.ground_station.server import PAGE_OF_TWO, GroundStation, Recorded
+    from cratous.services.logs.source import open_log
+
+    open_log(run).close()  # what is no log is told before anything listens
+    if other is None:
+        return stack.enter_context(GroundStation(_replayed(run), port))
+    check_comparable(run, other)
+    both = Recorded(functools.partial(comparison, run, other), _failed)
+    return stack.enter_context(GroundStation(both, port, first=PAGE_OF_TWO))
 
 
 def _is_mission(path: Path) -> bool:
@@ -137,7 +182,7 @@ def _is_mission(path: Path) -> bool:
 
 
 def _asked(
-    mission: Path, out: Path, seed: int, no_daa: bool, allow_unproved: bool
+    mission: Path, out: Path | None, seed: int | None, no_daa: bool, allow_unproved: bool
 ) -> dict[str, Any]:
     """What the flight's process is asked for; its report names the command that does the same."""
     from cratous.services.cli.show import shown_path
@@ -146,6 +191,6 @@ def _asked(
     command += ["--no-daa"] * no_daa + ["--allow-unproved"] * allow_unproved
     command += ["--seed", str(seed)] if seed else []
     return {
-        "path": str(mission), "out": str(out), "seed": seed, "daa": not no_daa,
+        "path": str(mission), "out": str(out or "out"), "seed": seed or 0, "daa": not no_daa,
         "allow_unproved": allow_unproved, "command": shlex.join(command),
     }  # fmt: skip

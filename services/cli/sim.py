@@ -16,6 +16,7 @@ from cratous.services.cli.numbers import Number
 if TYPE_CHECKING:
     from cratous.bridge.port import Address
     from cratous.services.simulator.scenario import Scenario
+    from cratous.services.simulator.terrain import Terrain
     from cratous.services.simulator.world import World
 
 
@@ -36,6 +37,10 @@ if TYPE_CHECKING:
 @click.option(
     "--vehicle", "vehicles", multiple=True, metavar="ID=HOST:PORT",
     help="A port of its own for a vehicle, with --listen; repeatable.",
+)  # fmt: skip
+@click.option(
+    "--terrain", "tiles", multiple=True, type=click.Path(path_type=Path), metavar="PATH",
+    help="A DTED or SRTM tile (.dt0 .dt1 .dt2 .hgt), or a folder of them; repeatable.",
 )  # fmt: skip
 @click.option("--until", type=Number(0, min_open=True), help="End after so many seconds of it.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Write all that is told: sentinel frames.")  # fmt: skip
@@ -67,6 +72,7 @@ def sim(
     from cratous.spec.errors import BadInput
 
     clients, only, vehicles = how["clients"], how["only"], how["vehicles"]
+    tiles = how.pop("tiles")
     if listen is not None and output is not None:
         raise BadInput("not both", item="--listen, -o", expected="one of them")
     if listen is None and (clients or only):
@@ -83,12 +89,16 @@ def sim(
             got=str(clients),
         )
     plan = read(scenario)
+    terrain = _terrain(tiles)
     for note in plan.notes:
         click.echo(f"note: {note}", err=True)
     end_s = min(plan.duration_s, until or plan.duration_s)
 
     def make() -> World:
-        return World(plan.events, end_s, compatible=compatibility == "amase")
+        compatible = compatibility == "amase"
+        return World(
+            plan.events, end_s, start_s=plan.start_s, compatible=compatible, terrain=terrain
+        )
 
     if listen is not None:
         return _serve(make, plan, listen, how | {"only": only or 0, "vehicles": _ports(vehicles)})
@@ -97,11 +107,20 @@ def sim(
     _write(world, output)
     took_s = max(1e-9, time.monotonic() - began_s)
     _tell_unheard(world)
+    played_s = world.time_s - world.start_s
     click.echo(
-        f"{plan.name}: {world.time_s:.0f} s of {_count(world)}, "
-        f"{world.time_s / took_s:.0f} times real time"
+        f"{plan.name}: {played_s:.0f} s of {_count(world)}, {played_s / took_s:.0f} times real time"
     )
     return 0
+
+
+def _terrain(paths: Sequence[Path]) -> Terrain | None:
+    """The terrain of files and folders; None without any."""
+    if not paths:
+        return None
+    from cratous.services.simulator.terrain import Terrain
+
+    return Terrain(paths)
 
 
 def _ports(texts: Sequence[str]) -> dict[int, Address]:

@@ -63,7 +63,9 @@ def judge(case: dict[str, Any]) -> Result:
     scenario = of_text(text, f"{name}: scenario_xml")
     kinds = {type(event.body).__name__ for event in scenario.events}
     easy = "WeatherReport" not in kinds and "LoiterAction" not in text
-    flown = _fly(World(scenario.events, scenario.duration_s, compatible=True))
+    flown = _fly(
+        World(scenario.events, scenario.duration_s, start_s=scenario.start_s, compatible=True)
+    )
     return _compare(name, NEAR_M if easy else FAR_M, columns, rows, flown)
 
 

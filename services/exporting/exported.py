@@ -30,6 +30,9 @@ AMASE, UXAS, GEOJSON, KML = FORMATS = ("amase", "uxas", "geojson", "kml")
 MAPS = {GEOJSON: geojson_text, KML: kml_text}
 OF_ICAROUS = (icarous.QGC, icarous.GEOFENCE)
 """Each says one thing of a mission: the way of a vehicle, the zones."""
+ALL = (*FORMATS, *OF_ICAROUS)
+ROUTED = (*MAPS, icarous.QGC)
+"""What may have the routes of a plan."""
 ENDINGS = {AMASE: "xml", GEOJSON: "geojson", KML: "kml"}
 
 SECTIONS = ("variation", "expect")

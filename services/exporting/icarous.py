@@ -87,7 +87,7 @@ def _waypoints(mission: Mission, vehicle: Vehicle) -> Sequence[Position]:
             why = f"task {(shared or others)[0]}"
         raise BadInput(
             "the way of the vehicle is for the plan to say", where=mission.source,
-            item=f"vehicle {vehicle.id}", expected="--plan, or points to fly through in one order, its own",
+            item=f"vehicle {vehicle.id}", expected="a plan (--plan), or points to fly through in one order, its own",
             got=why,
         )  # fmt: skip
     return [mine[number].points[0] for number in order]

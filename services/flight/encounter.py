@@ -2,7 +2,7 @@
 
 Each vehicle of ours flies through its points, one after the other; those with an ICAROUS instance are watched and
 steered by the very steps that a whole flight uses (`Instance.handle`, `VehicleNode.handle`, the kernels of gate and
-link end). What the bridge would bring is there at once: zones, the way, and how far the vehicle is. When control is offered, UxAS takes it at once, by the way back that a whole flight takes on its
+link end), by what its sensors see where the mission has some. What the bridge would bring is there at once: zones, the way, and how far the vehicle is. When control is offered, UxAS takes it at once, by the way back that a whole flight takes on its
 way to a task.
 """
 
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from cratous.bridge.text_protocol import SetMode, SetVelocity
@@ -37,6 +38,9 @@ from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Steer, Up, Wish
 from cratous.services.mission.frames import Projection
 from cratous.services.planning.flyers import MOMENT_MS, straight
+from cratous.services.sensing import surveillance
+from cratous.services.sensing.filter import Flown
+from cratous.services.sensing.surveillance import Carrier, Surveillance
 from cratous.spec.authority.link_end import TAKE_BACK
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import FaultySimulation, Mission, Position, TaskKind, Vehicle, Velocity
@@ -76,12 +80,22 @@ def fly_encounter(mission: Mission, *, daa: bool = True) -> Encounter:
     with_daa = set(mission.instances) if daa else set()
     ours = [_Ours(v, ways[v.id], mission, routes, v.id in with_daa) for v in mission.vehicles]
     ours.sort(key=lambda one: one.id)
+    carriers = surveillance.carriers(mission, with_daa)
+    for one in ours:
+        one.carrier = carriers.get(one.id)
     cooperating = tuple(one.id for one in ours if one.instance is not None)
     instants = list[Instant]()
     step_ms, limit_ms = mission.simulation.step_ms, mission.simulation.limit_ms
     for now_ms in range(0, limit_ms + step_ms, step_ms):
         over = [one.settle(now_ms) for one in ours]
         outcome = COMPLETE if any(over) else LIMIT
+        if carriers:
+            flown = {
+                number: Flown(air.position, air.velocity)
+                for number, air in _everyone(mission, ours, now_ms)
+            }
+            for one in ours:
+                one.look(now_ms, flown)
         if now_ms % mission.simulation.heartbeat_ms == 0:
             seen = _everyone(mission, ours, now_ms)
             told = tuple((one.id, one.flies) for one in ours if one.instance and one.flies)
@@ -102,7 +116,7 @@ def fly_encounter(mission: Mission, *, daa: bool = True) -> Encounter:
 def ways_of(mission: Mission) -> dict[int, tuple[Position, ...]]:
     """The way of each vehicle: from where it is through its must_fly points, in the order of the file.
 
-    BadInput for relations, changes in flight, faults of the bridge, sensors, other tasks, tasks that are not for exactly one
+    BadInput for relations, changes in flight, faults of the bridge, other tasks, tasks that are not for exactly one
     vehicle, and vehicles without a task: an encounter flies nothing of the kind; and where no vehicle is protected,
     since nothing would be judged.
     """
@@ -110,7 +124,6 @@ def ways_of(mission: Mission) -> dict[int, tuple[Position, ...]]:
         ("relations", mission.relations),
         ("changes", mission.changes),
         ("simulation.bridge_faults", isinstance(mission.simulation, FaultySimulation)),
-        ("sensing", mission.sensing is not None),
     ):
         if there:
             raise _not_flown(mission, item, "none", "some")
@@ -162,7 +175,14 @@ class _Ours:
             config = icarous.Config(vehicle.id, mission.daa, projection, simulation.heartbeat_ms)
             self.instance = Instance(config)
         self._icarous = icarous.State(told=Told(mission.zones, started=True))
+        self.carrier: Carrier | None = None
+        self._seen = Surveillance()
         self._tell_way()
+
+    def look(self, now_ms: int, flown: Mapping[int, Flown]) -> None:
+        """What its sensors, if it has any, measure at a step."""
+        if self.carrier is not None:
+            self._seen = surveillance.stepped(self.carrier, self._seen, now_ms, flown)
 
     @property
     def reached(self) -> int:
@@ -225,7 +245,11 @@ class _Ours:
             told = replace(self._icarous.told, next_index=passed)
             self._icarous = replace(self._icarous, told=told)
         on_board = self.node.sensed(self.state, sense)
-        self._icarous, answers = self.instance.handle(self._icarous, on_board.sensed)
+        given = on_board.sensed
+        if self.carrier is not None:
+            air = Flown(self.state.air.position, self.state.air.velocity)
+            self._seen, _, given = surveillance.beat(self.carrier, self._seen, given, air)
+        self._icarous, answers = self.instance.handle(self._icarous, given)
         modes = []
         for answer in answers:
             match answer:

@@ -62,7 +62,7 @@ from cratous.services.flight.messages import (
     Watch,
     Wished,
 )
-from cratous.services.flight.notices import conflict, truth
+from cratous.services.flight.notices import conflict, guidance, truth
 from cratous.services.flight.result import FlightResult
 from cratous.services.flight.vehicle import VehicleNode
 from cratous.services.icarous import state as icarous
@@ -70,6 +70,7 @@ from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import (
     Foresees,
     FromInstance,
+    Guides,
     Line,
     Offers,
     Sensed,
@@ -82,9 +83,9 @@ from cratous.services.icarous.messages import (
 from cratous.services.mission.frames import Projection
 from cratous.services.sensing import surveillance
 from cratous.services.sensing.filter import Flown
-from cratous.services.sensing.surveillance import Carrier, Surveillance
+from cratous.services.sensing.surveillance import Surveillance
 from cratous.spec.errors import NoPlan
-from cratous.spec.mission import FaultySimulation, LivePlanningMission, Mission, SensedDaa
+from cratous.spec.mission import FaultySimulation, LivePlanningMission, Mission
 from cratous.spec.mission.plan import Plan
 
 Segmenter = Callable[[bytes], Iterable[bytes]]
@@ -121,15 +122,6 @@ def _bridge(mission: Mission, instances: tuple[int, ...], segmenter: Segmenter |
     return FaultyBridge(instances, mission.simulation.bridge_faults, segmenter=segmenter)
 
 
-def _carriers(mission: Mission, instances: tuple[int, ...]) -> dict[int, Carrier]:
-    """Who has sensors: each vehicle with an instance, if the mission has any."""
-    daa, step_ms = mission.daa, mission.simulation.step_ms
-    if not isinstance(daa, SensedDaa):
-        return {}
-    ours = frozenset(instances)
-    return {vid: Carrier(vid, daa, mission.seed, step_ms, ours) for vid in instances}
-
-
 Answer = FromExecutive | FromLinkEnd | FromVehicle | FromInstance
 
 
@@ -153,14 +145,14 @@ class Flight:
         self.vehicle_states = {vid: node.first() for vid, node in self.vehicles.items()}
         configs = {
             vid: icarous.Config(
-                vid, mission.daa, projection, simulation.heartbeat_ms, certifies=True
+                vid, mission.daa, projection, simulation.heartbeat_ms, certifies=True, records=True
             )
             for vid in instances
         }
         self.icarous = {vid: Instance(config) for vid, config in configs.items()}
         self.icarous_states = {vid: icarous.State() for vid in instances}
         self.waiting: dict[int, list[ToInstance]] = {vid: [] for vid in instances}
-        self.carriers = _carriers(mission, instances)
+        self.carriers = surveillance.carriers(mission, instances)
         self.seen = dict.fromkeys(self.carriers, Surveillance())
         self.gated = lmcp.types["GatedCommand"]
         self.commands, self.now_ms, self.outcome = 0, 0, ""
@@ -273,13 +265,12 @@ class Flight:
         carrier = self.carriers.get(vid)
         if carrier is None:
             return true
-        self.seen[vid] = surveillance.arrived(carrier, self.seen[vid], true.now_ms)
         air = self.vehicle_states[vid].air
         own = Flown(air.position, air.velocity)
-        shown = surveillance.shown(carrier, self.seen[vid], true.now_ms, own)
+        self.seen[vid], shown, given = surveillance.beat(carrier, self.seen[vid], true, own)
         for one in shown:
             self._publish(surveillance.sensed_state(carrier, one), f"vehicle/{vid}")
-        return surveillance.given(carrier, shown, true)
+        return given
 
     def _instance(self, vid: int, message: ToInstance) -> None:
         if self._stands_still():
@@ -325,6 +316,9 @@ class Flight:
                     self._vehicle(vid, Held(self.now_ms, answer))
                 case Foresees(vid):
                     self._publish(conflict(answer), f"icarous/{vid}")
+                case Guides(vid):
+                    projection = self.icarous[vid].config.projection
+                    self._publish(guidance(answer, projection), f"icarous/{vid}")
                 case Steer(vid, epoch, velocity):
                     self.commands += 1
                     command = velocity_command(vid, self.commands, velocity)

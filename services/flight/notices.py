@@ -10,9 +10,9 @@ from cratous.core.authority.gate import ICAROUS, UXAS, Gate, epoch_given
 from cratous.services.flight.commands import SENDERS
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.holding import Change
-from cratous.services.icarous.messages import Foresees
+from cratous.services.icarous.messages import Foresees, Guides
 from cratous.services.logs.records import fingerprint, to_data
-from cratous.services.mission.frames import compass
+from cratous.services.mission.frames import Projection, compass
 from cratous.spec.mission.plan import Plan
 
 
@@ -112,6 +112,17 @@ def conflict(foreseen: Foresees) -> Any:
         TimeToViolation_s=foreseen.first_violation_s,
         Resolution=foreseen.resolution,
     )
+
+
+def guidance(told: Guides, projection: Projection) -> Any:
+    """The alerts and bands of a vehicle, as WellClearViolationIntervals: directions and speeds over ground."""
+    from cratous.services.daa.intervals import OwnState, intervals_message
+
+    now, place = told.motion, told.motion.position
+    at = projection.to_geodetic(place.north_m, place.east_m)
+    heading, seconds = compass(now.heading_rad), told.now_ms / 1000
+    own = (told.vehicle_id, heading, now.speed_m_s, now.climb_m_s, place.alt_m, *at, seconds)
+    return intervals_message(OwnState(*own), told.instant)
 
 
 def truth(vehicle_id: int, s: AirState, now_ms: int, cooperative: bool) -> Any:

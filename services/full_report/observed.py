@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from cratous.services.assumptions.said import measured
+from cratous.services.certify.alerted import LEVELS
 from cratous.services.certify.html import margin, seconds
 from cratous.services.full_report import document
 from cratous.services.full_report.front import loss_parts
@@ -46,10 +47,27 @@ def _trajectory(report: Data, chains: Data) -> Iterator[document.Part]:
     yield document.Head("Alerts and manoeuvres")
     takeovers = report["flight"]["takeovers"]
     first = seconds(min(t["from_ms"] for t in takeovers)) if takeovers else document.NOT_OBSERVED
+    alerts = report["flight"].get("alerts", [])
+    alerted = seconds(min(a["from_ms"] for a in alerts)) if alerts else document.NOT_OBSERVED
     yield document.Words(
         f"Conflict messages: {report['log']['by_topic'].get(CONFLICT, 0)}. First takeover: {first}. "
-        f"Time to the first alert: {document.NOT_OBSERVED}, the report keeps takeovers only."
+        f"First alert: {alerted}."
     )
+    if alerts:
+        spans = [
+            (str(a["vehicle"]), str(a["intruder"]), seconds(a["from_ms"]), seconds(a["to_ms"]),
+             LEVELS.get(a["level"], str(a["level"])), f"{a['least_s']:.1f} s")
+            for a in alerts
+        ]  # fmt: skip
+        columns = (
+            "Vehicle",
+            "Intruder",
+            "From",
+            "To",
+            "Highest level",
+            "Least time to a violation",
+        )
+        yield document.Table(columns, tuple(spans), (12, 12, 14, 14, 24, 24), (2, 3, 5))
     yield _authority(report)
     yield from loss_parts(report)
 

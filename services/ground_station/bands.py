@@ -1,9 +1,9 @@
-"""Heading bands of vehicles, as the WellClearViolationIntervals in a log tell them; none is computed here."""
+"""Bands and alerts of vehicles, as the WellClearViolationIntervals in a log tell them; none is computed here."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from cratous.services.logs.entry import Entry, any_data
 
@@ -11,6 +11,39 @@ BANDS = "larcfm.DAIDALUS.WellClearViolationIntervals"
 REGIONS = ("NEAR", "MID", "FAR")
 RECOVERY = "RECOVERY"
 PERIOD_MS = 1000
+Band = tuple[float, float, str]
+
+
+class Dimension(NamedTuple):
+    """How the message spells one: own value, intervals with their regions, recovery, and the ends of both."""
+
+    own: str
+    intervals: str
+    regions: str
+    ends: str
+    recoveries: str
+    recovery_ends: str
+    digits: int
+
+
+DIMENSIONS = {
+    "heading": Dimension(
+        "CurrentHeading", "WCVGroundHeadingIntervals", "WCVGroundHeadingRegions", "GroundHeadings",
+        "RecoveryGroundHeadingIntervals", "RecoveryGroundHeadings", 1,
+    ),
+    "speed": Dimension(
+        "CurrentGoundSpeed", "WCVGroundSpeedIntervals", "WCVGroundSpeedRegions", "GroundSpeeds",
+        "RecoveryGroundSpeedIntervals", "RecoveryGroundSpeeds", 2,
+    ),
+    "climb": Dimension(
+        "CurrentVerticalSpeed", "WCVVerticalSpeedIntervals", "WCVVerticalSpeedRegions",
+        "VerticalSpeeds", "RecoveryVerticalSpeedIntervals", "RecoveryVerticalSpeed", 2,
+    ),
+    "altitude": Dimension(
+        "CurrentAltitude", "WCVAlitudeIntervals", "WCVAltitudeRegions", "Altitude",
+        "RecoveryAltitudeIntervals", "RecoveryAltitude", 1,
+    ),
+}  # fmt: skip
 
 
 class Bands:
@@ -18,6 +51,7 @@ class Bands:
 
     def __init__(self) -> None:
         self._rows: dict[str, dict[int, dict[str, Any]]] = {}
+        self._new: dict[str, list[dict[str, Any]]] = {}
         self.unread = 0
 
     def add(self, entry: Entry, time_ms: int) -> None:
@@ -29,53 +63,76 @@ class Bands:
         if row is None:
             self.unread += 1
             return
-        # the first of each second stays
-        self._rows.setdefault(str(row.pop("vehicle")), {}).setdefault(time_ms // PERIOD_MS, row)
+        vehicle = str(body["EntityId"])
+        rows, second = self._rows.setdefault(vehicle, {}), time_ms // PERIOD_MS
+        if second not in rows:  # the first of each second stays
+            rows[second] = row
+            self._new.setdefault(vehicle, []).append(row)
 
     @property
     def found(self) -> dict[str, list[dict[str, Any]]]:
         """By the number of a vehicle, the first message of each second, in the order of time.
 
-        Time [ms], own heading [degrees], bands (from and to, clockwise [degrees], and region) and
-        intruders (number, time to the violation [s], alert level); what is not finite is None.
+        Time [ms]; own: a value for each of DIMENSIONS; bands: by dimension, where there are any, from
+        and to (of headings clockwise) and region; intruders: number, time to the violation [s], alert
+        level. Degrees, m/s, m; what is not finite is None.
         """
         return {vehicle: [rows[k] for k in sorted(rows)] for vehicle, rows in self._rows.items()}
+
+    def forget(self, before_ms: int) -> None:
+        """Let go of what is older."""
+        first = before_ms // PERIOD_MS
+        for vehicle, rows in list(self._rows.items()):
+            self._rows[vehicle] = {k: row for k, row in rows.items() if k >= first}
+            if not self._rows[vehicle]:
+                del self._rows[vehicle]
+
+    @property
+    def size(self) -> int:
+        """How many rows, bands and intruders are kept."""
+        return sum(
+            1 + sum(map(len, row["bands"].values())) + len(row["intruders"])
+            for rows in self._rows.values()
+            for row in rows.values()
+        )
+
+    def take_new(self) -> dict[str, list[dict[str, Any]]]:
+        """What came since the last time that this was asked."""
+        taken, self._new = self._new, {}
+        return taken
 
 
 def _row(body: Any, time_ms: int) -> dict[str, Any] | None:
     """What is shown of a message; None where it lacks something, or its lists do not fit together."""
     try:
-        bands = [
-            (*_ends(interval["GroundHeadings"]), _region(region))
-            for interval, region in zip(
-                body["WCVGroundHeadingIntervals"], body["WCVGroundHeadingRegions"], strict=True
-            )
-        ]
-        bands += [
-            (*_ends(interval["RecoveryGroundHeadings"]), RECOVERY)
-            for interval in body["RecoveryGroundHeadingIntervals"]
-        ]
+        int(body["EntityId"])
+        bands = {name: _bands(body, one) for name, one in DIMENSIONS.items()}
         told = (body[f"{name}List"] for name in ("Entity", "TimeToViolation", "AlertLevel"))
-        intruders = [
-            (int(number), _finite(time_s), _finite(level))
-            for number, time_s, level in zip(*told, strict=True)
-        ]
         return {
-            "vehicle": int(body["EntityId"]),
             "time_ms": time_ms,
-            "heading_deg": _finite(body["CurrentHeading"]),
-            "bands": bands,
-            "intruders": intruders,
+            "own": [_finite(body[one.own], one.digits) for one in DIMENSIONS.values()],
+            "bands": {name: rows for name, rows in bands.items() if rows},
+            "intruders": [
+                (int(number), _finite(time_s), _finite(level))
+                for number, time_s, level in zip(*told, strict=True)
+            ],
         }
     except (LookupError, OverflowError, TypeError, ValueError):
         return None
 
 
-def _ends(ends: Any) -> tuple[float, float]:
+def _bands(body: Any, one: Dimension) -> list[Band]:
+    told = zip(body[one.intervals], body[one.regions], strict=True)
+    found = [(*_ends(said[one.ends], one.digits), _region(region)) for said, region in told]
+    recoveries = (_ends(said[one.recovery_ends], one.digits) for said in body[one.recoveries])
+    return found + [(*ends, RECOVERY) for ends in recoveries]
+
+
+def _ends(ends: Any, digits: int) -> tuple[float, float]:
     low, high = (float(end) for end in ends)
     if not (math.isfinite(low) and math.isfinite(high)):
         raise ValueError
-    return round(low, 1), round(high, 1)
+    return round(low, digits), round(high, digits)
 
 
 def _region(region: Any) -> str:
@@ -84,6 +141,6 @@ def _region(region: Any) -> str:
     return str(region)
 
 
-def _finite(value: Any) -> float | None:
+def _finite(value: Any, digits: int = 1) -> float | None:
     number = float(value)
-    return round(number, 1) if math.isfinite(number) else None
+    return round(number, digits) if math.isfinite(number) else None

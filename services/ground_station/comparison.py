@@ -53,6 +53,8 @@ def comparison(run: Path, other: Path) -> dict[str, Any]:
     """All that is shown of two runs. Raises BadInput as `recording` and `check_comparable` do."""
     check_comparable(run, other)
     a, b = ({**recording(path), "run": str(path)} for path in (run, other))
+    for one in (a, b):
+        one["verdicts"].pop("proofs", None)  # they are shown of one run
     unknown = [
         f"{name}: {one['verdicts']['why_none']}"
         for name, one in (("A", a), ("B", b))

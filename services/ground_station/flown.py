@@ -88,8 +88,13 @@ class FlownRecording:
             "bands": self.bands.found,
             "events": flight.events,
             "event_kinds": flight.event_kinds,
-            "unread": self.shapes.unread + self.bands.unread,
+            "unread": self.unread,
         }
+
+    @property
+    def unread(self) -> int:
+        """Of how many messages the body could not be decoded, or does not fit."""
+        return self.shapes.unread + self.bands.unread
 
     def footprints(self) -> list[dict[str, Any]]:
         """What was seen so far, in the frame of the page."""

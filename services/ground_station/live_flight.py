@@ -129,8 +129,10 @@ class LiveFlight:
             "more": {key: rows for key, rows in more.items() if rows},
             "tracks": {number: rows for number, rows in tracks.items() if rows},
             "heads": {str(number): row for number, row in recording.reader.last.items()},
-            "set": {"end_ms": flight.end_ms},
+            "set": {"end_ms": flight.end_ms, "unread": recording.unread},
         }
+        if bands := recording.bands.take_new():
+            update["bands"] = bands
         seen = [(task, rows[-1]["time_ms"]) for task, rows in flight.footprints.items()]
         for key, mark, rows_of in (
             ("takeovers", json_text(flight.takeovers), lambda: flight.takeovers),

@@ -40,10 +40,13 @@ class Positions:
     """Reads states and configurations, in the order of the log.
 
     frame: about the first position, None before there is one; unread: of how many states the body
-    could not be decoded.
+    could not be decoded; left_out: how many were of aircraft beyond the most that are kept.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, most: int | None = None) -> None:
+        """most: of so many aircraft at most, by default of all."""
+        self._most, self.left_out = most, 0
+        self._new: dict[str, list[list[float]]] = {}
         self._tracks: dict[str, dict[int, list[float]]] = {}
         self.frame: Frame | None = None
         self.unread = 0
@@ -55,7 +58,7 @@ class Positions:
         names = names_of(entry.topic)
         if CONFIGURATION in names:
             body, _ = any_data(entry)
-            if isinstance(body, dict):
+            if isinstance(body, dict) and self._has_place(self._labels, str(body.get("ID", 0))):
                 self._labels[str(body.get("ID", 0))] = str(body.get("Label", ""))
         if STATE not in names:
             return
@@ -64,8 +67,12 @@ class Positions:
         place = place_of(body.get("Location")) if isinstance(body, dict) else None
         if place is None or not isinstance(body.get("ID"), int):
             return
+        number = str(body["ID"])
+        if not self._has_place(self._tracks, number):
+            self.left_out += 1
+            return
         # the first of each second stays
-        rows, second = self._tracks.get(str(body["ID"]), {}), time_ms // PERIOD_MS
+        rows, second = self._tracks.get(number, {}), time_ms // PERIOD_MS
         if second in rows:
             return
         frame = Frame(place[0], place[1])
@@ -76,7 +83,29 @@ class Positions:
         if self._projection is None:
             self.frame, self._projection = frame, projection
         rows[second] = [time_ms, *local, round(place[2], 1), NOBODY]
-        self._tracks[str(body["ID"])] = rows
+        self._tracks[number] = rows
+        self._new.setdefault(number, []).append(rows[second])
+
+    def _has_place(self, kept: dict[str, Any], number: str) -> bool:
+        return number in kept or self._most is None or len(kept) < self._most
+
+    def take_new(self) -> dict[str, list[list[float]]]:
+        """What came since the last time that this was asked."""
+        taken, self._new = self._new, {}
+        return taken
+
+    def forget(self, before_ms: int) -> None:
+        """Let go of what is older; an aircraft of which nothing is left is gone."""
+        first = before_ms // PERIOD_MS
+        for number, rows in list(self._tracks.items()):
+            self._tracks[number] = {k: row for k, row in rows.items() if k >= first}
+            if not self._tracks[number]:
+                del self._tracks[number]
+
+    @property
+    def size(self) -> int:
+        """How many rows are kept."""
+        return sum(map(len, self._tracks.values()))
 
     def tracks(self) -> dict[str, list[list[float]]]:
         """By number, rows of time [ms], north, east, altitude [m] and `NOBODY`, in the order of time."""

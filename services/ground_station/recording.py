@@ -101,10 +101,8 @@ def _told(source: Source, entries: Iterator[Entry]) -> dict[str, Any]:
             for before in waiting:
                 shapes.add(*before)
             waiting.clear()
-        short = entry.topic.rpartition(".")[2]
-        if short.endswith(TOLD) and entry.topic not in CLOCKS:
-            text = f"{short} from {entry.source}" if entry.source else short
-            events.append({"time_ms": time_ms, "vehicle": None, "text": text})
+        if is_told(entry):
+            events.append({"time_ms": time_ms, "vehicle": None, "text": told_text(entry)})
     frame = positions.frame or Frame(0.0, 0.0)
     return {
         "name": source.path.name,
@@ -128,6 +126,17 @@ def _told(source: Source, entries: Iterator[Entry]) -> dict[str, Any]:
         "events": events,
         "unread": positions.unread + bands.unread + (shapes.unread if shapes else 0),
     }
+
+
+def is_told(entry: Entry) -> bool:
+    """Whether a message of a log of others is listed as an event."""
+    return entry.topic.rpartition(".")[2].endswith(TOLD) and entry.topic not in CLOCKS
+
+
+def told_text(entry: Entry) -> str:
+    """How it is listed."""
+    short = entry.topic.rpartition(".")[2]
+    return f"{short} from {entry.source}" if entry.source else short
 
 
 def _timed(source: Source, entries: Iterator[Entry]) -> Iterator[tuple[Entry, int]]:

@@ -146,12 +146,29 @@ class LiveRecorded:
             return _json(HTTPStatus.UNPROCESSABLE_ENTITY, error.data())
 
 
+class Watched(Protocol):
+    """What is shown while it happens: a flight of ours, or a running system; token: what its orders need."""
+
+    token: str
+
+    def told(self, first: int) -> dict[str, Any]:
+        """The updates from a number on, and how it stands."""
+
+    def who(self, token: str, page: str) -> str:
+        """What a page may do that asks."""
+
+    def order(self, token: str, page: str, asked: Any) -> None:
+        """Obey a command of a page. Raises NotObeyed, with why."""
+
+
 class Commands(NamedTuple):
-    """What pages may ask for: orders by path, of so many bytes at most; polled: what they may look at."""
+    """What pages may ask for: orders by path, of so many bytes at most; polled: what they may look at; token:
+    what orders need, and the address that is printed has."""
 
     orders: Mapping[str, Order]
     longest: int = LONGEST
     polled: Mapping[str, Callable[[], dict[str, Any]]] = MappingProxyType({})
+    token: str = ""
 
 
 class GroundStation(ThreadingHTTPServer):
@@ -163,7 +180,7 @@ class GroundStation(ThreadingHTTPServer):
         self,
         recorded: Recording,
         port: int,
-        live: LiveSession | None = None,
+        live: Watched | None = None,
         first: str = PAGE,
         commands: Commands | None = None,
     ) -> None:
@@ -171,7 +188,10 @@ class GroundStation(ThreadingHTTPServer):
         shows it; commands: what pages may ask for, by default those of the flight. Raises BadInput if the port
         cannot be had."""
         self.recorded, self.live, self.pages = recorded, live, page_files(first)
-        self.commands = commands or (Commands({"/command": live.order}) if live else Commands({}))
+        if commands is None:
+            orders = {"/command": live.order} if live is not None and live.token else {}
+            commands = Commands(orders, token="" if live is None else live.token)
+        self.commands, self.token = commands, commands.token
         self._places = threading.Semaphore(MOST_AT_ONCE)
         try:
             super().__init__((HOST, port), _Handler)
@@ -263,7 +283,7 @@ class _Handler(BaseHTTPRequestHandler):
         """Token and number of the page, as it gives them."""
         return self.headers.get("X-Cratous-Token", ""), self.headers.get("X-Cratous-Page", "")[:64]
 
-    def _told(self, live: LiveSession, query: str) -> Answer:
+    def _told(self, live: Watched, query: str) -> Answer:
         """What is new of the flight, from the number of an update on."""
         first = parse_qs(query).get("from", ["0"])[0]
         if not (first.isascii() and first.isdigit() and len(first) < 10):

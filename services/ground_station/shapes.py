@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, Protocol
 
 from cratous.services.ground_station.positions import Local, local_place
 from cratous.services.logs.entry import Entry, any_data
@@ -22,22 +22,55 @@ from cratous.services.logs.views import (
 
 GATED = "cratous.GatedCommand"
 POINT, LINE, AREA = (f"afrl.cmasi.{kind}SearchTask" for kind in ("Point", "Line", "Area"))
-SHAPED = frozenset((COMMAND, RESPONSE, ZONE, GATED, POINT, LINE, AREA))
+REMOVED = {"afrl.cmasi.RemoveZones": "ZoneList", "afrl.cmasi.RemoveTasks": "TaskList"}
+"""Messages that take shapes away, and where their numbers stand."""
+SHAPED = frozenset((COMMAND, RESPONSE, ZONE, GATED, POINT, LINE, AREA, *REMOVED))
+
+
+class Kept(Protocol):
+    """Where rows are kept: a list, or what lets go of the oldest."""
+
+    def append(self, row: dict[str, Any], /) -> None:
+        """Keep one more."""
+
+    def __iter__(self) -> Iterator[dict[str, Any]]: ...
 
 
 class Shapes:
-    """Collects them in the order of the log. to_local: latitude, longitude [deg] to north, east [m].
+    """Collects them in the order of the log.
 
-    unread: of how many messages the body could not be decoded.
+    unread: of how many messages the body could not be decoded; changes: of zones and tasks.
     """
 
-    def __init__(self, to_local: Local) -> None:
+    def __init__(
+        self,
+        to_local: Local,
+        routes: Kept | None = None,
+        zones: Kept | None = None,
+        tasks: Kept | None = None,
+    ) -> None:
+        """to_local: latitude, longitude [deg] to north, east [m]; the others: where they are kept, lists by default."""
         self._to_local, self._views = to_local, Views()
-        self.routes: list[dict[str, Any]] = []
-        self.zones: list[dict[str, Any]] = []
-        self.tasks: list[dict[str, Any]] = []
-        self.unread = 0
+        self._routes: Kept = [] if routes is None else routes
+        self._zones: Kept = [] if zones is None else zones
+        self._tasks: Kept = [] if tasks is None else tasks
+        self.unread = self.changes = 0
         self._names: dict[str, tuple[str, ...]] = {}
+
+    @property
+    def routes(self) -> list[dict[str, Any]]:
+        """In the order of the log: time, vehicle, sender and places."""
+        return list(self._routes)
+
+    @property
+    def zones(self) -> list[dict[str, Any]]:
+        """Number, kind, label, corners, from when, and until when if they were taken away."""
+        return list(self._zones)
+
+    @property
+    def tasks(self) -> list[dict[str, Any]]:
+        """Number, label, kind and places; until when if they were taken away."""
+        return list(self._tasks)
 
     def add(self, entry: Entry, time_ms: int) -> None:
         """Take a message of a time of the page; one that tells no shape changes nothing."""
@@ -56,7 +89,10 @@ class Shapes:
             sender, body, names = str(body.get("Sender", "")), body.get("Command"), (COMMAND,)
             if not isinstance(body, dict) or body.get("$type") != "CMASI/MissionCommand":
                 return
-        if ZONE in names:
+        taken = next((name for name in REMOVED if name in names), None)
+        if taken is not None:
+            self._remove(taken, body, time_ms)
+        elif ZONE in names:
             self._zone(body, names, time_ms)
         elif COMMAND in names:
             self._route(body, sender, time_ms)
@@ -65,6 +101,16 @@ class Shapes:
                 self._route(command, sender, time_ms)
         else:
             self._task(body, names)
+
+    def _remove(self, name: str, body: Any, time_ms: int) -> None:
+        kept, numbers = (
+            self._zones if name.endswith("Zones") else self._tasks,
+            body.get(REMOVED[name]),
+        )
+        for one in kept:
+            if isinstance(numbers, list) and one["id"] in numbers and one.get("to_ms") is None:
+                one["to_ms"] = time_ms
+                self.changes += 1
 
     def _drawn(self, body: Any, names: tuple[str, ...]) -> Iterator[dict[str, Any]]:
         for view in self._views.of(body, names, 0):
@@ -78,7 +124,8 @@ class Shapes:
 
     def _zone(self, body: Any, names: tuple[str, ...], time_ms: int) -> None:
         for shape in self._drawn(body, names):
-            self.zones.append(
+            self.changes += 1
+            self._zones.append(
                 {
                     "id": body.get("ZoneID", 0),
                     "kind": "keep_out" if KEEP_OUT in names else "keep_in",
@@ -90,7 +137,7 @@ class Shapes:
 
     def _route(self, command: Any, sender: str, time_ms: int) -> None:
         # one without waypoints takes the place of the route before it, too
-        self.routes.append(
+        self._routes.append(
             {
                 "time_ms": time_ms,
                 "vehicle": command.get("VehicleID", 0),
@@ -110,7 +157,8 @@ class Shapes:
             return
         places = self._places(found)
         if places:
-            self.tasks.append(
+            self.changes += 1
+            self._tasks.append(
                 {
                     "id": body.get("TaskID", 0),
                     "label": str(body.get("Label", "")),

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cratous.services.certify.report_input import read_report
+from cratous.services.ground_station.proof_chains import proofs_of
 from cratous.services.logs.records import from_data, to_data
 from cratous.services.results.names import REPORT_NAME
 from cratous.spec.errors import BadInput
@@ -29,7 +30,7 @@ class VerdictRow(NamedTuple):
 
 
 def verdicts_of(folder: Path | None, digest: str | None) -> dict[str, Any]:
-    """Overall verdict, and rows for the requirements and their parts; or why there are none.
+    """Overall verdict, rows for the requirements and their parts, and their proofs; or why there are none.
 
     folder: of the run, None for a log alone; digest: what the log was closed with. Raises BadInput
     where report.json is damaged.
@@ -41,7 +42,7 @@ def verdicts_of(folder: Path | None, digest: str | None) -> dict[str, Any]:
     log = report.get("log")
     if not isinstance(log, dict) or digest is None or log.get("digest") != digest:
         return {"why_none": OTHER_LOG}
-    return shown(report, where)
+    return {**shown(report, where), "proofs": proofs_of(report, where)}
 
 
 def shown(report: dict[str, Any], where: str) -> dict[str, Any]:

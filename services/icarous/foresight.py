@@ -31,7 +31,8 @@ def scene_of(config: Config, state: State, sensed: Sensed) -> Scene:
     """What manoeuvres are judged against now."""
     daa = config.daa
     volume = buffered(daa.well_clear, daa.buffer)
-    return Scene(sensed.intruders, state.told.zones, volume, daa.lookahead_s, sensed.here)
+    zones = state.told.zones
+    return Scene(sensed.intruders, zones, volume, daa.lookahead_s, sensed.here, daa.looks_first)
 
 
 def predicted(config: Config, state: State, sensed: Sensed, scene: Scene) -> Ahead:

@@ -12,7 +12,7 @@ is decided by the kernels of `core.authority.cycle`.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from cratous.bridge.text_protocol import Heartbeat, SetMode, SetVelocity
 from cratous.core.authority.cycle import cycle_begun, cycle_flown, cycle_watched, gate_wished
@@ -33,6 +33,7 @@ from cratous.services.icarous.inbox import beaten, hear
 from cratous.services.icarous.messages import (
     Foresees,
     FromInstance,
+    Guides,
     Line,
     Offers,
     Sensed,
@@ -58,6 +59,9 @@ from cratous.services.icarous.traffic_monitor import (
 from cratous.spec.authority.cycle import MONITOR, NOTHING, OFFER, WITHDRAW
 from cratous.spec.mission.plan import Pose
 from cratous.spec.records import replace
+
+if TYPE_CHECKING:
+    from cratous.services.icarous.bands import Bands
 
 LINK_LOST_MS = 2000
 """The bridge counts as lost when nothing was heard for this long [ms]: four heartbeats."""
@@ -116,12 +120,15 @@ class Instance:
             fresh = state.asking.idle()
             state = replace(state, held=None, search=IDLE, threats=(), asking=fresh)
             state = permits.resumed(self.config, state, sensed, in_turn)
+        said = state.bands
         state = replace(state, cycle=cycle, courses=now, ways=ways, beats=state.beats + 1)
         if watches:
             state, out = self._watch(state, sensed, in_turn)
         else:
             state, out = self._fly(state, sensed, in_turn)
         beat = Heartbeat(sequence=state.beats, time_s=sensed.now_ms / 1000)
+        if self.config.records and state.bands is not None and state.bands is not said:
+            out = (self._guides(sensed, state.bands), *out)
         return state, (*out, Up(self.config.vehicle_id, beat))
 
     def _watch(self, state: State, sensed: Sensed, in_turn: frozenset[int]) -> Step:
@@ -151,6 +158,7 @@ class Instance:
         limits = nearest(sensed.ability, scene.volume, self.config.heartbeat_ms)
         own, seen = self.config.vehicle_id, sensed.intruders
         found = threats(own, ahead, seen, state.threats, sensed.now_ms, limits, in_turn)
+        state = self._guided(state, sensed) if found else replace(state, bands=None)
         state = permits.looked(self.config, replace(state, threats=found), sensed, ahead)
         urgent = most_urgent(permits.acting(state, found))
         if urgent is not None:
@@ -163,6 +171,7 @@ class Instance:
 
     def _fly(self, state: State, sensed: Sensed, in_turn: frozenset[int]) -> Step:
         """AVOID and HANDBACK: fly the manoeuvre, and see whether the way back is free."""
+        state = self._guided(state, sensed)
         lasting = state.search.waits(sensed.now_ms)
         free = way_back_is_free(self.config, state, sensed, in_turn, lasting)
         state, proposed, asked = self._proposed(state, sensed, in_turn, free)
@@ -211,6 +220,19 @@ class Instance:
         out += [Foresees(vid, now_ms, 0, -1.0, text) for text in found.said]
         out += [Up(vid, line)] if line is not None else []
         return replace(state, asking=found._replace(said=())), number, out
+
+    def _guided(self, state: State, sensed: Sensed) -> State:
+        """With what detect and avoid says, once a second."""
+        # not needed in a flight without conflicts
+        from cratous.services.icarous.bands import Whose, watched
+
+        config = self.config
+        whose = Whose(config.vehicle_id, config.daa, config.heartbeat_ms, config.records)
+        return replace(state, bands=watched(whose, state.bands, sensed))
+
+    def _guides(self, sensed: Sensed, bands: Bands) -> Guides:
+        """What it has said, for the record."""
+        return Guides(self.config.vehicle_id, sensed.now_ms, sensed.motion, bands.instant)
 
     def _offer(self, state: State, sensed: Sensed, choice: Choice) -> tuple[FromInstance, ...]:
         """The certificate of a manoeuvre, for the gate, or why there is none."""

@@ -1,13 +1,13 @@
 """What a vehicle and its ICAROUS instance say to each other: plain values, times in ms of virtual time.
 
 To the instance: lines that have come over the bridge, and at each heartbeat what the vehicle senses.
-From it, in this order: what it wants of the gate, what it foresees, a certificate for the manoeuvre or why there is
+From it, in this order: alerts and bands, what it wants of the gate, what it foresees, a certificate for the manoeuvre or why there is
 none, the velocity to fly, lines to UxAS.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from cratous.bridge.text_protocol import Message
 from cratous.core.authority.gate import Gate
@@ -17,6 +17,9 @@ from cratous.core.avoidance.prediction import Intruder
 from cratous.core.permit.hand import Hand
 from cratous.services.icarous.certificate import Certificate
 from cratous.spec.mission import Velocity
+
+if TYPE_CHECKING:
+    from cratous.core.daa.session import Instant
 
 EMPTY = Hand(0, 0, 0, 0)
 """Nothing is in hand, and nothing has become known."""
@@ -69,6 +72,15 @@ class Foresees(NamedTuple):
     resolution: str
 
 
+class Guides(NamedTuple):
+    """To the record: the alerts and bands of a vehicle that flies so at now_ms [ms]."""
+
+    vehicle_id: int
+    now_ms: int
+    motion: Motion
+    instant: Instant
+
+
 class Offers(NamedTuple):
     """To the gate: a certificate for what is commanded next."""
 
@@ -100,4 +112,4 @@ class Up(NamedTuple):
 
 
 ToInstance = Line | Sensed
-FromInstance = Wish | Foresees | Offers | Uncertified | Steer | Up
+FromInstance = Wish | Foresees | Guides | Offers | Uncertified | Steer | Up

@@ -3,7 +3,8 @@
 A turn that keeps clear over the whole look-ahead, off the course by up to 60 degrees, or by up to 90 where that is over
 much sooner, is flown on until the way back is free, at one of the instants that are looked at: for good (permitted to
 its end against everybody, no zone across it) if that can be had, else for the look-ahead. Where there is none, the
-manoeuvre that deviates least from the course is flown (`core.avoidance.resolution`). What is proposed here decides
+manoeuvre that deviates least from the course is flown (`core.avoidance.resolution`). Where the mission asks for changes of
+altitude or of speed first, these are looked at before turns. What is proposed here decides
 nothing: control goes back only on a way that is free when it is flown.
 """
 
@@ -17,7 +18,7 @@ from cratous.core.authority.cycle import patience
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import Motion, fly_to
 from cratous.core.avoidance.prediction import after, later
-from cratous.core.avoidance.resolution import Choice, keeps_clear, resolve
+from cratous.core.avoidance.resolution import Choice, keeps_clear, of_kind, resolve
 from cratous.services.icarous.foresight import scene_of, way_back_is_free
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.return_to_path import PERSIST_MS, bearing_rad, goal_index
@@ -86,9 +87,15 @@ def _soonest(
     scene = scene_of(config, state, sensed)
     level = Choice("heading", course, speed, 0.0, 0.0, True, None)
 
-    def first(turns: Sequence[float], until: int) -> Found | None:
-        choices = [level._replace(heading_rad=course + turn) for turn in turns]
-        clear = [one for one in choices if keeps_clear(sensed.motion, sensed.ability, scene, one)]
+    def after_turns(turns: Sequence[float], until: int) -> Found | None:
+        return first([level._replace(heading_rad=course + turn) for turn in turns], until)
+
+    def first(choices: Sequence[Choice], until: int) -> Found | None:
+        clear = [
+            one._replace(clear=True)
+            for one in choices
+            if keeps_clear(sensed.motion, sensed.ability, scene, one)
+        ]
         found = None
         for k in range(1, until + 1):
             for choice in clear:
@@ -100,15 +107,32 @@ def _soonest(
         return found
 
     last = 2 * STEPS // 3
-    found = first((0.0, *_either_side(TURNS_DEG)), last)
+    asked = of_kind(scene.first, sensed.motion, sensed.ability, scene, level)
+    found = first(asked, last) if asked else None
+    if found is not None:
+        return found
+    told = _told(state, course)
+    right_first = not told or told[0] >= 0
+    found = after_turns((0.0, *told, *_either_side(TURNS_DEG, right_first)), last)
     until = found.step - SOONER if found is not None and found.lasting else last
-    wide = first(_either_side(WIDE_DEG), until)
+    wide = after_turns(_either_side(WIDE_DEG, right_first), until)
     return wide if wide is not None and wide.lasting else found
 
 
-def _either_side(turns_deg: Sequence[int]) -> list[float]:
-    """Turns to the right and to the left [rad]."""
-    return [side * math.radians(k) for k in turns_deg for side in (1, -1)]
+def _told(state: State, course_rad: float) -> tuple[float, ...]:
+    """The turns off the course that the bands resolve with, the preferred one first, as far as small turns go [rad]."""
+    if state.bands is None:
+        return ()
+    from cratous.services.icarous.bands import resolutions
+
+    most = math.radians(TURNS_DEG[-1])
+    return tuple(turn for turn in resolutions(state.bands, course_rad) if abs(turn) <= most)
+
+
+def _either_side(turns_deg: Sequence[int], right_first: bool) -> list[float]:
+    """Turns to the right and to the left [rad], or to the left and to the right."""
+    sides = (1, -1) if right_first else (-1, 1)
+    return [side * math.radians(k) for k in turns_deg for side in sides]
 
 
 def _later(sensed: Sensed, choice: Choice, t_s: float) -> Sensed:

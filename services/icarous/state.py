@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from cratous.core.authority.cycle import Cycle
 from cratous.core.authority.timeliness import lasted
@@ -18,6 +18,9 @@ from cratous.services.mission.frames import Projection
 from cratous.spec.authority.cycle import MONITOR
 from cratous.spec.mission import Daa, Position
 
+if TYPE_CHECKING:
+    from cratous.services.icarous.bands import Bands
+
 START = Cycle(MONITOR, 0, False, 0, False, 0)
 """UxAS flies, and has always done so."""
 
@@ -26,7 +29,7 @@ class Config(NamedTuple):
     """What does not change: whose instance, what it keeps clear of, and the heartbeat [ms].
 
     original: UxAS's end is the original's, whose WAYPT lines carry a running count; certifies: what it commands is
-    offered to the gate with a certificate."""
+    offered to the gate with a certificate; records: alerts and bands go to a record."""
 
     vehicle_id: int
     daa: Daa
@@ -34,6 +37,7 @@ class Config(NamedTuple):
     heartbeat_ms: int
     original: bool = False
     certifies: bool = False
+    records: bool = False
 
 
 class Met(NamedTuple):
@@ -71,7 +75,8 @@ class State:
     """cycle: who flies, as the kernels have it; told: what has come over the bridge; threats and
     courses: of the last heartbeat; held: the manoeuvre being flown; goal: index of the waypoint that
     it makes for; beats: heartbeats so far; met: the intruders because of which it has taken over; search: of the
-    manoeuvre that is over soonest; ways: of the other vehicles of ours; asking: UxAS for a way back."""
+    manoeuvre that is over soonest; ways: of the other vehicles of ours; asking: UxAS for a way back; bands: what detect
+    and avoid said last, while a loss is foreseen or ICAROUS flies."""
 
     cycle: Cycle = START
     told: Told = field(default_factory=Told)
@@ -84,6 +89,7 @@ class State:
     search: Search = IDLE
     ways: Ways = ()
     asking: Asking = field(default_factory=Asking)
+    bands: Bands | None = None
 
     @property
     def avoided(self) -> frozenset[int]:

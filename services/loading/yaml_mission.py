@@ -39,6 +39,9 @@ from cratous.spec.mission import (
     Frame,
     LivePlanningMission,
     Mission,
+    OrderedDaa,
+    OrderedSensedDaa,
+    Resolution,
     SensedDaa,
     Simulation,
     Traffic,
@@ -264,12 +267,19 @@ def _traffic(data: dict[str, Any], places: Places) -> Traffic:
 
 def _daa(data: dict[str, Any], sensing: Sensing | None) -> Daa:
     volume = {name: float(value) for name, value in data.get("well_clear", {}).items()}
-    rest = {name: float(data[name]) for name in ("lookahead_s", "buffer") if name in data}
-    close = bool(data.get("close_starts", False))
+    kept: dict[str, Any] = {"close_starts": bool(data.get("close_starts", False))}
+    kept |= {name: float(data[name]) for name in ("lookahead_s", "buffer") if name in data}
     volume_kept = replace(DEFAULT_WELL_CLEAR, **volume)
+    first = Resolution(data.get("resolution", Resolution.HEADING))
+    if first is Resolution.HEADING:  # the usual: what is flown so is named as it always was
+        return (
+            Daa(volume_kept, **kept)
+            if sensing is None
+            else SensedDaa(volume_kept, **kept, sensing=sensing)
+        )
     if sensing is None:
-        return Daa(volume_kept, **rest, close_starts=close)
-    return SensedDaa(volume_kept, **rest, close_starts=close, sensing=sensing)
+        return OrderedDaa(volume_kept, **kept, resolution=first)
+    return OrderedSensedDaa(volume_kept, **kept, sensing=sensing, resolution=first)
 
 
 def _simulation(document: Document) -> Simulation:

@@ -10,6 +10,7 @@ import dataclasses
 import hashlib
 import json
 import types
+from collections.abc import Iterator
 from enum import Enum
 from functools import cache
 from typing import Any, TypeVar, Union, cast, get_args, get_origin, get_type_hints
@@ -110,7 +111,7 @@ def _read_record(cls: Any, data: Any, item: str) -> Any:
         raise _misfit(item, f"an object with {', '.join(_names(cls))}", data)
     # a record of a subclass is known by its fields; one that adds none to those there are is read as what it is of
     if not _names(cls) or set(data) != set(_names(cls)):
-        cls = next((c for c in cls.__subclasses__() if set(data) == set(_names(c))), cls)
+        cls = next((c for c in _below(cls) if set(data) == set(_names(c))), cls)
     hints, names = _hints(cls), _names(cls)
     for name in data:
         if name not in names:
@@ -125,6 +126,13 @@ def _read_record(cls: Any, data: Any, item: str) -> Any:
         raise BadInput(
             "does not fit", item=item, expected=", ".join(names), got=f"none for {missing}"
         ) from None
+
+
+def _below(cls: Any) -> Iterator[Any]:
+    """The subclasses of a record, and theirs."""
+    for one in cls.__subclasses__():
+        yield one
+        yield from _below(one)
 
 
 def _names(cls: Any) -> list[str]:

@@ -10,30 +10,52 @@ from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any, cast
+from math import lcm
+from typing import Any
 
 from cratous.core.geofence.mission_legs import leg_ok
 from cratous.core.geofence.planar import keep_in_leg_ok, keep_out_leg_ok
 from cratous.core.kernel import qualified
 from cratous.spec.mission import Position, Zone, ZoneKind
 
+PARTS = 1 << 60
+"""Of a metre, in which nearly all doubles are whole that are no less than 0.01."""
+
 
 @lru_cache(maxsize=512)
-def _rational(zone: Zone) -> Zone:
-    exact: Any = Fraction
+def _whole(zone: Zone, parts: int) -> Zone:
+    """A zone in whole parts of a metre."""
+    exact: Any = parts
     return replace(
         zone,
-        vertices=tuple((exact(n), exact(e)) for n, e in zone.vertices),
-        floor_m=exact(zone.floor_m),
-        ceiling_m=exact(zone.ceiling_m),
+        vertices=tuple((_in_parts(n, exact), _in_parts(e, exact)) for n, e in zone.vertices),
+        floor_m=_in_parts(zone.floor_m, exact),
+        ceiling_m=_in_parts(zone.ceiling_m, exact),
         padding_m=0,
     )
 
 
+@lru_cache(maxsize=512)
+def _parts_of(zone: Zone) -> int:
+    """Parts of a metre in which all numbers of a zone are whole."""
+    numbers = (zone.floor_m, zone.ceiling_m, *(x for vertex in zone.vertices for x in vertex))
+    return lcm(PARTS, *(Fraction(x).denominator for x in numbers))
+
+
+def _in_parts(value: float, parts: Any) -> Any:
+    above, below = value.as_integer_ratio()
+    return above * (parts // below)
+
+
 def exact_leg_ok(p: Position, q: Position, zone: Zone) -> bool:
-    """True iff the leg from p to q obeys the zone; exact. The zone's vertices are effective."""
-    one, other = (Position(*cast(Any, map(Fraction, point))) for point in (p, q))
-    return leg_ok(one, other, _rational(zone))
+    """True iff the leg from p to q obeys the zone; exact. The zone's vertices are effective.
+
+    It is asked in a unit of length in which all numbers are whole: `leg_ok` adds, multiplies and compares, so the
+    answer is that in metres, and comes in a fraction of the time that rationals take.
+    """
+    parts = lcm(_parts_of(zone), *(x.as_integer_ratio()[1] for point in (p, q) for x in point))
+    one, other = (Position(*(_in_parts(x, parts) for x in point)) for point in (p, q))
+    return leg_ok(one, other, _whole(zone, parts))
 
 
 def deciding(zone: Zone) -> tuple[str, str]:

@@ -11,10 +11,12 @@ from pathlib import Path
 from typing import Any
 
 from cratous.core.files.whole_file import write_atomically
-from cratous.services.exporting.exported import FORMATS, beside_document, exported
+from cratous.services.exporting.exported import ALL, ROUTED, beside_document, exported
+from cratous.services.exporting.icarous import QGC
 from cratous.services.ground_station.live_session import NotObeyed
 from cratous.services.loading.document import parse_document
 from cratous.services.loading.yaml_mission import loaded
+from cratous.services.logs.records import from_data
 from cratous.services.mission_editor.plan_process import PlanProcess
 from cratous.services.mission_editor.relations import relations
 from cratous.services.mission_editor.sketch import sketch
@@ -22,6 +24,7 @@ from cratous.services.mission_editor.text_edits import MissionText
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import MISSION_BYTES
 from cratous.spec.files.text_file import text_of
+from cratous.spec.mission.plan import Plan
 
 LONGEST = 2 * MISSION_BYTES
 """Of what a page sends [bytes]: the text, as JSON."""
@@ -158,13 +161,28 @@ class Editor:
         return {"digest": _digest(text)}
 
     def _export(self, asked: dict[str, Any]) -> dict[str, Any]:
-        """A text in another format: files by name, and what they do not say of it."""
-        form = asked.get("format")
-        if form not in FORMATS:
-            raise NotObeyed(400, f"expected format: one of {', '.join(FORMATS)}")
-        document = parse_document(_text(asked), str(self._path))
-        made = exported(loaded(document), form)
+        """A text in another format: files by name, and what they do not say of it; plan_number: whose routes
+        it gets, if any; vehicle: of a flight plan."""
+        form, vehicle, text = asked.get("format"), asked.get("vehicle"), _text(asked)
+        if form not in ALL:
+            raise NotObeyed(400, f"expected format: one of {', '.join(ALL)}")
+        if vehicle is not None and (form != QGC or type(vehicle) is not int):
+            raise NotObeyed(400, f"expected vehicle: its id, with format {QGC} alone")
+        document = parse_document(text, str(self._path))
+        made = exported(loaded(document), form, self._routes(asked, form, text), vehicle=vehicle)
         return {"files": made.files, "unsaid": [*made.unsaid, *beside_document(document)]}
+
+    def _routes(self, asked: dict[str, Any], form: str, text: str) -> Plan | None:
+        """The plan that is asked for, which is of this text."""
+        if "plan_number" not in asked:
+            return None
+        if form not in ROUTED:
+            raise NotObeyed(400, f"a plan goes with format {' or '.join(ROUTED)}")
+        process = self._of(asked)
+        told = process.told()
+        if told["state"] != "planned" or process.text != text:
+            raise NotObeyed(409, "there is no such plan of this text: plan again")
+        return from_data(Plan, told["plan"], "plan")
 
     def close(self) -> None:
         """End what plans."""

@@ -14,7 +14,9 @@ class PlanProcess:
     """Starts at once; `told` says what has come of it."""
 
     def __init__(self, module: str, number: int, asked: dict[str, Any]) -> None:
-        """module: what plans, as `python -m` takes it; number: of the plan; asked: what it is told first."""
+        """module: what plans, as `python -m` takes it; number: of the plan; asked: what it is told first, the
+        text that it plans among it."""
+        self.text: str = asked["text"]
         self._told: dict[str, Any] = {
             "plan_number": number, "state": "planning", "text": "starting", "why": {},
         }  # fmt: skip

@@ -68,21 +68,57 @@ class WholeUnits:
         self._parts_of_ms = math.lcm(*(x.denominator for x in times))
         self._times = [int(x * self._parts_of_ms) for x in times]
 
-    def lost(self, ends: tuple[Sample, Sample, Sample, Sample]) -> bool:
-        """Whether well clear is lost: own and other at the beginning of a span, and at its end."""
-        own, _other, own_after, _other_after = ends
-        span = (own_after.time_ms - own.time_ms) * self._parts_of_ms
-        if span <= 0:
-            raise ValueError(f"a span of {own_after.time_ms - own.time_ms} ms")
-        ratios = [x.as_integer_ratio() for one in ends for x in one.position[:3]]
-        unit = math.lcm(self._part, *(below for _, below in ratios))
-        at = [above * (unit // below) for above, below in ratios]
-        s0, s1 = ([a - b for a, b in zip(p[:3], p[3:], strict=True)] for p in (at[:6], at[6:]))
-        v: Any = [b - a for a, b in zip(s0, s1, strict=True)]
-        s: Any = [x * span for x in s0]
+    def step(self, before: dict[int, Sample], after: dict[int, Sample]) -> WholeStep:
+        """A step of all that were seen at both ends of it."""
+        return WholeStep(self, before, after)
+
+    def thresholds(self, unit: int, span: int) -> StandardThresholds:
+        """In whole numbers; unit: parts of a metre; span: of time."""
         dthr, zthr = (int(x * unit) * span for x in self._lengths)
-        thresholds = StandardThresholds(dthr, zthr, *self._times)
-        return bool(violation_within(Vec2(*s[:2]), Vec2(*v[:2]), s[2], v[2], thresholds, span))
+        return StandardThresholds(dthr, zthr, *self._times)
+
+    @property
+    def part(self) -> int:
+        """Parts of a metre in which the thresholds are whole."""
+        return self._part
+
+    @property
+    def parts_of_ms(self) -> int:
+        """Parts of a millisecond in which they are."""
+        return self._parts_of_ms
+
+
+class WholeStep:
+    """One step of many aircraft, in whole numbers; each position is turned into them once."""
+
+    def __init__(
+        self, units: WholeUnits, before: dict[int, Sample], after: dict[int, Sample]
+    ) -> None:
+        self._before, self._after = before, after
+        seen = before.keys() & after.keys()
+        ratios = {
+            i: [x.as_integer_ratio() for one in (before[i], after[i]) for x in one.position[:3]]
+            for i in seen
+        }
+        parts = {below for found in ratios.values() for _, below in found}
+        unit = math.lcm(units.part, *parts)
+        self._at = {i: [n * (unit // below) for n, below in r] for i, r in ratios.items()}
+        self._units, self._unit = units, unit
+        self._by_span: dict[int, StandardThresholds] = {}
+
+    def lost(self, own: int, other: int) -> bool:
+        """Whether well clear of two aircraft is lost during the step."""
+        took_ms = self._after[own].time_ms - self._before[own].time_ms
+        span = took_ms * self._units.parts_of_ms
+        if span <= 0:
+            raise ValueError(f"a span of {took_ms} ms")
+        if span not in self._by_span:
+            self._by_span[span] = self._units.thresholds(self._unit, span)
+        a, b = self._at[own], self._at[other]
+        x, y, z = a[0] - b[0], a[1] - b[1], a[2] - b[2]
+        u, v, w = a[3] - b[3] - x, a[4] - b[4] - y, a[5] - b[5] - z
+        s: Any = Vec2(x * span, y * span)
+        return bool(violation_within(s, Vec2(u, v), z * span, w, self._by_span[span], span))
 
 
 class SeparationWatch:
@@ -106,6 +142,7 @@ class SeparationWatch:
     def step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
         """Check every pair that was in the air at both ends of the step."""
         lost = set()
+        whole: WholeStep | None = None
         for own in self._protected:
             for other in sorted(after):
                 mutual = other in self._protected and other < own
@@ -115,15 +152,16 @@ class SeparationWatch:
                     or not all(i in before and i in after for i in (own, other))
                 ):
                     continue
-                if self._check(own, other, before, after):
+                whole = whole or self._units.step(before, after)
+                if self._check((own, other), before, after, whole.lost(own, other)):
                     lost.add((own, other))
         self._losses.step(_scene(before), _scene(after), frozenset(lost))
 
     def _check(
-        self, own: int, other: int, before: dict[int, Sample], after: dict[int, Sample]
+        self, key: tuple[int, int], before: dict[int, Sample], after: dict[int, Sample], lost: bool
     ) -> bool:
-        pair = self.pairs.setdefault((own, other), Pair())
-        lost = self._units.lost((before[own], before[other], after[own], after[other]))
+        own, other = key
+        pair = self.pairs.setdefault(key, Pair())
         pair.checks += 1
         self._measure(pair, before[own], before[other])
         self._measure(pair, after[own], after[other])

@@ -113,7 +113,7 @@ GROUPS = (
     Group("bridge.instances", "true: 0, ICAROUS watches no vehicle; false: all", (
         ("passive_mode", "false", ""),
     )),
-    Group("", "manoeuvres of all kinds are searched, turns first", (
+    Group("", "daa.resolution of a mission says which kind of manoeuvre is looked for first", (
         ("daa_resolution_type", "2", ""),
     )),
     Group("", "a vehicle off its path is on its way back, or steered by ICAROUS", (

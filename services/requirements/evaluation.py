@@ -74,12 +74,17 @@ class _Leaf:
 
 
 class _Not:
+    is_late = False
+    size = 0
+
     def take(self, side: int, got: Decided) -> Decided:
         return [(time, negated(phi)) for time, phi in got]
 
 
 class _Join:
     """And, or: decided by one side alone where that suffices."""
+
+    is_late = False
 
     def __init__(self, formula: Join) -> None:
         self.join, self.alone = (both, FALSE) if formula.is_and else (either, TRUE)
@@ -117,6 +122,8 @@ class _Paired:
 
     def __init__(self, formula: Bounded) -> None:
         self.low, self.high = formula.low, formula.high
+        self.is_late = formula.past and formula.low > 0
+        """Samples grow old in it, while it gives as many verdicts as it takes."""
         self.phi = formula.phi.verdict if isinstance(formula.phi, Always) else None
         """Of a constant, which waits for nothing: then only verdicts of psi come."""
         self.waiting: tuple[deque[tuple[int, int]], ...] = (deque(), deque())
@@ -127,8 +134,8 @@ class _Paired:
             for time, psi in got:
                 self.step(time, self.phi, psi, out)
             return out
-        self.waiting[side].extend(got)
         left, right = self.waiting
+        self.waiting[side].extend(got)
         while left and right:
             (time, phi), (_, psi) = left.popleft(), right.popleft()
             self.step(time, phi, psi, out)
@@ -146,12 +153,31 @@ class _Until(_Paired):
         self.joined = NEVER
 
     def take(self, side: int, got: Decided) -> Decided:
+        if self.phi is not None:
+            return self._take_all(self.phi, got)
         out = super().take(side, got)
         if not self.waiting[0] and self.waiting[1]:
             # psi may decide before phi is known (`requirements_until_is_decided_ahead_of_phi`)
             time, psi = self.waiting[1][0]
             self._join(time)
             self._decide(time, TRUE, psi, out)
+        return out
+
+    def _take_all(self, phi: int, got: Decided) -> Decided:
+        """As `step` of each, where phi is always the same: there is no queue but that of the undecided."""
+        out: Decided = []
+        undecided, times, low, high = self.undecided, self.times, self.low, self.high
+        for time, psi in got:
+            undecided.append(time)
+            while undecided:
+                at = undecided[0]
+                verdict = until_decided(times, time, phi, psi, at, low, high)
+                if verdict == WAITS:
+                    break
+                undecided.popleft()
+                out.append((at, verdict))
+            times = until_times(times, time, phi, psi)
+        self.times = times
         return out
 
     def step(self, time: int, phi: int, psi: int, out: Decided) -> None:
@@ -186,7 +212,10 @@ class _Since(_Paired):
         """Samples that are not old enough yet, with their psi."""
 
     def step(self, time: int, phi: int, psi: int, out: Decided) -> None:
-        self.young.append((time, psi))
+        if self.low:
+            self.young.append((time, psi))
+        else:
+            self.found = since.since_found(self.found, time, psi)
         while self.young and since.is_due(self.young[0][0], time, self.low):
             self.found = since.since_found(self.found, *self.young.popleft())
         self.broken = since.since_broken(self.broken, time, phi)
@@ -241,51 +270,92 @@ class Evaluation:
             # a constant that nobody waits for has nothing to say
             if self.parents[place] or place == last
         ]
+        self.timeless = self._timeless()
+        within = {
+            place for place in self.timeless if place != last
+            and all(parent in self.timeless for parent, _ in self.parents[place])
+        }  # fmt: skip
+        self.is_timeless = last in self.timeless
+        self.within = sorted(within)
+        """What has no time and is read by that alone."""
+        self.order_of_same = [one for one in self.order if one[0] not in within]
+        self.verdicts = [WAITS for _ in self.nodes]
+        """Of what has no time, the verdict at the last sample."""
 
-    def sample(self, time: int, values: Mapping[str, float | None]) -> Decided:
+    def _timeless(self) -> set[int]:
+        """The places of what is decided at each sample from that sample alone."""
+        timed = {place for place, node in enumerate(self.nodes) if isinstance(node, _Paired)}
+        for place in range(len(self.nodes)):  # parts stand before the whole
+            if place in timed:
+                timed.update(parent for parent, _ in self.parents[place])
+        return {place for place, _, _, _ in self.order if place not in timed}
+
+    def sample(self, time: int, values: Mapping[str, float | None], same: bool = False) -> Decided:
         """The verdicts that this sample decides: (time of the sample that each is of, 0, 1 or 2).
 
         time: later than that of the sample before, in time units; values: of the signals; None, what is not
-        finite and a signal that is not there are unknown. Raises BadInput for a time that is not later.
+        finite and a signal that is not there are unknown; same: what the formula reads of them is as it was at
+        the sample before. Raises BadInput for a time that is not later.
         """
         self.last = in_order(time, self.last)
+        if same and self.is_timeless:
+            return [(time, self.verdicts[-1])]
         # parts stand before the whole, so that one pass brings every verdict to the top
         got: Decided = []
-        blaming, pending = self._blaming, self.pending
+        pending, verdicts, timeless = self.pending, self.verdicts, self.timeless
+        taken: list[tuple[int, Decided]] = []
         node: Any
-        for place, node, is_leaf, parents in self.order:
-            if is_leaf:
-                got = [(time, node.verdict(values))]
+        for place, node, is_leaf, parents in self.order_of_same if same else self.order:
+            if place in timeless:
+                if not same:
+                    if is_leaf:
+                        verdicts[place] = node.verdict(values)
+                    else:
+                        verdicts[place] = self._taken(node, pending[place], time)[0][1]
+                        pending[place].clear()
+                got = [(time, verdicts[place])]
             elif rows := pending[place]:
-                got = self._taken(node, rows, time)
+                if len(rows) > 1:
+                    got = self._taken(node, rows, time)
+                else:
+                    side, got = rows[0]
+                    most = len(got)
+                    got = node.take(side, got)
+                    if len(got) < most or node.is_late:
+                        self._bounded(node, time)
                 rows.clear()
+                if not got:
+                    continue
             else:
                 got = []
                 continue
-            if not got:
-                continue
-            if blaming is not None:
-                blaming.take(place, got)
+            taken.append((place, got))
             for parent, side in parents:
                 pending[parent].append((side, got))
-        if blaming is not None and not blaming.decided(got):
-            self._blaming = None
+        if self._blaming is not None and not self._blaming.all_decided(time, got):
+            if same:
+                taken += [(place, [(time, verdicts[place])]) for place in self.within]
+            if not self._blaming.taken(taken, got):
+                self._blaming = None
         return got
 
     def _taken(self, node: Any, rows: list[tuple[int, Decided]], time: int) -> Decided:
         """What a node makes of what its parts have decided."""
-        (side, got), *more = rows
-        found: Decided = node.take(side, got)
-        for side, got in more:
+        found: Decided = []
+        for side, got in rows:
             found += node.take(side, got)
-        if type(node) is not _Not and node.size > self.most:
+        self._bounded(node, time)
+        return found
+
+    def _bounded(self, node: Any, time: int) -> None:
+        """Asked where a node has given less than it took, so that more may wait, or may let samples grow old."""
+        if node.size > self.most:
             raise TooManyWait(
                 "more samples wait for a verdict than were allowed for",
                 item=f"time {time}",
                 expected=f"at most {self.most}",
                 got=str(node.size),
             )
-        return found
 
     @property
     def blamed(self) -> tuple[Part, ...]:

@@ -50,7 +50,7 @@ class Export:
 
     where: str
     requirements: tuple[Mapping[str, Any], ...]
-    variables: Mapping[str, Signal]
+    variables: dict[str, Signal]
     defined: Mapping[str, Meaning]
 
 
@@ -60,7 +60,7 @@ def read(text: str, where: str = "FRET") -> Specification:
     Raises BadInput for a text that is no export, and for one of whose requirements none is told.
     """
     export = read_export(text, where)
-    names = Names(export.variables, export.defined)
+    names = Names(export.variables, export.defined, counted=True)
     made = tuple(requirement(one, names, export.where, timed=False) for one in export.requirements)
     if not made:
         raise BadInput("there is no requirement", where=where, expected="requirements")

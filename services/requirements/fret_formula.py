@@ -11,7 +11,8 @@ from functools import cache, reduce
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cratous.services.requirements import formula as formulas
-from cratous.services.requirements.fret_terms import EVER, Names, Wrong, grammar, parsed, term
+from cratous.services.requirements.fret_nodes import term, tree_of
+from cratous.services.requirements.fret_terms import EVER, Names, Wrong, grammar
 from cratous.spec.files.limits import integer_of
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ class Kind(NamedTuple):
 
 def asked(text: str, names: Names, kind: Kind) -> formulas.Formula:
     """The requirement that a formula is; Wrong, with the place, for what cannot be said."""
-    tree = parsed(_parser(), text, "FRET's formulas")
+    tree = tree_of(_parser(), text, "FRET's formulas")
     for node in tree.iter_subtrees():  # parts before the whole
         node.made = _made(node, names, kind)
     if tree.children[0].data == "constant":  # what FRET gives where it has no formula
@@ -112,7 +113,7 @@ def _made(node: Any, names: Names, kind: Kind) -> Any:
     if wrong is not None:
         return wrong
     try:
-        return _node(str(node.data), got, names, kind)
+        return _node(node, got, names, kind)
     except Wrong as no:
         return no
 
@@ -126,7 +127,8 @@ def _is_more(kind: Kind, some: Any, whole: Any) -> bool:
     return is_some and formulas.same(some.children[2].made, inner.made)
 
 
-def _node(data: str, got: list[Any], names: Names, kind: Kind) -> Any:
+def _node(node: Any, got: list[Any], names: Names, kind: Kind) -> Any:
+    data = str(node.data)
     if data == "start":
         return None
     if data in ("between", "up_to"):
@@ -139,7 +141,7 @@ def _node(data: str, got: list[Any], names: Names, kind: Kind) -> Any:
         return FIRST
     if data == "truth" and got[0] == "LAST":
         raise Wrong("no sample is known to be the last", got[0].start_pos, got="LAST")
-    return term(data, got, names)
+    return term(data, got, names, int(node.meta.start_pos))
 
 
 def _bounds(data: str, tokens: list[Any]) -> tuple[int, int]:

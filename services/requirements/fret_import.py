@@ -24,7 +24,7 @@ from cratous.spec.files.limits import DIGITS, DOCUMENT_BYTES
 from cratous.spec.files.text_file import text_of
 
 
-def of_sentence(token: Any, signals: Mapping[str, Signal]) -> Formula:
+def of_sentence(token: Any, signals: dict[str, Signal]) -> Formula:
     """The requirement of a sentence in quotes; Wrong, with the place in the file, for what is not read."""
     try:
         return fretish_read.asked(_text(token), Names(signals, {}), timed=True)
@@ -36,9 +36,7 @@ Files = Path | Mapping[str, str]
 """Where the files lie that a file of requirements imports: a folder, or their texts by name."""
 
 
-def imported(
-    item: Any, signals: Mapping[str, Signal], files: Files | None
-) -> Iterator[Requirement]:
+def imported(item: Any, signals: dict[str, Signal], files: Files | None) -> Iterator[Requirement]:
     """The requirements that an import names, or all of the export; one that is not read says why.
 
     Raises Wrong for what is not in the export, BadInput for a file that is none.

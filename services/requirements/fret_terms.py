@@ -1,4 +1,4 @@
-"""What FRET's formulas and its structured English share: variables, comparisons, and what joins them.
+"""What FRET's formulas and its structured English share: variables, numbers, comparisons, and how a text is parsed.
 
 FRET has no units: a number is in the unit of the signal that it is compared with. What a variable of FRET's is
 here, `Names` says; one that it does not have is refused.
@@ -7,13 +7,14 @@ here, `Names` says; one that it does not have is refused.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cratous.services.requirements import formula as formulas
+from cratous.services.requirements.arithmetic import Term
 from cratous.services.requirements.specification import Signal
 from cratous.services.requirements.units import Quantity, dimension, in_unit
 from cratous.spec.files.limits import DIGITS
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from lark import Lark
 
 NESTED = 200
-ARITHMETIC = ("+", "-", "*", "/", "^", "(", "mod")
+CALLS = ("^", "(", "mod")
 EVER = formulas.MAX_TIME
 """The bound of what has none: no two samples are so far apart."""
 
@@ -48,10 +49,14 @@ Meaning = str | Quantity | bool | Unread
 
 @dataclass(frozen=True)
 class Names:
-    """Signals by name, and what else a variable is; a variable that is called as a signal is this signal."""
+    """Signals by name, and what else a variable is; a variable that is called as a signal is this signal.
 
-    signals: Mapping[str, Signal]
+    What is calculated becomes a signal more. counted: samples are counted, so one is the one before.
+    """
+
+    signals: dict[str, Signal]
     bound: Mapping[str, Meaning]
+    counted: bool = False
 
     def of(self, token: Any) -> Meaning:
         """What a variable is; Wrong for one that nobody has declared."""
@@ -60,7 +65,8 @@ class Names:
         if isinstance(found, Unread):
             raise Wrong(found.why, token.start_pos, got=name)
         if isinstance(found, str) and found not in self.signals:
-            known = ", ".join(sorted({*self.signals, *self.bound})[:8]) or "there is none"
+            declared = {n for n, s in self.signals.items() if s.made is None}
+            known = ", ".join(sorted({*declared, *self.bound})[:8]) or "there is none"
             raise Wrong("nothing says which signal this variable is", token.start_pos, known, name)
         return found
 
@@ -83,6 +89,7 @@ class Names:
             one, other = (_truth(side) for side in (left, right))
             same = formulas.iff(one, other)
             return same if relation == "=" else formulas.Not(same)
+        left, right = (self._named(side) for side in (left, right))
         units = [self.signals[side].unit for side in (left, right) if isinstance(side, str)]
         if not units:
             raise Wrong("no signal is compared", at, "a signal on one side")
@@ -94,6 +101,13 @@ class Names:
         ]
         relation = {"=": "=="}.get(str(relation), str(relation))
         return formulas.compared(values[0], relation, values[1])
+
+    def _named(self, side: Any) -> Any:
+        """Of what is calculated the name of its signal; anything else as it is."""
+        if not isinstance(side, Term):
+            return side
+        self.signals.setdefault(side.text, Signal("float", side.unit, made=side))
+        return side.text
 
     def _kind(self, side: Any) -> str:
         return self.signals[side].kind if isinstance(side, str) else ""
@@ -123,36 +137,6 @@ def number(text: str, at: int = 0) -> Quantity:
     return Quantity(Fraction(text), "", text)
 
 
-def term(kind: str, got: list[Any], names: Names) -> Any:
-    """What a node without time is made of its children; None for a kind that has time."""
-    if kind in JOINED:
-        return JOINED[kind](*got)
-    if kind == "truth":
-        return names.truth(got[0])
-    if kind == "constant":
-        return formulas.TRUE if got[0].lower() == "true" else formulas.FALSE
-    if kind == "name":
-        return names.of(got[0])
-    if kind == "word":
-        return bool(got[0].lower() == "true")
-    if kind in ("number", "negative"):
-        sign = "-" if kind == "negative" and not got[0].startswith("-") else ""
-        text = got[0][1:] if kind == "negative" and not sign else sign + got[0]
-        return number(text, got[0].start_pos)
-    return names.compared(*got) if kind == "compare" else None
-
-
-JOINED: dict[str, Callable[..., formulas.Formula]] = {
-    "negation": formulas.Not,
-    "both": lambda a, b: formulas.Join(a, b, True),
-    "either": lambda a, b: formulas.Join(a, b, False),
-    "differ": lambda a, b: formulas.Not(formulas.iff(a, b)),
-    "implies": formulas.implies,
-    "iff": formulas.iff,
-    "if_then": lambda _, a, b: formulas.implies(a, b),
-}
-
-
 def parsed(parser: Lark, text: str, language: str) -> Any:
     """The tree of a text; Wrong, with the place, for what is outside of its grammar."""
     from lark.exceptions import UnexpectedCharacters, UnexpectedInput
@@ -171,8 +155,8 @@ def parsed(parser: Lark, text: str, language: str) -> Any:
             offset, token = len(text.rstrip()), None
         got = str(token or text[offset : offset + 1]) or "the end of it"
         what = f"this is outside of the part of {language} that is read"
-        if got in ARITHMETIC:
-            what = "arithmetic, functions and numbers in parentheses are not read"
+        if got in CALLS:
+            what = "this function, or operator of numbers, is not read"
         raise Wrong(what, offset, got=got) from None
 
 

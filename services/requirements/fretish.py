@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import re
 
+from cratous.services.requirements.arithmetic import sources
 from cratous.services.requirements.formula import TRUE, Always, Bounded, Formula, Join, Not, Reaches
 from cratous.services.requirements.specification import Specification
 
@@ -95,19 +96,20 @@ def _said(formula: Formula, spec: Specification, level: int = 0) -> str:
 
 def _compared(left: str | float, relation: str, right: str | float, spec: Specification) -> str:
     if _is_truth(left, spec):
-        return _side(left)
+        return _side(left, spec)
     if isinstance(left, float):  # FRETish has the signal first, as people do
         turned = {">=": "<=", "<": ">"}[relation]
-        return f"{_side(right)} {turned} {_side(left)}"
-    return f"{_side(left)} {relation} {_side(right)}"
+        return f"{_side(right, spec)} {turned} {_side(left, spec)}"
+    return f"{_side(left, spec)} {relation} {_side(right, spec)}"
 
 
-def _side(side: str | float) -> str:
+def _side(side: str | float, spec: Specification) -> str:
     """A signal, or a number, whose exponent has no leading zeros."""
     if not isinstance(side, str):
         return re.sub(r"e([-+])0+", r"e\1", repr(side))
-    if WORDS.fullmatch(side) or side.startswith("_"):
-        raise NoForm(f"FRETish has no signal of the name {side}")
+    for name in sources([side], spec.signals):
+        if WORDS.fullmatch(name) or name.startswith("_"):
+            raise NoForm(f"FRETish has no signal of the name {name}")
     return side
 
 

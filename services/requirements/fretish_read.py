@@ -14,14 +14,13 @@ from typing import TYPE_CHECKING, Any
 from cratous.services.requirements import formula as formulas
 from cratous.services.requirements.formula import Bounded, Formula, Join, Not, implies
 from cratous.services.requirements.fret_formula import FIRST, became
+from cratous.services.requirements.fret_nodes import term, tree_of
 from cratous.services.requirements.fret_terms import (
     EVER,
     Names,
     Wrong,
     grammar,
     number,
-    parsed,
-    term,
 )
 
 if TYPE_CHECKING:
@@ -36,13 +35,18 @@ def asked(text: str, names: Names, timed: bool) -> Formula:
 
     timed: samples bear times [ns]; else they are counted.
     """
-    tree = parsed(_parser(), text, "FRETish")
+    tree = tree_of(_parser(), text, "FRETish")
     for node in tree.iter_subtrees():  # parts before the whole
         kind = str(node.data)
         if kind == "duration":
             node.made = _duration(timed, *node.children)
         elif kind not in PARTS:
-            node.made = term(kind, [getattr(c, "made", c) for c in node.children], names)
+            node.made = term(
+                kind,
+                [getattr(c, "made", c) for c in node.children],
+                names,
+                int(node.meta.start_pos),
+            )
     return _Sentence(tree, names, timed).asked(tree.children[-1].made)
 
 

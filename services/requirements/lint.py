@@ -12,6 +12,7 @@ from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 from cratous.services.requirements import formula as formulas
+from cratous.services.requirements.arithmetic import sources
 from cratous.services.requirements.specification import NotRead, Requirement, Specification
 
 if TYPE_CHECKING:
@@ -38,11 +39,12 @@ class _TooLong(Exception):
 def lint(spec: Specification) -> list[Remark]:
     """Everything odd about a file of requirements, in its order."""
     read = [(one, one.formula) for one in spec.requirements if not isinstance(one.formula, NotRead)]
-    used = {name for _, formula in read for name in formulas.signals(formula)}
+    read_in = {name for _, formula in read for name in formulas.signals(formula)}
+    used = sources(read_in, spec.signals)
     found = [
         Remark("unused", name, f"signal {name} is in no requirement")
-        for name in spec.signals
-        if name not in used
+        for name, signal in spec.signals.items()
+        if name not in used and signal.made is None
     ]
     period = spec.period_ns if spec.timed else 1
     written: list[tuple[Requirement, z3.BoolRef, tuple[str, ...]]] = []

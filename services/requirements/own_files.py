@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cratous.services.requirements import language
+from cratous.services.requirements.arithmetic import sources
 from cratous.services.requirements.formula import signals
 from cratous.services.requirements.specification import NotRead, Specification
 from cratous.services.requirements.traces import wanted_of
@@ -52,7 +53,7 @@ class OwnFile(NamedTuple):
         for one in found.requirements:
             if isinstance(one.formula, NotRead):
                 raise one.formula
-            needed |= set(signals(one.formula))
+            needed |= sources(signals(one.formula), found.signals)
         wanted_of(found, needed)
         return found
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from cratous.services.requirements.arithmetic import Term
 from cratous.services.requirements.formula import Formula
 from cratous.spec.errors import BadInput
 
@@ -46,7 +47,8 @@ class Signal:
     """A signal. kind: bool, int or float; unit: "" where the language has none.
 
     message, field: the message type and the field that give it in a log, with what the message's other
-    fields must be; hold_ns: how long a value counts after its sample (0: at its sample alone).
+    fields must be; hold_ns: how long a value counts after its sample (0: at its sample alone); made: of what it is
+    calculated, None: it stands in the trace.
     """
 
     kind: str
@@ -55,6 +57,7 @@ class Signal:
     chosen: tuple[tuple[str, str], ...] = ()
     field: str = ""
     hold_ns: int = 0
+    made: Term | None = None
 
 
 @dataclass(frozen=True)

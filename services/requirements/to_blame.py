@@ -34,6 +34,24 @@ class Parts:
                 self.kept[places[id(one)]] = {}
                 todo += children(one) if isinstance(one, Not | Join) else ()
 
+    def all_decided(self, now: int, out: Sequence[tuple[int, int]]) -> bool:
+        """Whether with the verdicts of the whole that came now nothing waits, and none is a violation."""
+        if not out or out[-1][0] != now or FALSE in [verdict for _, verdict in out]:
+            return False
+        self.through = now
+        for known in self.kept:
+            if known:
+                known.clear()
+        return True
+
+    def taken(
+        self, parts: Sequence[tuple[int, Sequence[tuple[int, int]]]], out: Sequence[tuple[int, int]]
+    ) -> bool:
+        """What a sample has decided: of the parts by place, and of the whole. True as long as no violation was."""
+        for place, got in parts:
+            self.take(place, got)
+        return self.decided(out)
+
     def take(self, place: int, got: Sequence[tuple[int, int]]) -> None:
         """Verdicts of the part at a place; where the whole is decided already they are not kept."""
         if (known := self.kept[place]) is not None:

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from itertools import chain, islice
 from pathlib import Path
 
+from cratous.services.requirements.arithmetic import Calculated, sources
 from cratous.services.requirements.csv_trace import samples
-from cratous.services.requirements.evaluation import Evaluation
+from cratous.services.requirements.evaluation import FALSE, TRUE, Evaluation
 from cratous.services.requirements.formula import horizon, signals
 from cratous.services.requirements.outcome import Outcome, margins_of
 from cratous.services.requirements.sampling import Finding, Row, Sample, Sampling
@@ -41,14 +42,26 @@ class Watch:
         self.spec, self.verdicts = spec, verdicts
         self.count = 0
         self.needed: set[str] = set()
+        names: set[str] = set()
         self._watched: list[tuple[Outcome, Evaluation]] = []
+        self._reading: dict[str, list[int]] = {}
+        """Of each signal the requirements that read it, by their number."""
+        self._row: Sample = {}
+        self.news: list[tuple[str, Outcome]] = []
+        """What was so for the first time: a requirement is `violated` at a sample, or `unknown`; who reads it empties it."""
         for one in spec.requirements:
             if isinstance(one.formula, NotRead):
                 raise one.formula
-            self.needed |= set(signals(one.formula))
+            read = signals(one.formula)
+            self.needed |= sources(read, spec.signals)
+            names |= set(read)
+            for name in read:
+                self._reading.setdefault(name, []).append(len(self._watched))
             outcome = Outcome(one, horizon(one.formula), margins=margins_of(one.formula, spec))
             self._watched.append((outcome, Evaluation(one.formula, blames=True)))
         self.sampling = Sampling(spec, self.needed)
+        self._names = self.needed | names
+        self._calculated = Calculated(names, spec.signals)
 
     @property
     def outcomes(self) -> list[Outcome]:
@@ -58,16 +71,25 @@ class Watch:
     def rows(self, rows: Iterable[Row]) -> Iterator[int]:
         """Take rows with times; the time [ns] of each sample that is taken."""
         for time, row in self.sampling.samples(rows):
-            self.sample(time, row)
+            self._sample(time, self._calculated.row(row))
             yield time
 
     def sample(self, time: int, row: Sample) -> None:
-        """Take one sample more."""
-        for outcome, evaluation in self._watched:
-            for margin in outcome.margins:
-                margin.add(row, time)
-            for sample, verdict in evaluation.sample(time, row):
-                outcome.add(sample, verdict, time)
+        """Take one sample more, of the signals that are in the trace."""
+        self._sample(time, self._calculated.row(row))
+
+    def _sample(self, time: int, row: Sample) -> None:
+        changed = self._changed(row)
+        for number, (outcome, evaluation) in enumerate(self._watched):
+            same = number not in changed
+            if not same:
+                for margin in outcome.margins:
+                    margin.add(row, time)
+            for sample, verdict in evaluation.sample(time, row, same):
+                if verdict == TRUE:
+                    outcome.holds += 1
+                else:
+                    self._bad(outcome, sample, verdict, time)
                 if self.verdicts is not None:
                     at = f"{sample / 1e9:.9g}" if self.spec.timed else str(sample)
                     self.verdicts.append(f"{outcome.name}:{at},{'F?T'[verdict]}")
@@ -75,22 +97,41 @@ class Watch:
                 outcome.blamed = evaluation.blamed
         self.count += 1
 
+    def _changed(self, row: Sample) -> set[int]:
+        """The numbers of the requirements of which a signal is not as it was at the sample before."""
+        before, self._row = self._row, dict(row)
+        if not before:
+            return set(range(len(self._watched)))
+        found: set[int] = set()
+        for name, reading in self._reading.items():
+            # what is no number differs from itself
+            if row.get(name) != before.get(name):
+                found.update(reading)
+        return found
+
+    def _bad(self, outcome: Outcome, sample: int, verdict: int, time: int) -> None:
+        outcome.add(sample, verdict, time)
+        event = "violated" if verdict == FALSE else "unknown"
+        if getattr(outcome, event) == 1:
+            self.news.append((event, outcome))
+
     def all(self, samples: Iterable[tuple[int, Sample]]) -> None:
         """Take all samples of a trace that has ended, of which none was taken yet: over whole columns where that is
         sooner (`whole`), with the same outcome."""
-        taken, kept = iter(samples), Columns(self.needed)
+        whole = ((time, self._calculated.row(row)) for time, row in samples)
+        taken, kept = iter(whole), Columns(self._names)
         if self.verdicts is None:
             for time, row in islice(taken, MOST):
                 kept.add(time, row)
         formulas = [evaluation.formula for _, evaluation in self._watched]
         if len(kept.times) < MOST and is_worth(formulas, len(kept.times)):
-            whole = Whole(kept)
+            columns = Whole(kept)
             for outcome, evaluation in self._watched:
-                whole.fill(outcome, evaluation.formula)
+                columns.fill(outcome, evaluation.formula)
             self.count = len(kept.times)
             return
         for time, row in chain(kept.samples(), taken):
-            self.sample(time, row)
+            self._sample(time, row)
 
     def result(self) -> Watched:
         """What can be said where the trace ends here."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
@@ -17,7 +17,7 @@ from cratous.services.sensing.filter import Cov, Estimate, Flown, deviations
 from cratous.services.sensing.own import Own
 from cratous.services.sensing.sensors import Detection, detections
 from cratous.services.sensing.tracks import Tracks, estimate, tracked
-from cratous.spec.mission import SensedDaa
+from cratous.spec.mission import Mission, SensedDaa
 
 
 class Carrier(NamedTuple):
@@ -49,6 +49,15 @@ class Shown(NamedTuple):
     spread: Spread
 
 
+def carriers(mission: Mission, instances: Iterable[int]) -> dict[int, Carrier]:
+    """Who has sensors: each vehicle with an instance, if the mission has any."""
+    daa, step_ms = mission.daa, mission.simulation.step_ms
+    if not isinstance(daa, SensedDaa):
+        return {}
+    ours = frozenset(instances)
+    return {vid: Carrier(vid, daa, mission.seed, step_ms, ours) for vid in sorted(ours)}
+
+
 def stepped(
     carrier: Carrier, before: Surveillance, now_ms: int, aircraft: Mapping[int, Flown]
 ) -> Surveillance:
@@ -76,6 +85,15 @@ def arrived(carrier: Carrier, before: Surveillance, now_ms: int) -> Surveillance
     return Surveillance(
         tuple(left), own, tracked(before.tracks, others, carrier.daa.sensing, now_ms)
     )
+
+
+def beat(
+    carrier: Carrier, before: Surveillance, true: Sensed, air: Flown
+) -> tuple[Surveillance, tuple[Shown, ...], Sensed]:
+    """A heartbeat: after what has come by now, whom ICAROUS is shown, and what it is given for the true states."""
+    after = arrived(carrier, before, true.now_ms)
+    seen = shown(carrier, after, true.now_ms, air)
+    return after, seen, given(carrier, seen, true)
 
 
 def shown(carrier: Carrier, now: Surveillance, now_ms: int, air: Flown) -> tuple[Shown, ...]:

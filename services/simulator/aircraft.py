@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, degrees, hypot, isfinite, radians, sin
+from collections.abc import Mapping
+from math import atan2, cos, degrees, hypot, isfinite, radians, sin, tan
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.services.simulator import guidance as guide
 from cratous.services.simulator.guidance import DIRECTED, LOITER, WAYPOINT, Guidance
-from cratous.services.simulator.motion import Command, Motion, body_rates, move
+from cratous.services.simulator.motion import GRAVITY_M_S2, Command, Motion, body_rates, move
 from cratous.services.simulator.performance import Airframe
 from cratous.spec.errors import BadInput
+
+LEAST_RADIUS_M = 10.0
+"""Of a circle that it flies of its own, at least."""
 
 
 class Aircraft(NamedTuple):
@@ -81,10 +85,17 @@ def step(a: Aircraft, wind_m_s: tuple[float, float], ground_m: float, dt_s: floa
     return Aircraft(a.id, a.airframe, motion, bank, held, *a[5:])
 
 
-def receive(a: Aircraft, body: Any) -> Aircraft:
-    """The aircraft after a MissionCommand or VehicleActionCommand for it."""
-    take = guide.mission if type(body).__name__ == "MissionCommand" else guide.command
-    return a._replace(guidance=take(a.guidance, body))
+def receive(a: Aircraft, body: Any, told: Mapping[int, int] = guide.NOTHING) -> Aircraft:
+    """The aircraft after a MissionCommand, with what its waypoints are told as, or a VehicleActionCommand."""
+    if type(body).__name__ == "MissionCommand":
+        return a._replace(guidance=guide.mission(a.guidance, body, told))
+    return a._replace(guidance=guide.command(a.guidance, body))
+
+
+def circle_m(a: Aircraft, speed_m_s: float) -> float:
+    """A radius that it flies round well at an airspeed: twice that of its tightest turn."""
+    speed = a.airframe.within(speed_m_s)
+    return max(LEAST_RADIUS_M, 2 * speed * speed / (GRAVITY_M_S2 * tan(a.max_bank_rad)))
 
 
 class Shown(NamedTuple):

@@ -40,7 +40,7 @@ def check_command(body: Any, where: str, *, flies: bool = True) -> None:
     waypoints = list(getattr(body, "WaypointList", ()))
     actions = [*getattr(body, "VehicleActionList", ())]
     for waypoint in waypoints:
-        _place(waypoint, where, name)
+        check_place(waypoint, where, name)
         _finite((waypoint.Speed,), where, f"{name}: Speed")
         actions += waypoint.VehicleActionList
     for action in actions:
@@ -48,7 +48,7 @@ def check_command(body: Any, where: str, *, flies: bool = True) -> None:
         numbers = tuple(getattr(action, field) for field in NUMBERS.get(kind, ()))
         _finite(numbers, where, f"{name}: {kind}")
         if kind == "LoiterAction":
-            _place(action.Location, where, name)
+            check_place(action.Location, where, name)
             if flies and (not action.Radius > 0 or not action.Length >= 0):
                 raise BadInput(
                     "a loiter that cannot be flown",
@@ -58,7 +58,7 @@ def check_command(body: Any, where: str, *, flies: bool = True) -> None:
                     got=f"Radius {action.Radius:g}, Length {action.Length:g}",
                 )
         elif kind == "GimbalStareAction":
-            _place(action.Starepoint, where, name)
+            check_place(action.Starepoint, where, name)
 
 
 def _finite(numbers: tuple[float, ...], where: str, item: str) -> None:
@@ -66,7 +66,8 @@ def _finite(numbers: tuple[float, ...], where: str, item: str) -> None:
         raise BadInput("not a number", where=where, item=item, got=str(numbers))
 
 
-def _place(place: Any, where: str, item: str) -> None:
+def check_place(place: Any, where: str, item: str) -> None:
+    """BadInput for a place that is none."""
     numbers = (place.Latitude, place.Longitude, place.Altitude)
     if not all(map(isfinite, numbers)) or abs(place.Latitude) > 90:
         raise BadInput(

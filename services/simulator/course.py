@@ -5,10 +5,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import radians
 from typing import Any, NamedTuple
 
-from cratous.bridge import lmcp
 from cratous.services.simulator.driving import (
     Chassis,
     Leg,
@@ -18,7 +18,14 @@ from cratous.services.simulator.driving import (
     leg_at,
 )
 from cratous.services.simulator.earth import bearing_rad, distance_m
-from cratous.services.simulator.guidance import DIRECTED, LOITER, WAYPOINT, Waypoint, waypoint_of
+from cratous.services.simulator.guidance import (
+    DIRECTED,
+    LOITER,
+    NOTHING,
+    WAYPOINT,
+    Waypoint,
+    waypoint_of,
+)
 from cratous.services.simulator.motion import Motion
 
 NEAR_M = 0.2
@@ -64,43 +71,20 @@ def place(w: Waypoint) -> Point:
     return w.lat_rad, w.lon_rad
 
 
-def mission(c: Course, body: Any, m: Motion, chassis: Chassis) -> Course:
-    """Drive a MissionCommand from its first waypoint on, as it is; without such a waypoint on as before."""
+def mission(
+    c: Course, body: Any, m: Motion, chassis: Chassis, told: Mapping[int, int] = NOTHING
+) -> Course:
+    """Drive a MissionCommand from its first waypoint on, as it is; without such a waypoint on as before.
+
+    told: what numbers of waypoints are told as."""
     route: dict[int, Waypoint] = {}
     for w in body.WaypointList:
-        route.setdefault(w.Number, waypoint_of(w))
+        route.setdefault(w.Number, waypoint_of(w, told))
     to = route.get(body.FirstWaypoint)
     if to is None:
         return c
     fresh = Course(route=route, route_id=body.CommandID, stand_id=body.CommandID, fired=c.fired)
     return _towards(fresh, (m.lat_rad, m.lon_rad), to, chassis)
-
-
-def along_path(body: Any) -> Any:
-    """The MissionCommand that is a FollowPathCommand: a pause is a stand, and a loop leads back to its beginning."""
-    known = {w.Number: w for w in reversed(body.WaypointList)}
-    order, number = list[Any](), body.FirstWaypoint
-    while number in known:
-        order.append(known.pop(number))
-        number = order[-1].NextWaypoint
-    ways = []
-    for k, w in enumerate(order, 1):
-        then = order[k % len(order)] if body.RepeatMode.name == "Loop" or k < len(order) else w
-        actions = list(w.VehicleActionList)
-        if w.PauseTime > 0:
-            at = lmcp.new("Location3D", Latitude=w.Latitude, Longitude=w.Longitude)
-            pause = {"LoiterType": "Hover", "Duration": w.PauseTime, "Location": at}
-            actions.append(lmcp.new("LoiterAction", **pause))
-        of = {
-            name: getattr(w, name)
-            for name in ("Number", "Latitude", "Longitude", "Altitude", "Speed")
-        }
-        more = {"AssociatedTasks": w.AssociatedTasks, "VehicleActionList": actions}
-        ways.append(lmcp.new("Waypoint", NextWaypoint=then.Number, **of, **more))
-    return lmcp.new(
-        "MissionCommand", CommandID=body.CommandID, VehicleID=body.VehicleID,
-        FirstWaypoint=body.FirstWaypoint, WaypointList=ways,
-    )  # fmt: skip
 
 
 def command(c: Course, body: Any, m: Motion, chassis: Chassis) -> Course:

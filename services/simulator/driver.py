@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import degrees, isfinite, radians
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.services.simulator import course, payload
 from cratous.services.simulator.course import Course
 from cratous.services.simulator.driving import Chassis, chassis_of, move
-from cratous.services.simulator.guidance import DIRECTED, LOITER
+from cratous.services.simulator.earth import ahead
+from cratous.services.simulator.guidance import DIRECTED, LOITER, NOTHING
 from cratous.services.simulator.motion import Motion
+from cratous.services.simulator.perception import Body
+from cratous.services.simulator.tracking import Tracks
 from cratous.spec.errors import BadInput
+
+if TYPE_CHECKING:
+    from cratous.services.simulator.terrain import Terrain
 
 STATES = {
     "GroundVehicleConfiguration": "GroundVehicleState",
@@ -35,9 +41,14 @@ class Driver(NamedTuple):
 
 
 class Drivers:
-    """The vehicles of a world that drive or sail, by id. said: what they were asked for and do not do, to be told."""
+    """The vehicles of a world that drive or sail, by id. said: what they were asked for and do not do, to be told.
 
-    def __init__(self) -> None:
+    terrain: what drives stands on it; without one at the altitude of its state, as what sails does.
+    """
+
+    def __init__(self, terrain: Terrain | None = None, tracks: Tracks | None = None) -> None:
+        self._terrain = terrain
+        self._tracks = tracks or Tracks()
         self.there: dict[int, Driver] = {}
         self.said: list[str] = []
         self._warned: set[str] = set()
@@ -87,6 +98,9 @@ class Drivers:
         before = self.there.get(body.ID)
         held = before.course if before else Course()
         told = body.CurrentCommand, body.CurrentWaypoint
+        if self._terrain is not None and not chassis.sails:
+            motion = _on(self._terrain, motion)
+            body = body.copy(Location=at.copy(AltitudeType="MSL"))
         self.there[body.ID] = Driver(kind, chassis, motion, held, body, told)
         self._mounted[body.ID] = payload.placed(self._mounted[body.ID], body)
 
@@ -95,24 +109,27 @@ class Drivers:
         for held in (self.there, self._chassis, self._mounted):
             held.pop(key, None)
 
-    def takes(self, body: Any) -> bool:
-        """Whether an object is a FollowPathCommand for one that is there."""
-        return type(body).__name__ == "FollowPathCommand" and body.VehicleID in self.there
-
-    def command(self, body: Any) -> None:
-        """Take a MissionCommand, VehicleActionCommand or FollowPathCommand for one that is there."""
+    def command(self, body: Any, told: Mapping[int, int] = NOTHING) -> None:
+        """Take a MissionCommand, with what its waypoints are told as, or a VehicleActionCommand for one that is there."""
         key = body.VehicleID
         one = self.there[key]
-        if type(body).__name__ == "FollowPathCommand":
-            if body.StartTime or body.StopTime or body.RepeatMode.name == "ReverseCourse":
-                what = "a FollowPathCommand with StartTime, StopTime or ReverseCourse"
-                self._say(key, f"does not do {what}: it is left out")
-                return
-            body = course.along_path(body)
-        take = course.mission if type(body).__name__ == "MissionCommand" else course.command
         self._warn(body)
-        self.there[key] = one._replace(course=take(one.course, body, one.motion, one.chassis))
+        if type(body).__name__ == "MissionCommand":
+            held = course.mission(one.course, body, one.motion, one.chassis, told)
+        else:
+            held = course.command(one.course, body, one.motion, one.chassis)
+        self.there[key] = one._replace(course=held)
         self._fire(key)
+
+    def halt(self, key: int) -> Any:
+        """Where one that brakes at once comes to stand."""
+        one = self.there[key]
+        m = one.motion
+        braking_m = m.airspeed_m_s**2 / (2 * one.chassis.along_m_s2)
+        lat, lon = ahead(m.lat_rad, m.lon_rad, braking_m, m.heading_rad)
+        return one.first.Location.copy(
+            Latitude=degrees(lat), Longitude=degrees(lon), Altitude=m.alt_m
+        )
 
     def _warn(self, body: Any) -> None:
         actions = [*body.VehicleActionList]
@@ -139,6 +156,8 @@ class Drivers:
         for key, one in self.there.items():
             held, heading, speed = course.steer(one.course, one.motion, one.chassis, dt_s)
             motion = move(one.motion, heading, speed, one.chassis, dt_s)
+            if self._terrain is not None and not one.chassis.sails:
+                motion = _on(self._terrain, motion)
             self.there[key] = one._replace(motion=motion, course=held)
             if held.fired:
                 self._fire(key)
@@ -150,6 +169,8 @@ class Drivers:
         """The actions that were set off, for what is mounted."""
         one, mounted = self.there[key], self._mounted[key]
         for body in one.course.fired:
+            if self._tracks.act(key, mounted, body):
+                continue
             if payload.is_for(mounted, body):
                 mounted = tuple(payload.act(p, body) for p in mounted)
             else:
@@ -157,12 +178,26 @@ class Drivers:
         self._mounted[key] = mounted
         self.there[key] = one._replace(course=one.course._replace(fired=()))
 
+    def bodies(self) -> Iterator[Body]:
+        """All of them, as they see and are seen."""
+        for key, one in self.there.items():
+            yield Body(key, one.motion, self._mounted[key])
+
+    def stare(self, key: int, body: Any) -> None:
+        """Have a gimbal stare at what it tracks."""
+        self._mounted[key] = tuple(payload.act(p, body) for p in self._mounted[key])
+
     def states(self, time_ms: int, ground_m: float) -> Iterator[Any]:
         """The states of all, as they are now."""
         for key, one in self.there.items():
-            seen = payload.states(self._mounted[key], one.motion, ground_m)
+            seen = payload.states(self._mounted[key], one.motion, ground_m, self._terrain)
             self.there[key], body = state(one, time_ms, seen)
             yield body
+
+
+def _on(terrain: Terrain, m: Motion) -> Motion:
+    """The motion, on the ground."""
+    return m._replace(alt_m=terrain.elevation(m.lat_rad, m.lon_rad))
 
 
 def state(d: Driver, time_ms: int, payloads: tuple[Any, ...]) -> tuple[Driver, Any]:

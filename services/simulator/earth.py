@@ -11,6 +11,9 @@ EQUATOR_M = 6378137.0
 POLE_M = 6356752.31424518
 ECCENTRICITY = 0.0818191908426
 
+Place = tuple[float, float, float]
+"""Latitude and longitude [rad], height [m MSL]."""
+
 
 def bound_pi(angle_rad: float) -> float:
     """The same angle in [-pi, pi]."""
@@ -38,6 +41,12 @@ def bearing_rad(lat: float, lon: float, to_lat: float, to_lon: float) -> float:
     """Initial bearing of the great circle from one point to another."""
     turn, c = to_lon - lon, cos(to_lat)
     return atan2(c * sin(turn), cos(lat) * sin(to_lat) - sin(lat) * c * cos(turn))
+
+
+def horizon_m(height_m: float) -> float:
+    """How far the horizon is from a height above the sea."""
+    height = max(0.0, height_m)
+    return sqrt(2 * EQUATOR_M * height + height * height)
 
 
 def ahead(lat: float, lon: float, length_m: float, azimuth_rad: float) -> tuple[float, float]:

@@ -6,7 +6,9 @@ pure: Guidance in, Guidance out. With compatibility AMASE's defects are kept, ea
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import hypot, inf, pi, radians, tan
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from cratous.services.simulator.earth import bearing_rad, bound_pi, distance_m, to_leg
@@ -20,6 +22,7 @@ from cratous.services.simulator.loiter import (
 )
 from cratous.services.simulator.motion import GRAVITY_M_S2, Command, Motion
 
+NOTHING: Mapping[int, int] = MappingProxyType({})
 DIRECTED, WAYPOINT, LOITER = "FlightDirector", "Waypoint", "Loiter"
 
 
@@ -74,14 +77,14 @@ class Guidance(NamedTuple):
     fired: tuple[Any, ...] = ()
 
 
-def mission(g: Guidance, body: Any) -> Guidance:
-    """Fly a MissionCommand from its first waypoint on."""
+def mission(g: Guidance, body: Any, told: Mapping[int, int] = NOTHING) -> Guidance:
+    """Fly a MissionCommand from its first waypoint on. told: what numbers of waypoints are told as."""
     if not body.WaypointList:
         return g
     route: dict[int, Waypoint] = {}
     for w in body.WaypointList:
         # of waypoints with the same number the first one counts
-        route.setdefault(w.Number, waypoint_of(w))
+        route.setdefault(w.Number, waypoint_of(w, told))
     g = g._replace(
         mode=WAYPOINT,
         route=route,
@@ -96,9 +99,10 @@ def mission(g: Guidance, body: Any) -> Guidance:
     return g if g.leg.to is not None else g._replace(mode=DIRECTED)
 
 
-def waypoint_of(w: Any) -> Waypoint:
+def waypoint_of(w: Any, told: Mapping[int, int] = NOTHING) -> Waypoint:
+    """A Waypoint of a message."""
     return Waypoint(
-        w.Number,
+        told.get(w.Number, w.Number),
         w.NextWaypoint,
         radians(w.Latitude),
         radians(w.Longitude),

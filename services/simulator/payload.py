@@ -5,13 +5,16 @@ Angles of messages and of this module are degrees: azimuth from the nose to the 
 
 from __future__ import annotations
 
-from math import atan2, cos, degrees, hypot, isfinite, radians, sin, sqrt, tan
-from typing import Any, NamedTuple
+from math import atan2, cos, degrees, hypot, isfinite, radians, sin, tan
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cratous.bridge import lmcp
-from cratous.services.simulator.earth import EQUATOR_M, bearing_rad, distance_m
+from cratous.services.simulator.earth import EQUATOR_M, Place, bearing_rad, distance_m, horizon_m
 from cratous.services.simulator.motion import Motion
 from cratous.spec.errors import BadInput
+
+if TYPE_CHECKING:
+    from cratous.services.simulator.terrain import Terrain
 
 Axes = tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
 
@@ -101,6 +104,15 @@ def _clamp(value: float, low: float, high: float) -> float:
     return max(low, min(high, value))
 
 
+def gimbal_with(mounted: tuple[Gimbal, ...], number: int) -> int | None:
+    """The id of the gimbal that a sensor is, or is on; None for a sensor that is not mounted."""
+    for g in mounted:
+        on_it = (c.configuration.PayloadID for c in g.cameras)
+        if number in (g.configuration.PayloadID, *on_it):
+            return int(g.configuration.PayloadID)
+    return None
+
+
 def is_for(mounted: tuple[Gimbal, ...], body: Any) -> bool:
     """Whether an action is one for a gimbal or camera that is mounted."""
     number = getattr(body, "PayloadID", None)
@@ -188,16 +200,17 @@ def aim(m: Motion, point: Any) -> tuple[float, float]:
     away = distance_m(m.lat_rad, m.lon_rad, lat, lon)
     course = bearing_rad(m.lat_rad, m.lon_rad, lat, lon)
     down = m.alt_m - point.Altitude + EQUATOR_M * (1 - cos(away / EQUATOR_M))
-    seen = away * cos(course), away * sin(course), down
+    north, east = away * cos(course), away * sin(course)
     x, y, z = (
-        sum(a * b for a, b in zip(axis, seen, strict=True))
-        for axis in axes(m.heading_rad, m.pitch_rad, m.roll_rad)
+        a * north + b * east + c * down for a, b, c in axes(m.heading_rad, m.pitch_rad, m.roll_rad)
     )
     return degrees(atan2(y, x)), degrees(atan2(-z, hypot(x, y)))
 
 
-def states(mounted: tuple[Gimbal, ...], m: Motion, ground_m: float) -> tuple[Any, ...]:
-    """GimbalState and CameraState of all that is mounted."""
+def states(
+    mounted: tuple[Gimbal, ...], m: Motion, ground_m: float, terrain: Terrain | None = None
+) -> tuple[Any, ...]:
+    """GimbalState and CameraState of all that is mounted, over terrain or else flat ground at a height."""
     told: list[Any] = []
     for g in mounted:
         pointing = {
@@ -208,15 +221,15 @@ def states(mounted: tuple[Gimbal, ...], m: Motion, ground_m: float) -> tuple[Any
         told.append(lmcp.new("GimbalState", PayloadID=g.configuration.PayloadID, **pointing))
         for c in g.cameras:
             ratio = _ratio(c.configuration)
-            corners = footprint(g, c, m, ground_m)
+            corners = footprint(g, c, m, ground_m, terrain)
             told.append(
                 lmcp.new(
                     "CameraState",
                     PayloadID=c.configuration.PayloadID,
                     HorizontalFieldOfView=c.fov_deg,
                     VerticalFieldOfView=c.fov_deg / ratio,
-                    Footprint=[_place(p, ground_m) for p in corners[:4]],
-                    Centerpoint=_place(corners[4], ground_m),
+                    Footprint=[_place(p) for p in corners[:4]],
+                    Centerpoint=_place(corners[4]),
                     **pointing,
                 )
             )
@@ -236,27 +249,60 @@ def _ratio(camera: Any) -> float:
     return wide / high if wide and high else 4 / 3
 
 
-def _place(point: tuple[float, float], ground_m: float) -> Any:
+class Picture(NamedTuple):
+    """The axes of a camera ahead, right and down, by their parts north, east and down; half of its width and height
+    at depth 1."""
+
+    ahead: tuple[float, float, float]
+    right: tuple[float, float, float]
+    down: tuple[float, float, float]
+    wide: float
+    high: float
+
+
+def picture(g: Gimbal, c: Camera, m: Motion) -> Picture:
+    """What a camera has in its picture, as its footprint has it."""
+    (a0, a1, a2), (b0, b1, b2), (c0, c1, c2) = axes(m.heading_rad, m.pitch_rad, m.roll_rad)
+    sensor = axes(radians(g.azimuth_deg), radians(g.elevation_deg), 0.0)
+    ahead, right, down = (
+        (x * a0 + y * b0 + z * c0, x * a1 + y * b1 + z * c1, x * a2 + y * b2 + z * c2)
+        for x, y, z in sensor
+    )
+    wide = tan(radians(c.fov_deg) / 2)
+    high = tan(radians(c.fov_deg / _ratio(c.configuration)) / 2)
+    return Picture(ahead, right, down, wide, high)
+
+
+def _place(point: Place) -> Any:
     return lmcp.new(
-        "Location3D", Latitude=degrees(point[0]), Longitude=degrees(point[1]), Altitude=ground_m
+        "Location3D", Latitude=degrees(point[0]), Longitude=degrees(point[1]), Altitude=point[2]
     )
 
 
-def footprint(g: Gimbal, c: Camera, m: Motion, ground_m: float) -> list[tuple[float, float]]:
-    """Where the corners of a picture and its middle meet flat ground [rad]; the horizon at most.
+def footprint(
+    g: Gimbal, c: Camera, m: Motion, ground_m: float, terrain: Terrain | None = None
+) -> list[Place]:
+    """Where the corners of a picture and its middle meet the terrain, or flat ground; the horizon at most.
 
     Order: top left, top right, bottom right, bottom left, middle.
     """
-    body = axes(m.heading_rad, m.pitch_rad, m.roll_rad)
-    sensor = axes(radians(g.azimuth_deg), radians(g.elevation_deg), 0.0)
+    b0, b1, b2 = axes(m.heading_rad, m.pitch_rad, m.roll_rad)
+    s0, s1, s2 = axes(radians(g.azimuth_deg), radians(g.elevation_deg), 0.0)
     wide = tan(radians(c.fov_deg) / 2)
     high = tan(radians(c.fov_deg / _ratio(c.configuration)) / 2)
     height = max(0.0, m.alt_m - ground_m)
-    horizon = sqrt(2 * EQUATOR_M * height + height * height)
-    corners = []
+    horizon = horizon_m(height)
+    corners: list[Place] = []
     for right, down in ((-wide, -high), (wide, -high), (wide, high), (-wide, high), (0.0, 0.0)):
-        ray = [sensor[0][k] + right * sensor[1][k] + down * sensor[2][k] for k in range(3)]
-        north, east, below = (sum(ray[k] * body[k][n] for k in range(3)) for n in range(3))
+        x, y, z = (s0[k] + right * s1[k] + down * s2[k] for k in range(3))
+        north = x * b0[0] + y * b1[0] + z * b2[0]
+        east = x * b0[1] + y * b1[1] + z * b2[1]
+        below = x * b0[2] + y * b1[2] + z * b2[2]
+        if terrain is not None:
+            from cratous.services.simulator.sight import meets
+
+            corners.append(meets(terrain, m, (north, east, below)))
+            continue
         level = hypot(north, east)
         along = level * height / below if below > 0 else horizon
         part = min(along, horizon) / level if level else 0.0
@@ -264,6 +310,7 @@ def footprint(g: Gimbal, c: Camera, m: Motion, ground_m: float) -> list[tuple[fl
             (
                 m.lat_rad + north * part / EQUATOR_M,
                 m.lon_rad + east * part / (EQUATOR_M * cos(m.lat_rad)),
+                ground_m,
             )
         )
     return corners

@@ -38,6 +38,10 @@ class Airframe(NamedTuple):
     steepest_descent: Profile
     compatible: bool
 
+    def within(self, speed_m_s: float) -> float:
+        """The airspeed nearest to one that it can fly."""
+        return max(self.min_speed_m_s, min(self.max_speed_m_s, speed_m_s))
+
 
 def airframe_of(configuration: Any, compatible: bool, where: str = "") -> Airframe:
     """The airframe of an AirVehicleConfiguration; BadInput for one that cannot fly."""

@@ -1,6 +1,6 @@
 """AMASE scenario files: what happens when, and for how long.
 
-`<AMASE>` holds `<ScenarioData>` (name, duration [s]) and `<ScenarioEventList>`: LMCP objects, each
+`<AMASE>` holds `<ScenarioData>` (name, duration and time of the start [s]) and `<ScenarioEventList>`: LMCP objects, each
 with an attribute Time [s] (0 without one), and `<Link Source="file"/>` to another such file.
 """
 
@@ -19,14 +19,17 @@ from cratous.spec.files.text_file import bytes_of
 DAY_S = 86_400.0
 MOST_EVENTS = 100_000
 MOST_LINKS = 100
+LATEST_S = 1e9
+"""When a scenario begins, at most: thirty years; ticks are exact till then."""
 
 
 @dataclass
 class Scenario:
-    """name, duration [s]; events in the order of the file; notes: what was left out, with its place."""
+    """name, how long it lasts and at which time it begins [s]; events in the order of the file; notes: what was left out, with its place."""
 
     name: str
     duration_s: float = DAY_S
+    start_s: float = 0.0
     events: list[Event] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
@@ -60,8 +63,11 @@ def _read(
         scenario.duration_s = (
             _seconds(data_of.findtext("ScenarioDuration"), place, "ScenarioDuration") or DAY_S
         )
-        if _seconds(data_of.findtext("ScenarioStartTime"), place, "ScenarioStartTime"):
-            scenario.notes.append(f"{place}: ScenarioStartTime is not used: time begins at 0")
+        start_s = _seconds(data_of.findtext("ScenarioStartTime"), place, "ScenarioStartTime")
+        scenario.start_s = start_s or 0.0
+        if scenario.start_s > LATEST_S:
+            raise BadInput("a start too late", where=place, item="ScenarioStartTime",
+                           expected=f"at most {LATEST_S:g} s", got=f"{start_s:g}")  # fmt: skip
     for events in root.iterfind("ScenarioEventList"):
         for element in events.iterchildren("*"):
             _event(element, f"{where}:{element.sourceline}", where, folder, scenario, files)

@@ -8,23 +8,40 @@ depends on the machine's time.
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Iterable
-from math import cos, isfinite, radians, sin
-from typing import Any, NamedTuple
+from collections.abc import Iterable, Mapping
+from functools import partial
+from math import cos, degrees, isfinite, radians, sin
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.services.simulator import payload
-from cratous.services.simulator.aircraft import Aircraft, aircraft_of, receive, state, step
-from cratous.services.simulator.commands import check_command, present
-from cratous.services.simulator.driver import STATES, Drivers
+from cratous.services.simulator.aircraft import (
+    Aircraft,
+    aircraft_of,
+    circle_m,
+    receive,
+    state,
+    step,
+)
+from cratous.services.simulator.commands import check_command, check_place, present
+from cratous.services.simulator.driver import STATES, Driver, Drivers
+from cratous.services.simulator.guidance import NOTHING
+from cratous.services.simulator.motion import Motion
+from cratous.services.simulator.paths import Paths, check_times, path_of, steers
+from cratous.services.simulator.perception import Body, perceptions
 from cratous.services.simulator.performance import Airframe, airframe_of
+from cratous.services.simulator.staying import fall_back, here, stay
+from cratous.services.simulator.tracking import Tracks
 from cratous.spec.errors import BadInput
+
+if TYPE_CHECKING:
+    from cratous.services.simulator.terrain import Terrain
 
 TICK_S = 0.01
 STEP_S = 1 / 30
 TELL_S = 0.5
 GROUND_M = 0.0
-"""No terrain is known: the ground is at mean sea level, as it is in AMASE without elevation data."""
+"""Without terrain the ground is at mean sea level, as it is in AMASE without elevation data."""
 MOST_VEHICLES = 1000
 
 
@@ -37,16 +54,24 @@ class Event(NamedTuple):
 
 
 class World:
-    """See the module. compatible: AMASE's defects are kept. duration_s: when the scenario ends.
+    """See the module. duration_s: how long the scenario lasts, start_s: at which time it begins: what is
+    due before happens then. compatible: AMASE's defects are kept.
 
-    unheard: kinds of messages that were told to others, but that mean nothing here, counted.
+    terrain: the ground, at mean sea level without one. unheard: kinds of messages that were told to
+    others, but that mean nothing here, counted.
     """
 
     def __init__(
-        self, events: Iterable[Event], duration_s: float, *, compatible: bool = False
+        self,
+        events: Iterable[Event],
+        duration_s: float,
+        *,
+        start_s: float = 0.0,
+        compatible: bool = False,
+        terrain: Terrain | None = None,
     ) -> None:
-        self.time_s = 0.0
-        self.duration_s = duration_s
+        self.time_s = self.start_s = start_s
+        self.ends_s = start_s + duration_s
         self.compatible = compatible
         self.unheard: Counter[str] = Counter()
         # events of the same time happen in the order of the file
@@ -54,10 +79,15 @@ class World:
         self._airframes: dict[int, Airframe] = {}
         self._mounted: dict[int, tuple[payload.Gimbal, ...]] = {}
         self.aircraft: dict[int, Aircraft] = {}
-        self.drivers = Drivers()
+        self.terrain = terrain
+        self._tracks = Tracks()
+        self._paths = Paths()
+        self.drivers = Drivers(terrain, self._tracks)
+        self._said: list[str] = []
+        self._grounded: set[int] = set()
         self.wind_m_s = 0.0, 0.0
         self._part = 0.0  # of a step that is due already
-        self._told_s = 0.0
+        self._told_s = start_s
 
     @property
     def time_ms(self) -> int:
@@ -67,10 +97,10 @@ class World:
     @property
     def over(self) -> bool:
         """True when the scenario's duration has passed."""
-        return self.time_s >= self.duration_s
+        return self.time_s >= self.ends_s
 
     def begin(self) -> list[Any]:
-        """What happens at time 0, done before the clock goes, as AMASE does it; those events."""
+        """What happens at the start, done before the clock goes, as AMASE does it; those events."""
         return self._happen()
 
     def _happen(self) -> list[Any]:
@@ -92,15 +122,19 @@ class World:
             return told
         if self.time_s - self._told_s > TELL_S:
             self._told_s = self.time_s
-            told += [self.status("Running"), *self.states()]
+            told += [self.status("Running"), *self.states(), *self._perceive()]
         told += self._happen()
+        if self._paths:
+            self._keep_to_times()
         self._move()
         return told
 
     def _move(self) -> None:
-        wind = self.wind_m_s
+        wind, ground_m = self.wind_m_s, GROUND_M
         for key, one in self.aircraft.items():
-            one = step(one, wind, GROUND_M, STEP_S)
+            if self.terrain is not None:
+                ground_m = self._ground_m(key, one.motion)
+            one = step(one, wind, ground_m, STEP_S)
             if one.guidance.fired:
                 for body in one.guidance.fired:
                     self._act(key, body)
@@ -110,6 +144,21 @@ class World:
             if mounted:
                 self._mounted[key] = tuple(payload.step(p, one.motion, STEP_S) for p in mounted)
         self.drivers.step(STEP_S)
+
+    def _ground_m(self, key: int, m: Motion) -> float:
+        """Height of the terrain below an aircraft; it is said once that one has met it, and stands."""
+        ground_m = (
+            GROUND_M if self.terrain is None else self.terrain.elevation(m.lat_rad, m.lon_rad)
+        )
+        if m.alt_m > ground_m:
+            self._grounded.discard(key)
+        elif key not in self._grounded:
+            self._grounded.add(key)
+            at = f"{degrees(m.lat_rad):.5f}, {degrees(m.lon_rad):.5f}, {m.alt_m:.0f} m MSL"
+            self._said.append(
+                f"vehicle {key} has met the terrain at {at}, {self.time_s:.1f} s: it stands"
+            )
+        return ground_m
 
     def status(self, state_name: str, rate: float = 1.0) -> Any:
         """The SessionStatus of now."""
@@ -125,14 +174,49 @@ class World:
         told = []
         for key, one in self.aircraft.items():
             mounted = self._mounted.get(key, ())
-            seen = payload.states(mounted, one.motion, GROUND_M) if mounted else ()
+            seen = ()
+            if mounted:
+                seen = payload.states(mounted, one.motion, GROUND_M, self.terrain)
             self.aircraft[key], body = state(one, self.wind_m_s, self.time_ms, seen)
             told.append(body)
         return [*told, *self.drivers.states(self.time_ms, GROUND_M)]
 
+    def _perceive(self) -> list[Any]:
+        """What is perceived now, which trackers hear of; AMASE tells nothing of it."""
+        told: list[Any] = []
+        if not self.compatible:
+            flying = (
+                Body(key, one.motion, self._mounted.get(key, ()))
+                for key, one in self.aircraft.items()
+            )
+            bodies = *flying, *self.drivers.bodies()
+            told += perceptions(bodies, self.time_ms, self.terrain)
+        for body in told:
+            self._perceived(body)
+        for key, track in list(self._tracks.lost(self.time_s)):
+            said, body = fall_back(key, track, self.time_s, self._one(key))
+            self._said.append(said)
+            if body is not None:
+                self._obey(body)
+        return told
+
+    def _perceived(self, body: Any) -> bool:
+        """Have the gimbals that track an entity stare at where it is; whether one does."""
+        stares = list(self._tracks.perceived(body, self.time_s))
+        for key, stare in stares:
+            if key in self.drivers.there:
+                self.drivers.stare(key, stare)
+            else:
+                self._mounted[key] = tuple(payload.act(g, stare) for g in self._mounted[key])
+        return bool(stares)
+
     def warnings(self) -> list[str]:
         """What vehicles were asked for and do not do, since it was asked last; each is said once."""
-        said, self.drivers.said = self.drivers.said, []
+        said = [*self._said, *self.drivers.said]
+        self._said, self.drivers.said = [], []
+        if self.terrain is not None:
+            said += self.terrain.said
+            self.terrain.said = []
         return said
 
     def receive(self, body: Any, where: str = "") -> None:
@@ -155,7 +239,7 @@ class World:
             before = self.aircraft.get(body.ID)
             self.aircraft[body.ID] = aircraft_of(body, airframe, before, where)
             self._mounted[body.ID] = payload.placed(self._mounted[body.ID], body)
-        elif kind in ("MissionCommand", "VehicleActionCommand") or self.drivers.takes(body):
+        elif kind in ("MissionCommand", "VehicleActionCommand") or self._follows(body):
             self._command(body, where)
         elif kind == "AutomationResponse":
             commands = (*body.MissionCommandList, *body.VehicleCommandList)
@@ -174,6 +258,13 @@ class World:
                 self.aircraft.pop(key, None)
                 self._airframes.pop(key, None)
                 self._mounted.pop(key, None)
+                self._grounded.discard(key)
+                self._tracks.removed(key)
+                self._paths.drop(key)
+        elif kind == "EntityPerception":
+            check_place(body.Location, where, f"{kind} of {body.PerceivedEntityID}")
+            if not self._perceived(body):
+                self.unheard[kind] += 1
         else:
             self.unheard[kind] += 1
 
@@ -198,6 +289,8 @@ class World:
 
     def _check(self, body: Any, where: str) -> None:
         """BadInput for a command that cannot be done."""
+        if type(body).__name__ == "FollowPathCommand":
+            check_times(body, where)
         check_command(body, where, flies=body.VehicleID not in self.drivers.there)
         if body.VehicleID not in self.aircraft and body.VehicleID not in self.drivers.there:
             there = [*self.aircraft, *self.drivers.there]
@@ -211,10 +304,45 @@ class World:
 
     def _command(self, body: Any, where: str) -> None:
         self._check(body, where)
+        if steers(body):
+            self._tracks.steered(body.VehicleID)
+            self._paths.drop(body.VehicleID)
+        if self._follows(body):
+            self._paths.hold(body)
+            self._keep_to_times()
+        else:
+            self._obey(body)
+
+    def _follows(self, body: Any) -> bool:
+        """Whether an object is a path for who takes one: all but AMASE's aircraft."""
+        if type(body).__name__ != "FollowPathCommand":
+            return False
+        flies = body.VehicleID in self.aircraft and not self.compatible
+        return flies or body.VehicleID in self.drivers.there
+
+    def _keep_to_times(self) -> None:
+        """Paths begin and end when they are due."""
+        for body, begins in self._paths.due(self.time_ms):
+            key = body.VehicleID
+            one = self._one(key)
+            if begins:
+                circle = partial(circle_m, one) if isinstance(one, Aircraft) else None
+                path = path_of(body, circle)
+                self._obey(path.mission, path.told)
+            else:
+                flies = isinstance(one, Aircraft)
+                at = here(one.motion) if flies else self.drivers.halt(key)
+                self._obey(stay(key, body.CommandID, one, at))
+
+    def _one(self, key: int) -> Aircraft | Driver:
+        """A vehicle that is there."""
+        return self.aircraft[key] if key in self.aircraft else self.drivers.there[key]
+
+    def _obey(self, body: Any, told: Mapping[int, int] = NOTHING) -> None:
         if body.VehicleID in self.drivers.there:
-            self.drivers.command(body)
+            self.drivers.command(body, told)
             return
-        one = receive(self.aircraft[body.VehicleID], body)
+        one = receive(self.aircraft[body.VehicleID], body, told)
         for fired in one.guidance.fired:
             self._act(body.VehicleID, fired)
         self.aircraft[body.VehicleID] = one._replace(guidance=one.guidance._replace(fired=()))
@@ -222,6 +350,8 @@ class World:
     def _act(self, key: int, body: Any) -> None:
         """An action for what is mounted on a vehicle."""
         mounted = self._mounted.get(key, ())
+        if self._tracks.act(key, mounted, body):
+            return
         if not payload.is_for(mounted, body):
             self.unheard[type(body).__name__] += 1
             return

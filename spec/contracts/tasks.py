@@ -60,4 +60,7 @@ KEPT_IN = (INIT, COMPLETED)
 
 def row(state: int, event: int) -> tuple[int, int]:
     """Next state and act for an event about the request that the task works for."""
-    return TABLE.get((state, event), (state, STALE if event in REPLIES else NOTHING))
+    for (before, met), (after, act) in TABLE.items():
+        if state == before and event == met:
+            return after, act
+    return state, STALE if event in REPLIES else NOTHING

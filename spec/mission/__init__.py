@@ -231,6 +231,14 @@ class WellClear:
     tcoa_s: float
 
 
+class Resolution(StrEnum):
+    """Kinds of manoeuvres: heading: turns; altitude: climbs and descents; speed: slower and faster."""
+
+    HEADING = "heading"
+    ALTITUDE = "altitude"
+    SPEED = "speed"
+
+
 @dataclass(frozen=True)
 class Daa:
     """How ICAROUS detects and avoids: the volume it keeps and how far it looks ahead.
@@ -243,12 +251,33 @@ class Daa:
     buffer: float = 1.25
     close_starts: bool = False
 
+    @property
+    def looks_first(self) -> Resolution:
+        """The kind of manoeuvre that is looked for first; the others where there is none of it."""
+        if isinstance(self, OrderedDaa | OrderedSensedDaa):
+            return self.resolution
+        return Resolution.HEADING
+
+
+@dataclass(frozen=True)
+class OrderedDaa(Daa):
+    """The same where another kind of manoeuvre than turns is looked for first."""
+
+    resolution: Resolution = Resolution.HEADING
+
 
 @dataclass(frozen=True)
 class SensedDaa(Daa):
     """The same where ICAROUS is given what sensors see, and not the true states."""
 
     sensing: Sensing = field(default_factory=lambda: Sensing(()))
+
+
+@dataclass(frozen=True)
+class OrderedSensedDaa(SensedDaa):
+    """Both."""
+
+    resolution: Resolution = Resolution.HEADING
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import json
+import pickle
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -20,15 +24,37 @@ TRIED = [
 ]
 
 
-@pytest.fixture(scope="module", autouse=True)
-def _prepared() -> None:
-    trial.prepare()
+Attempt = Callable[[case.Case], trial.Trial]
+
+
+@pytest.fixture(scope="module")
+def attempt(root: Path) -> Iterator[Attempt]:
+    """`trial.attempt` in a small process, from which forking is cheap."""
+    child = subprocess.Popen(
+        [sys.executable, root / "tests" / "children" / "trial_child.py"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+    )
+    assert child.stdin is not None
+    assert child.stdout is not None
+    to_child, from_child = child.stdin, child.stdout
+
+    def tried(one: case.Case) -> trial.Trial:
+        pickle.dump(one, to_child)
+        to_child.flush()
+        found: trial.Trial = pickle.load(from_child)
+        return found
+
+    yield tried
+    to_child.close()
+    from_child.close()
+    assert child.wait(60) == 0
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("one", TRIED, ids=lambda one: one.id)
-def test_the_prover_judges_it_as_it_must(one: case.Case) -> None:
-    assert trial.attempt(one).wrong == "", one.because
+def test_the_prover_judges_it_as_it_must(one: case.Case, attempt: Attempt) -> None:
+    assert attempt(one).wrong == "", one.because
 
 
 def test_there_are_enough_of_each() -> None:
@@ -68,9 +94,9 @@ def _with(one: case.Case, verdict: str, says: str, old: str, new: str) -> case.C
     ],
 )
 def test_what_is_not_as_it_must_be_is_said(
-    verdict: str, says: str, old: str, new: str, wrong: str
+    verdict: str, says: str, old: str, new: str, wrong: str, attempt: Attempt
 ) -> None:
-    found = trial.attempt(_with(_honest(), verdict, says, old, new))
+    found = attempt(_with(_honest(), verdict, says, old, new))
     assert found.wrong.startswith(wrong)
     assert bool(found.wrong) == bool(wrong)
 
@@ -80,7 +106,7 @@ def test_a_ledger_that_vouches_for_what_is_refused_is_said() -> None:
     assert found.wrong == "refused, yet the ledger vouches"
 
 
-def test_no_case_touches_the_next() -> None:
+def test_no_case_touches_the_next(attempt: Attempt) -> None:
     """A case that changes the prover changes it for itself alone."""
     vandal = _with(
         _honest(),
@@ -89,8 +115,8 @@ def test_no_case_touches_the_next() -> None:
         "from cratous.core.kernel import kernel",
         "from cratous.core.kernel import kernel\nimport z3\nz3.Solver.check = lambda *a: z3.sat",
     )
-    assert trial.attempt(vandal).verdict != "accepted"
-    assert trial.attempt(_honest()).wrong == ""
+    assert attempt(vandal).verdict != "accepted"
+    assert attempt(_honest()).wrong == ""
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ import campaign_child
 import pytest
 from campaign_child import FUNCTION, flown, written
 
+from cratous.services.campaign import worker
 from cratous.services.campaign.campaign import Conduct, Course
 from cratous.services.campaign.definition import Campaign, Option, load_campaign
 from cratous.services.campaign.engine import Answer, here, refuse_other_version
@@ -124,6 +125,19 @@ def test_a_flier_of_another_version_flies_nothing(tmp_path: Path) -> None:
             one.fly(engine, Course(1), lambda _text: None)
         assert all(store.result(run.id) is None for run in one.runs())
     assert not (tmp_path / "flown").exists()
+
+
+def test_a_version_that_changed_between_flight_and_report_is_told_as_that(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    campaign = load_campaign(written(tmp_path, {"plain": ""}, ""), None, ())
+    monkeypatch.setattr(worker, "attempt", lambda _task: {"other version": "1" * 64})
+    with Store(tmp_path / "out") as store:
+        one = Conduct(campaign, store, FUNCTION, "0" * 64, False)
+        one.fly(at_once, Course(1), lambda _text: None)
+        with pytest.raises(Refused, match="have changed since the campaign was begun") as told:
+            command._reports(one, list(one.rows()), campaign, tmp_path, 1, lambda _text: None)
+    assert "gives another result" not in str(told.value)
 
 
 def test_two_campaigns_do_not_write_into_one_folder(tmp_path: Path) -> None:

@@ -12,9 +12,11 @@ import pytest
 from cratous.services.campaign.definition import Campaign, load_campaign
 from cratous.services.campaign.generators import KINDS, mission_of
 from cratous.services.campaign.runs import Run, runs_of
+from cratous.services.campaign.search import Search
 from cratous.services.cli import main
 from cratous.services.cli.campaign_flight import fly_run
 from cratous.services.loading import load
+from cratous.services.loading.document import parse_document
 from cratous.spec.errors import BadInput
 from cratous.spec.mission.changes import TASK_ADDED as ADDED
 from cratous.spec.mission.changes import VEHICLE_LOST as LOST
@@ -126,10 +128,63 @@ def test_a_result_is_the_same_in_any_folder() -> None:
     assert "mission.yaml" not in one["why"][0]
 
 
+CASES = {
+    "much": {"some": {"keep_in": True, "zones_beside": 1, "ranges": {"room_m": [700, 700]}}},
+    "volume": {
+        "small": {"set": {"daa.well_clear.dthr_m": 60}, "ranges": {"time_s": [30, 40]}},
+        "large": {"intruders": 2, "ranges": {"time_s": [50, 60]}},
+    },
+}
+
+
+def test_each_seed_draws_one_of_the_cases(tmp_path: Path) -> None:
+    seen = set()
+    for run in made({"kind": "aimed", "cases": CASES}, range(1, 13)):
+        data, which = parse_document(run.decides["mission"], "m").data, run.drawn["volume"]
+        seen.add(which)
+        assert run.drawn["much"] == "some"
+        assert (which == "small") == (30 <= run.drawn["time_s"] <= 40) == ("daa" in data)
+        assert len(data["traffic"]) == {"small": 1, "large": 2}[which]
+        keep_out, keep_in = data["zones"]
+        assert (keep_out["kind"], keep_in["kind"]) == ("keep_out", "keep_in")
+        way = data["tasks"][0]["points"][0]["north_m"]
+        (south, west), _, (north, east), _ = keep_in["vertices"]
+        assert (west, east) == (-700, 700)
+        assert -south == north == pytest.approx(way + 700, abs=0.01)
+    assert seen == {"small", "large"}
+
+
+def test_an_intruder_that_would_start_too_near_is_drawn_anew() -> None:
+    generator = {"kind": "overtaking", "intruders": 2}
+    drawn_anew = 0
+    for seed in range(1, 13):
+        (usual, before), (far, draw) = (
+            mission_of({**generator, **more}, "a", seed) for more in ({}, {"apart_m": 1100})
+        )
+        own = far["vehicles"][0]["position"]["north_m"]
+        for one in (t["position"] for t in far["traffic"]):
+            assert hypot(one["north_m"] - own, one["east_m"]) > 1100
+        drawn_anew += usual["traffic"] != far["traffic"]
+        same = {name for name in draw.drawn if not name.startswith(("angle", "speed"))}
+        assert all(draw.drawn[name] == before.drawn[name] for name in same)
+    assert drawn_anew > 3
+
+
+def test_a_search_is_not_over_several_spaces() -> None:
+    generator = {"kind": "aimed", "cases": CASES}
+    campaign = Campaign("made", generator=generator, seeds=range(1, 2))
+    with pytest.raises(BadInput, match="one space") as error:
+        Search(campaign, "G2", "v", True)
+    assert error.value.item == "generator.cases"
+
+
 def test_one_flies_alone_to_the_same_digest(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], root: Path
 ) -> None:
-    (run,) = made({"kind": "head_on"}, range(3, 4))
+    file = root / "examples" / "campaigns" / "aimed-1000.yaml"
+    (run,) = runs_of(load_campaign(file, range(6, 7), ()), "v", True)
+    assert run.drawn["volume"] == "small-cylinder"
+    assert "seed: 6" in run.decides["mission"], "errors of its own"
     found = fly_run(run.decides)
     file = tmp_path / "mission.yaml"
     file.write_text(run.decides["mission"])

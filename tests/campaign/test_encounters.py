@@ -43,13 +43,28 @@ def _campaign(folder: Path, text: str) -> Campaign:
     return load_campaign(file, None, ())
 
 
-@pytest.mark.parametrize(("kind", "zones"), [("converging", 0), ("aimed", 2)])
-def test_it_is_flown_as_a_whole_flight_is(tmp_path: Path, kind: str, zones: int) -> None:
+SENSING = {
+    "seed": 3,
+    "sensors": [
+        {"kind": "gps", "horizontal_m": 3, "vertical_m": 5, "velocity_m_s": 0.3},
+        {"kind": "adsb", "horizontal_m": 10, "vertical_m": 8, "velocity_m_s": 1, "latency_s": 0.4, "drop_out": 0.2},
+    ],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("kind", "zones", "more"),
+    [("converging", 0, {}), ("aimed", 2, {}), ("converging", 0, {"sensing": SENSING})],
+)
+def test_it_is_flown_as_a_whole_flight_is(
+    tmp_path: Path, kind: str, zones: int, more: dict[str, Any]
+) -> None:
     """To the millimetre, takeover and handback included."""
     from cratous.services.cli.job import new_bus, plan_and_check
     from cratous.services.flight.loop import fly
 
-    mission = load(_written(tmp_path, {**GENERATOR, "kind": kind, "zones_beside": zones}, 2))
+    generator = {**GENERATOR, "kind": kind, "zones_beside": zones}
+    mission = load(_written(tmp_path, generator, 2, **more))
     alone = fly_encounter(mission)
     bus, whole = new_bus(), dict[int, tuple[float, ...]]()
 

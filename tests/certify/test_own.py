@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import csv
 import hashlib
 import json
@@ -9,9 +10,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 from certify_tools import Run, edited, meta, read
 from own_tools import TEXT, changed, rows
 
+from cratous.core import ledger
+from cratous.services.argument.build import argument
+from cratous.services.argument.elements import Element, State
+from cratous.services.argument.form import document, faults
 from cratous.services.certify import rejudge
 from cratous.services.certify.report import Flown
 from cratous.services.cli import job
@@ -237,3 +243,102 @@ def test_the_full_report_has_source_lint_margins_and_what_nothing_tested(views: 
     assert "1 violated, 1 unknown" in page[page.index("Requirements of one") :][:80]
     assert "z_1 - 90 m: least" in page
     assert "until_decided -&gt; requirements_until_of_any_sample_is_its_definition" in page
+
+
+# ---- in the assurance argument ------------------------------------------------------------------
+
+GOALS = {"FLOOR": 1, "BANK": 2, "IDLE": 3, "GONE": 4, "RISE": 5}
+
+
+@pytest.fixture
+def report(with_own: Path) -> dict[str, Any]:
+    found = read(with_own)
+    if found["proofs"]["problems"]:
+        pytest.skip("a kernel is not proved at present")
+    return found
+
+
+def goal(elements: dict[str, Element], name: str) -> Element:
+    return elements[f"G-own-{GOALS[name]}"]
+
+
+def test_each_is_a_goal_with_its_text_verdict_and_file(report: dict[str, Any]) -> None:
+    elements = argument(report, ())
+    assert faults(document(elements.values())) == []
+    assert elements["G-run"].supported_by == ("S-guarantees", "S-own")
+    assert elements["S-own"].supported_by == tuple(f"G-own-{n}" for n in GOALS.values())
+    assert {name: goal(elements, name).state for name in GOALS} == {
+        "FLOOR": State.SUPPORTED, "BANK": State.VIOLATED, "IDLE": State.NOTHING, "GONE": State.UNKNOWN,
+        "RISE": State.SUPPORTED,
+    }  # fmt: skip
+    for row in report["own"]["requirements"]:
+        one = goal(elements, row["requirement"])
+        assert one.text.startswith(row["text"])
+        assert f"In this run: {row['verdict']}, {row['note']}" in one.text
+        assert one.in_context_of[0] == "C-own-file-1"
+        # what is not supported has nothing that seems to support it
+        assert bool(one.supported_by) == (one.state is State.SUPPORTED)
+    (file,) = report["own"]["files"]
+    context = elements["C-own-file-1"].text
+    assert all(
+        said in context
+        for said in (file["sha256"], file["imports"][0]["sha256"], "no value ever came")
+    )
+    floor = goal(elements, "FLOOR").supported_by
+    assert {*floor} == {
+        "G-own-kernel-reaches",
+        "G-own-kernel-negated",
+        "G-own-kernel-both",
+        "Sn-own-1",
+    }
+    assert elements["G-own-kernel-both"].supported_by == (
+        "G-theorem-requirements_verdicts_join_as_their_definitions",
+    )
+    assert (
+        "of its 3 kernels judged a requirement"
+        in elements["Sn-requirements_verdicts_join_as_their_definitions"].text
+    )
+    assert "Blame: " in goal(elements, "BANK").text
+
+
+def test_the_top_says_which_of_them_hold(report: dict[str, Any]) -> None:
+    top = argument(report, ())["G-run"]
+    assert top.state is State.VIOLATED
+    assert "FLOOR, BANK, IDLE, GONE, RISE of one's own, of which nothing tested IDLE" in top.text
+    assert "Supported here: G1, G2, G3, G4, G5, FLOOR, RISE" in top.text
+    good = copy.deepcopy(report)
+    mine = good["own"]["requirements"]
+    good["own"]["requirements"] = [row for row in mine if row["requirement"] in ("FLOOR", "IDLE")]
+    good["verdict"] = "holds"
+    elements = argument(good, ())
+    assert elements["G-run"].state is elements["S-own"].state is State.SUPPORTED
+    assert "supported here" not in elements["G-run"].text.lower()
+    del good["own"]
+    assert elements["G-run"].text != argument(good, ())["G-run"].text
+    assert "S-own" not in argument(good, ())
+
+
+@pytest.mark.parametrize("lost", ["kernels", "theorems"])
+def test_what_the_ledger_does_not_have_proves_nothing(report: dict[str, Any], lost: str) -> None:
+    kept = copy.deepcopy(ledger.read())
+    name = {
+        "kernels": "cratous.core.requirements.verdict.both",
+        "theorems": "requirements_verdicts_join_as_their_definitions",
+    }[lost]
+    del kept[lost][name]
+    elements = argument(report, (), kept)
+    floor = goal(elements, "FLOOR")
+    assert floor.state is State.NOT_PROVED
+    assert elements["G-own-kernel-both"].state is State.NOT_PROVED
+    assert not any(one.startswith("Sn-") for one in floor.supported_by)
+    assert goal(elements, "RISE").state is State.SUPPORTED
+
+
+def test_yaml_and_picture_have_them(run: Run, with_own: Path, judged: None, tmp_path: Path) -> None:
+    code, _, err = run("certify", with_own, "--argument", "-o", tmp_path / "views")
+    assert code == 1, err
+    data = yaml.safe_load((tmp_path / "views" / "argument.yaml").read_text())
+    assert data["G-own-2"]["classes"] == ["violated"]
+    picture = (tmp_path / "views" / "argument.svg").read_text()
+    assert "Drawing G-own-2: violated" in picture
+    assert "Drawing G-own-5: supported" in picture

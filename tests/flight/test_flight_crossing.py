@@ -18,14 +18,7 @@ from cratous.bridge import lmcp
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear import StandardThresholds, violation_within
 from cratous.services.flight.loop import FlightResult
-from cratous.spec.mission import (
-    Mission,
-    Position,
-    Task,
-    TaskKind,
-    Vehicle,
-    WellClear,
-)
+from cratous.spec.mission import Mission, Position, Task, TaskKind, Vehicle, WellClear
 from cratous.spec.mission.plan import Plan, PlanItem
 
 LEAD_M = 2600.0

@@ -22,8 +22,16 @@ from cratous.services.icarous.messages import Sensed, Wish
 from cratous.services.icarous.permits import NONE
 from cratous.services.icarous.proposal import AGAIN_MS, STEPS, TURNS_DEG, WIDE_DEG, manoeuvre
 from cratous.services.icarous.state import Config, Met, Search, State
+from cratous.services.logs.records import from_data, to_data
 from cratous.spec.authority.cycle import AVOID, OFFER
-from cratous.spec.mission import Daa, Position, Velocity
+from cratous.spec.mission import (
+    Daa,
+    OrderedDaa,
+    OrderedSensedDaa,
+    Position,
+    Resolution,
+    Velocity,
+)
 
 CONFIG = Config(1, Daa(VOLUME, buffer=1.25), PROJECTION, 500)
 WAY = (Position(-1000.0, 0.0, 300.0), Position(9000.0, 0.0, 300.0))
@@ -55,6 +63,29 @@ def sensed(now_ms: int, *others: Intruder) -> Sensed:
 def flying(*others: Intruder) -> State:
     told = Told(waypoints=WAY, next_index=1, speed_m_s=22.0)
     return State(told=told, met=tuple(Met(other.id, NONE) for other in others))
+
+
+@pytest.mark.parametrize("first", [Resolution.ALTITUDE, Resolution.SPEED])
+def test_another_kind_of_manoeuvre_is_looked_for_first_where_the_mission_says_so(
+    first: Resolution,
+) -> None:
+    """Both by the search for what is over soonest and without it; turns where none of the kind is free."""
+    config = CONFIG._replace(daa=OrderedDaa(VOLUME, buffer=1.25, resolution=first))
+    state, now = flying(CROSSES), sensed(0, CROSSES)
+    _, choice = manoeuvre(config, state, now, frozenset(), False)
+    assert (choice.kind, choice.clear) == (first, True)
+    scene = scene_of(config, state, now)
+    least = resolve(NORTH, ABILITY, scene, 0.0, 22.0, None)
+    assert (least.kind, least.clear) == (first, True)
+    # what is held is flown on; with the conflict over it is the course again
+    assert resolve(NORTH, ABILITY, scene, 0.0, 22.0, least) == least
+    assert resolve(NORTH, ABILITY, scene._replace(intruders=()), 0.0, 22.0, least).kind == "heading"
+    stiff = ABILITY._replace(max_climb_m_s=0.0, min_speed_m_s=22.0, max_speed_m_s=22.0)
+    assert resolve(NORTH, stiff, scene, 0.0, 22.0, None).kind == "heading"
+    kept = to_data(config.daa)
+    assert from_data(Daa, kept) == config.daa
+    sensing = OrderedSensedDaa(VOLUME, resolution=first)
+    assert from_data(Daa, to_data(sensing)) == sensing
 
 
 def test_the_turn_is_flown_after_which_the_way_back_is_free_soonest() -> None:

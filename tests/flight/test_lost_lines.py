@@ -28,8 +28,9 @@ from cratous.services.icarous_program.step import Craft, IcarousEnd, Note, State
 from cratous.spec.mission import Daa, Position, Zone, ZoneKind
 
 PLAN = tuple(Position(1000.0 * k, 0.0, 300.0) for k in range(6))
-SQUARE = ((-9e3, -9e3), (-9e3, 9e3), (9e3, 9e3), (9e3, -9e3))
-ZONES = tuple(Zone(k, ZoneKind.KEEP_IN, SQUARE[: 5 - k], 0.0, 500.0 * k) for k in (1, 2))
+# the plan is well inside of all four and of the first three: nothing has to be flown around
+CORNERS = ((-9e3, -9e3), (-9e3, 9e3), (18e3, 0.0), (6e3, -9e3))
+ZONES = tuple(Zone(k, ZoneKind.KEEP_IN, CORNERS[: 5 - k], 0.0, 500.0 * k) for k in (1, 2))
 
 
 class Wire:

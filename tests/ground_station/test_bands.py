@@ -1,4 +1,4 @@
-"""Heading bands that a log tells: read as they are, and shown around their vehicle in a real browser."""
+"""Bands and alerts that a log tells: read as they are, and shown in a real browser, now and over time."""
 
 from __future__ import annotations
 
@@ -38,28 +38,59 @@ def test_the_bands_of_a_log_are_those_of_its_messages(tmp_path: Path) -> None:
     assert vehicle == "2"
     assert len(rows) == len(told) == 30
     assert [row["time_ms"] for row in rows] == list(range(0, 30_000, 1000))
-    assert {region for row in rows for _, _, region in row["bands"]} == {"NEAR", "RECOVERY"}
+    regions = {region for row in rows for _, _, region in row["bands"].get("heading", ())}
+    assert regions == {"NEAR", "RECOVERY"}
+    assert {name for row in rows for name in row["bands"]} == set(FIELDS)
     for row, said in zip(rows, told, strict=True):
-        assert row["heading_deg"] == round(said.CurrentHeading, 1)
-        told_bands = [
-            [*(round(end, 1) for end in interval.GroundHeadings), region.name]
-            for interval, region in zip(
-                said.WCVGroundHeadingIntervals, said.WCVGroundHeadingRegions, strict=True
-            )
-        ]
-        told_bands += [
-            [*(round(end, 1) for end in interval.RecoveryGroundHeadings), "RECOVERY"]
-            for interval in said.RecoveryGroundHeadingIntervals
-        ]
-        assert [list(band) for band in row["bands"]] == told_bands
+        assert row["own"] == pytest.approx(
+            [said.CurrentHeading, said.CurrentGoundSpeed, said.CurrentVerticalSpeed, said.CurrentAltitude],
+            abs=0.06,
+        )  # fmt: skip
+        for name, (intervals, regions_of, ends, recoveries, recovery_ends) in FIELDS.items():
+            found = row["bands"].get(name, [])
+            told_bands = [
+                (*getattr(interval, ends), region.name)
+                for interval, region in zip(
+                    getattr(said, intervals), getattr(said, regions_of), strict=True
+                )
+            ]
+            told_bands += [
+                (*getattr(interval, recovery_ends), "RECOVERY")
+                for interval in getattr(said, recoveries)
+            ]
+            assert [band[2] for band in found] == [band[2] for band in told_bands]
+            for band, expected in zip(found, told_bands, strict=True):
+                assert band[:2] == pytest.approx(expected[:2], abs=0.06)
         assert [one[0] for one in row["intruders"]] == said.EntityList
+        assert [one[2] for one in row["intruders"]] == said.AlertLevelList
+
+
+FIELDS = {
+    "heading": (
+        "WCVGroundHeadingIntervals", "WCVGroundHeadingRegions", "GroundHeadings",
+        "RecoveryGroundHeadingIntervals", "RecoveryGroundHeadings",
+    ),
+    "speed": (
+        "WCVGroundSpeedIntervals", "WCVGroundSpeedRegions", "GroundSpeeds",
+        "RecoveryGroundSpeedIntervals", "RecoveryGroundSpeeds",
+    ),
+    "climb": (
+        "WCVVerticalSpeedIntervals", "WCVVerticalSpeedRegions", "VerticalSpeeds",
+        "RecoveryVerticalSpeedIntervals", "RecoveryVerticalSpeed",
+    ),
+    "altitude": (
+        "WCVAlitudeIntervals", "WCVAltitudeRegions", "Altitude", "RecoveryAltitudeIntervals",
+        "RecoveryAltitude",
+    ),
+}  # fmt: skip
 
 
 def _body(**changed: Any) -> dict[str, Any]:
     return {
-        "$type": "DAIDALUS/WellClearViolationIntervals", "EntityId": 2, "CurrentHeading": 10.04,
+        **json.loads(lmcp.to_json(lmcp.new("WellClearViolationIntervals", EntityId=2))),
+        "CurrentHeading": 10.04,
         "WCVGroundHeadingIntervals": [{"GroundHeadings": [350.0, 20.0]}],
-        "WCVGroundHeadingRegions": ["NEAR"], "RecoveryGroundHeadingIntervals": [],
+        "WCVGroundHeadingRegions": ["NEAR"],
         "EntityList": [1], "TimeToViolationList": [5.0], "AlertLevelList": [3.0], **changed,
     }  # fmt: skip
 
@@ -74,7 +105,9 @@ def _read(*bodies: Any) -> Bands:
 
 def test_the_first_message_of_each_second_stays() -> None:
     bands = _read(*(_body(CurrentHeading=k) for k in range(6)))
-    assert [row["heading_deg"] for row in bands.found["2"]] == [0, 3, 5]
+    assert [row["own"][0] for row in bands.found["2"]] == [0, 3, 5]
+    assert bands.take_new() == bands.found
+    assert bands.take_new() == {}
     assert bands.unread == 0
 
 
@@ -88,6 +121,9 @@ def test_the_first_message_of_each_second_stays() -> None:
         {"WCVGroundHeadingIntervals": [{"GroundHeadings": [350.0, None]}]},
         {"WCVGroundHeadingIntervals": [{"GroundHeadings": [350.0, 1e999]}]},
         {"WCVGroundHeadingIntervals": 7},
+        {"WCVAltitudeRegions": ["NEAR"]},
+        {"RecoveryVerticalSpeedIntervals": [{}]},
+        {"CurrentGoundSpeed": None},
         {"EntityId": None},
         {"EntityList": [1, 2]},
         {"EntityList": [1e999]},
@@ -98,17 +134,17 @@ def test_a_message_that_does_not_fit_is_counted_and_not_shown(changed: dict[str,
     bands = _read(_body(**changed), "{", "[]", _body())
     assert bands.unread == 3
     (row,) = bands.found["2"]
-    assert row["bands"] == [(350.0, 20.0, "NEAR")]
+    assert row["bands"] == {"heading": [(350.0, 20.0, "NEAR")]}
     assert row["time_ms"] == 1200
 
 
-def _pixels(page: Page, name: str) -> int:
-    """Pixels of the map in a colour of the style sheet."""
+def _pixels(page: Page, name: str, canvas: str = "map") -> int:
+    """Pixels of a canvas in a colour of the style sheet."""
     return int(
         page.value(f"""(() => {{
         const hex = getComputedStyle(document.documentElement).getPropertyValue('--{name}').trim();
         const [r, g, b] = [1, 3, 5].map(k => parseInt(hex.slice(k, k + 2), 16));
-        const map = document.getElementById('map');
+        const map = document.getElementById('{canvas}');
         const pixels = map.getContext('2d').getImageData(0, 0, map.width, map.height).data;
         let found = 0;
         for (let k = 0; k < pixels.length; k += 4)
@@ -129,28 +165,65 @@ def test_the_bands_of_an_instant_are_drawn_and_written(tmp_path: Path) -> None:
     log, _ = _log(tmp_path)
     rows = recording(log)["bands"]["2"]
     regions = {"NEAR", "RECOVERY"}
-    k, row = next((k, row) for k, row in enumerate(rows) if regions == {b[2] for b in row["bands"]})
+    k, row = next(
+        (k, row)
+        for k, row in enumerate(rows)
+        if regions == {b[2] for b in row["bands"].get("heading", ())}
+    )
     with serving(log) as (_, port), browsing(tmp_path / "profile") as page:
         page.go(f"http://127.0.0.1:{port}/#t=0&theme=light")
         page.until(READY)
         note = _at(page, k + 0.4)
-        assert note.startswith(f"Aircraft 2, told at {k}.0 s: heading 10.0°.")
+        assert note.startswith(f"Aircraft 2, told at {k}.0 s: heading 10.0°, speed 50.0 m/s, ")
         assert note.endswith("not judged here.")
         written = page.value(
             "[...document.querySelectorAll('#bands tr')].slice(1)"
             ".map(row => [...row.children].map(cell => cell.textContent))"
         )
-        assert written == [
-            [f"{low:.1f}° to {high:.1f}°", region.lower()] for low, high, region in row["bands"]
+        bands = row["bands"]
+        assert [line[0] for line in written] == [name for name in bands for _ in bands[name]]
+        assert [line[1:] for line in written if line[0] == "heading"] == [
+            [f"{low:.1f}° to {high:.1f}°", region.lower()] for low, high, region in bands["heading"]
+        ]
+        assert [line[1:] for line in written if line[0] == "altitude"] == [
+            [f"{low:.0f} m to {high:.0f} m", region.lower()]
+            for low, high, region in bands["altitude"]
         ]
         assert page.value("document.querySelectorAll('#intruders tr').length") == 2
-        for region in regions:
-            assert _pixels(page, f"band-{region.lower()}") > 100, region
+        drawn = {region: _pixels(page, f"band-{region.lower()}") for region in regions}
+        assert min(drawn.values()) > 100
         assert _at(page, k + 1, "&aircraft=1") == "Pick an aircraft: the log has bands of 2."
         assert page.text("bands") == page.text("intruders") == ""
         for region in regions:
-            assert _pixels(page, f"band-{region.lower()}") < 20, region
+            # what is left is the square around an intruder with an alert
+            assert _pixels(page, f"band-{region.lower()}") < drawn[region] / 2, region
         assert page.logged == []
+        _charts(page, rows)
+        assert page.logged == []
+
+
+def _charts(page: Page, rows: list[Any]) -> None:
+    """The tapes, the alert, and the bands over time of the same log."""
+    (_, time_s, level) = rows[5]["intruders"][0]
+    _at(page, 5, "&aircraft=2")
+    assert f"▲ alert {level:g} for 2, violation in {time_s:.1f} s" in _shown(page, "aircraft")
+    assert _pixels(page, "band-near", "tapes") > 100
+    assert _pixels(page, "band-near", "spectrum") > 1000
+    before = page.value("document.getElementById('spectrum').toDataURL()")
+    page.key("b")
+    assert page.value("location.hash").endswith("&bands=speed")
+    assert page.value("document.getElementById('dimension').value") == "speed"
+    assert page.value("document.getElementById('spectrum').toDataURL()") != before
+    page.click("#spectrum")
+    assert 12 < float(page.value("document.getElementById('slider').value")) / 1000 < 18
+
+
+def _shown(page: Page, name: str) -> str:
+    """The text of an element with what its style sheet puts before the parts."""
+    return str(
+        page.value(f"""[...document.querySelectorAll('#{name} .alert')].map(one =>
+            getComputedStyle(one, '::before').content.slice(1, -1) + one.textContent).join()""")
+    )
 
 
 @pytest.mark.slow

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -89,7 +90,7 @@ def test_clicks_go_to_events_margins_and_the_chart_and_pick_an_aircraft(page: Pa
     page.click("#events li:nth-child(7) button")
     assert page.value("document.querySelector('#events .now').textContent").startswith("34.5 s")
     assert "authority UxAS" in page.text("aircraft")
-    page.click("#verdicts button")
+    page.click("#verdicts .jump")
     assert page.text("clock").startswith("00:01:39.2 of")  # where the margin of G2 is least
     page.click("#altitude")
     assert 90 < _time_s(page) < 115
@@ -103,6 +104,42 @@ def test_clicks_go_to_events_margins_and_the_chart_and_pick_an_aircraft(page: Pa
     page.until("location.hash.includes('map=')")
     page.key("f")
     page.until("!location.hash.includes('map=')")
+
+
+def test_a_verdict_leads_to_its_kernel_theorem_solvers_and_mutants(
+    page: Page, crossing: Path
+) -> None:
+    row = "[...document.querySelectorAll('#verdicts tr')].find(one => one.textContent.includes({}))"
+    part = row.format("'well clear of 1 and 2'")
+    page.value(f"{part}.querySelector('td:last-child button').click()")
+    told = " ".join(page.text("proofs").split())
+    report = json.loads((crossing / "report.json").read_text(encoding="utf-8"))
+    (name,) = {
+        name
+        for one in report["constraints"]
+        for name in one["kernels"]
+        if one["item"] == "well clear of 1 and 2"
+    }
+    (short,) = {name.rpartition(".")[2]}
+    assert f"Kernel {short}: " in told
+    (theorem, *_) = report["proofs"]["kernels"][name]["against"]
+    assert report["proofs"]["theorems"][theorem]["sentence"] in told
+    assert f"{report['proofs']['solver']}: proved, " in told
+    assert "confirmed" in told
+    assert "mutants on record" in told
+    assert f"Definition {report['proofs']['kernels'][name]['definition']} in spec/" in told
+    # lemmas are made when they are asked for
+    lemmas = "document.querySelector('#proofs .lemmas')"
+    page.value(f"{lemmas}.open = true")
+    page.until(f"{lemmas}.querySelector('.theorem')?.textContent.startsWith('Lemma ')")
+    # keys of the page behind do nothing
+    page.key("n")
+    assert page.text("clock").startswith("00:00:00.0 of")
+    page.click("#proofs button")
+    assert not page.value("document.getElementById('proofs').open")
+    page.value(row.format("'G1 '") + ".querySelector('td:last-child button').click()")
+    parts = sum(one["requirement"] == "G1" for one in report["constraints"])
+    assert page.value("document.querySelectorAll('#proofs-parts > details').length") == parts
 
 
 def test_the_map_draws_the_takeover_in_its_colour(page: Page) -> None:

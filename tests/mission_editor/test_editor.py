@@ -15,10 +15,12 @@ from typing import Any
 import pytest
 from ground_station_tools import LIMIT_S, Served, ask
 
-from cratous.services.exporting.exported import FORMATS, exported
+from cratous.services.exporting.exported import ALL, exported
 from cratous.services.ground_station.server import Commands, GroundStation, ReadAnew
 from cratous.services.loading.document import parse_document
 from cratous.services.loading.yaml_mission import loaded
+from cratous.services.logs.records import from_data
+from cratous.spec.mission.plan import Plan
 
 
 def opened(editor: Served) -> Any:
@@ -101,11 +103,18 @@ def test_only_the_page_with_the_token_may_edit(editor: Served, mission: Path) ->
     assert mission.read_text(encoding="utf-8") == first["text"]
 
 
-@pytest.mark.parametrize("form", FORMATS)
+@pytest.mark.parametrize("form", ALL)
 def test_a_text_is_exported_as_it_stands(editor: Served, mission: Path, form: str) -> None:
     text = opened(editor)["text"].replace("east_m: 2500, alt_m", "east_m: 2600, alt_m")
-    told = editor.edit("/export", text=text, format=form).data()
-    made = exported(loaded(parse_document(text, "typed")), form)
+    one: dict[str, int] = {"vehicle": 2} if form == "qgc" else {}
+    if form == "geofence":
+        assert editor.edit("/export", text=text, format=form).status == 422  # there are no zones
+        corners = [[0, 9000], [500, 9000], [500, 9500]]
+        zone = {"kind": "keep_out", "vertices": corners}
+        added = editor.edit("/change", text=text, do="add", list="zones", item=zone)
+        text = added.data()["text"]
+    told = editor.edit("/export", text=text, format=form, **one).data()
+    made = exported(loaded(parse_document(text, "typed")), form, **one)
     assert told["files"] == made.files
     assert told["unsaid"][: len(made.unsaid)] == list(made.unsaid)
     assert "variation: a section of the mission file" in told["unsaid"]
@@ -139,6 +148,20 @@ def test_a_text_is_planned_as_cratous_plan_does_and_says_why(editor: Served) -> 
         time.sleep(0.05)
     assert why["2"][0].startswith("task 2 is given to vehicle 2: the plan costs ")
     assert "vehicle 1: " in why["2"][1]
+    made = from_data(Plan, told["plan"], "plan")
+    routed: list[tuple[str, dict[str, int]]] = [("geojson", {}), ("qgc", {"vehicle": 2})]
+    for form, one in routed:
+        got = editor.edit("/export", text=text, format=form, plan_number=number, **one).data()
+        assert got["files"] == exported(loaded(parse_document(text, "")), form, made, **one).files
+    asked = {"text": text, "plan_number": number}
+    refused: list[tuple[dict[str, Any], int]] = [
+        ({"format": "qgc", "vehicle": 2, "text": text + "\n"}, 409),
+        ({"format": "qgc", "vehicle": 2, "plan_number": number + 1}, 409),
+        ({"format": "qgc", "vehicle": 9}, 422), ({"format": "qgc"}, 422),
+        ({"format": "kml", "vehicle": 2}, 400), ({"format": "amase"}, 400),
+    ]  # fmt: skip
+    for wrong, status in refused:
+        assert editor.edit("/export", **{**asked, **wrong}).status == status, wrong
 
 
 @pytest.mark.slow

@@ -202,14 +202,37 @@ def test_what_is_wrong_is_listed_and_leads_to_its_line(page: Page) -> None:
 
 def test_a_mission_is_downloaded_in_another_format(page: Page, tmp_path: Path) -> None:
     page.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path / "got"))
-    page.value("document.getElementById('export-format').value = 'geojson'")
-    page.click("#export")
-    page.until("!document.getElementById('exported').hidden")
+    data = json.loads(_downloaded(page, tmp_path / "got" / "crossing.geojson", "geojson"))
     assert page.text("exported-files") == "crossing.geojson; this format does not say:"
     assert "relations" in page.text("unsaid")
-    file, until_s = tmp_path / "got" / "crossing.geojson", time.monotonic() + 60
+    assert {f["properties"]["kind"] for f in data["features"]} >= {"vehicle", "must_fly"}
+    page.click("#plan")
+    page.until("document.querySelectorAll('#gantt .bar').length === 2")
+    flown = _downloaded(page, tmp_path / "got" / "crossing.waypoints", "qgc", vehicle=2)
+    assert page.text("exported-files").startswith("crossing.waypoints, with the planned routes; ")
+    assert flown.startswith("QGC WPL 110")
+    assert len(flown.splitlines()) >= 4
+    write(page, "text", page.value(TEXT).replace("east_m: 2500", "east_m: 2600"))
+    # of another text than was planned, it is not the plan's way
+    (tmp_path / "got" / "crossing.waypoints").unlink()
+    other = _downloaded(page, tmp_path / "got" / "crossing.waypoints", "qgc", vehicle=2)
+    assert other != flown
+    assert page.text("exported-files").startswith("crossing.waypoints; ")
+    assert page.logged == []
+
+
+def _downloaded(page: Page, file: Path, form: str, vehicle: int | None = None) -> str:
+    """What the browser has saved of an export, once it is whole."""
+    page.value(
+        f"(f => {{ f.value = '{form}'; f.dispatchEvent(new Event('change')); }})"
+        "(document.getElementById('export-format'))"
+    )
+    if vehicle is not None:
+        page.until("!document.getElementById('export-vehicle').hidden")
+        page.value(f"document.getElementById('export-vehicle').value = '{vehicle}'")
+    page.click("#export")
+    until_s = time.monotonic() + 60
     while not file.exists():
         assert time.monotonic() < until_s
         time.sleep(0.05)
-    data = json.loads(file.read_text(encoding="utf-8"))
-    assert {f["properties"]["kind"] for f in data["features"]} >= {"vehicle", "must_fly"}
+    return file.read_text(encoding="utf-8")

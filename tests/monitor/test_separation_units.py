@@ -1,7 +1,8 @@
-"""The monitor asks its kernel in whole units: the answers are those in seconds and metres."""
+"""The monitor asks its kernels in whole units: the answers are those in seconds and metres."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -9,11 +10,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cratous.core.geofence.mission_legs import leg_ok
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear import StandardThresholds, violation_within
+from cratous.services.mission.zones import exact_leg_ok
 from cratous.services.monitor.samples import Sample
 from cratous.services.monitor.separation import WholeUnits
-from cratous.spec.mission import Position
+from cratous.spec.mission import Position, Zone, ZoneKind
 
 NUMBERS = st.one_of(
     st.sampled_from([0.0, 0.1, 150.0, -150.0, 30.0, 149.99999999999997, 1e-300, 2200.7]),
@@ -21,6 +24,15 @@ NUMBERS = st.one_of(
 )
 PLACES = st.builds(Position, NUMBERS, NUMBERS, NUMBERS)
 LIMITS = st.sampled_from([0.0, 0.1, 15.0, 30.0, 35.3, 150.0])
+
+
+def answered(units: WholeUnits, ends: tuple[Sample, Sample, Sample, Sample]) -> bool:
+    """Of own and other at the beginning, and at the end; somebody far off, in other parts of a metre, is there too."""
+    far = Position(1e6 / 3, 5e-324, -0.1)
+    own, other, own_after, other_after = ends
+    before = {1: own, 2: other, 3: own._replace(position=far)}
+    after = {1: own_after, 2: other_after, 3: own_after._replace(position=far), 4: own}
+    return units.step(before, after).lost(1, 2)
 
 
 def at(time_ms: int, place: Position) -> Sample:
@@ -52,7 +64,7 @@ def test_whole_units_answer_as_metres_and_seconds_do(
         at(500 + span_ms, own_after),
         at(500 + span_ms, other_after),
     )
-    assert WholeUnits(StandardThresholds(*limits)).lost(ends) == wanted
+    assert answered(WholeUnits(StandardThresholds(*limits)), ends) == wanted
 
 
 def test_touching_is_lost_and_a_hair_more_is_not() -> None:
@@ -60,7 +72,7 @@ def test_touching_is_lost_and_a_hair_more_is_not() -> None:
     for east_m, lost in ((150.0, True), (150.00000000000003, False)):
         pair = Position(0.0, 0.0, 300.0), Position(0.0, east_m, 330.0)
         ends = at(0, pair[0]), at(0, pair[1]), at(1000, pair[0]), at(1000, pair[1])
-        assert units.lost(ends) is lost
+        assert answered(units, ends) is lost
 
 
 @pytest.mark.parametrize(
@@ -82,10 +94,40 @@ def test_thresholds_are_in_metres_and_seconds(
 ) -> None:
     here = Position(0.0, 0.0, 0.0)
     ends = at(0, here), at(0, Position(*away)), at(33, here), at(33, Position(*later))
-    assert WholeUnits(StandardThresholds(*limits)).lost(ends) is lost
+    assert answered(WholeUnits(StandardThresholds(*limits)), ends) is lost
 
 
 def test_a_span_without_time_is_none() -> None:
     place = at(7, Position(0.0, 0.0, 0.0))
     with pytest.raises(ValueError, match="a span of 0 ms"):
-        WholeUnits(StandardThresholds(150.0, 30.0, 0.0, 0.0)).lost((place,) * 4)
+        answered(WholeUnits(StandardThresholds(150.0, 30.0, 0.0, 0.0)), (place,) * 4)
+
+
+CORNERS = [(0.1, -150.0), (0.1, 149.99999999999997), (400.0, 30.0), (1 / 3, -150.0)]
+
+
+@given(
+    st.lists(PLACES, min_size=2, max_size=2),
+    st.sampled_from([CORNERS, [*CORNERS[:2], (5e-324, 0.0)]]),
+    st.sampled_from(list(ZoneKind)),
+    st.sampled_from([(-1e3, 1e3), (30.0, 149.99999999999997), (0.1, 0.2)]),
+)
+def test_legs_are_held_to_zones_as_in_metres(
+    leg: list[Position],
+    corners: list[tuple[float, float]],
+    kind: ZoneKind,
+    heights: tuple[float, float],
+) -> None:
+    zone = Zone(1, kind, tuple(corners), *heights)
+    exact: Any = Fraction
+    whole = replace(
+        zone,
+        vertices=tuple((exact(n), exact(e)) for n, e in corners),
+        floor_m=exact(zone.floor_m),
+        ceiling_m=exact(zone.ceiling_m),
+        padding_m=0,
+    )
+    ends: Any = [Position(*map(Fraction, place)) for place in leg]
+    for p, q in ((ends[0], ends[1]), (ends[0], ends[0])):
+        there = [Position(*map(float, place)) for place in (p, q)]
+        assert exact_leg_ok(*there, zone) == leg_ok(p, q, whole)

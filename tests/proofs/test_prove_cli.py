@@ -13,11 +13,16 @@ import pytest
 
 from cratous.core import ledger as gate
 from cratous.core.ledger import records
+from cratous.core.schedule.rows import later
 from cratous.proofs import ledger, recheck
-from cratous.proofs.engine import prover
+from cratous.proofs.engine import prover, worker_processes
+from cratous.proofs.engine.cache import Answer
 from cratous.proofs.engine.outcomes import Ran
 from cratous.proofs.mutation import mutate
 from cratous.proofs.mutation import record as mutation_record
+from cratous.proofs.phases import COMPILING, SECOND, STATEMENTS, THEOREMS, Phases, TimedCache
+from cratous.proofs.running.compiling import compile_ahead
+from cratous.proofs.running.readings import MACHINE, compare
 from cratous.services.cli import main, prove
 
 FEW = "*its_definition"
@@ -264,3 +269,34 @@ def test_what_could_not_be_compared_is_named(capsys: pytest.CaptureFixture[str])
     out = capsys.readouterr().out
     assert "1 reading could not be compared" in out
     assert "not compared: f: the lifted term: why" in out
+
+
+def test_the_time_is_told_by_part_and_the_compiler_apart() -> None:
+    found = Phases({THEOREMS: 20.0, COMPILING: 5.0, STATEMENTS: 1.0})
+    assert found.line(2.0).startswith("21.0 s and 5.0 s of compiling: stating")
+    assert found.line(2.0).endswith("; z3 2.0 s of CPU")
+    before = found.seconds[COMPILING]
+    found.ended(COMPILING)
+    found.ended(SECOND)
+    assert found.seconds[COMPILING] >= before
+    assert list(found.seconds) == [THEOREMS, COMPILING, STATEMENTS, SECOND]
+
+
+def test_only_answers_that_are_found_anew_take_the_solver_s_time(tmp_path: Path) -> None:
+    store = TimedCache(tmp_path)
+    answer = Answer("unsat", 1, 0.25, "ALL")
+    worker_processes.call(lambda: store.put("one", 1, answer))
+    assert store.get("one", 1) == answer
+    assert store.seconds == 0.25
+
+
+def test_a_kernel_that_is_compiled_ahead_is_only_loaded_to_be_compared(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CRATOUS_CACHE", str(tmp_path))
+    key = (later.__module__, later.__qualname__)
+    compile_ahead({key: frozenset()}, 1)
+    made = {file.stat().st_mtime_ns for file in tmp_path.rglob("*.nbc")}
+    assert made
+    assert dict(compare(later).readings)[MACHINE]
+    assert {file.stat().st_mtime_ns for file in tmp_path.rglob("*.nbc")} == made

@@ -21,9 +21,10 @@ from cratous.proofs.engine.theorem_files import load_claim
 from cratous.proofs.ledger.report_formats import failure_text
 from cratous.proofs.running.arguments import rows
 from cratous.proofs.running.copies import Undecided, rational_root
-from cratous.proofs.running.readings import MACHINE, compare
+from cratous.proofs.running.readings import DOUBLES, MACHINE, TERM, compare
 from cratous.proofs.running.statement import False_, OnNumbers, Outside, Values
 from cratous.proofs.running.tracked import Rounded, Tracked
+from cratous.spec.contracts import tasks
 
 load_all()
 HEAD = '''"""What is claimed."""
@@ -231,3 +232,9 @@ def test_premises_and_goals_mean_on_numbers_what_they_say():
 def test_a_function_that_is_not_defined_where_it_is_used_is_a_difference():
     with pytest.raises(False_, match="not defined"):
         _on().define(lambda x: math.sqrt(x), Fraction(-1))
+
+
+def test_the_table_of_task_states_is_compared() -> None:
+    found = compare(tasks.row)
+    assert found.left_out == found.differences == ()
+    assert {name for name, _ in found.readings} == {TERM, DOUBLES}

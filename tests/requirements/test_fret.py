@@ -147,8 +147,8 @@ def test_a_sentence_of_an_export_is_said_with_its_ticks(timing) -> None:
 @pytest.mark.parametrize(
     ("text", "why", "place"),
     [
-        ("(G (alt + 1.0 > FLOOR))", "arithmetic", "column 9"),
-        ("(G far(alt))", "arithmetic, functions", "column 7"),
+        ("(G (alt ^ 2.0 > FLOOR))", "operator of numbers", "column 9"),
+        ("(G far(alt))", "this function", "column 7"),
         ("(G far)", "a function", "column 4"),
         ("(G busy)", "a mode that is defined", "column 4"),
         ("(G odd)", "no type", "column 4"),

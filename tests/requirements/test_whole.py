@@ -46,7 +46,12 @@ FORMULAS = st.recursive(
     max_leaves=9,
 )  # fmt: skip
 VALUES = st.sampled_from((0.0, 1.0, 2.0, None, math.nan, math.inf))
-ROWS = st.lists(st.tuples(st.integers(1, 3), VALUES, VALUES), max_size=14)
+EACH = st.lists(st.tuples(st.integers(1, 3), VALUES, VALUES), max_size=14)
+HELD = st.lists(st.tuples(VALUES, VALUES, st.integers(1, 4)), max_size=5).map(
+    lambda held: [(1 + k % 2, x, y) for x, y, times in held for k in range(times)]
+)
+"""Signals that are for some samples as they were."""
+ROWS = EACH | HELD
 SIGNALS = {name: Signal("float", "m") for name in "xy"}
 
 
@@ -82,6 +87,14 @@ def both_ways(formula: Formula, rows: list[tuple[int, Any, Any]]) -> tuple[Outco
         Bounded(Always(2), Reaches("x", 1.0), 0, 4, False), Reaches("y", 1.0), 0, 2, False
     ),
     rows=[(1, 0.0, 1.0), (1, 0.0, 0.0), (1, 0.0, 1.0), (1, 1.0, None), (1, 0.0, 0.0)],
+)
+@example(  # violated first at a sample that is as the one before, by comparisons that are not made again
+    formula=Join(
+        Join(Reaches("x", 1.0), Reaches("y", 1.0), True),
+        Not(Bounded(Always(2), Reaches("y", 0.0), 1, 5, True)),
+        False,
+    ),
+    rows=[(1, 0.0, 0.0), (1, 0.0, 0.0)],
 )
 def test_any_formula_over_any_trace(formula: Formula, rows: list[tuple[int, Any, Any]]) -> None:
     with pytest.MonkeyPatch.context() as patch:

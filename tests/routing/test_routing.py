@@ -51,13 +51,18 @@ def arguments(roadmap: Roadmap, starts: np.ndarray, ends: np.ndarray):
     return (starts, ends, turning, table, points), out
 
 
-def test_compiled_routes_are_those_of_cpython_bit_by_bit():
-    starts, ends = poses(60, 1)
+def searched(count: int, seed: int):
+    """Routes that CPython found, and twice what it was given, to find them another way."""
+    starts, ends = poses(count, seed)
     starts[:, 2] = 400.0
     roadmap = roadmaps(ZONES, 100.0)[0]
-    given, plain = arguments(roadmap, starts, ends)
-    routing.route_many(*given, plain)
-    given, fast = arguments(roadmap, starts, ends)
+    given, found = arguments(roadmap, starts, ends)
+    routing.route_many(*given, found)
+    return found, *arguments(roadmap, starts, ends)
+
+
+def test_compiled_routes_are_those_of_cpython_bit_by_bit():
+    plain, given, fast = searched(60, 1)
     machine(routing.route_many)(*given, fast)
     for one, other in zip(plain, fast, strict=True):
         assert np.array_equal(one, other)
@@ -66,12 +71,7 @@ def test_compiled_routes_are_those_of_cpython_bit_by_bit():
 
 
 def test_direct_routes_are_those_of_the_whole_search_and_no_others():
-    starts, ends = poses(80, 3)
-    starts[:, 2] = 400.0
-    roadmap = roadmaps(ZONES, 100.0)[0]
-    given, whole = arguments(roadmap, starts, ends)
-    routing.route_many(*given, whole)
-    given, direct = arguments(roadmap, starts, ends)
+    whole, given, direct = searched(80, 3)
     routing.direct_many(*given[:4], direct)
     taken = direct.codes == FOUND
     assert set(direct.codes) == {FOUND, routing.NOT_DIRECT}

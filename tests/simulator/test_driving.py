@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from driving_tools import at, hover, mission, order, vehicle
 from uxas_flight import across_m, local
 from uxas_tools import Client
 
@@ -21,45 +22,6 @@ from cratous.services.cli import main
 from cratous.services.simulator.server import Server
 from cratous.services.simulator.world import Event, World
 from cratous.spec.errors import BadInput
-
-LAT, LON = 30.0, -87.0
-METRE = math.degrees(1 / 6_378_137.0)
-
-
-def at(north_m: float, east_m: float) -> dict[str, float]:
-    """A place by metres from where the vehicle begins."""
-    scale = METRE / math.cos(math.radians(LAT))
-    return {"Latitude": LAT + METRE * north_m, "Longitude": LON + scale * east_m}
-
-
-def vehicle(kind: str = "Ground", **more: Any) -> list[Any]:
-    """Configuration and state of one that stands and heads north, 8 m/s as a rule and 12 at most."""
-    values = {"ID": 1, "NominalSpeed": 8.0, "MaximumSpeed": 12.0, **more}
-    state = lmcp.new(f"{kind}VehicleState", ID=1, Location=lmcp.new("Location3D", **at(0, 0)))
-    return [lmcp.new(f"{kind}VehicleConfiguration", **values), state]
-
-
-def hover(north_m: float, east_m: float, duration: int, kind: str = "Hover") -> Any:
-    place = lmcp.new("Location3D", **at(north_m, east_m))
-    return lmcp.new("LoiterAction", LoiterType=kind, Duration=duration, Location=place)
-
-
-def mission(*places: tuple[float, float], stand: int = -1, actions: Any = (), **more: Any) -> Any:
-    """Along places, the last one for good; actions: at the place of the number `stand`."""
-    ways = [
-        lmcp.new(
-            "Waypoint", Number=k, NextWaypoint=min(k + 1, len(places)), AssociatedTasks=[k],
-            VehicleActionList=list(actions) if k == stand else [], **at(*p), **more,
-        )
-        for k, p in enumerate(places, 1)
-    ]  # fmt: skip
-    return lmcp.new("MissionCommand", CommandID=7, VehicleID=1, FirstWaypoint=1, WaypointList=ways)
-
-
-def order(*actions: Any) -> Any:
-    return lmcp.new(
-        "VehicleActionCommand", CommandID=8, VehicleID=1, VehicleActionList=list(actions)
-    )
 
 
 def driven(vehicle: Sequence[Any], *orders: tuple[float, Any], seconds: float) -> list[Any]:
@@ -127,28 +89,6 @@ def test_it_stands_at_a_waypoint_for_as_long_as_is_asked() -> None:
     assert [s.Mode.name for s in states if s.Time in stood[2:-1]] == ["Loiter"] * (len(stood) - 3)
     assert all(list(s.AssociatedTasks) == [1] for s in states if s.Time in stood)
     assert track(states)[-1] == pytest.approx((120.0, 0.0), abs=0.3)
-
-
-def test_a_path_is_followed_with_its_pauses_once_or_in_a_loop() -> None:
-    ways = [
-        lmcp.new("PathWaypoint", Number=k, NextWaypoint=k + 1, PauseTime=9000 * (k == 2), **at(*p))
-        for k, p in ((1, (40.0, 0.0)), (2, (40.0, 40.0)), (3, (0.0, 0.0)))
-    ]
-    path = lmcp.new(
-        "FollowPathCommand", CommandID=7, VehicleID=1, FirstWaypoint=1, WaypointList=ways
-    )
-    once = driven(vehicle(), (0.5, path), seconds=90.0)
-    stood = [s.Time for s in once if s.CurrentWaypoint == 2 and s.Groundspeed == 0]
-    assert 8_500 <= stood[-1] - stood[0] <= 10_000
-    assert (once[-1].CurrentWaypoint, once[-1].Groundspeed, once[-1].CurrentCommand) == (3, 0, 7)
-    loop = driven(vehicle(), (0.5, path.copy(RepeatMode="Loop")), seconds=90.0)
-    numbers = [n for n, _ in itertools.groupby(s.CurrentWaypoint for s in loop)]
-    assert numbers[:6] == [0, 1, 2, 3, 1, 2]
-    world = World((), 10)
-    for body in (*vehicle(), path.copy(RepeatMode="ReverseCourse"), path.copy(VehicleID=2)):
-        world.receive(body)
-    assert "does not do a FollowPathCommand with StartTime" in world.warnings()[0]
-    assert world.unheard == {"FollowPathCommand": 1}, "of a vehicle that is not there"
 
 
 def test_a_stand_for_ever_ends_by_command_and_one_by_command_goes_there() -> None:
@@ -239,6 +179,10 @@ def test_a_camera_on_a_car_looks_where_it_is_told() -> None:
         ),
         ([*vehicle(), order(hover(math.nan, 0, 0))], "a place that cannot be flown to"),
         ([*vehicle(), order().copy(VehicleID=2)], r"expected one of \[1\]"),
+        (
+            [*vehicle(), lmcp.new("FollowPathCommand", VehicleID=1, StartTime=9, StopTime=9)],
+            "ends before it begins",
+        ),
     ],
 )
 def test_what_cannot_be_driven_is_refused_by_name(bodies: list[Any], text: str) -> None:

@@ -9,7 +9,18 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from simulator_tools import DIRECTOR, GO_TO, LOITER, mission, ordered, scenario, waypoint
+from simulator_tools import (
+    CAMERA,
+    DIRECTOR,
+    DOWN,
+    GO_TO,
+    LOITER,
+    STARE,
+    mission,
+    ordered,
+    scenario,
+    waypoint,
+)
 
 from cratous.bridge import lmcp
 from cratous.services.conform import trajectory
@@ -134,20 +145,6 @@ def test_without_energy_an_aircraft_stands() -> None:
     assert told[-1].EnergyAvailable == 0
     assert told[-1].Airspeed == 0
     assert told[-1].Location.Latitude == told[-5].Location.Latitude > 45
-
-
-CAMERA = """<GimbalConfiguration Series="CMASI"><PayloadID>1</PayloadID><MinElevation>-90</MinElevation>
-<MaxElevation>0</MaxElevation><MinAzimuth>-180</MinAzimuth><MaxAzimuth>180</MaxAzimuth>
-<MaxElevationSlewRate>60</MaxElevationSlewRate><MaxAzimuthSlewRate>60</MaxAzimuthSlewRate>
-<ContainedPayloadList><int64>2</int64></ContainedPayloadList></GimbalConfiguration>
-<CameraConfiguration Series="CMASI"><PayloadID>2</PayloadID>
-<MinHorizontalFieldOfView>10</MinHorizontalFieldOfView>
-<MaxHorizontalFieldOfView>50</MaxHorizontalFieldOfView></CameraConfiguration>"""
-STARE = """<GimbalStareAction Series="CMASI"><PayloadID>1</PayloadID><Starepoint>
-<Location3D Series="CMASI"><Latitude>45.01</Latitude><Longitude>-119.995</Longitude></Location3D>
-</Starepoint></GimbalStareAction>"""
-DOWN = """<GimbalAngleAction Series="CMASI"><PayloadID>1</PayloadID><Azimuth>0</Azimuth>
-<Elevation>-90</Elevation></GimbalAngleAction>"""
 
 
 def test_a_stare_sees_its_place_in_the_middle_of_the_picture() -> None:

@@ -27,17 +27,17 @@ def judged(mission: Mission, kind: str, seed: int) -> Replayed:
 
 
 def changed(seed: int) -> Mission:
-    """The meeting with another course and speed of the traffic, and a second vehicle beside."""
+    """The meeting sooner, each time at another place, and a second vehicle beside."""
     (other,) = meeting().traffic
-    moved = other.position._replace(east_m=-2640.0 + 22.0 * 5 * seed)
-    second = must_fly(2, (3000.0, 9000.0, 300.0))
+    moved = other.position._replace(north_m=1760.0, east_m=-1760.0 + 22.0 * 5 * seed)
+    first, second = must_fly(1, (3800.0, 0.0, 300.0)), must_fly(2, (2000.0, 9000.0, 300.0))
     return replace(
         meeting(),
         vehicles=(vehicle(1, 0.0, 0.0), vehicle(2, 0.0, 9000.0)),
-        tasks=(*meeting().tasks, second),
+        tasks=(first, second),
         traffic=(replace(other, position=moved),),
         instances=(1, 2),
-        simulation=Simulation(limit_ms=300_000),
+        simulation=Simulation(limit_ms=200_000),
     )
 
 

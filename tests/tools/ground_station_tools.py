@@ -112,6 +112,13 @@ def serving(*paths: Path) -> Iterator[tuple[subprocess.Popen[str], int]]:
 
 
 @contextlib.contextmanager
+def attaching(address: str) -> Iterator[int]:
+    """`cratous serve --attach ADDRESS` on a free port; it is ended at the end."""
+    with _started("--attach", address) as (_, line):
+        yield int(line.partition("/")[0])
+
+
+@contextlib.contextmanager
 def flying(mission: Path, out: Path, cwd: Path | None = None) -> Iterator[Served]:
     """`cratous serve MISSION --out OUT` on a free port; it is ended at the end."""
     with _started(str(mission), "--out", str(out), cwd=cwd) as (running, line):

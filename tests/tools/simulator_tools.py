@@ -20,6 +20,19 @@ GO_TO = (
     '<GoToWaypointAction Series="CMASI"><WaypointNumber>{}</WaypointNumber></GoToWaypointAction>'
 )
 
+CAMERA = """<GimbalConfiguration Series="CMASI"><PayloadID>1</PayloadID><MinElevation>-90</MinElevation>
+<MaxElevation>0</MaxElevation><MinAzimuth>-180</MinAzimuth><MaxAzimuth>180</MaxAzimuth>
+<MaxElevationSlewRate>60</MaxElevationSlewRate><MaxAzimuthSlewRate>60</MaxAzimuthSlewRate>
+<ContainedPayloadList><int64>2</int64></ContainedPayloadList></GimbalConfiguration>
+<CameraConfiguration Series="CMASI"><PayloadID>2</PayloadID>
+<MinHorizontalFieldOfView>10</MinHorizontalFieldOfView>
+<MaxHorizontalFieldOfView>50</MaxHorizontalFieldOfView></CameraConfiguration>"""
+STARE = """<GimbalStareAction Series="CMASI"><PayloadID>1</PayloadID><Starepoint>
+<Location3D Series="CMASI"><Latitude>45.01</Latitude><Longitude>-119.995</Longitude></Location3D>
+</Starepoint></GimbalStareAction>"""
+DOWN = """<GimbalAngleAction Series="CMASI"><PayloadID>1</PayloadID><Azimuth>0</Azimuth>
+<Elevation>-90</Elevation></GimbalAngleAction>"""
+
 
 def waypoint(number: int, following: int, lat: float, more: str = "") -> str:
     return f"""<Waypoint Series="CMASI"><Number>{number}</Number><NextWaypoint>{following}</NextWaypoint>

@@ -1,5 +1,7 @@
 // The state that is in the page's address, behind #: what is not as it should be there is left out.
 
+import { DIMENSIONS } from "./band_style.js";
+
 export const RATES = [0.25, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 
 export function read(end_ms, ids) {
@@ -11,6 +13,7 @@ export function read(end_ms, ids) {
   if (ids.includes(given.get("aircraft"))) state.picked = given.get("aircraft");
   if (["dark", "light"].includes(given.get("theme"))) state.theme = given.get("theme");
   if (["si", "aviation"].includes(given.get("units"))) state.aviation = given.get("units") === "aviation";
+  if (DIMENSIONS.includes(given.get("bands"))) state.dimension = given.get("bands");
   const view = (given.get("map") || "").split(",").map(Number);
   if (view.length === 3 && view.every(Number.isFinite) && view[2] > 0) state.view = { north: view[0], east: view[1], scale: view[2] };
   return state;
@@ -21,6 +24,7 @@ export function write(state) {
   if (state.picked) said.aircraft = state.picked;
   if (state.theme) said.theme = state.theme;
   if (state.aviation) said.units = "aviation";
+  if (state.dimension !== DIMENSIONS[0]) said.bands = state.dimension;
   if (state.view) said.map = [state.view.north.toFixed(0), state.view.east.toFixed(0), state.view.scale.toPrecision(4)].join(",");
   const hash = `#${Object.entries(said).map(([key, value]) => `${key}=${value}`).join("&")}`;
   if (hash !== location.hash) history.replaceState(null, "", hash);

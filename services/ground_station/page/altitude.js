@@ -3,16 +3,22 @@
 import { Layer, color, colorOf, niceStep, sized } from "./canvas.js";
 import { UNSEEN_MS } from "./instant.js";
 
-const LEFT = 66, RIGHT = 10, TOP = 8, BOTTOM = 18;
+export const LEFT = 66, RIGHT = 10;
+const TOP = 8, BOTTOM = 18;
+
+// a click on a chart goes to its instant
+export function listen(canvas, recording, go) {
+  canvas.addEventListener("pointerdown", event => {
+    const box = canvas.getBoundingClientRect();
+    go((event.offsetX - LEFT) / (box.width - LEFT - RIGHT) * recording.end_ms);
+  });
+}
 
 export class AltitudeChart {
   constructor(canvas, recording, go) {
     this.canvas = canvas;
     this.recording = recording;
-    canvas.addEventListener("pointerdown", event => {
-      const box = canvas.getBoundingClientRect();
-      go((event.offsetX - LEFT) / (box.width - LEFT - RIGHT) * recording.end_ms);
-    });
+    listen(canvas, recording, go);
     this.layer = new Layer();
     this.grown();
   }
@@ -38,7 +44,7 @@ export class AltitudeChart {
 
   // all but the instant
   tracks(pen, width, height, end, words) {
-    const step = niceStep(Math.max(this.high - this.low, 40) / 2);
+    const step = niceStep(Math.max(this.high - this.low, 40) / words.unit.altitude / 2) * words.unit.altitude;
     const low = (Math.ceil(this.low / step) - 1) * step, high = (Math.floor(this.high / step) + 1) * step;
     const x = t => LEFT + (width - LEFT - RIGHT) * t / end, y = alt => height - BOTTOM - (height - TOP - BOTTOM) * (alt - low) / (high - low);
     pen.fillStyle = color("icarous");

@@ -8,6 +8,7 @@ import { open, theme } from "./opening.js";
 
 const by = id => document.getElementById(id);
 const token = new URLSearchParams(location.search).get("token") || "";
+const ROUTED = ["geojson", "kml", "qgc"]; // formats that may have the routes of a plan
 const SETTLED_MS = 250, POLL_MS = 300, CORNERS = { keep_out: 3, keep_in: 3, must_fly: 1, line_search: 2 };
 
 class Refused extends Error {}
@@ -112,6 +113,7 @@ class Editor {
     by("notes").replaceChildren(...found.notes.map(note => Object.assign(document.createElement("li"), { textContent: note })));
     if (found.drawn) this.given = found.relations;
     if (!typing) by("relations").value = this.given;
+    this.vehicles();
     by("plan").disabled = by("export").disabled = found.problems.length > 0;
   }
 
@@ -208,14 +210,23 @@ class Editor {
     this.settle();
     const { text } = this, format = by("export-format").value;
     try {
-      const told = await ask("/export", { text, format });
+      const routed = ROUTED.includes(format) && this.planned?.of === text;
+      const told = await ask("/export", { text, format, ...(routed ? { plan_number: this.number } : {}), ...(format === "qgc" ? { vehicle: Number(by("export-vehicle").value) } : {}) });
       const names = Object.keys(told.files);
       for (const name of names) download(name, told.files[name]);
       const notes = told.unsaid.length ? "; this format does not say:" : "; it says all of the mission";
-      by("exported-files").textContent = `${names.join(" and ")}${names.length > 1 ? ", for one folder" : ""}${notes}`;
+      by("exported-files").textContent = `${names.join(" and ")}${names.length > 1 ? ", for one folder" : ""}${routed ? ", with the planned routes" : ""}${notes}`;
       by("unsaid").replaceChildren(...told.unsaid.map(one => Object.assign(document.createElement("li"), { textContent: one })));
       by("exported").hidden = false;
     } catch (error) { this.say(error.message, true); }
+  }
+
+  // of whom a flight plan may be; the one that was chosen stays
+  vehicles() {
+    const field = by("export-vehicle"), before = field.value;
+    field.hidden = by("export-format").value !== "qgc";
+    field.replaceChildren(...(this.found?.drawn?.vehicles ?? []).map(one => new Option(one.label ? `${one.id} ${one.label}` : one.id, one.id)));
+    if ([...field.options].some(one => one.value === before)) field.value = before;
   }
 
   async plan() {
@@ -304,6 +315,7 @@ class Editor {
     by("redo").addEventListener("click", () => this.back(this.future, this.past));
     by("save").addEventListener("click", () => this.save());
     by("export").addEventListener("click", () => this.export());
+    by("export-format").addEventListener("change", () => this.vehicles());
     by("plan").addEventListener("click", () => this.plan());
     by("plan-stop").addEventListener("click", () => ask("/stop", { plan_number: this.number }).catch(error => this.say(error.message, true)));
     by("remove").addEventListener("click", () => this.remove());

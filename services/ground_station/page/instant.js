@@ -59,13 +59,23 @@ export function authorityAt(recording, vehicle, time) {
   return { name: change.owner, reason: change.reason, since: change.time_ms };
 }
 
-// whose heading bands are shown: {id, row, since}, of the picked aircraft, or of the only one that has some. row is null
+// whose bands are shown: {id, row, since}, of the picked aircraft, or of the only one that has some. row is null
 // before the first message, and once the last one is older than an aircraft that is not seen any more; null where none is shown
 export function bandsAt(recording, state) {
   const ids = Object.keys(recording.bands), id = state.picked ?? (ids.length === 1 ? ids[0] : null), rows = recording.bands[id];
   if (!rows) return null;
   const row = rows[lastAt(rows, state.time, one => one.time_ms)];
   return { id, row: row && state.time - row.time_ms <= UNSEEN_MS ? row : null, since: row?.time_ms };
+}
+
+// of each intruder with an alert the highest one: {level, time_s, own}, of the picked aircraft if it has bands, else of all
+export function alertsAt(recording, state) {
+  const found = {}, ids = recording.bands[state.picked] ? [state.picked] : Object.keys(recording.bands);
+  for (const id of ids) {
+    const { row } = bandsAt(recording, { ...state, picked: id });
+    for (const [other, time_s, level] of row?.intruders ?? []) if (level > (found[other]?.level ?? 0)) found[other] = { level, time_s, own: id };
+  }
+  return found;
 }
 
 // every two aircraft that are there: horizontal distance and difference of altitude [m], nearest first

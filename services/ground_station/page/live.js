@@ -9,6 +9,8 @@ const FLOWN = {
   loading: "not flown yet", planning: "not flown yet", paused: "flown now", flying: "flown now", ended: "flown to its end",
   stopped: "stopped before its end", failed: "failed before its end", lost: "lost before its end",
 };
+// of a running system that is watched
+const WATCHED = { connecting: "not connected yet", watching: "watched now", silent: "watched now", "cut off": "connecting again", failed: "not watched any more" };
 const by = id => document.getElementById(id);
 
 export class Live {
@@ -18,12 +20,13 @@ export class Live {
     this.changed = changed;
     this.token = new URLSearchParams(location.search).get("token") || "";
     this.page = crypto.randomUUID();
-    this.next = 0;
+    this.next = recording.next ?? 0;
     this.failures = 0;
     this.heads = {};
     this.status = { state: "loading", rate: 1, text: "" };
     this.who = "watch";
     by("live").hidden = false;
+    for (const id of ["fly", "fly-step", "live-rate-box", "stop"]) by(id).hidden = Boolean(recording.attached);
     by("live-rate").append(...RATES.map(rate => new Option(`${rate}×`, rate)));
     const on = (id, act) => by(id).addEventListener("click", act);
     on("fly", () => this.toggle());
@@ -50,6 +53,7 @@ export class Live {
   headers() { return { "X-Cratous-Token": this.token, "X-Cratous-Page": this.page }; }
 
   async order(asked) {
+    if (this.recording.attached) return;
     try {
       const headers = { ...this.headers(), "Content-Type": "application/json" };
       const answer = await fetch("/command", { method: "POST", headers, body: JSON.stringify(asked) });
@@ -68,6 +72,7 @@ export class Live {
     } catch { /* counted below */ }
     this.failures = told ? 0 : this.failures + 1;
     if (told) {
+      if (told.again) { location.reload(); return; } // too far behind: all of it anew
       told.updates.forEach(update => this.take(update));
       this.next = told.next;
       this.status = told.status;
@@ -82,6 +87,7 @@ export class Live {
   take(update) {
     const { tracks } = this.recording;
     for (const [key, rows] of Object.entries(update.more || {})) this.recording[key].push(...rows);
+    for (const [id, rows] of Object.entries(update.bands || {})) (this.recording.bands[id] ??= []).push(...rows);
     if (update.heads) for (const id of Object.keys(this.heads)) if (tracks[id].at(-1) === this.heads[id]) tracks[id].pop();
     for (const [id, rows] of Object.entries(update.tracks || {})) (tracks[id] ??= []).push(...rows);
     if (update.heads) {
@@ -92,6 +98,20 @@ export class Live {
       }
     }
     Object.assign(this.recording, update.set || {});
+    if (this.recording.window_ms) this.forget();
+  }
+
+  // what the server has let go of, once it is a tenth more than it keeps
+  forget() {
+    const { recording } = this, { tracks, bands, window_ms } = recording, first = recording.end_ms - window_ms;
+    const old = Object.values(tracks).some(track => track.length && track[0][0] < first - window_ms / 10);
+    if (!old) return;
+    for (const id of Object.keys(tracks)) if (!(tracks[id] = tracks[id].filter(row => row[0] >= first)).length) delete tracks[id];
+    for (const id of Object.keys(bands)) if (!(bands[id] = bands[id].filter(row => row.time_ms >= first)).length) delete bands[id];
+    const newest = new Map(recording.routes.map(route => [route.vehicle, route]));
+    recording.routes = recording.routes.filter(route => route.time_ms >= first || newest.get(route.vehicle) === route);
+    recording.events = recording.events.filter(event => event.time_ms >= first);
+    this.forgot = true; // what was drawn of tracks is drawn anew
   }
 
   show() {
@@ -99,7 +119,7 @@ export class Live {
     const may = this.who === "you" && !this.over && !lost, ready = may && ["paused", "flying"].includes(state);
     by("live-state").textContent = lost ? "server lost" : state;
     by("live-state").className = lost ? "lost" : state;
-    by("source").textContent = lost ? "whether it is still flown is unknown" : FLOWN[state];
+    by("source").textContent = lost && this.recording.attached ? "" : lost ? "whether it is still flown is unknown" : (this.recording.attached ? WATCHED : FLOWN)[state];
     by("live-text").textContent = lost ? "The server does not answer: what is shown is what it told last. Is `cratous serve` still running?" : text || "";
     by("fly").textContent = state === "flying" ? "Pause" : "Fly";
     for (const id of ["fly", "fly-step", "live-rate"]) by(id).disabled = !ready;
@@ -108,7 +128,7 @@ export class Live {
     by("results").hidden = state !== "ended";
     if (document.activeElement !== by("live-rate") || !ready) by("live-rate").value = rate;
     const roles = { you: "This page commands the flight.", other: "Another page commands this flight; this one watches.", watch: "This page watches: to command, open the whole address that `cratous serve` printed." };
-    by("live-who").textContent = [this.over ? "" : roles[this.who], this.refused].filter(Boolean).join(" ");
-    by("live").setAttribute("aria-label", `Flight: ${state} at ${seconds(this.recording.end_ms)}`);
+    by("live-who").textContent = [this.over || this.recording.attached ? "" : roles[this.who], this.refused].filter(Boolean).join(" ");
+    by("live").setAttribute("aria-label", `${this.recording.attached ? "Watching" : "Flight"}: ${state} at ${seconds(this.recording.end_ms)}`);
   }
 }

@@ -2,12 +2,13 @@
 
 import * as address from "./address.js";
 import { AltitudeChart } from "./altitude.js";
-import { table } from "./bands.js";
+import { panel } from "./bands.js";
 import { Live } from "./live.js";
 import { FlightMap } from "./map.js";
 import { open, source, theme } from "./opening.js";
 import * as panels from "./panels.js";
 import { Playback } from "./playback.js";
+import { Spectrum } from "./spectrum.js";
 import { words } from "./units.js";
 
 const by = id => document.getElementById(id);
@@ -19,6 +20,7 @@ class Station extends Playback {
     const go = time => this.go(time);
     this.map = new FlightMap(by("map"), recording, view => { this.state.view = view; this.draw(true); });
     this.chart = new AltitudeChart(by("altitude"), recording, go);
+    this.spectrum = new Spectrum(by("spectrum-box"), by("spectrum"), by("dimension"), recording, go);
     by("name").textContent = recording.name;
     document.title = `${recording.name} – CRATOUS ground station`;
     if (!recording.live) by("source").textContent = source(recording);
@@ -44,8 +46,10 @@ class Station extends Playback {
 
   grown(updates) {
     const { recording } = this, go = time => this.go(time);
+    if (this.live?.forgot) { this.map.trails.forget(); this.live.forgot = false; }
     this.map.grown();
     this.chart.grown();
+    this.spectrum.grown();
     by("slider").max = recording.end_ms;
     if (updates.some(update => update.more?.events)) panels.events(recording, go);
     if (updates.some(update => update.set?.verdicts)) panels.verdicts(recording, this.state, go);
@@ -58,7 +62,7 @@ class Station extends Playback {
     super.go(time);
   }
 
-  play(on) { if (this.live) this.live.toggle(); else super.play(on); }
+  play(on) { if (this.recording.attached) this.go(this.end_ms); else if (this.live) this.live.toggle(); else super.play(on); }
 
   rate(by_) { if (this.live) this.live.rate(by_); else super.rate(by_); }
 
@@ -66,12 +70,13 @@ class Station extends Playback {
   draw(whole) {
     const { state, recording } = this, said = words(state.aviation);
     theme(state.theme);
+    this.spectrum.draw(state, said); // first: where it comes up, the map gets smaller
     this.map.draw(state, said);
     this.chart.draw(state, said);
     if (!this.bar(whole)) return;
     panels.aircraft(recording, state, said);
     panels.pairs(recording, state, said);
-    table(recording, state);
+    panel(recording, state, said);
     panels.tasks(recording, state);
     panels.mark(recording, state);
     address.write(state);
@@ -79,6 +84,7 @@ class Station extends Playback {
 
   listen() {
     super.listen();
+    by("dimension").addEventListener("change", () => { this.state.dimension = by("dimension").value; this.draw(true); });
     by("now").addEventListener("click", () => this.go(this.end_ms));
     by("aircraft").addEventListener("click", event => {
       const id = event.target.closest("tr")?.dataset.aircraft;

@@ -1,7 +1,8 @@
 // The map: north up, one scale, metres of the mission frame. Everything is drawn anew for an instant.
 
+import { alertColor } from "./band_style.js";
 import { ring } from "./bands.js";
-import { UNSEEN_MS, authorityAt, bandsAt, lastAt, positionAt } from "./instant.js";
+import { UNSEEN_MS, alertsAt, authorityAt, bandsAt, lastAt, positionAt } from "./instant.js";
 import { Layer, color, colorOf, niceStep, sized } from "./canvas.js";
 import { words } from "./units.js";
 
@@ -43,13 +44,14 @@ export class FlightMap {
     const { time } = state, recording = this.recording;
     for (const zone of recording.zones) if (zone.from_ms <= time && time < (zone.to_ms ?? Infinity)) this.zone(zone);
     for (const seen of recording.footprints) if (seen.time_ms <= time) this.footprint(seen);
-    for (const task of recording.tasks) this.task(task);
+    for (const task of recording.tasks) if (time < (task.to_ms ?? Infinity)) this.task(task);
     for (const [id, route] of routesAt(recording, time)) this.route(id, route);
     this.past(pen, width, height, time);
     for (const takeover of recording.takeovers) if (takeover.from_ms <= time) this.takeover(takeover);
     const said = bandsAt(recording, state), at = said?.row && positionAt(recording.tracks[said.id] ?? [], time);
     if (at && at.seen) ring(this, ...this.xy(at.north, at.east), said.row);
-    for (const id of Object.keys(recording.tracks)) this.aircraft(id, state, words);
+    const alerts = alertsAt(recording, state);
+    for (const id of Object.keys(recording.tracks)) this.aircraft(id, state, words, alerts[id]);
   }
 
   path(places, closed) {
@@ -194,7 +196,7 @@ export class FlightMap {
     this.stroke(color("icarous"), 2.5);
   }
 
-  aircraft(id, state, words) {
+  aircraft(id, state, words, alert) {
     const at = positionAt(this.recording.tracks[id], state.time);
     if (!at) return;
     const [x, y] = this.xy(at.north, at.east), ink = colorOf(this.recording, id), pen = this.pen;
@@ -213,11 +215,17 @@ export class FlightMap {
       pen.arc(x, y, 17, 0, 7);
       this.stroke(commands === "ICAROUS" ? color("icarous") : ink, 2.5, commands === "ICAROUS" ? [] : [4, 3]);
     }
+    if (at.seen && alert) {
+      pen.beginPath();
+      pen.rect(x - 14, y - 14, 28, 28);
+      this.stroke(alertColor(alert.level), 1 + alert.level);
+    }
     const vehicle = this.recording.vehicles.find(v => String(v.id) === id);
     const name = vehicle ? vehicle.label || id : `traffic ${id}`;
     const away = who.away ? ` ${who.name}` : "";
     const rest = at.seen ? words.altitude(at.alt) : "not seen any more";
-    this.label(`${name} ${rest}${at.seen && commands === "ICAROUS" ? " ICAROUS" : away}`, x + 15, y - 10, ink);
+    const alerted = at.seen && alert ? ` alert ${alert.level}` : "";
+    this.label(`${name} ${rest}${alerted}${at.seen && commands === "ICAROUS" ? " ICAROUS" : away}`, x + 15, y - 10, ink);
   }
 
   zoom(by, x, y) {

@@ -1,6 +1,7 @@
 // The tables beside the map. All text is set as text, never as markup.
 
-import { authorityAt, lastOf, pairsAt, positionAt } from "./instant.js";
+import { alertsAt, authorityAt, lastOf, pairsAt, positionAt } from "./instant.js";
+import * as proofs from "./proofs.js";
 import { seconds } from "./units.js";
 
 const FEW = 6;
@@ -28,7 +29,7 @@ export function row(...cells) {
 
 export function aircraft(recording, state, words) {
   by("at").textContent = seconds(state.time);
-  const names = new Map(recording.vehicles.map(v => [String(v.id), v]));
+  const alerts = alertsAt(recording, state), names = new Map(recording.vehicles.map(v => [String(v.id), v]));
   const rows = Object.keys(recording.tracks).flatMap(id => {
     const at = positionAt(recording.tracks[id], state.time), ours = names.get(id), seen = at && at.seen;
     const name = ours ? `${id} ${ours.label || ""}` : `${id} (traffic)`;
@@ -47,6 +48,7 @@ export function aircraft(recording, state, words) {
     } else {
       told.append(seen ? "others' traffic" : at ? `not seen since ${seconds(at.last)}` : "not there yet");
     }
+    if (seen && alerts[id]) told.append(alarm(alerts[id]));
     for (const made of [first, second]) {
       made.dataset.aircraft = id;
       made.classList.toggle("picked", state.picked === id);
@@ -54,6 +56,13 @@ export function aircraft(recording, state, words) {
     return [first, second];
   });
   table("aircraft", [["aircraft"], ["altitude", "n"], ["speed", "n"], ["climb", "n"], ["course", "n"]], rows);
+}
+
+function alarm({ level, time_s, own }) {
+  const badge = document.createElement("b");
+  badge.className = `alert level-${Math.min(Math.ceil(level), 3)}`;
+  badge.textContent = `alert ${level} for ${own}${time_s === null ? "" : `, violation in ${time_s.toFixed(1)} s`}`;
+  return badge;
 }
 
 function link(recording, id, time) {
@@ -103,13 +112,22 @@ export function verdicts(recording, state, go) {
     if (one.time_ms !== null && (one.margin !== null || one.verdict !== "holds")) {
       const jump = document.createElement("button");
       jump.type = "button";
+      jump.className = "jump";
       jump.textContent = seconds(one.time_ms);
       jump.addEventListener("click", () => go(one.time_ms));
       when.append(jump);
     }
+    if (said.proofs) {
+      const parts = [...said.details.keys()].filter(n => whole ? said.details[n].requirement === one.requirement : said.details[n] === one);
+      const why = document.createElement("button");
+      why.type = "button";
+      why.textContent = "proofs";
+      why.addEventListener("click", () => proofs.show(recording, whole ? `${one.requirement} ${one.title}: ${one.verdict}` : `${one.requirement}: ${one.verdict}`, parts));
+      cell(made, "", "n").append(why);
+    }
     return made;
   });
-  table("verdicts", [["requirement"], ["verdict"], ["margin", "n"], ["at", "n"]], rows);
+  table("verdicts", [["requirement"], ["verdict"], ["margin", "n"], ["at", "n"], ...(said.proofs ? [["why", "n"]] : [])], rows);
 }
 
 export function tasks(recording, state) {

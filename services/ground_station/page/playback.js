@@ -1,6 +1,7 @@
 // The clock of a page that replays: go, play, step, next event, rate; its buttons and keys.
 
 import * as address from "./address.js";
+import { DIMENSIONS } from "./band_style.js";
 import { clock } from "./units.js";
 
 const by = id => document.getElementById(id);
@@ -10,7 +11,7 @@ const MOVES = { ArrowLeft: [60, 0], ArrowRight: [-60, 0], ArrowUp: [0, 60], Arro
 // whoever extends it gives `end_ms`, `instants` of the events, `ids` of the aircraft, `maps`, and `draw`
 export class Playback {
   constructor() {
-    this.state = { time: 0, rate: 1, picked: null, theme: null, aviation: false, view: null };
+    this.state = { time: 0, rate: 1, picked: null, theme: null, aviation: false, view: null, dimension: DIMENSIONS[0] };
     this.playing = false;
     this.slow = 0;
   }
@@ -53,6 +54,7 @@ export class Playback {
     if (what === "theme") this.state.theme = document.documentElement.className === "dark" ? "light" : "dark";
     if (what === "units") this.state.aviation = !this.state.aviation;
     if (what === "whole") this.state.view = null;
+    if (what === "dimension") this.state.dimension = DIMENSIONS[(DIMENSIONS.indexOf(this.state.dimension) + 1) % DIMENSIONS.length];
     this.draw(true);
   }
 
@@ -98,7 +100,7 @@ export class Playback {
   }
 
   key(event) {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest?.("dialog")) return;
     const tag = event.target.tagName, onMap = this.maps.find(map => map.canvas === event.target);
     if (tag === "SELECT" || (tag === "BUTTON" && [" ", "Enter"].includes(event.key))) return;
     const time = event.shiftKey ? 10000 : 1000;
@@ -107,7 +109,7 @@ export class Playback {
       ArrowLeft: () => this.go(this.state.time - time), ArrowRight: () => this.go(this.state.time + time),
       Home: () => this.go(0), End: () => this.go(this.end_ms),
       "[": () => this.rate(-1), "]": () => this.rate(1), "+": () => this.zoom(1.5), "-": () => this.zoom(1 / 1.5),
-      f: () => this.turn("whole"), u: () => this.turn("units"), d: () => this.turn("theme"),
+      f: () => this.turn("whole"), u: () => this.turn("units"), d: () => this.turn("theme"), b: () => this.turn("dimension"),
     };
     if (onMap && event.shiftKey && MOVES[event.key]) onMap.move(...MOVES[event.key]);
     else if (acts[event.key]) acts[event.key]();

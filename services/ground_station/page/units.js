@@ -7,6 +7,7 @@ export function words(aviation) {
   const fixed = (value, digits, unit) => value === null || value === undefined ? none : `${value.toFixed(digits)} ${unit}`;
   const per = (value, one) => value === null || value === undefined ? null : value / one;
   return {
+    unit: { speed: aviation ? KNOT : 1, climb: aviation ? FOOT / 60 : 1, altitude: aviation ? FOOT : 1 },
     altitude: m => aviation ? fixed(per(m, FOOT), 0, "ft") : fixed(m, 0, "m"),
     distance: m => aviation ? fixed(per(m, NAUTICAL_MILE), 2, "NM") : m >= 10000 ? fixed(m / 1000, 2, "km") : fixed(m, 0, "m"),
     speed: v => aviation ? fixed(per(v, KNOT), 0, "kn") : fixed(v, 1, "m/s"),

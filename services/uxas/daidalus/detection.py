@@ -15,35 +15,18 @@ from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.core.authority.timeliness import in_time, lasted
-from cratous.core.daa.session import Instant, Session
-from cratous.core.daa.state import UNKNOWN, Guidance
+from cratous.core.daa.session import Session
 from cratous.services.bus import Envelope
+from cratous.services.daa.intervals import OwnState, intervals_message
 from cratous.services.uxas.daidalus.parameters import configuration_message
 from cratous.services.uxas.daidalus.states import Wind, air_vector, aircraft, comparable, wind_of
-from cratous.spec.daa.parameters import FAR, NEAR, RECOVERY, REGIONS, Parameters
+from cratous.spec.daa.parameters import Parameters
 from cratous.spec.errors import BadInput
 
 STATE, STARTED = "afrl.cmasi.AirVehicleState", "uxas.messages.uxnative.StartupComplete"
 REMOVED = "afrl.cmasi.RemoveEntities"
-DEGREES = 180 / math.pi
 TELL_MS = 500
 """Aircraft tell their states so often [ms]: in two such turns half of the vehicles look at each."""
-
-SERIES = {
-    "hdir": ("GroundHeadingInterval", "GroundHeadings", "WCVGroundHeadingIntervals",
-             "WCVGroundHeadingRegions", "GroundHeadingRecoveryInterval", "RecoveryGroundHeadings",
-             "RecoveryGroundHeadingIntervals", DEGREES),
-    "hs": ("GroundSpeedInterval", "GroundSpeeds", "WCVGroundSpeedIntervals",
-           "WCVGroundSpeedRegions", "GroundSpeedRecoveryInterval", "RecoveryGroundSpeeds",
-           "RecoveryGroundSpeedIntervals", 1.0),
-    "vs": ("VerticalSpeedInterval", "VerticalSpeeds", "WCVVerticalSpeedIntervals",
-           "WCVVerticalSpeedRegions", "VerticalSpeedRecoveryInterval", "RecoveryVerticalSpeed",
-           "RecoveryVerticalSpeedIntervals", 1.0),
-    "alt": ("AltitudeInterval", "Altitude", "WCVAlitudeIntervals", "WCVAltitudeRegions",
-            "AltitudeRecoveryInterval", "RecoveryAltitude", "RecoveryAltitudeIntervals", 1.0),
-}  # fmt: skip
-"""Per dimension: interval, its field, the lists in the message; the same for recovery; and the unit.
-Alitude is how the message spells it."""
 
 
 class Known(NamedTuple):
@@ -60,51 +43,17 @@ class Known(NamedTuple):
 Step = tuple[Known, Iterable[Any]]
 
 
-def interval_fields(g: Guidance) -> dict[str, list[Any]]:
-    """The lists of one dimension in WellClearViolationIntervals."""
-    interval, field, intervals, regions, recovery, recovery_field, recoveries, size = SERIES[
-        g.dimension
-    ]
-    made: dict[str, list[Any]] = {intervals: [], regions: [], recoveries: []}
-    for band in g.bands:
-        ends = [max(0.0, band.low * size) if g.dimension == "hdir" else band.low, band.high]
-        ends[1] = min(360.0, band.high * size) if g.dimension == "hdir" else band.high
-        if band.region == RECOVERY:
-            made[recoveries].append(lmcp.new(recovery, **{recovery_field: ends}))
-        elif band.region == UNKNOWN or FAR <= band.region <= NEAR:
-            made[intervals].append(lmcp.new(interval, **{field: ends}))
-            made[regions].append("NEAR" if band.region == UNKNOWN else REGIONS[band.region])
-    return made
-
-
-def intervals_message(own: Any, wind: Wind, instant: Instant) -> Any:
-    """WellClearViolationIntervals: intruders by time to violation, then the bands."""
-    found = []
-    for alert in instant.alerts:
-        first = alert.to_corrective_s
-        if first is None and alert.level:
-            first = alert.times[alert.level - 1].first_s
-        if first is not None:
-            found.append((first, int(alert.id), float(alert.level)))
-    found.sort()
-    heading, speed = air_vector(own, wind)
-    fields: dict[str, Any] = {}
-    for g in instant.guidance:
-        fields |= interval_fields(g)
-    return lmcp.new(
-        "WellClearViolationIntervals",
-        EntityList=[number for _, number, _ in found],
-        TimeToViolationList=[first for first, _, _ in found],
-        AlertLevelList=[level for _, _, level in found],
-        EntityId=own.ID,
-        CurrentHeading=heading,
-        CurrentGoundSpeed=speed,
-        CurrentVerticalSpeed=own.VerticalSpeed,
-        CurrentAltitude=own.Location.Altitude,
-        CurrentLatitude=own.Location.Latitude,
-        CurrentLongitude=own.Location.Longitude,
-        CurrentTime=own.Time / 1000,
-        **fields,
+def told_of(own: Any, wind: Wind) -> OwnState:
+    """What the message tells of the ownship: heading and speed in the air."""
+    at = own.Location
+    return OwnState(
+        own.ID,
+        *air_vector(own, wind),
+        own.VerticalSpeed,
+        at.Altitude,
+        at.Latitude,
+        at.Longitude,
+        own.Time / 1000,
     )
 
 
@@ -166,7 +115,7 @@ class DaidalusDetection:
             why.append(f"nothing can be said: {error}")
             return self._warn(state, why, out)
         why += [f"{g.dimension}: {g.why}" for g in instant.guidance if g.why]
-        out.append(intervals_message(own, wind, instant))
+        out.append(intervals_message(told_of(own, wind), instant))
         return self._warn(state, why, out)
 
     def _warn(self, state: Known, why: list[str], out: list[Any]) -> Step:

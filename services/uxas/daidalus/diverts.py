@@ -18,7 +18,7 @@ from cratous.core.avoidance.prediction import after
 from cratous.core.avoidance.resolution import turn_back_s
 from cratous.core.contracts.responses import heading_blocked, value_blocked
 from cratous.core.geofence.mission_legs import first_bad_leg
-from cratous.services.uxas.daidalus.detection import SERIES
+from cratous.services.daa.intervals import SERIES
 from cratous.services.uxas.daidalus.states import Wind
 from cratous.spec.mission import Position, Zone
 

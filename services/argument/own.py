@@ -1,0 +1,162 @@
+"""Goals on requirements of the user's own: verdict over the log as evidence, its file as context, and no more than that.
+
+The monitor judged them after the flight, so the kernels that decided them are none of the run's: they are held against
+the ledger as it is now. Of the composed system nothing is proved about them, and the strategy above them says so.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cratous.core.kernel.names import short
+from cratous.services.argument.elements import (
+    OF_VERDICT,
+    Argument,
+    Element,
+    Kind,
+    State,
+    counted,
+    worst,
+)
+from cratous.services.argument.proved import Proofs, plain
+from cratous.services.certify.own_said import sentence
+from cratous.services.certify.own_views import own_requirements
+from cratous.services.certify.proofs import theorems_of
+from cratous.services.certify.trace import definition_of
+from cratous.services.results.names import OWN
+from cratous.spec.mission.guarantees import Outcome
+
+Data = dict[str, Any]
+STRATEGY = "S-own"
+
+
+class Own:
+    """Adds the requirements of one's own of a report to an argument. kept: the ledger as it is now."""
+
+    def __init__(self, argument: Argument, report: Data, kept: Data) -> None:
+        self.rows = own_requirements(report)
+        self._argument = argument
+        self._known = kept["kernels"]
+        self._unproved = {problem["kernel"] for problem in report["proofs"]["problems"]}
+        deciding = sorted({name for row in self.rows for name in row["kernels"]})
+        self._names = short(deciding)
+        wholes = {name: self._whole(name) for name in deciding}
+        said = theorems_of({n: w for n, w in wholes.items() if w is not None}, kept["theorems"])
+        proofs = {
+            "theorems": said, "solver": report["proofs"]["solver"],
+            "kernels": {one for row in self.rows for one in row["kernels"]},
+        }  # fmt: skip
+        self._proofs = Proofs(
+            argument, proofs, kept["theorems"], "judged a requirement of one's own"
+        )
+        own = report.get(OWN, {})
+        self._files = {
+            one["file"]: argument.add(
+                Element(f"C-own-file-{number}", Kind.CONTEXT, _file_said(one, own["findings"]))
+            )
+            for number, one in enumerate(own.get("files", ()), 1)
+        }
+
+    def add(self) -> tuple[str, ...]:
+        """The strategy over all of them; none where the report has none."""
+        if not self.rows:
+            return ()
+        goals = tuple(self._goal(number, row) for number, row in enumerate(self.rows, 1))
+        text = (
+            f"Over each requirement of one's own ({len(goals)}), held against the log by the monitor after "
+            "the flight; nothing is proved of them beyond this run"
+        )
+        state = worst(map(self._argument.state, goals))
+        return (self._argument.add(Element(STRATEGY, Kind.STRATEGY, text, goals, state=state)),)
+
+    def names(self, *states: State) -> list[str]:
+        """The ids of the requirements whose goals stand so."""
+        numbered = enumerate(self.rows, 1)
+        return [row["requirement"] for n, row in numbered if self._argument.state(_id(n)) in states]
+
+    def _goal(self, number: int, row: Data) -> str:
+        state = OF_VERDICT[Outcome(row["verdict"])]
+        text = f"{row['text']} In this run: {row['verdict']}, {row['note']}"
+        if row["blame"] is not None:
+            text += f". Blame: {sentence(row['blame'])}"
+        below: tuple[str, ...] = ()
+        if state is State.SUPPORTED:
+            kernels = tuple(self._kernel(name) for name in row["kernels"])
+            if any(self._argument.state(one) is not State.SUPPORTED for one in kernels):
+                state, below = State.NOT_PROVED, kernels
+            elif not row["checks"]:
+                state = State.NOTHING
+                text += ". Nothing in the flight tested it"
+            else:
+                below = (*kernels, self._evidence(number, row))
+        context = [self._files[row["file"]]] if row["file"] in self._files else []
+        if row["lint"]:
+            odd = f"Odd about {row['requirement']}: " + "; ".join(
+                one["text"] for one in row["lint"]
+            )
+            context.append(self._argument.add(Element(f"C-own-lint-{number}", Kind.CONTEXT, odd)))
+        return self._argument.add(
+            Element(_id(number), Kind.GOAL, text, below, tuple(context), state)
+        )
+
+    def _evidence(self, number: int, row: Data) -> str:
+        text = (
+            f"report.json, {row['requirement']}: holds at {counted(row['samples']['holds'], 'sample')}, "
+            f"{counted(row['checks'], 'check')}"
+        )
+        if row["margin"] is not None:
+            text += f", margin {row['margin']:.4g} {row['unit']}".rstrip()
+        text += "; judged again from its text and the log"
+        return self._argument.add(Element(f"Sn-own-{number}", Kind.SOLUTION, text))
+
+    def _whole(self, name: str) -> Data | None:
+        """The record of a kernel, or of the fold that it is a step of."""
+        one: Data | None = self._known.get(name)
+        return one and self._known.get(one["supports"], one)
+
+    def _kernel(self, name: str) -> str:
+        """The goal that a kernel of the monitor is what its definition says."""
+        whole = self._whole(name)
+        missing = ["it is not in the ledger"] if whole is None else []
+        against = [] if whole is None else whole["against"]
+        definition = "" if whole is None else whole["implements"]
+        file, absent = definition_of(name.split(".")[0], definition)
+        missing += [absent] if absent else []
+        if whole is not None and not (against and definition):
+            missing.append("no theorem holds it against a definition")
+        if {name, self._names[name]} & self._unproved:
+            missing.append("the ledger did not vouch for it in this run")
+        below = tuple(self._proofs.theorem(theorem) for theorem in against)
+        bad = [n for n in below if self._argument.state(n) is not State.SUPPORTED]
+        text = f"Kernel {self._names[name]} of the monitor, by the ledger as it is now"
+        if whole is not None:
+            text += f": {whole['status']}"
+            text += (
+                f", as a step of {definition.rpartition('.')[2]}"
+                if whole is not self._known[name]
+                else ""
+            )
+        text += f". Missing: {'; '.join(missing)}" if missing else ""
+        context: tuple[str, ...] = ()
+        if file:
+            said = f"Definition {definition} in {file}"
+            element = Element(f"C-definition-{plain(definition)}", Kind.CONTEXT, said)
+            context = (self._argument.add(element),)
+        state = State.NOT_PROVED if missing or bad else State.SUPPORTED
+        goal = f"G-own-kernel-{plain(self._names[name])}"
+        return self._argument.add(
+            Element(goal, Kind.GOAL, text, () if missing else below, context, state)
+        )
+
+
+def _id(number: int) -> str:
+    return f"G-own-{number}"
+
+
+def _file_said(file: Data, findings: list[Data]) -> str:
+    """A file of requirements, the exports that it takes, and what is wrong with the samples for it."""
+    text = f"{file['file']}, whole in report.json, SHA-256 {file['sha256']}"
+    for one in file["imports"]:
+        text += f"; it takes {one['file']}, SHA-256 {one['sha256']}"
+    wrong = [one["text"] for one in findings if one["file"] == file["file"]]
+    return text + (f". Its samples: {'; '.join(wrong)}" if wrong else "")

@@ -1,0 +1,49 @@
+"""Rows of which only so many are kept: what is new of a thing takes its place, what is oldest goes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+Row = dict[str, Any]
+
+
+class Bounded:
+    """Rows in their order. let_go: how many had to go before anything took their place."""
+
+    def __init__(self, most: int, places: int, key: Callable[[Row], Any] | None = None) -> None:
+        """most: rows; places: on the map, of all rows together; key: rows with the same one are of one thing."""
+        self._most, self._places, self._key = most, places, key
+        self._rows: dict[Any, Row] = {}
+        self._held = self._number = self.let_go = 0
+        self._new: list[Row] = []
+
+    def append(self, row: Row) -> None:
+        """Keep one more."""
+        self._number += 1
+        key = self._number if self._key is None else self._key(row)
+        self._drop(key)
+        self._rows[key] = row
+        self._new.append(row)
+        self._held += _size(row)
+        while len(self._rows) > self._most or self._held > self._places:
+            self._drop(next(iter(self._rows)))
+            self.let_go += 1
+
+    def _drop(self, key: Any) -> None:
+        if key in self._rows:
+            self._held -= _size(self._rows.pop(key))
+
+    def __iter__(self) -> Iterator[Row]:
+        return iter(list(self._rows.values()))
+
+    def take_new(self) -> list[Row]:
+        """What came since the last time that this was asked, and is still kept."""
+        kept = {id(row) for row in self._rows.values()}
+        taken = [row for row in self._new if id(row) in kept]
+        self._new = []
+        return taken
+
+
+def _size(row: Row) -> int:
+    return len(row.get("points", ())) + len(row.get("vertices", ()))

@@ -1,0 +1,211 @@
+"""Alerts and bands of a vehicle in flight: who will take well clear, and which manoeuvres keep it.
+
+Once a second, while a loss of well clear is foreseen or ICAROUS flies, the proved engine of detect and avoid
+(`core.daa.session`) looks at the present flight and all traffic, straight on. Two levels: corrective (MID) is the
+mission's buffered volume within the look-ahead; warning (NEAR) is its own volume within the time at which even the
+one with the right of way acts. M of N, hysteresis, persistence and recovery are those of DO-365B. An intruder that
+is known within bounds only is judged by the SUM volume, with the bounds in place of the deviations. Directions and
+speeds are over ground. Zones and the ways that are told are not looked at here: whether a manoeuvre is flown is decided by
+`core.avoidance` and the permit.
+"""
+
+from __future__ import annotations
+
+import copy
+from typing import NamedTuple
+
+from cratous.core.authority.timeliness import lasted
+from cratous.core.avoidance.manoeuvre import Ability, Motion, smallest_turn, velocity_of
+from cratous.core.avoidance.prediction import Intruder, buffered
+from cratous.core.daa.session import Instant, Session
+from cratous.core.daa.state import ALT, DIMENSIONS, HDIR, HS, VS, Aircraft, Sigma
+from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.traffic_monitor import nearest
+from cratous.spec.daa.parameters import (
+    DCPA,
+    DEG,
+    FOOT,
+    KNOT,
+    MID,
+    NEAR,
+    NMAC_HALF_HEIGHT_M,
+    NMAC_RADIUS_M,
+    TAUMOD,
+    TAUMOD_SUM,
+    Alerter,
+    Level,
+    Parameters,
+    Volume,
+)
+from cratous.spec.mission import Daa, Position, Velocity, WellClear
+
+PERIOD_MS = 1000
+"""Alerts and bands are looked for so often [ms]."""
+STEP_DEG = 5.0
+"""Headings are tried in such steps, as manoeuvres are."""
+STEPS = 12
+"""Speeds, climbs and altitudes are tried in so many steps over what the airframe can do."""
+HIGHEST_M = 1e5
+"""Altitudes are bounded by what can be reached within the look-ahead, and not by a ceiling [m MSL]."""
+M, N = 2, 4
+HYSTERESIS_S, PERSISTENCE_S = 5.0, 4.0
+PREFERRED_DEG, PREFERRED_M_S = 15.0, 100 * KNOT
+PREFERRED_UP_M_S, PREFERRED_UP_M = 250 * FOOT / 60, 250 * FOOT
+SHRINKS = 0.1
+STABLE_S = 3.0
+"""M of N, seconds and changes for which what is shown stays, and how recovery makes its cylinder smaller. Source:
+RTCA DO-365B."""
+
+
+class Whose(NamedTuple):
+    """Whose bands: the vehicle, what it keeps clear of, its heartbeat [ms]; told: somebody reads them, so all that the
+    airframe can change is looked at, and not headings alone."""
+
+    vehicle_id: int
+    daa: Daa
+    heartbeat_ms: int
+    told: bool
+
+
+class Bands(NamedTuple):
+    """What was said last, and the history that the next look goes on from. at_ms: when [ms]."""
+
+    at_ms: int
+    session: Session
+    instant: Instant
+
+
+def parameters_of(whose: Whose, ability: Ability, sum_volumes: bool) -> Parameters:
+    """What a vehicle is guided by. sum_volumes: an intruder is known within bounds only."""
+    daa, heartbeat_ms = whose.daa, whose.heartbeat_ms
+    own, kind = daa.well_clear, TAUMOD_SUM if sum_volumes else TAUMOD
+    wide = buffered(own, daa.buffer)
+    acts_s = nearest(ability, wide, heartbeat_ms).last_s
+    climb = ability.max_climb_m_s
+    reach_m = max(climb * daa.lookahead_s, own.zthr_m)
+
+    def level(volume: WellClear, time_s: float, region: int) -> Level:
+        v = Volume(kind, volume.dthr_m, volume.zthr_m, volume.tthr_s, volume.tcoa_s)
+        return Level("mission", v, time_s, time_s, region)
+
+    within_s = min(acts_s, daa.lookahead_s)
+    levels = (level(wide, daa.lookahead_s, MID), level(own, within_s, NEAR))
+    return Parameters(
+        lookahead_time_s=daa.lookahead_s,
+        min_airspeed_m_s=ability.min_speed_m_s,
+        min_hs_m_s=ability.min_speed_m_s,
+        max_hs_m_s=ability.max_speed_m_s,
+        min_vs_m_s=-climb,
+        max_vs_m_s=climb,
+        min_alt_m=ability.floor_m,
+        max_alt_m=HIGHEST_M,
+        below_relative_alt_m=reach_m,
+        above_relative_alt_m=reach_m,
+        step_hdir_rad=STEP_DEG * DEG,
+        step_hs_m_s=(ability.max_speed_m_s - ability.min_speed_m_s) / STEPS,
+        step_vs_m_s=2 * climb / STEPS,
+        step_alt_m=2 * reach_m / STEPS,
+        horizontal_accel_m_s2=ability.acceleration_m_s2,
+        vertical_accel_m_s2=0.0,
+        turn_rate_rad_s=ability.turn_rate_rad_s,
+        vertical_rate_m_s=climb,
+        min_horizontal_recovery_m=own.dthr_m,
+        min_vertical_recovery_m=own.zthr_m,
+        ca_bands=True,
+        ca_factor=SHRINKS,
+        horizontal_nmac_m=min(NMAC_RADIUS_M, own.dthr_m),
+        vertical_nmac_m=min(NMAC_HALF_HEIGHT_M, own.zthr_m),
+        recovery_stability_time_s=STABLE_S,
+        hysteresis_time_s=HYSTERESIS_S,
+        persistence_time_s=PERSISTENCE_S,
+        bands_persistence=True,
+        persistence_preferred_hdir_rad=PREFERRED_DEG * DEG,
+        persistence_preferred_hs_m_s=PREFERRED_M_S,
+        persistence_preferred_vs_m_s=PREFERRED_UP_M_S,
+        persistence_preferred_alt_m=PREFERRED_UP_M,
+        alerting_m=M,
+        alerting_n=N,
+        recovery_crit=True,
+        urgency_strategy=DCPA,
+        h_pos_z_score=1.0,
+        h_vel_z_score_min=1.0,
+        h_vel_z_score_max=1.0,
+        v_pos_z_score=1.0,
+        v_vel_z_score=1.0,
+        corrective_region=MID,
+        alerters=(Alerter("mission", levels),),
+    )
+
+
+def watched(whose: Whose, before: Bands | None, sensed: Sensed) -> Bands | None:
+    """What is said to a vehicle now; what was said last where a second has not gone by since, None where nobody is seen."""
+    if before is not None and not lasted(before.at_ms, sensed.now_ms, PERIOD_MS):
+        return before
+    if not sensed.intruders:
+        return None
+    wide = any(other.spread.wide_m or other.spread.wide_m_s for other in sensed.intruders)
+    parameters = parameters_of(whose, sensed.ability, wide)
+    session = Session(parameters)
+    if before is not None and before.session.parameters == parameters:
+        session = copy.deepcopy(before.session)
+    own = _own(whose.vehicle_id, sensed.motion)
+    others = [_other(one) for one in sensed.intruders]
+    dimensions = _dimensions(sensed.ability) if whose.told else [HDIR]
+    instant = session.step(sensed.now_ms / 1000, own, others, dimensions)
+    return Bands(sensed.now_ms, session, instant)
+
+
+def _dimensions(ability: Ability) -> list[int]:
+    """What the airframe can change."""
+    found = [HDIR, HS] if ability.max_speed_m_s - ability.min_speed_m_s else [HDIR]
+    return [*found, VS, ALT] if ability.max_climb_m_s else found
+
+
+def resolutions(bands: Bands | None, course_rad: float) -> tuple[float, ...]:
+    """The turns off a course that the heading bands resolve with, the preferred side first: one step of the bands
+    beyond the nearest value that resolves, since that is the edge of a band [rad]."""
+    if bands is None:
+        return ()
+    for guidance, held in zip(bands.instant.guidance, bands.instant.held, strict=True):
+        if guidance.dimension == DIMENSIONS[HDIR]:
+            sides = [(held.up, STEP_DEG * DEG), (held.down, -STEP_DEG * DEG)]
+            if not held.prefer_up:
+                sides.reverse()
+            return tuple(
+                smallest_turn(course_rad, value + beyond)
+                for value, beyond in sides
+                if value is not None
+            )
+    return ()
+
+
+def _own(number: int, motion: Motion) -> Aircraft:
+    v = velocity_of(motion.heading_rad, motion.speed_m_s, motion.climb_m_s)
+    return _aircraft(number, motion.position, v)
+
+
+def _other(one: Intruder) -> Aircraft:
+    spread = one.spread
+    sigma = Sigma(
+        spread.wide_m,
+        spread.wide_m,
+        0.0,
+        spread.high_m,
+        spread.wide_m_s,
+        spread.wide_m_s,
+        0.0,
+        spread.high_m_s,
+    )
+    return _aircraft(one.id, one.position, one.velocity)._replace(sigma=sigma)
+
+
+def _aircraft(number: int, place: Position, v: Velocity) -> Aircraft:
+    return Aircraft(
+        str(number),
+        place.east_m,
+        place.north_m,
+        place.alt_m,
+        v.east_m_s,
+        v.north_m_s,
+        -v.down_m_s,
+    )

@@ -1,0 +1,216 @@
+"""What FRET's formulas and its structured English say without time: what joins conditions, comparisons, and numbers that
+are calculated, each in one unit. What has no clear meaning is refused: quotients of whole numbers, most functions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from cratous.services.requirements import formula as formulas
+from cratous.services.requirements.arithmetic import ABSOLUTE, NEGATED, PRE, Side, Term
+from cratous.services.requirements.formula import MAX_TIME, Join, Not
+from cratous.services.requirements.fret_terms import Names, Wrong, number, parsed, value_in
+from cratous.services.requirements.units import Quantity
+
+if TYPE_CHECKING:
+    from lark import Lark
+
+LONGEST = 2000
+"""Characters of what is calculated."""
+SIGNS = {"plus": "+", "minus": "-", "times": "*", "over": "/"}
+FUNCTIONS = {"absReal": 1, "absInt": 1, "preReal": 2, "preInt": 2, "preBool": 2}
+"""Those that are read, and how many arguments they have."""
+NONE = ("", "1")
+NOT_SURE = "of a quotient of whole numbers it is not sure whether it is one"
+NUMBERS = ("number", "negative", *SIGNS)
+CALCULATING = ("compare", "negative", *SIGNS)
+"""Nodes whose children are numbers, or in a comparison truth values."""
+PLAIN = {"truth": "name", "constant": "word"}
+
+
+def settled(tree: Any) -> None:
+    """Say of each name and constant whether it is a number or a truth value there; Wrong where the other stands."""
+    for node in tree.iter_subtrees_topdown():
+        kind, numeric = str(node.data), _is_calculating(node)
+        for child in node.children:
+            if not hasattr(child, "data"):
+                continue
+            if numeric and str(child.data) in PLAIN:
+                child.data = PLAIN[str(child.data)]
+            is_number = str(child.data) in NUMBERS or _is_calculating(child, "compare")
+            if numeric and not is_number and str(child.data) not in PLAIN.values():
+                raise Wrong("a truth value is calculated with", child.meta.start_pos, "a number")
+            if not numeric and is_number and kind not in ("between", "up_to", "duration"):
+                raise Wrong(
+                    "a number stands for a truth value", child.meta.start_pos, "a comparison"
+                )
+
+
+def _is_calculating(node: Any, but: str = "") -> bool:
+    """Whether the children of a node are numbers; but: of this kind it does not count."""
+    kind = str(node.data)
+    if kind == "call":
+        return str(node.children[0]) != "preBool"
+    return kind in CALCULATING and kind != but
+
+
+def tree_of(parser: Lark, text: str, language: str) -> Any:
+    """The tree of a text, in which names and constants are numbers where numbers stand; Wrong for what is none."""
+    tree = parsed(parser, text, language)
+    settled(tree)
+    return tree
+
+
+def term(kind: str, got: list[Any], names: Names, at: int) -> Any:
+    """What a node without time, at this place of its text, is made of its children; None for a kind that has time."""
+    if kind in JOINED:
+        return JOINED[kind](*got)
+    if kind == "truth":
+        return names.truth(got[0])
+    if kind == "constant":
+        return formulas.TRUE if got[0].lower() == "true" else formulas.FALSE
+    if kind == "name":
+        return names.of(got[0])
+    if kind == "word":
+        return bool(got[0].lower() == "true")
+    if kind == "number":
+        return number(got[0], got[0].start_pos)
+    if kind == "compare":
+        return names.compared(*got)
+    return _Numbers(names, at).made(kind, got)
+
+
+JOINED: dict[str, Callable[..., formulas.Formula]] = {
+    "negation": formulas.Not,
+    "both": lambda a, b: formulas.Join(a, b, True),
+    "either": lambda a, b: formulas.Join(a, b, False),
+    "differ": lambda a, b: formulas.Not(formulas.iff(a, b)),
+    "implies": formulas.implies,
+    "iff": formulas.iff,
+    "if_then": lambda _, a, b: formulas.implies(a, b),
+}
+
+
+class _Numbers:
+    """What is calculated at a place of the text."""
+
+    def __init__(self, names: Names, at: int) -> None:
+        self.names, self.at = names, at
+
+    def made(self, kind: str, got: list[Any]) -> Any:
+        """Of a node of numbers: a quantity where no signal is in it, else a term; None for a kind that is none."""
+        if kind == "call":
+            return self._called(got[0], got[1:])
+        if kind == "negative":
+            (one,) = got
+            if isinstance(one, Quantity):
+                return Quantity(-one.value, one.unit, f"-{one.text}")
+            return self._one(NEGATED, one, "(- {})")
+        return self._two(SIGNS[kind], *got) if kind in SIGNS else None
+
+    def _called(self, function: Any, given: list[Any]) -> Any:
+        name = str(function)
+        if len(given) != FUNCTIONS[name]:
+            raise self._wrong("of so many arguments", str(FUNCTIONS[name]), str(len(given)))
+        if name.startswith("abs"):
+            (one,) = given
+            if isinstance(one, Quantity):
+                return Quantity(abs(one.value), one.unit, one.text.lstrip("-"))
+            return self._one(ABSOLUTE, one, f"{name}({{}})")
+        if not self.names.counted:
+            raise self._wrong("samples have times, so none is the one before", "", name)
+        first, one = given
+        if name == "preBool":
+            return self._before(first, one)
+        if isinstance(one, Quantity):
+            raise self._wrong("this never changes", "a signal", one.text)
+        text, unit, whole = self._said(one)
+        begins, said = self._side(first, unit)
+        return self._term(PRE, (begins, one), f"{name}({said},{text})", unit, whole)
+
+    def _before(self, first: Any, phi: Any) -> formulas.Formula:
+        """Phi at the sample before, and at the first sample a constant."""
+        if first == formulas.FALSE:
+            return formulas.once(phi, 1, 1)
+        if first == formulas.TRUE:
+            return formulas.historically(phi, 1, 1)
+        begun = Join(Not(formulas.once(formulas.TRUE, 1, MAX_TIME)), first, True)
+        return Join(begun, formulas.once(phi, 1, 1), False)
+
+    def _one(self, kind: str, side: Any, form: str) -> Term:
+        text, unit, whole = self._said(side)
+        return self._term(kind, (side,), form.format(text), unit, whole)
+
+    def _two(self, sign: str, left: Any, right: Any) -> Any:
+        sides = (left, right)
+        if isinstance(left, Quantity) and isinstance(right, Quantity):
+            return self._folded(sign, left, right)
+        unit = self._unit(sign, left, right)
+        # of a sum a number is in the unit of the other side; a factor has none
+        (one, said), (other, also) = (self._side(s, unit if sign in "+-" else None) for s in sides)
+        whole = all(self._is_whole(side) for side in sides)
+        if whole and sign == "/":
+            raise self._wrong(NOT_SURE, "a number with a point", sign)
+        return self._term(sign, (one, other), f"({said} {sign} {also})", unit, whole)
+
+    def _unit(self, sign: str, left: Any, right: Any) -> str:
+        """The unit of what is calculated of two sides."""
+        one, other = ("" if isinstance(s, Quantity) else self._said(s)[1] for s in (left, right))
+        if sign in "+-":
+            if one == other or isinstance(left, Quantity) or isinstance(right, Quantity):
+                return one or other
+            raise self._wrong("signals of two units", one or "no unit", other or "no unit")
+        if any(isinstance(s, Quantity) and s.unit for s in (left, right)):
+            raise self._wrong("a factor with a unit", "a factor without", sign)
+        if other in NONE or (sign == "*" and one in NONE):
+            return one if other in NONE and one not in NONE else other if other not in NONE else one
+        if sign == "/" and one == other:
+            return "1"
+        raise self._wrong(
+            "this has no unit that is known", "a factor without a unit", f"{one} {sign} {other}"
+        )
+
+    def _is_whole(self, side: Any) -> bool:
+        if isinstance(side, Quantity):
+            return side.value.denominator == 1 and not {".", "e", "E"} & set(side.text)
+        return self._said(side)[2]
+
+    def _said(self, side: Any) -> tuple[str, str, bool]:
+        """(text, unit, whether it is an integer) of a signal or a term."""
+        if isinstance(side, Term):
+            return side.text, side.unit, side.whole
+        if isinstance(side, bool) or self.names.signals[side].kind == "bool":
+            raise self._wrong("a truth value is calculated with", "a number", str(side))
+        return side, self.names.signals[side].unit, self.names.signals[side].kind == "int"
+
+    def _side(self, side: Any, unit: str | None) -> tuple[Side, str]:
+        """(A side, its text) beside what is in a unit; None: beside anything."""
+        if isinstance(side, Quantity):
+            value = value_in(side, unit or "", self.at)
+            return value, repr(value)
+        text, has, _ = self._said(side)
+        if unit is not None and has != unit:
+            raise self._wrong("signals of two units", unit or "no unit", has or "no unit")
+        return side, text
+
+    def _folded(self, sign: str, left: Quantity, right: Quantity) -> Quantity:
+        """What is calculated of two numbers, exactly."""
+        if left.unit or right.unit:
+            raise self._wrong("numbers with units are calculated with", "one number", sign)
+        a, b = left.value, right.value
+        if sign == "/":
+            if not b or (self._is_whole(left) and self._is_whole(right)):
+                raise self._wrong(NOT_SURE, "a number with a point that is not 0", sign)
+            value = a / b
+        else:
+            value = {"+": a + b, "-": a - b, "*": a * b}[sign]
+        return Quantity(value, "", f"({left.text} {sign} {right.text})")
+
+    def _term(self, kind: str, sides: tuple[Side, ...], text: str, unit: str, whole: bool) -> Term:
+        if len(text) > LONGEST:
+            raise self._wrong("what is calculated is too long", f"{LONGEST} characters")
+        return Term(kind, sides, text, unit, whole)
+
+    def _wrong(self, what: str, expected: str = "", got: str = "") -> Wrong:
+        return Wrong(what, self.at, expected, got)

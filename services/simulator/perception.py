@@ -1,0 +1,126 @@
+"""What cameras see: EntityPerceptions of the vehicles that are in their pictures.
+
+A vehicle is seen where it is in the picture, nearer than the horizon, and not hidden by the terrain; of what stands on the
+ground that is the footprint. Places and velocities are the true ones, without error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from math import cos, degrees, hypot, pi
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.services.simulator import payload
+from cratous.services.simulator.earth import EQUATOR_M, Place, bound_pi, horizon_m
+from cratous.services.simulator.motion import Motion
+
+if TYPE_CHECKING:
+    from cratous.services.simulator.terrain import Terrain
+
+MOST_ID = 2**32 - 1
+"""Ids of perceptions have 32 bits, those of vehicles 64."""
+MOST_PAYLOADS = 8
+
+
+class Body(NamedTuple):
+    """A vehicle: its id, where and how it is, and what is mounted on it."""
+
+    id: int
+    motion: Motion
+    mounted: tuple[payload.Gimbal, ...]
+
+
+def perceptions(
+    bodies: Iterable[Body], time_ms: int, terrain: Terrain | None = None
+) -> Iterator[Any]:
+    """The EntityPerceptions of now: of each vehicle for each that its cameras see, in their order.
+
+    A vehicle that sees has an id of 32 bits, or tells nothing; one that is seen and has none is told as 0, unknown.
+    """
+    there = tuple(bodies)
+    if len(there) < 2:
+        return
+    places = [(one.motion.lat_rad, one.motion.lon_rad, one.motion.alt_m) for one in there]
+    for one in there:
+        pictures = _pictures(one) if 0 < one.id <= MOST_ID else []
+        if not pictures:
+            continue
+        lat, lon, alt = one.motion.lat_rad, one.motion.lon_rad, one.motion.alt_m
+        for other, place in zip(there, places, strict=True):
+            north, east, below = place[0] - lat, place[1] - lon, alt - place[2]
+            if abs(east) > pi:
+                east = bound_pi(east)
+            by = [number for number, seen in pictures if seen.has(north, east, below)]
+            if by and other is not one and _in_sight(one.motion, place, terrain):
+                yield _perception(one.id, by, other, time_ms)
+
+
+class _Picture(NamedTuple):
+    """What a camera has in its picture: its axes ahead, right and down by parts for latitude, longitude [rad] and
+    height [m] below; half of its width and height at depth 1."""
+
+    ahead: Place
+    right: Place
+    down: Place
+    wide: float
+    high: float
+
+    def has(self, north_rad: float, east_rad: float, below_m: float) -> bool:
+        """Whether what is so far away from the camera is in it."""
+        ahead = self.ahead
+        depth = north_rad * ahead[0] + east_rad * ahead[1] + below_m * ahead[2]
+        if depth <= 0:
+            return False
+        x, y, z = self.right
+        if abs(north_rad * x + east_rad * y + below_m * z) > self.wide * depth:
+            return False
+        x, y, z = self.down
+        return abs(north_rad * x + east_rad * y + below_m * z) <= self.high * depth
+
+
+def _pictures(one: Body) -> list[tuple[int, _Picture]]:
+    """The ids of a vehicle's cameras, and what they have in their pictures."""
+    found = []
+    around = EQUATOR_M * cos(one.motion.lat_rad)
+    for g in one.mounted:
+        for c in g.cameras:
+            *axes, wide, high = payload.picture(g, c, one.motion)
+            ahead, right, down = ((x * EQUATOR_M, y * around, z) for x, y, z in axes)
+            found.append((c.configuration.PayloadID, _Picture(ahead, right, down, wide, high)))
+    return found
+
+
+def _in_sight(m: Motion, place: Place, terrain: Terrain | None) -> bool:
+    """Whether neither the horizon nor the terrain hides a place from a vehicle."""
+    north = (place[0] - m.lat_rad) * EQUATOR_M
+    east = bound_pi(place[1] - m.lon_rad) * EQUATOR_M * cos(m.lat_rad)
+    if hypot(north, east) > horizon_m(m.alt_m) + horizon_m(place[2]):
+        return False
+    if terrain is None:
+        return True
+    from cratous.services.simulator.sight import in_sight
+
+    return in_sight(terrain, m, place)
+
+
+def _perception(perceiver: int, by: list[int], seen: Body, time_ms: int) -> Any:
+    m = seen.motion
+    return lmcp.new(
+        "EntityPerception",
+        PerceivedEntityID=seen.id if 0 < seen.id <= MOST_ID else 0,
+        PerceiverID=perceiver,
+        PerceiverPayloads=[n for n in by if 0 <= n <= MOST_ID][:MOST_PAYLOADS],
+        Velocity=[m.north_m_s, m.east_m_s, -m.climb_m_s],
+        VelocityValid=True,
+        Attitude=[degrees(m.heading_rad), degrees(m.pitch_rad), degrees(m.roll_rad)],
+        AttitudeValid=True,
+        Location=lmcp.new(
+            "Location3D",
+            Latitude=degrees(m.lat_rad),
+            Longitude=degrees(m.lon_rad),
+            Altitude=m.alt_m,
+            AltitudeType="MSL",
+        ),
+        TimeLastSeen=time_ms,
+    )

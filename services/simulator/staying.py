@@ -1,0 +1,55 @@
+"""Commands that a vehicle gives itself: to stay about a place, or to do what follows when it has lost what it tracks."""
+
+from __future__ import annotations
+
+from math import degrees
+from typing import Any
+
+from cratous.bridge import lmcp
+from cratous.services.simulator.aircraft import Aircraft, circle_m
+from cratous.services.simulator.driver import Driver
+from cratous.services.simulator.motion import Motion
+from cratous.services.simulator.tracking import Track
+
+
+def here(m: Motion) -> Any:
+    """Where a vehicle is."""
+    return lmcp.new(
+        "Location3D",
+        Latitude=degrees(m.lat_rad),
+        Longitude=degrees(m.lon_rad),
+        Altitude=m.alt_m,
+        AltitudeType="MSL",
+    )
+
+
+def stay(key: int, command: int, one: Aircraft | Driver, at: Any) -> Any:
+    """The command to stay about a place for ever; of who flies at the altitude and speed that it has."""
+    more: dict[str, Any] = {"Location": at}
+    if isinstance(one, Aircraft):
+        speed = max(one.motion.airspeed_m_s, one.guidance.command.speed_m_s)
+        speed = speed or one.airframe.levels[0].airspeed_m_s
+        more = {"Radius": circle_m(one, speed), "Airspeed": speed,
+                "Location": at.copy(Altitude=one.motion.alt_m, AltitudeType="MSL")}  # fmt: skip
+    return _command(key, command, lmcp.new("LoiterAction", LoiterType="Hover", **more))
+
+
+def fall_back(key: int, track: Track, time_s: float, one: Aircraft | Driver) -> tuple[str, Any]:
+    """What is said of a vehicle that has lost what it tracks, and its command; None if it was told otherwise since."""
+    said = f"vehicle {key} has lost entity {track.entity} at {time_s:.1f} s"
+    if track.return_to is None:
+        return f"{said}: it does what it was told since", None
+    if isinstance(one, Aircraft):
+        route, command = one.guidance.route or {}, one.shown_command
+    else:
+        route, command = one.course.route, one.told[0]
+    if track.return_to not in route:
+        return f"{said}: it stays about the place", stay(key, command, one, track.at)
+    go = lmcp.new("GoToWaypointAction", WaypointNumber=track.return_to)
+    return f"{said}: it goes to waypoint {track.return_to}", _command(key, command, go)
+
+
+def _command(key: int, command: int, action: Any) -> Any:
+    return lmcp.new(
+        "VehicleActionCommand", CommandID=command, VehicleID=key, VehicleActionList=[action]
+    )

@@ -1,0 +1,70 @@
+"""Who tracks whom: gimbals that stare at where an entity was perceived last, and what is done when it is lost."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.services.simulator import payload
+
+LOST_S = 2.0
+"""What is not perceived for so long is lost: four perceptions are missed."""
+
+
+class Track(NamedTuple):
+    """entity; return_to: number of the waypoint to go to when it is lost, 0: none, None: its vehicle has been told
+    something else since; at: where it was perceived last, when [s]; lost: it is not perceived any more."""
+
+    entity: int
+    return_to: int | None
+    at: Any = None
+    seen_s: float = 0.0
+    lost: bool = False
+
+
+class Tracks:
+    """All tracks, by vehicle and gimbal."""
+
+    def __init__(self) -> None:
+        self._held: dict[tuple[int, int], Track] = {}
+
+    def act(self, key: int, mounted: tuple[payload.Gimbal, ...], body: Any) -> bool:
+        """Begin a track by a TrackEntityAction, or end one by an action for its gimbal; whether it was the first."""
+        kind = type(body).__name__
+        if kind != "TrackEntityAction":
+            if kind in ("GimbalAngleAction", "GimbalStareAction", "GimbalScanAction"):
+                self._held.pop((key, body.PayloadID), None)
+            return False
+        gimbal = payload.gimbal_with(mounted, body.SensorID)
+        if gimbal is None:
+            return False
+        self._held[key, gimbal] = Track(body.EntityID, body.ReturnToWaypoint)
+        return True
+
+    def steered(self, key: int) -> None:
+        """A vehicle is told where to go: it does that, also when it has lost what it tracks."""
+        for held, track in self._held.items():
+            if held[0] == key:
+                self._held[held] = track._replace(return_to=None)
+
+    def removed(self, key: int) -> None:
+        """A vehicle is no longer there."""
+        for held in [one for one in self._held if one[0] == key]:
+            del self._held[held]
+
+    def perceived(self, body: Any, time_s: float) -> Iterator[tuple[int, Any]]:
+        """By an EntityPerception: vehicles and what their gimbals stare at now."""
+        for held, track in self._held.items():
+            if track.entity and track.entity == body.PerceivedEntityID:
+                self._held[held] = track._replace(at=body.Location, seen_s=time_s, lost=False)
+                key, gimbal = held
+                stare = lmcp.new("GimbalStareAction", PayloadID=gimbal, Starepoint=body.Location)
+                yield key, stare
+
+    def lost(self, time_s: float) -> Iterator[tuple[int, Track]]:
+        """What has been lost since it was asked last, by vehicle."""
+        for held, track in self._held.items():
+            if track.at is not None and not track.lost and time_s - track.seen_s > LOST_S:
+                self._held[held] = track._replace(lost=True)
+                yield held[0], track

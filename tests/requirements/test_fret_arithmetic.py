@@ -1,0 +1,158 @@
+"""Arithmetic in FRET's requirements: calculated from the signals of each sample, and refused where its meaning is not clear."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cratous.services.requirements import fret, language
+from cratous.services.requirements.arithmetic import sources
+from cratous.services.requirements.fretish import sentence
+from cratous.services.requirements.lint import lint
+from cratous.services.requirements.specification import NotRead, Specification
+from cratous.services.requirements.watch import Watch, watch
+
+VARIABLES = [
+    *({"variable_name": n, "idType": "Input", "dataType": "double"} for n in "xyz"),
+    *({"variable_name": n, "idType": "Input", "dataType": "integer"} for n in "ij"),
+    {"variable_name": "b", "idType": "Input", "dataType": "boolean"},
+    {"variable_name": "HALF", "idType": "Internal", "dataType": "double", "assignment": "0.5"},
+]
+SAME = {
+    "(G (x + y * z >= 3.0))": lambda r, _: r["x"] + r["y"] * r["z"] >= 3,
+    "(G ((x + y) * z >= 3.0))": lambda r, _: (r["x"] + r["y"]) * r["z"] >= 3,
+    "(G (x - y - z < 0.0))": lambda r, _: r["x"] - r["y"] - r["z"] < 0,
+    "(G (x = HALF * (y + -z)))": lambda r, _: r["x"] == 0.5 * (r["y"] - r["z"]),
+    "(G (absReal(x - y) <= 1.0))": lambda r, _: abs(r["x"] - r["y"]) <= 1,
+    "(G (absReal(preReal(1.0, x) - x) <= 1.0))": lambda r, p: abs((p or {"x": 1.0})["x"] - r["x"]) <= 1,
+    "(G (preReal(y, x + z) > 0.0))": lambda r, p: (p["x"] + p["z"] if p else r["y"]) > 0,
+    "(G (preReal(0.0, preReal(2.0, x)) <= x | b))": None,
+    "(G (preBool(FALSE, x > y) -> b))": lambda r, p: not (p and p["x"] > p["y"]) or r["b"] == 1,
+    "(G (preBool(TRUE, (b & x > y))))": lambda r, p: not p or (p["b"] == 1 and p["x"] > p["y"]),
+    "(G (preBool(b, x > y)))": lambda r, p: p["x"] > p["y"] if p else r["b"] == 1,
+    "(G (i + 2 * j - absInt(-i) != 3))": lambda r, _: r["i"] + 2 * r["j"] - abs(r["i"]) != 3,
+}  # fmt: skip
+NUMBERS = st.sampled_from((-2.0, -1.0, 0.0, 1.0, 2.0, 3.0))
+ROW = st.fixed_dictionaries(dict.fromkeys("xyzij", NUMBERS) | {"b": st.sampled_from((0.0, 1.0))})
+
+
+def export(**said: Any) -> str:
+    return json.dumps({"requirements": [{"reqid": "A", **said}], "variables": VARIABLES})
+
+
+def of(formula: str) -> Specification:
+    return fret.read(export(semantics={"ftInfAUExpanded": formula}), "e.json")
+
+
+def bad(spec: Specification, rows: list[dict[str, Any]]) -> list[bool | None]:
+    """Whether each sample is violated, None for one that is unknown."""
+    lines: list[str] = []
+    watching = Watch(spec, lines)
+    for n, row in enumerate(rows):
+        watching.sample(n, row)
+    return [{"F": True, "T": False, "?": None}[line[-1]] for line in lines]
+
+
+@settings(max_examples=30, deadline=None)
+@given(rows=st.lists(ROW, min_size=1, max_size=4))
+def test_it_is_calculated_at_each_sample(rows: list[dict[str, float]]) -> None:
+    for text, asked in SAME.items():
+        if asked is not None:
+            before = [None, *rows[:-1]]
+            wanted = [not asked(row, last) for row, last in zip(rows, before, strict=True)]
+            assert bad(of(text), rows) == wanted, text
+    older = [0.0, *[2.0, *(row["x"] for row in rows)]][: len(rows)]
+    text = "(G (preReal(0.0, preReal(2.0, x)) <= x | b))"
+    wanted = [not (o <= r["x"] or r["b"] == 1) for o, r in zip(older, rows, strict=True)]
+    assert bad(of(text), rows) == wanted
+
+
+def test_what_is_not_known_and_a_quotient_by_zero_are_unknown() -> None:
+    row = {"x": 1.0, "y": 2.0}
+    spec = of("(G (x / y >= 0.5))")
+    rows = [row, {**row, "y": 0.0}, {**row, "x": None}, {**row, "x": math.inf}, row]
+    assert bad(spec, rows) == [False, None, None, None, False]
+    assert bad(of("(G (x * y <= 3.0))"), [{"x": 1e300, "y": 1e300}]) == [None]
+    rows = [{"x": 5.0}, {"x": None}, {"x": 5.0}, {"x": 5.0}]
+    assert bad(of("(G (preReal(0.0, x) + x >= 10.0))"), rows) == [True, None, None, False]
+
+
+@pytest.mark.parametrize(
+    ("formula", "why"),
+    [
+        ("(G (i / j > 1))", "quotient of whole numbers"),
+        ("(G (x > 1/2))", "quotient of whole numbers"),
+        ("(G (x > 1.0/0.0))", "not 0"),
+        ("(G (x + b > 1.0))", "a truth value is calculated with"),
+        ("(G ((x > y) + 1.0 > 1.0))", "a truth value is calculated with"),
+        ("(G (x + y))", "a number stands for a truth value"),
+        ("(G (b & x - y))", "a number stands for a truth value"),
+        ("(G (3.0))", "a number stands for a truth value"),
+        ("(G (absReal(x, y) > 1.0))", "of so many arguments"),
+        ("(G (preReal(0.0, 1.0) > x))", "never changes"),
+        ("(G (preBool(FALSE, x) | b))", "a number stands for a truth value|no truth value"),
+        ("(G (sin(x) > 0.0))", "this function"),
+        ("(G (" + "+".join(["x"] * 3000) + " > 1.0))", "too long"),
+    ],
+)
+def test_what_has_no_clear_meaning_is_refused(formula: str, why: str) -> None:
+    no = of(formula).requirements[0].formula
+    assert isinstance(no, NotRead)
+    assert any(one in str(no) for one in why.split("|")), str(no)
+
+
+def test_a_sentence_says_the_same_and_is_said_again() -> None:
+    text = "the a shall always satisfy absReal(x - y) <= 1.0 + z"
+    spec = fret.read(export(fulltext=text), "e.json")
+    assert sentence(spec.requirements[0].formula, spec) == (  # type: ignore[arg-type]
+        "The system shall always satisfy (1.0 + z) >= absReal((x - y))"
+    )
+    again = fret.read(export(fulltext=sentence(spec.requirements[0].formula, spec)), "e.json")  # type: ignore[arg-type]
+    assert again.requirements[0].formula == spec.requirements[0].formula
+
+
+HEAD = "trace every 1 s\nsignal x, y: m\nsignal v: kn\nsignal n: 1\n"
+
+
+def test_units_of_a_file_of_requirements(tmp_path: Path) -> None:
+    asked = "the a shall always satisfy {}"
+    spec = language.read(
+        f'{HEAD}requirement A: fretish "{asked.format("absReal(x - y) / 2.0 >= n * x + 1.0")}"'
+    )
+    assert sources(spec.signals, spec.signals) == {"x", "y", "v", "n"}
+    made = {name: s.unit for name, s in spec.signals.items() if s.made is not None}
+    assert made == {"(absReal((x - y)) / 2.0)": "m", "((n * x) + 1.0)": "m"}
+    assert {one.name for one in lint(spec)} == {"v"}
+    trace = tmp_path / "t.csv"
+    trace.write_text("time_s,x,y,n\n0,4,0,0.25\n1,4,1,0.25\n")
+    (one,) = watch(spec, trace).outcomes
+    assert (one.holds, one.violated, one.first_violated) == (1, 1, 10**9)
+    (margin,) = one.margins
+    assert (margin.least, margin.unit) == (-0.5, "m")
+    for said, why in (
+        ("x + v > 1.0", "two units"), ("x * y > 1.0", "no unit that is known"),
+        ("preReal(0.0, x) > 1.0", "none is the one before"), ("x / y > n * v", "two units"),
+    ):  # fmt: skip
+        with pytest.raises(NotRead, match=why):
+            language.read(f'{HEAD}requirement A: fretish "{asked.format(said)}"')
+
+
+def test_a_long_trace_is_judged_the_same_at_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spec = of("(G (absReal(preReal(0.0, x) - x) <= y / 2.0))")
+    trace = tmp_path / "t.csv"
+    rows = [f"{k % 7},{k % 4}" for k in range(60)]
+    trace.write_text("x,y\n" + "\n".join([*rows[:9], ",1", *rows[9:]]) + "\n")
+    one_by_one = watch(spec, trace, []).outcomes
+    monkeypatch.setattr("cratous.services.requirements.watch.is_worth", lambda *_: True)
+    monkeypatch.setattr("cratous.core.readings.machine.compiled.machine", lambda loop: loop)
+    at_once = watch(spec, trace).outcomes
+    assert [vars(one) for one in at_once] == [vars(one) for one in one_by_one]
+    assert one_by_one[0].unknown == 2
