@@ -98,9 +98,9 @@ def _measure(config: Config, state: State, vehicle_id: int) -> tuple[State, int 
     return state.put(chain), None if at_ms is None else _at_its_end(state, chain, at_ms)
 
 
-def _at_its_end(state: State, chain: Chain, at_ms: int) -> int:
-    """When the end of a track counts as passed. A circle is flown a little inside, so its end comes a little
-    early: a loiter that is over in this step lasts its duration."""
+def _at_its_end(state: State, chain: Chain, at_ms: int) -> int | None:
+    """When the end of a track counts as passed; None: in the next step. A circle is flown a little inside, so its
+    end comes a little early: a loiter that is over in this step or in the next lasts its duration."""
     item = chain.item
     if item is None or chain.phase is not Phase.TASK:
         return at_ms
@@ -108,7 +108,9 @@ def _at_its_end(state: State, chain: Chain, at_ms: int) -> int:
     if task.kind is not TaskKind.LOITER:
         return at_ms
     until_ms = dict(state.starts)[task.id] + task.duration_ms
-    return at_ms if too_early(state.now_ms, until_ms, 0) else max(at_ms, until_ms)
+    if too_early(state.now_ms, until_ms, state.mission.simulation.step_ms):
+        return at_ms
+    return None if too_early(state.now_ms, until_ms, 0) else max(at_ms, until_ms)
 
 
 def _on_end(config: Config, state: State, chain: Chain, at_ms: int, out: Out) -> State:

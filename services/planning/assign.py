@@ -30,6 +30,7 @@ from cratous.core.assignment.by_sets import by_sets
 from cratous.core.assignment.chains import chains_below
 from cratous.core.assignment.instance import TASKS_MAX, Instance
 from cratous.core.assignment.layers import DEALS_TASKS, look_ahead, refute
+from cratous.core.assignment.optimality import shows_optimal
 from cratous.core.assignment.repair import repaired
 from cratous.core.assignment.settlement import Settler
 from cratous.services.planning.assign_problem import (
@@ -53,6 +54,8 @@ REBUILDS, REBUILD_NODES, HEATS = 150_000, 40, (0.0, 0.01, 0.003, 0.03)
 """Rounds times tasks of one improvement, what a round counts as, and first temperatures."""
 REPAIRS = 60
 """Neighbourhoods of an incumbent that the exact search deals out anew."""
+FEW_BRANCHES, NARROW = 4, 64
+"""Of so many branches, and with so many states for each number of tasks done, optimality is asked for at first."""
 FIRST_NODES = 200_000
 """Nodes spent on finding a first solution where the limit is lower."""
 CHAIN_NODES = 5_000_000
@@ -238,6 +241,8 @@ def _anneal(run: _Run, made: list[Instance], firsts: list[Moves | None]) -> None
         n = made[k].tasks
         cost, better = _try(run, made[k], k, moves, min(2_000 * n, WORK // n // len(alive)), 0)
         ends.append((cost, k, better))
+    if _is_settled(run, made):
+        return
     ends.sort(key=lambda end: end[:2])
     for again in range(1, 4):
         for _, k, moves in ends[:2]:
@@ -245,6 +250,21 @@ def _anneal(run: _Run, made: list[Instance], firsts: list[Moves | None]) -> None
             if n > 10:
                 _try(run, made[k], k, moves, WORK // n if n > 16 else 3_000 * n, again)
     _go_on(run, made)
+
+
+def _is_settled(run: _Run, made: list[Instance]) -> bool:
+    """Whether a narrow search of many tasks finds the best of few branches, and shows that nothing costs less, as
+    where the order is given: then there is nothing to improve. What it finds is taken only then."""
+    if run.best is None or len(made) > FEW_BRANCHES or made[run.best[0]].tasks <= DEALS_TASKS:
+        return False
+    found = [settle_bound(instance, run.cost, NARROW, run.over) for instance in made]
+    low = min(proof.bound for _, _, proof, _ in found)
+    if not shows_optimal(min(cost for cost, *_ in found), low):
+        return False
+    for k, (cost, moves, *_) in enumerate(found):
+        if moves is not None:
+            run.better(cost, k, moves)
+    return shows_optimal(run.cost, low)
 
 
 def _go_on(run: _Run, made: list[Instance]) -> None:

@@ -69,4 +69,4 @@ class Known:
 
     def laps(self, name: str, wait: int, lap_ms: int) -> int:
         # of all numbers that are not too many, the most laps can make up the longest wait
-        return wait // lap_ms if lap_ms > 0 else wait
+        return wait // max(lap_ms, 1)

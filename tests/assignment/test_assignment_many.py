@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import random
 import time
 
 import numpy as np
 import pytest
 
+from cratous.services.planning import assign
 from cratous.services.planning.assign import Limits, solve, warm
 from cratous.spec.assignment.search import AssignmentProblem, Choice
 
@@ -28,3 +30,28 @@ def test_hundreds_of_options_do_not_slow_the_bound_down() -> None:
     assert found.cost is not None
     assert found.nodes >= 400_000
     assert time.process_time() - begun < 20
+
+
+def test_many_tasks_in_a_given_order_are_settled_by_a_narrow_search(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """With the order given only the options are open: what improves many tasks at random has nothing to do."""
+    rng = random.Random(3)
+    choices = tuple(Choice(t, option, 5, (1,)) for t in range(1, 23) for option in (1, 2, 3))
+    row = [[rng.randrange(1, 90) for _ in choices] for _ in range(len(choices) + 1)]
+    order = " ".join(f"p{t}" for t in range(1, 23))
+    p = AssignmentProblem("one", (1,), (0,), choices, (tuple(map(tuple, row)),), f".({order})")
+
+    def never(*_given: object) -> None:
+        raise AssertionError("it was settled before")
+
+    monkeypatch.setattr(assign, "rebuilt", never)
+    monkeypatch.setattr(assign, "repaired", never)
+    found = solve(p)
+    best = {3 * 22: 0}
+    for t in range(22):
+        best = {
+            3 * t + o: min(cost + row[k][3 * t + o] + 5 for k, cost in best.items())
+            for o in range(3)
+        }
+    assert found.bound == found.cost == min(best.values())

@@ -93,15 +93,29 @@ def test_vehicle_loiters_while_its_predecessor_is_not_done(in_order: Flown) -> N
     assert max(abs(r - hold.radius_m) for r in on_hold) < 5.0
 
 
-def test_a_loiter_lasts_its_duration() -> None:
-    """Flown a little inside its circle, the way would be over some milliseconds before."""
+def circled(duration_ms: int) -> tuple[int, int]:
+    """When a loiter of this duration begins and ends."""
     around = Task(
-        1, TaskKind.LOITER, "circle", (Position(0, 0, 300),), (1,), duration_ms=60_000, radius_m=250
-    )
+        1, TaskKind.LOITER, "circle", (Position(0, 0, 300),), (1,), duration_ms=duration_ms,
+        radius_m=250,
+    )  # fmt: skip
     m = mission_within(1_200_000, (vehicle(1, 0, 0),), (around,), name="circle", relations="p1")
     result, _ = flown(m, make_plan(m))
     assert result.outcome == "complete"
-    assert 60_000 <= result.ends[1] - result.starts[1] <= 60_000 + m.simulation.step_ms
+    assert result.ends[1] - result.starts[1] <= duration_ms + m.simulation.step_ms
+    return result.starts[1], result.ends[1]
+
+
+def test_a_loiter_lasts_its_duration() -> None:
+    """Flown a little inside its circle, the way would be over some milliseconds before."""
+    begun, ended = circled(60_000)
+    assert ended - begun >= 60_000
+    # over 1 ms after a step has begun, so that the way ends in the step before
+    step_ms = Simulation().step_ms
+    longer = 60_000 + step_ms - (begun + 60_000) % step_ms + 1
+    begun, ended = circled(longer)
+    assert (begun + longer) % step_ms == 1
+    assert ended == begun + longer
 
 
 def delayed() -> Mission:
