@@ -164,6 +164,14 @@ def craft_of(path: Path, vehicle_id: int, dialect: Dialect, digest: str | None =
             expected=digest[:80],
             got=mission_hash(mission),
         )
+    if mission.link_loss is not None:
+        raise BadInput(
+            "the mission says what is flown without the link, which a program of its own does not fly",
+            where=str(path),
+            item="link_loss",
+            expected="no link_loss, or cratous run without --processes",
+            got=mission.link_loss.choice.value,
+        )
     found = [v for v in mission.vehicles if v.id == vehicle_id]
     if not found:
         raise BadInput(
