@@ -169,7 +169,12 @@ def test_g5_sees_what_was_not_flown(returned: Flown) -> None:
     assert returned.verdicts(returned.log[:-5])[ROW].outcome is Outcome.UNKNOWN
 
 
-TO = {"name": "meadow", "position": {"north_m": 0, "east_m": 0, "alt_m": 300}}
+TO: dict[str, Any] = {"name": "meadow", "position": {"north_m": 900, "east_m": 900, "alt_m": 300}}
+AROUND = {
+    "id": 7,
+    "kind": "keep_out",
+    "vertices": [[800, 800], [1000, 800], [1000, 1000], [800, 1000]],
+}
 SENSING = {"sensors": [{"kind": "adsb", "horizontal_m": 5, "vertical_m": 5, "velocity_m_s": 1}]}
 
 
@@ -180,6 +185,8 @@ SENSING = {"sensors": [{"kind": "adsb", "horizontal_m": 5, "vertical_m": 5, "vel
         ({"link_loss": {"choice": "loiter", "to": TO}}, "link_loss.to"),
         ({"link_loss": {"choice": "return", "after_s": 0.5}}, "link_loss.after_s"),
         ({"link_loss": {"choice": "finish", "after_s": 1}, "simulation": {"heartbeat_ms": 1000}}, "link_loss.after_s"),
+        ({"link_loss": {"choice": "return", "to": {**TO, "position": {**TO["position"], "alt_m": -50}}}}, "above"),
+        ({"link_loss": {"choice": "return", "to": TO}, "zones": [AROUND]}, "keeps zone 7"),
         ({"link_loss": {"choice": "finish"}, "bridge": {"instances": 0}}, "link_loss"),
         ({"link_loss": {"choice": "finish"}, "sensing": SENSING}, "link_loss"),
     ],
