@@ -11,20 +11,12 @@ from typing import Any, NamedTuple
 
 import pytest
 import yaml
-from icarous_tools import ABILITY, NORTH, PROJECTION, VOLUME
 from loading_tools import small
 
 from cratous.bridge import lmcp
-from cratous.core.authority.gate import ICAROUS, Gate
-from cratous.core.authority.link_loss import OVER, RETURN, Loss
 from cratous.services.bus import Bus
-from cratous.services.flight import without_link
 from cratous.services.flight.encounter import ways_of
 from cratous.services.flight.loop import fly
-from cratous.services.icarous import link_loss
-from cratous.services.icarous.lost import LostLink, NoLink
-from cratous.services.icarous.messages import Sensed
-from cratous.services.icarous.state import Config, State
 from cratous.services.loading import load
 from cratous.services.monitor import Monitor
 from cratous.services.parameters.listing import parameters_of
@@ -32,7 +24,7 @@ from cratous.services.pipeline.plan import make_plan
 from cratous.services.processes.coverage import told_of
 from cratous.services.system_model.replay import replay
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import Daa, Mission, Position, Simulation
+from cratous.spec.mission import Mission, Simulation
 from cratous.spec.mission.guarantees import Outcome, Verdict
 
 ROW = "what vehicle 1 flies without the link"
@@ -177,13 +169,11 @@ def test_g5_sees_what_was_not_flown(returned: Flown) -> None:
     assert returned.verdicts(returned.log[:-5])[ROW].outcome is Outcome.UNKNOWN
 
 
-TO: dict[str, Any] = {"name": "meadow", "position": {"north_m": 900, "east_m": 900, "alt_m": 300}}
-AROUND = {
-    "id": 7,
-    "kind": "keep_out",
-    "vertices": [[800, 800], [1000, 800], [1000, 1000], [800, 1000]],
-}
+TO = {"name": "meadow", "position": {"north_m": 0, "east_m": 0, "alt_m": 300}}
 SENSING = {"sensors": [{"kind": "adsb", "horizontal_m": 5, "vertical_m": 5, "velocity_m_s": 1}]}
+LOW = {"name": "mine", "position": {"north_m": 900, "east_m": 900, "alt_m": -50}}
+AWAY = {"name": "meadow", "position": {"north_m": 900, "east_m": 900, "alt_m": 300}}
+AROUND = {"id": 7, "kind": "keep_out", "vertices": [[800, 800], [1e3, 800], [1e3, 1e3], [800, 1e3]]}
 
 
 @pytest.mark.parametrize(
@@ -193,8 +183,8 @@ SENSING = {"sensors": [{"kind": "adsb", "horizontal_m": 5, "vertical_m": 5, "vel
         ({"link_loss": {"choice": "loiter", "to": TO}}, "link_loss.to"),
         ({"link_loss": {"choice": "return", "after_s": 0.5}}, "link_loss.after_s"),
         ({"link_loss": {"choice": "finish", "after_s": 1}, "simulation": {"heartbeat_ms": 1000}}, "link_loss.after_s"),
-        ({"link_loss": {"choice": "return", "to": {**TO, "position": {**TO["position"], "alt_m": -50}}}}, "above"),
-        ({"link_loss": {"choice": "return", "to": TO}, "zones": [AROUND]}, "keeps zone 7"),
+        ({"link_loss": {"choice": "return", "to": LOW}}, "above"),
+        ({"link_loss": {"choice": "return", "to": AWAY}, "zones": [AROUND]}, "keeps zone 7"),
         ({"link_loss": {"choice": "finish"}, "bridge": {"instances": 0}}, "link_loss"),
         ({"link_loss": {"choice": "finish"}, "sensing": SENSING}, "link_loss"),
     ],
@@ -207,23 +197,6 @@ def test_what_makes_no_sense_is_refused(
     with pytest.raises(BadInput) as caught:
         load(path)
     assert item in str(caught.value)
-
-
-def test_what_is_over_looks_for_no_way() -> None:
-    def never(*_given: Any) -> tuple[Position, ...]:
-        raise AssertionError("nothing is flown any more")
-
-    plan = LostLink(RETURN, 3000, "return", never, Position(900.0, 900.0, 300.0))
-    config = Config(1, Daa(VOLUME), PROJECTION, 500, lost_link=plan)
-    state = State(no_link=NoLink(Loss(OVER, 1000)))
-    now = Sensed(60_000, NORTH, ABILITY, (), Gate(ICAROUS, 1, False))
-    after, said = link_loss.heartbeat(config, state, now)
-    assert (after.no_link.loss, said) == (Loss(OVER, 1000), ())
-    assert after.no_link.course is not None
-
-
-def test_the_ways_around_zones_of_missions_that_are_over_are_let_go() -> None:
-    assert without_link._router.cache_info().maxsize is not None
 
 
 def test_how_long_uxas_may_be_silent_is_a_parameter(returned: Flown, root: Path) -> None:
