@@ -6,11 +6,12 @@ import json
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 from cratous.services.campaign.encounters import REQUIREMENTS as HELD
-from cratous.services.campaign.generators import CASES, CHANGES
+from cratous.services.campaign.generators import CASES, CHANGES, PARAMETERS
 from cratous.services.campaign.recorded import ENDINGS, mission_of_states
 from cratous.services.loading import load
 from cratous.services.loading.document import Document, parse_document, read_document
@@ -205,9 +206,7 @@ def _check(campaign: Campaign, document: Document) -> None:
                 item,
             )
     _check_ranges(document, ("generator",), made)
-    for what, cases in made.get(CASES, {}).items():
-        for name, case in cases.items():
-            _check_ranges(document, ("generator", CASES, what, name), case)
+    _check_cases(document, made.get(CASES, {}), campaign.vary)
     if (campaign.generator or campaign.vary) and not campaign.seeds:
         expected = "seeds: [first, last], or --seeds A-B"
         raise _wrong(document, ("seeds",), "nothing to draw with", expected, "no seeds")
@@ -232,6 +231,35 @@ def _check(campaign: Campaign, document: Document) -> None:
 def _check_ranges(document: Document, key: tuple[str | int, ...], made: dict[str, Any]) -> None:
     for name, (low, high) in made.get("ranges", {}).items():
         _ordered(document, (*key, "ranges", name), low, high)
+
+
+def _check_cases(document: Document, things: dict[str, Any], vary: tuple[Variable, ...]) -> None:
+    """What two things say, or what has its column already, would be one of them and be told as both."""
+    drawn = {*PARAMETERS, *(one.item for one in vary)}
+    said: dict[str, str] = {}
+    for what, cases in things.items():
+        if what in drawn:
+            expected = "a name of its own"
+            raise _wrong(document, ("generator", CASES, what), "drawn already", expected, what)
+        mine = set[str]()
+        for name, case in cases.items():
+            _check_ranges(document, ("generator", CASES, what, name), case)
+            mine |= {
+                *(case.keys() - {"ranges", "set"}),
+                *case.get("ranges", {}),
+                *case.get("set", {}),
+            }
+        for item, other in product(sorted(mine), sorted(said)):
+            if _within(item, other) or _within(other, item):
+                expected = f"one thing to say it: {said[other]} says {other}"
+                key = ("generator", CASES, what)
+                raise _wrong(document, key, "said by two things", expected, item)
+        said |= dict.fromkeys(mine, what)
+
+
+def _within(item: str, other: str) -> bool:
+    """Whether one item is another or a part of it."""
+    return f"{item}.".replace("[", ".[").startswith(f"{other}.".replace("[", ".["))
 
 
 def _check_kind(campaign: Campaign, document: Document) -> None:

@@ -17,6 +17,7 @@ from typing import Any
 from cratous.core.kernel import Vec2
 from cratous.core.permit.tubes import disc_within
 from cratous.services.campaign.changing import changing_mission
+from cratous.spec.errors import BadInput
 
 Ranges = dict[str, tuple[float, float]]
 ALTITUDE_M = 300.0
@@ -34,6 +35,8 @@ KINDS: dict[str, Ranges] = {
     "head_on": {"angle_deg": (165, 195)},
     "random": {"angle_deg": (0, 360), "height_m": (-150, 150)},
 }
+PARAMETERS = frozenset(COMMON) | {name for ranges in KINDS.values() for name in ranges}
+"""All that has a range."""
 CHANGES, MOST_CHANGES = "changes", 6
 """The kind of `services.campaign.changing`, which has no ranges; it draws so many changes at most."""
 COUNTS = (
@@ -63,7 +66,7 @@ class Draw:
         self, data: dict[str, Any], seed: int, given: Mapping[str, Any] | None = None
     ) -> None:
         self.kind: str = data["kind"]
-        self._seed, self._given = seed, given or {}
+        self.seed, self._given = seed, given or {}
         self.drawn: dict[str, Any] = {}
         self.bounds: dict[str, tuple[float, float]] = {}
         self.choices: dict[str, tuple[Any, ...]] = {}
@@ -83,7 +86,7 @@ class Draw:
         low, high = self._ranges[name]
         key = f"{name}[{number}]" if number else name
         once = f" again {again}" * bool(again)
-        value = round(Random(f"{self._seed} {key}{once}").uniform(low, high), 3)
+        value = round(Random(f"{self.seed} {key}{once}").uniform(low, high), 3)
         value = self._given.get(key, value)
         if name == "angle_deg" and self.kind in MIRRORED:
             value *= self.side(key)
@@ -93,7 +96,7 @@ class Draw:
     def chosen(self, what: str, names: tuple[str, ...]) -> str:
         """Which of some cases."""
         self.choices[what] = names
-        drawn = Random(f"{self._seed} case {what}").choice(names)
+        drawn = Random(f"{self.seed} case {what}").choice(names)
         self.drawn[what] = self._given.get(what, drawn)
         return str(self.drawn[what])
 
@@ -101,7 +104,7 @@ class Draw:
         """Left (-1) or right (1)."""
         name = f"side {key}"
         self.choices[name] = SIDES
-        drawn = Random(f"{self._seed} {name}").choice(SIDES)
+        drawn = Random(f"{self.seed} {name}").choice(SIDES)
         return int(self._given.get(name, drawn))
 
 
@@ -146,14 +149,20 @@ Point = tuple[float, float, float]
 
 
 def _far_intruder(draw: Draw, k: int, time: float, way: float) -> tuple[Point, float, float]:
-    """The first that is drawn of those that start at least `apart_m` from the vehicle; the last one of
-    AGAIN if none does."""
+    """The first that is drawn of those that start at least `apart_m` from the vehicle; BadInput if none of AGAIN
+    does."""
+    apart_m = float(draw.data.get("apart_m", 0.0))
     for again in range(AGAIN):
         found = _intruder(draw, k, time, again)
         north, east, _ = found[0]
-        if not disc_within(Vec2(north + way, east), 0.0, float(draw.data.get("apart_m", 0.0))):
-            break
-    return found
+        if not disc_within(Vec2(north + way, east), 0.0, apart_m):
+            return found
+    raise BadInput(
+        f"no intruder starts so far away, of {AGAIN} that were drawn for seed {draw.seed}",
+        item="generator.apart_m",
+        expected="ranges in which most intruders do",
+        got=f"{apart_m:g} m",
+    )
 
 
 def _intruder(draw: Draw, k: int, time: float, again: int) -> tuple[Point, float, float]:

@@ -62,7 +62,14 @@ class Search:
                 expected="one mission or a generator, and one option",
                 got=f"{len(campaign.missions)} missions, {len(campaign.options)} options",
             )  # fmt: skip
-        made = (campaign.generator or {}).get(CASES, {})
+        generator = campaign.generator or {}
+        if generator.get("apart_m", 0):
+            raise BadInput(
+                "a search draws no intruder anew", item="generator.apart_m",
+                expected="none, and ranges in which intruders start far enough away",
+                got=f"{generator['apart_m']:g} m",
+            )  # fmt: skip
+        made = generator.get(CASES, {})
         if any(set(case) - {"set"} for cases in made.values() for case in cases.values()):
             raise BadInput(
                 "a search is in one space", item=f"generator.{CASES}",

@@ -149,11 +149,12 @@ def craft_of(path: Path, vehicle_id: int, dialect: Dialect, digest: str | None =
     another one than that of `digest`."""
     from cratous.bridge.text_protocol.dialects import Dialect
     from cratous.services.certify.report import mission_hash
-    from cratous.services.flight.dynamics import floor_of, limits_of
+    from cratous.services.flight.dynamics import limits_of
     from cratous.services.icarous.state import Config
     from cratous.services.icarous_program.step import Craft
     from cratous.services.loading import load
     from cratous.services.mission.frames import Projection
+    from cratous.services.mission.ground import floor_of
 
     mission = load(path)
     if digest is not None and mission_hash(mission) != digest:
@@ -163,6 +164,14 @@ def craft_of(path: Path, vehicle_id: int, dialect: Dialect, digest: str | None =
             item="--mission-hash",
             expected=digest[:80],
             got=mission_hash(mission),
+        )
+    if mission.link_loss is not None:
+        raise BadInput(
+            "the mission says what is flown without the link, which a program of its own does not fly",
+            where=str(path),
+            item="link_loss",
+            expected="no link_loss, or cratous run without --processes",
+            got=mission.link_loss.choice.value,
         )
     found = [v for v in mission.vehicles if v.id == vehicle_id]
     if not found:

@@ -11,13 +11,11 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from cratous.spec.mission import Mission, Position, Traffic, Vehicle, Velocity
+from cratous.spec.mission import Position, Traffic, Vehicle, Velocity
 from cratous.spec.mission.plan import Pose
 
 GRAVITY_M_S2 = 9.80665
 MAX_ACCELERATION_M_S2 = 1.0
-GROUND_MARGIN = 2.0
-"""No manoeuvre goes nearer to the ground than this many vertical thresholds."""
 
 
 class Limits(NamedTuple):
@@ -66,11 +64,6 @@ def limits_of(vehicle: Vehicle) -> Limits:
     return Limits(
         vehicle.min_speed_m_s, vehicle.max_speed_m_s, vehicle.max_bank_rad, vehicle.max_climb_m_s
     )
-
-
-def floor_of(mission: Mission) -> float:
-    """The altitude below which no manoeuvre of ICAROUS goes [m MSL]."""
-    return mission.frame.terrain_m + GROUND_MARGIN * mission.daa.well_clear.zthr_m
 
 
 def first_state(vehicle: Vehicle) -> AirState:

@@ -25,7 +25,7 @@ from cratous.core.routing.polylines import Track
 from cratous.services.flight import vehicle as vehicles
 from cratous.services.flight.autopilot import Fly, Follow
 from cratous.services.flight.chain import Chain, Phase
-from cratous.services.flight.dynamics import AirState, floor_of, traffic_state
+from cratous.services.flight.dynamics import AirState, traffic_state
 from cratous.services.flight.executive_outputs import AHEAD_S
 from cratous.services.flight.inflight_routes import Ways
 from cratous.services.flight.link_lines import Flies
@@ -37,6 +37,7 @@ from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Steer, Up, Wish
 from cratous.services.mission.frames import Projection
+from cratous.services.mission.ground import floor_of
 from cratous.services.planning.flyers import MOMENT_MS, straight
 from cratous.services.sensing import surveillance
 from cratous.services.sensing.filter import Flown

@@ -22,7 +22,7 @@ from cratous.services.bus import Bus
 from cratous.services.flight import executive_state, link_end, link_peers
 from cratous.services.flight.arrivals import arrivals
 from cratous.services.flight.commands import gated, velocity_command
-from cratous.services.flight.dynamics import AirState, floor_of, traffic_state
+from cratous.services.flight.dynamics import AirState, traffic_state
 from cratous.services.flight.executive import Executive
 from cratous.services.flight.executive_state import Config
 from cratous.services.flight.holding import Ground
@@ -85,6 +85,7 @@ from cratous.services.icarous.messages import (
     WithoutLink,
 )
 from cratous.services.mission.frames import Projection
+from cratous.services.mission.ground import floor_of
 from cratous.services.sensing import surveillance
 from cratous.services.sensing.filter import Flown
 from cratous.services.sensing.surveillance import Surveillance

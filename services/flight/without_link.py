@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import lru_cache
 
 from cratous.core.authority.link_loss import FINISH, LOITER, RETURN
 from cratous.services.flight.dynamics import AirState
@@ -40,6 +40,6 @@ def _way(
     return _router(zones).way_to(state, radius_m, end, slope)
 
 
-@cache
+@lru_cache(maxsize=64)
 def _router(zones: tuple[Zone, ...]) -> Router:
     return Router(zones)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from cratous.core.authority.link_loss import FINISH, LINKED, LOITER, RETURN, loss_step
+from cratous.core.authority.link_loss import FINISH, LINKED, LOITER, OVER, RETURN, loss_step
 from cratous.core.authority.timeliness import in_time, lasted
 from cratous.core.avoidance.resolution import Choice
 from cratous.core.avoidance.way_ahead import near_line
@@ -53,7 +53,7 @@ def heartbeat(
     if course is not None:
         course = course.flown(sensed.motion, _beat_s(config))
     chosen, mode, due = plan.choice, before.loss.mode, False
-    if not linked and chosen != LOITER:
+    if not linked and mode != OVER and chosen != LOITER:
         due = mode in (LINKED, chosen) or lasted(before.tried_ms, now_ms, AGAIN_MS)
         going = course if mode == chosen else None
         tried = _tried(config, state, sensed, plan, going) if due else tried

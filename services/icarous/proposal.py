@@ -81,8 +81,9 @@ def _soonest(
     in_turn: frozenset[int],
     flying: tuple[float, float],
 ) -> Found | None:
-    """The turn after which the way back is free soonest: the smallest of those. One after which it is so for good
-    goes before one after which it is for the look-ahead. flying: course [rad], speed [m/s]."""
+    """The turn after which the way back is free soonest: of those the course, else one that the bands resolve with,
+    else the smallest. One after which it is so for good goes before one after which it is for the look-ahead.
+    flying: course [rad], speed [m/s]."""
     course, speed = flying
     scene = scene_of(config, state, sensed)
     level = Choice("heading", course, speed, 0.0, 0.0, True, None)

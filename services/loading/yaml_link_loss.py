@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from cratous.core.authority.timeliness import lasted
+from cratous.core.geofence.planar import keep_in_leg_ok
+from cratous.services.loading.checks import Where, start_is_allowed
 from cratous.services.loading.document import Document, item_name
 from cratous.services.loading.places import Places
 from cratous.services.loading.problems import refuse
+from cratous.services.mission.ground import floor_of
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import LinkLoss, Simulation
+from cratous.spec.mission import LinkLoss, Mission, Simulation
 from cratous.spec.mission.link_loss import WithoutLink
 from cratous.spec.mission.link_loss import words as choice_words
 
@@ -45,6 +49,32 @@ def words(loss: LinkLoss) -> str:
     silence = f"without a word of UxAS for more than {loss.after_ms / 1000:g} s"
     what = choice_words(loss.choice, loss.name)
     return f"{silence}, each vehicle with ICAROUS acts by itself: {what}"
+
+
+def place_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
+    """What is wrong with the place to return to: nobody may circle there, since of a zone of the start or of the ground."""
+    to = None if mission.link_loss is None else mission.link_loss.to
+    if to is None:
+        return
+    item = "link_loss.to.position"
+    floor_m = floor_of(mission)
+    if not keep_in_leg_ok(1, False, to.alt_m, to.alt_m, floor_m, math.inf):
+        yield BadInput(
+            "no manoeuvre goes so low",
+            where=where(item),
+            item=item,
+            expected=f"above {floor_m:g} m MSL",
+            got=f"{to.alt_m:g} m MSL",
+        )
+    for zone in mission.zones:
+        if not start_is_allowed(to, zone):
+            yield BadInput(
+                "nothing returns there",
+                where=where(item),
+                item=item,
+                expected=f"a place that keeps zone {zone.id}",
+                got=f"{to.north_m:g} m north, {to.east_m:g} m east, {to.alt_m:g} m MSL",
+            )
 
 
 def _found(loss: LinkLoss, simulation: Simulation, instances: int, sensed: bool) -> Iterator[Found]:

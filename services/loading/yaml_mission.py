@@ -28,8 +28,8 @@ from cratous.services.loading.problems import refuse
 from cratous.services.loading.schema import schema_problems
 from cratous.services.loading.start_distances import close_starts
 from cratous.services.loading.yaml_bridge_faults import yaml_bridge_faults
+from cratous.services.loading.yaml_link_loss import place_problems, yaml_link_loss
 from cratous.services.loading.yaml_link_loss import words as link_loss_words
-from cratous.services.loading.yaml_link_loss import yaml_link_loss
 from cratous.services.loading.yaml_sensing import yaml_sensing
 from cratous.services.loading.yaml_task import yaml_task
 from cratous.spec.errors import BadInput
@@ -131,7 +131,7 @@ def finish(mission: Mission, where: Any) -> Mission:
     if mission.link_loss is not None:
         notes.append(link_loss_words(mission.link_loss))
     mission = replace(mission, zones=zones, changes=known)
-    refuse(list(start_problems(mission, where)))
+    refuse([*start_problems(mission, where), *place_problems(mission, where)])
     said = [*mission.notes, *notes, *warnings_of(mission)]
     return replace(mission, notes=tuple(dict.fromkeys(said)))
 

@@ -170,12 +170,44 @@ def test_an_intruder_that_would_start_too_near_is_drawn_anew() -> None:
     assert drawn_anew > 3
 
 
-def test_a_search_is_not_over_several_spaces() -> None:
-    generator = {"kind": "aimed", "cases": CASES}
-    campaign = Campaign("made", generator=generator, seeds=range(1, 2))
-    with pytest.raises(BadInput, match="one space") as error:
+def test_where_no_intruder_starts_so_far_away_the_campaign_is_refused() -> None:
+    with pytest.raises(BadInput, match="seed 3") as error:
+        made({"kind": "aimed", "apart_m": 90_000}, range(3, 4))
+    assert error.value.item == "generator.apart_m"
+
+
+@pytest.mark.parametrize(
+    ("more", "item"), [({"cases": CASES}, "cases"), ({"apart_m": 9}, "apart_m")]
+)
+def test_a_search_is_in_one_space_and_draws_nothing_anew(more: dict[str, Any], item: str) -> None:
+    campaign = Campaign("made", generator={"kind": "aimed", **more}, seeds=range(1, 2))
+    with pytest.raises(BadInput, match="a search ") as error:
         Search(campaign, "G2", "v", True)
-    assert error.value.item == "generator.cases"
+    assert error.value.item == f"generator.{item}"
+
+
+@pytest.mark.parametrize(
+    ("cases", "wrong"),
+    [
+        ("x: {a: {intruders: 2}}, y: {b: {intruders: 3}}", "cases.y"),
+        ("x: {a: {set: {daa: {}}}}, y: {b: {set: {daa.buffer: 2}}}", "cases.y"),
+        ("x: {a: {ranges: {time_s: [1, 2]}}}, y: {b: {ranges: {time_s: [3, 4]}}}", "cases.y"),
+        ("time_s: {a: {intruders: 2}}", "cases.time_s"),
+        (
+            "x: {a: {set: {daa.buffer: 2}}, b: {set: {daa.buffer: 3}}}, y: {a: {set: {daa.buff: 1}}}",
+            "",
+        ),
+    ],
+)
+def test_each_thing_says_something_else(tmp_path: Path, cases: str, wrong: str) -> None:
+    file = tmp_path / "campaign.yaml"
+    file.write_text(f"name: a\nseeds: [1, 2]\ngenerator: {{kind: aimed, cases: {{{cases}}}}}\n")
+    if not wrong:
+        assert load_campaign(file, None, ()).generator is not None
+        return
+    with pytest.raises(BadInput) as error:
+        load_campaign(file, None, ())
+    assert error.value.item == f"generator.{wrong}"
 
 
 def test_one_flies_alone_to_the_same_digest(

@@ -12,11 +12,12 @@ from cratous.core.authority.gate import UXAS, Gate
 from cratous.core.avoidance.prediction import Intruder, Spread
 from cratous.services.certify.alerted import AlertReader
 from cratous.services.flight.notices import guidance
+from cratous.services.icarous import proposal
 from cratous.services.icarous.bands import STEP_DEG, Bands, Whose, resolutions, watched
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Guides, Sensed
-from cratous.services.icarous.proposal import TURNS_DEG, _told
+from cratous.services.icarous.proposal import TURNS_DEG, _soonest, _told
 from cratous.services.icarous.state import Config, State
 from cratous.spec.daa.parameters import MID, NONE
 from cratous.spec.mission import Daa, Position, Velocity
@@ -104,13 +105,22 @@ def test_it_is_said_once_a_second_while_a_loss_is_foreseen_and_the_state_before_
     assert not any(isinstance(one, Guides) for one in out)
 
 
-def test_the_proposal_tries_what_the_bands_prefer_first_and_no_wide_turn() -> None:
+def test_the_proposal_tries_what_the_bands_prefer_first_and_no_wide_turn(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    tried = list[float]()
+    monkeypatch.setattr(proposal, "keeps_clear", lambda *given: tried.append(given[-1].heading_rad))
     for side in (1.0, -1.0):
         found = bands(crossing(side))
         turns = _told(State(bands=found), NORTH.heading_rad)
         assert turns
         assert math.copysign(1.0, turns[0]) == side
         assert all(abs(turn) <= math.radians(TURNS_DEG[-1]) for turn in turns)
+        tried.clear()
+        state, now = State(bands=found), sensed(0, crossing(side))
+        assert _soonest(CONFIG, state, now, frozenset(), (NORTH.heading_rad, 22.0)) is None
+        begin, small = [0.0, *turns], math.radians(TURNS_DEG[0])
+        assert tried[: len(begin) + 2] == pytest.approx([*begin, side * small, -side * small])
     assert _told(State(), 0.0) == ()
 
 

@@ -171,6 +171,9 @@ def test_g5_sees_what_was_not_flown(returned: Flown) -> None:
 
 TO = {"name": "meadow", "position": {"north_m": 0, "east_m": 0, "alt_m": 300}}
 SENSING = {"sensors": [{"kind": "adsb", "horizontal_m": 5, "vertical_m": 5, "velocity_m_s": 1}]}
+LOW = {"name": "mine", "position": {"north_m": 900, "east_m": 900, "alt_m": -50}}
+AWAY = {"name": "meadow", "position": {"north_m": 900, "east_m": 900, "alt_m": 300}}
+AROUND = {"id": 7, "kind": "keep_out", "vertices": [[800, 800], [1e3, 800], [1e3, 1e3], [800, 1e3]]}
 
 
 @pytest.mark.parametrize(
@@ -180,6 +183,8 @@ SENSING = {"sensors": [{"kind": "adsb", "horizontal_m": 5, "vertical_m": 5, "vel
         ({"link_loss": {"choice": "loiter", "to": TO}}, "link_loss.to"),
         ({"link_loss": {"choice": "return", "after_s": 0.5}}, "link_loss.after_s"),
         ({"link_loss": {"choice": "finish", "after_s": 1}, "simulation": {"heartbeat_ms": 1000}}, "link_loss.after_s"),
+        ({"link_loss": {"choice": "return", "to": LOW}}, "above"),
+        ({"link_loss": {"choice": "return", "to": AWAY}, "zones": [AROUND]}, "keeps zone 7"),
         ({"link_loss": {"choice": "finish"}, "bridge": {"instances": 0}}, "link_loss"),
         ({"link_loss": {"choice": "finish"}, "sensing": SENSING}, "link_loss"),
     ],

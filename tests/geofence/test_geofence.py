@@ -7,6 +7,7 @@ import itertools
 import math
 import random
 from fractions import Fraction
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -19,14 +20,18 @@ from cratous.core.geofence import Place, polygon, region
 from cratous.core.geofence.arrays import boundary_against, contact, places_in_polygon
 from cratous.core.geofence.distance import boundary_against as fold_against
 from cratous.core.geofence.distance import edge_against, leg_within
+from cratous.core.geofence.mission_legs import leg_ok
 from cratous.core.geofence.planar import edges_of, locate, meets_boundary
 from cratous.core.kernel import Vec2
 from cratous.core.readings.exact import exact
 from cratous.core.readings.exact.folds import folded
+from cratous.services.mission.zones import exact_leg_ok
 from cratous.spec.errors import BadInput
+from cratous.spec.mission import Position, Zone, ZoneKind
 
 SQUARE = [(0, 0), (10, 0), (10, 10), (0, 10)]
 COMB = [(0, 0), (9, 0), (9, 6), (7, 6), (7, 2), (5, 2), (5, 6), (3, 6), (3, 2), (1, 2), (1, 6), (0, 6)]  # fmt: skip
+SQUARE_ROUND = [(-1, -1), (-1, 1), (1, 1), (1, -1)]
 SMALL = st.integers(-6, 6)
 POINT = st.tuples(SMALL, SMALL)
 
@@ -359,3 +364,28 @@ def test_stretches_are_what_dense_points_see(seed):
             point = (p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1]))
             places = {s.place for s in stretches if s.begin <= t <= s.end}
             assert exactly_placed(point, corners) in places
+
+
+def test_a_leg_of_a_mission_is_judged_as_on_rationals() -> None:
+    """In whole parts of a metre: touches, numbers that are no multiple of a unit, and very small ones."""
+    rng, exact, seen = random.Random(1), Fraction, set()
+    for _ in range(400):
+        unit = rng.choice([1.0, 0.1, 1e-7, 333.3])
+        points = [(rng.randrange(-3, 4) * unit, rng.randrange(-3, 4) * unit) for _ in range(6)]
+        if rng.random() < 0.5:
+            points[2:] = [(north * 7 * unit, east * 7 * unit) for north, east in SQUARE_ROUND]
+        kind, low, high = (
+            rng.choice(list(ZoneKind)),
+            rng.choice([0.1, 0.2, 1e-300]),
+            rng.choice([0.3, 9.0]),
+        )
+        zone = Zone(1, kind, tuple(points[2:]), 0.1, 0.1 * 3)
+        p, q = Position(*points[0], low), Position(*points[1], high)
+        corners: list[tuple[Any, Any]] = [(exact(n), exact(e)) for n, e in zone.vertices]
+        floor, ceiling = exact(zone.floor_m), exact(zone.ceiling_m)
+        on_rationals: Any = Zone(1, kind, tuple(corners), *cast(Any, (floor, ceiling)))
+        ends: Any = [Position(*cast(Any, map(exact, end))) for end in (p, q)]
+        right = leg_ok(*ends, on_rationals)
+        assert exact_leg_ok(p, q, zone) == right
+        seen.add((kind, right))
+    assert len(seen) == 4

@@ -253,6 +253,14 @@ def test_the_mission_is_the_one_that_is_expected_and_says_how_it_is_flown(tmp_pa
     assert (craft.step_s, craft.config.heartbeat_ms) == (1.0, 1000)
 
 
+def test_a_mission_that_says_what_is_flown_without_the_link_is_refused(tmp_path: Path) -> None:
+    path = mission_file(tmp_path)
+    path.write_text(path.read_text() + "link_loss: {choice: loiter}\n")
+    with pytest.raises(BadInput) as caught:
+        craft_of(path, 1, Dialect.CRATOUS)
+    assert caught.value.item == "link_loss"
+
+
 def test_the_secret_of_the_environment_is_checked_and_not_shown(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

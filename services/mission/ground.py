@@ -1,0 +1,13 @@
+"""How near to the ground ICAROUS flies."""
+
+from __future__ import annotations
+
+from cratous.spec.mission import Mission
+
+GROUND_MARGIN = 2.0
+"""No manoeuvre goes nearer to the ground than this many vertical thresholds."""
+
+
+def floor_of(mission: Mission) -> float:
+    """The altitude below which no manoeuvre of ICAROUS goes [m MSL]."""
+    return mission.frame.terrain_m + GROUND_MARGIN * mission.daa.well_clear.zthr_m
