@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cratous.services.requirements import fret, language
+from cratous.services.requirements import fret, fret_definitions, language
 from cratous.services.requirements.arithmetic import sources
 from cratous.services.requirements.fretish import sentence
 from cratous.services.requirements.lint import lint
@@ -99,6 +99,7 @@ def test_what_is_not_known_and_a_quotient_by_zero_are_unknown() -> None:
         ("(G (preBool(FALSE, x) | b))", "a number stands for a truth value|no truth value"),
         ("(G (sin(x) > 0.0))", "this function"),
         ("(G (" + "+".join(["x"] * 3000) + " > 1.0))", "too long"),
+        ("(G (x > " + "*".join(["9999.5"] * 300) + "))", "what is calculated is too long"),
     ],
 )
 def test_what_has_no_clear_meaning_is_refused(formula: str, why: str) -> None:
@@ -196,6 +197,7 @@ def test_variables_that_are_defined_by_a_formula(rows: list[dict[str, float]]) -
         (("x + y",), "a number stands for a truth value"),
         (("nowhere and b",), "nothing says which signal"),
         ((*(f"m{k} and m{k}" for k in range(1, 40)), "b"), "too long"),
+        (("m1", "m2", "x + y"), "not read: a number stands for a truth value"),
     ],
 )
 def test_definitions_that_are_not_read(texts: tuple[str, ...], why: str) -> None:
@@ -206,6 +208,20 @@ def test_definitions_that_are_not_read(texts: tuple[str, ...], why: str) -> None
     )
     assert isinstance(no, NotRead)
     assert why in str(no)
+    assert str(no).count("defined by") <= 1
+
+
+def test_a_definition_is_looked_into_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However many others have to be told before it."""
+    asked: list[str] = []
+    real = fret_definitions.parsed
+    monkeypatch.setattr(
+        fret_definitions, "parsed", lambda p, text, said: asked.append(text) or real(p, text, said)
+    )
+    texts = [*(f"not m{k}" for k in range(1, 30)), "b"]
+    spec = over("(G m0)", *(defined(f"m{k}", text) for k, text in enumerate(texts)))
+    assert not isinstance(spec.requirements[0].formula, NotRead)
+    assert len(asked) == len(texts)
 
 
 def test_a_definition_counts_in_a_file_with_units_and_of_two_none_does(tmp_path: Path) -> None:
