@@ -280,9 +280,9 @@ class Evaluation:
         """What has no time and is read by that alone."""
         self.order_of_same = [
             # what has no time keeps its verdict, so nothing is told to it
-            (*one, [parent for parent in parents if parent[0] not in self.timeless])
-            for *one, parents in self.order
-            if one[0] not in within
+            (place, node, is_leaf, [one for one in read_by if one[0] not in self.timeless])
+            for place, node, is_leaf, read_by in self.order
+            if place not in within
         ]
         self.verdicts = [WAITS for _ in self.nodes]
         """Of what has no time, the verdict at the last sample."""
