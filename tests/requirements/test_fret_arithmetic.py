@@ -17,6 +17,7 @@ from cratous.services.requirements.fretish import sentence
 from cratous.services.requirements.lint import lint
 from cratous.services.requirements.specification import NotRead, Specification
 from cratous.services.requirements.watch import Watch, watch
+from cratous.spec.errors import BadInput
 
 VARIABLES = [
     *({"variable_name": n, "idType": "Input", "dataType": "double"} for n in "xyz"),
@@ -130,6 +131,10 @@ def test_units_of_a_file_of_requirements(tmp_path: Path) -> None:
     made = {name: s.unit for name, s in spec.signals.items() if s.made is not None}
     assert made == {"(absReal((x - y)) / 2.0)": "m", "((n * x) + 1.0)": "m"}
     assert {one.name for one in lint(spec)} == {"v"}
+    with pytest.raises(BadInput, match=r"a signal declared as a unit: n, v, x, y; got z"):
+        language.read(
+            f'{HEAD}requirement A: fretish "{asked.format("x + y > 1.0")}"\nrequirement B: z > 1 m'
+        )
     trace = tmp_path / "t.csv"
     trace.write_text("time_s,x,y,n\n0,4,0,0.25\n1,4,1,0.25\n")
     (one,) = watch(spec, trace).outcomes
