@@ -49,8 +49,8 @@ def _may_not_come(simulation: Simulation) -> bool:
     if not isinstance(simulation, FaultySimulation):
         return False
     faults = simulation.bridge_faults
-    shares = faults.loss + faults.truncation + faults.corruption
-    return shares > 0 or faults.delay_ms > 0 or faults.stops_reading_ms is not None
+    asked = (faults.loss, faults.truncation, faults.corruption, faults.delay_ms)
+    return any(asked) or faults.stops_reading_ms is not None
 
 
 class LinkLossWatch:
