@@ -84,7 +84,7 @@ class Own:
             kernels = tuple(self._kernel(name) for name in row["kernels"])
             if any(self._argument.state(one) is not State.SUPPORTED for one in kernels):
                 state, below = State.NOT_PROVED, kernels
-            elif not row["checks"]:
+            elif not (row["checks"] and kernels):  # what reads no signal is decided by none
                 state = State.NOTHING
                 text += ". Nothing in the flight tested it"
             else:

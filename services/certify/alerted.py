@@ -6,11 +6,19 @@ one in between that has not.
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import Any
+
+from cratous.spec.errors import BadInput
 
 TOPIC = "larcfm.DAIDALUS.WellClearViolationIntervals"
 LEVELS = {1: "corrective", 2: "warning"}
 """The levels of flights of `cratous run`, by number."""
+
+
+def level_name(level: int) -> str:
+    """A level in words, or its number."""
+    return LEVELS.get(level, str(level))
 
 
 class AlertReader:
@@ -21,12 +29,9 @@ class AlertReader:
         self._open: dict[tuple[int, int], dict[str, Any]] = {}
 
     def add(self, body: dict[str, Any], time_ms: int) -> None:
-        """Take the next message. Raises KeyError or ValueError for one that lacks something."""
+        """Take the next message. Raises BadInput for one whose lists are not those of its intruders."""
         vehicle = int(body["EntityId"])
-        told = zip(
-            body["EntityList"], body["AlertLevelList"], body["TimeToViolationList"], strict=True
-        )
-        now = {int(other): (int(level), float(first)) for other, level, first in told if level}
+        now = _levels(body, time_ms)
         for key in [key for key in self._open if key[0] == vehicle and key[1] not in now]:
             del self._open[key]
         for other, (level, first_s) in sorted(now.items()):
@@ -39,3 +44,26 @@ class AlertReader:
             row["to_ms"] = time_ms
             row["level"] = max(row["level"], level)
             row["least_s"] = min(row["least_s"], first_s)
+
+
+def _levels(body: dict[str, Any], time_ms: int) -> dict[int, tuple[int, float]]:
+    """By intruder at a level: the level, and the time to a violation [s]."""
+    lists = ("EntityList", "AlertLevelList", "TimeToViolationList")
+    told = [body[name] for name in lists]
+    try:
+        found = {
+            int(other): (int(level), float(first))
+            for other, level, first in zip(*told, strict=True)
+            if level
+        }
+        if all(isfinite(first) for _, first in found.values()):
+            return found
+    except ValueError:  # lists of several lengths, or a level that is no number
+        pass
+    raise BadInput(
+        "the alerts of a message cannot be told",
+        where="log",
+        item=f"{TOPIC} at {time_ms} ms",
+        expected="of each intruder one level and one time [s]",
+        got=str(told)[:200],
+    )

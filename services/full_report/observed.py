@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from cratous.services.assumptions.said import measured
-from cratous.services.certify.alerted import LEVELS
+from cratous.services.certify.alerted import level_name
 from cratous.services.certify.html import margin, seconds
 from cratous.services.full_report import document
 from cratous.services.full_report.front import loss_parts
@@ -56,7 +56,7 @@ def _trajectory(report: Data, chains: Data) -> Iterator[document.Part]:
     if alerts:
         spans = [
             (str(a["vehicle"]), str(a["intruder"]), seconds(a["from_ms"]), seconds(a["to_ms"]),
-             LEVELS.get(a["level"], str(a["level"])), f"{a['least_s']:.1f} s")
+             level_name(a["level"]), f"{a['least_s']:.1f} s")
             for a in alerts
         ]  # fmt: skip
         columns = (

@@ -2,7 +2,8 @@
 
 By what each ICAROUS said of it (`LinkLossState`), held against the kernel `loss_step`: from the mode before the
 one that it told must follow, whatever was permitted or ended. It begins within a heartbeat after the silence has
-become too long; a connection that had ended for longer, and nothing said, is a violation.
+become too long; a connection that had ended for longer, and nothing said, is a violation. Where lines of a bridge were
+made to be lost or late, whether UxAS was heard in between is not logged, and so that enough was said is not known.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from cratous.core.authority.link_loss import FINISH, LINKED, LOITER, RETURN, Los
 from cratous.core.authority.timeliness import in_time
 from cratous.core.kernel import qualified
 from cratous.services.monitor.required_rows import alone_without_link_item
-from cratous.spec.mission import Mission
+from cratous.spec.mission import FaultySimulation, Mission, Simulation
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission.link_loss import WithoutLink
 
@@ -43,6 +44,15 @@ class Told:
     checks: int = 0
 
 
+def _may_not_come(simulation: Simulation) -> bool:
+    """Whether lines of UxAS may not come, or late, while a connection stands."""
+    if not isinstance(simulation, FaultySimulation):
+        return False
+    faults = simulation.bridge_faults
+    asked = (faults.loss, faults.truncation, faults.corruption, faults.delay_ms)
+    return any(asked) or faults.stops_reading_ms is not None
+
+
 class LinkLossWatch:
     """What the vehicles with an ICAROUS instance flew without the link; nothing where the mission does not say."""
 
@@ -51,6 +61,7 @@ class LinkLossWatch:
         there = mission.instances if self._asked is not None else ()
         self._told = {number: Told() for number in there}
         self._over = False
+        self._known_heard = not _may_not_come(mission.simulation)
 
     def state(self, body: Any) -> None:
         """A vehicle says what it flies from now on."""
@@ -117,6 +128,10 @@ class LinkLossWatch:
         elif not self._over:
             outcome = Outcome.UNKNOWN
             note = f"{note}; the messages stop too early" if note else "the messages stop too early"
+        elif not self._known_heard:
+            outcome = Outcome.UNKNOWN
+            note = f"{note}; " if note else ""
+            note += "over a bridge that was made to fail: whether UxAS was heard is not logged"
         elif not note:
             note = "it was never without the link for long enough"
         kernels = tuple(qualified(kernel) for kernel in (loss_step, in_time)) if told.checks else ()

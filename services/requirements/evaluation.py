@@ -278,7 +278,12 @@ class Evaluation:
         self.is_timeless = last in self.timeless
         self.within = sorted(within)
         """What has no time and is read by that alone."""
-        self.order_of_same = [one for one in self.order if one[0] not in within]
+        self.order_of_same = [
+            # what has no time keeps its verdict, so nothing is told to it
+            (place, node, is_leaf, [one for one in read_by if one[0] not in self.timeless])
+            for place, node, is_leaf, read_by in self.order
+            if place not in within
+        ]
         self.verdicts = [WAITS for _ in self.nodes]
         """Of what has no time, the verdict at the last sample."""
 

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from lark import Lark
 
 
+NOT_READ = "this variable is defined by a formula that is not read"
 MOST = 2000
 """Variables that a definition may come to, each as often as it stands there, with those that it is made of."""
 
@@ -35,15 +36,16 @@ def with_definitions(names: Names) -> Names:
     """The same names, with what the definitions that can be read over them say."""
     bound, size = dict(names.bound), dict[str, int]()
     left = {name: one for name, one in bound.items() if isinstance(one, Defined)}
+    inside = {name: _names_in(one.text) for name, one in left.items()}
     while left:
         known = replace(names, bound=bound)
         # what another definition says is told once that is read
-        ready = {n: one for n, one in left.items() if not left.keys() & {*_names_in(one.text)}}
+        ready = {n: one for n, one in left.items() if left.keys().isdisjoint(inside[n])}
         if not ready:
             said = "this variable is defined by itself"
             return replace(names, bound={**bound, **{n: Unread(said) for n in left}})
         for name, one in ready.items():
-            size[name] = sum(size.get(inside, 1) for inside in _names_in(one.text))
+            size[name] = sum(size.get(one, 1) for one in inside[name])
             is_long = size[name] > MOST
             bound[name] = Unread("its definition is too long") if is_long else _meaning(one, known)
             del left[name]
@@ -67,7 +69,8 @@ def _meaning(one: Defined, names: Names) -> Meaning:
                 node.made = term(str(node.data), got, names, int(node.meta.start_pos))
         made: Any = tree.children[0].made
     except Wrong as no:
-        return Unread(f"this variable is defined by a formula that is not read: {no.what}")
+        # of one that is defined by another the reason of that is enough
+        return Unread(no.what if no.what.startswith(NOT_READ) else f"{NOT_READ}: {no.what}")
     is_signal = isinstance(made, str) and names.signals[made].kind != "bool"
     if one.is_bool == (is_signal or isinstance(made, Quantity | Term)):
         return Unread("this variable is defined as what it is not")

@@ -209,12 +209,16 @@ class _Numbers:
             value = a / b
         else:
             value = {"+": a + b, "-": a - b, "*": a * b}[sign]
-        return Quantity(value, "", f"({left.text} {sign} {right.text})")
+        return Quantity(value, "", self._short(f"({left.text} {sign} {right.text})"))
 
     def _term(self, kind: str, sides: tuple[Side, ...], text: str, unit: str, whole: bool) -> Term:
+        return Term(kind, sides, self._short(text), unit, whole)
+
+    def _short(self, text: str) -> str:
+        """A text that is not too long to be kept; Wrong for one that is."""
         if len(text) > LONGEST:
             raise self._wrong("what is calculated is too long", f"{LONGEST} characters")
-        return Term(kind, sides, text, unit, whole)
+        return text
 
     def _wrong(self, what: str, expected: str = "", got: str = "") -> Wrong:
         return Wrong(what, self.at, expected, got)

@@ -230,9 +230,8 @@ class _Reader:
     def _known(self, token: Any, wanted: str) -> Signal:
         found = self.signals.get(str(token))
         if found is None or (found.kind == "bool") != (wanted == "bool"):
-            known = sorted(
-                n for n, s in self.signals.items() if (s.kind == "bool") == (wanted == "bool")
-            )
+            declared = {n: s.kind for n, s in self.signals.items() if s.made is None}
+            known = sorted(n for n in declared if (declared[n] == "bool") == (wanted == "bool"))
             expected = f"a signal declared as {wanted}: {', '.join(known[:8]) or 'there is none'}"
             raise Wrong("this is no such signal", token.start_pos, expected, str(token))
         return found

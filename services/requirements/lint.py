@@ -2,7 +2,8 @@
 
 A formula is written out over the samples of a trace that has them a period apart, in its middle, with every
 signal free at each: unsatisfiable, valid, an antecedent that never happens, two that say the same. What is
-too long for that, or not decided, is said to be not looked into, never to be in order.
+too long for that, or not decided, is said to be not looked into, never to be in order. What is calculated is free as well,
+whatever it is made of, so that what is said holds, and more could be odd.
 """
 
 from __future__ import annotations

@@ -73,6 +73,18 @@ def test_every_section_is_there_and_says_what_there_is_nothing_on(flown: Path) -
     assert "Trusted: z3" in found["verdict"]
     assert "Lint: not asked for" in found["requirements"]
     assert report["plan"]["certificate"] in found["assignment"]
+    told = report["flight"]["alerts"][0]
+    row = (
+        "1",
+        "2",
+        f"{told['from_ms'] / 1000:.1f} s",
+        f"{told['to_ms'] / 1000:.1f} s",
+        "corrective",
+    )
+    assert "\n".join(row) in found["trajectory"]
+    assert f"First alert: {row[2]}" in found["trajectory"]
+    page = re.sub("<[^>]+>", " ", (flown / "report.html").read_text())
+    assert " ".join(row) in " ".join(page.split())
     assert "well_clear_violation_within_misses_no_instant" in found["trajectory"]
     for row in report["constraints"]:
         assert row["item"] in found["constraints"]

@@ -313,6 +313,8 @@ def test_the_top_says_which_of_them_hold(report: dict[str, Any]) -> None:
     elements = argument(good, ())
     assert elements["G-run"].state is elements["S-own"].state is State.SUPPORTED
     assert "supported here" not in elements["G-run"].text.lower()
+    good["own"]["requirements"][0]["kernels"] = []
+    assert goal(argument(good, ()), "FLOOR").state is State.NOTHING
     del good["own"]
     assert elements["G-run"].text != argument(good, ())["G-run"].text
     assert "S-own" not in argument(good, ())

@@ -24,7 +24,8 @@ from cratous.services.pipeline.plan import make_plan
 from cratous.services.processes.coverage import told_of
 from cratous.services.system_model.replay import replay
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import Mission, Simulation
+from cratous.spec.mission import FaultySimulation, Mission, Simulation
+from cratous.spec.mission.bridge_faults import BridgeFaults
 from cratous.spec.mission.guarantees import Outcome, Verdict
 
 ROW = "what vehicle 1 flies without the link"
@@ -167,6 +168,23 @@ def test_g5_sees_what_was_not_flown(returned: Flown) -> None:
     assert nothing.outcome is Outcome.VIOLATED
     assert "did nothing" in nothing.note
     assert returned.verdicts(returned.log[:-5])[ROW].outcome is Outcome.UNKNOWN
+
+
+def test_where_lines_are_lost_nobody_knows_whether_uxas_was_heard(returned: Flown) -> None:
+    """Its connection stands, so that nothing was said is no proof that there was nothing to say."""
+    quiet = [
+        one for one in returned.log if not one.topic.endswith(("LinkLossState", "BridgeStatus"))
+    ]
+    for faults, outcome in (
+        (BridgeFaults(repeat=0.1, cut_ms=30_000), Outcome.HOLDS),
+        (BridgeFaults(loss=0.9), Outcome.UNKNOWN),
+        (BridgeFaults(delay_ms=5000), Outcome.UNKNOWN),
+        (BridgeFaults(stops_reading_ms=30_000), Outcome.UNKNOWN),
+    ):
+        mission = replace(returned.mission, simulation=FaultySimulation(bridge_faults=faults))
+        row = returned._replace(mission=mission).verdicts(quiet)[ROW]
+        assert row.outcome is outcome, faults
+        assert ("not logged" in row.note) == (outcome is Outcome.UNKNOWN)
 
 
 TO = {"name": "meadow", "position": {"north_m": 0, "east_m": 0, "alt_m": 300}}

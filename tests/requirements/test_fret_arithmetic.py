@@ -11,12 +11,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cratous.services.requirements import fret, language
+from cratous.services.requirements import fret, fret_definitions, language
 from cratous.services.requirements.arithmetic import sources
 from cratous.services.requirements.fretish import sentence
 from cratous.services.requirements.lint import lint
 from cratous.services.requirements.specification import NotRead, Specification
 from cratous.services.requirements.watch import Watch, watch
+from cratous.spec.errors import BadInput
 
 VARIABLES = [
     *({"variable_name": n, "idType": "Input", "dataType": "double"} for n in "xyz"),
@@ -99,6 +100,7 @@ def test_what_is_not_known_and_a_quotient_by_zero_are_unknown() -> None:
         ("(G (preBool(FALSE, x) | b))", "a number stands for a truth value|no truth value"),
         ("(G (sin(x) > 0.0))", "this function"),
         ("(G (" + "+".join(["x"] * 3000) + " > 1.0))", "too long"),
+        ("(G (x > " + "*".join(["9999.5"] * 300) + "))", "what is calculated is too long"),
     ],
 )
 def test_what_has_no_clear_meaning_is_refused(formula: str, why: str) -> None:
@@ -129,6 +131,10 @@ def test_units_of_a_file_of_requirements(tmp_path: Path) -> None:
     made = {name: s.unit for name, s in spec.signals.items() if s.made is not None}
     assert made == {"(absReal((x - y)) / 2.0)": "m", "((n * x) + 1.0)": "m"}
     assert {one.name for one in lint(spec)} == {"v"}
+    with pytest.raises(BadInput, match=r"a signal declared as a unit: n, v, x, y; got z"):
+        language.read(
+            f'{HEAD}requirement A: fretish "{asked.format("x + y > 1.0")}"\nrequirement B: z > 1 m'
+        )
     trace = tmp_path / "t.csv"
     trace.write_text("time_s,x,y,n\n0,4,0,0.25\n1,4,1,0.25\n")
     (one,) = watch(spec, trace).outcomes
@@ -196,6 +202,7 @@ def test_variables_that_are_defined_by_a_formula(rows: list[dict[str, float]]) -
         (("x + y",), "a number stands for a truth value"),
         (("nowhere and b",), "nothing says which signal"),
         ((*(f"m{k} and m{k}" for k in range(1, 40)), "b"), "too long"),
+        (("m1", "m2", "x + y"), "not read: a number stands for a truth value"),
     ],
 )
 def test_definitions_that_are_not_read(texts: tuple[str, ...], why: str) -> None:
@@ -206,6 +213,20 @@ def test_definitions_that_are_not_read(texts: tuple[str, ...], why: str) -> None
     )
     assert isinstance(no, NotRead)
     assert why in str(no)
+    assert str(no).count("defined by") <= 1
+
+
+def test_a_definition_is_looked_into_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However many others have to be told before it."""
+    asked: list[str] = []
+    real = fret_definitions.parsed
+    monkeypatch.setattr(
+        fret_definitions, "parsed", lambda p, text, said: asked.append(text) or real(p, text, said)
+    )
+    texts = [*(f"not m{k}" for k in range(1, 30)), "b"]
+    spec = over("(G m0)", *(defined(f"m{k}", text) for k, text in enumerate(texts)))
+    assert not isinstance(spec.requirements[0].formula, NotRead)
+    assert len(asked) == len(texts)
 
 
 def test_a_definition_counts_in_a_file_with_units_and_of_two_none_does(tmp_path: Path) -> None:

@@ -22,6 +22,8 @@ from cratous.services.requirements.formula import (
     Join,
     Not,
     Reaches,
+    iff,
+    once,
 )
 from cratous.services.requirements.outcome import Outcome
 from cratous.services.requirements.specification import Requirement, Signal, Specification
@@ -40,6 +42,7 @@ FORMULAS = st.recursive(
     lambda inner: st.one_of(
         st.builds(Not, inner),
         st.builds(Join, inner, inner, st.booleans()),
+        st.builds(iff, inner, inner),
         st.builds(lambda p, q, low, more, past: Bounded(p, q, low, low + more, past),
                   inner, inner, st.integers(0, 3), st.integers(0, 4), st.booleans()),
     ),
@@ -95,6 +98,10 @@ def both_ways(formula: Formula, rows: list[tuple[int, Any, Any]]) -> tuple[Outco
         False,
     ),
     rows=[(1, 0.0, 0.0), (1, 0.0, 0.0)],
+)
+@example(  # a part that one with time and one without read
+    formula=iff(Reaches("x", 1.0), once(Reaches("y", 1.0), 0, 9)),
+    rows=[(1, 0.0, 0.0), (1, 0.0, 0.0), (1, 1.0, 0.0)],
 )
 def test_any_formula_over_any_trace(formula: Formula, rows: list[tuple[int, Any, Any]]) -> None:
     with pytest.MonkeyPatch.context() as patch:

@@ -14,14 +14,16 @@ from typing import Any
 import pytest
 
 from cratous.core import ledger
-from cratous.core.kernel import REGISTRY
+from cratous.core.kernel import REGISTRY, Fold
 
 
 def _inside(value: Any) -> Iterator[Any]:
-    """What makes a function or a class: its code, what it was given, its methods."""
+    """What makes a function, a class or a fold: its code, what it was given, its methods, its steps."""
     if isinstance(value, FunctionType):
         yield from (value.__code__, value.__defaults__, value.__kwdefaults__)
         yield from value.__closure__ or ()
+    elif isinstance(value, Fold):
+        yield from vars(value).values()
     elif isinstance(value, type) and value.__module__.startswith("cratous."):
         for part in list(vars(value).values()):
             yield part
