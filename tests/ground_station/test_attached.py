@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import socket
 import time
 from collections.abc import Callable, Iterator
@@ -164,6 +165,20 @@ def test_what_is_new_of_a_thing_takes_its_place_and_the_oldest_goes() -> None:
     assert list(rows) == []
     assert rows.let_go == 5
     assert rows.take_new() == []
+    for _ in range(10):  # one thing again and again, and nobody asks what is new
+        rows.append({"id": 6})
+    assert len(rows._new) <= 3
+    assert rows.take_new() == [{"id": 6}]
+
+
+def test_messages_that_come_fast_are_few_updates(peer: Peer, session: AttachedSession) -> None:
+    peer.accept()
+    for number in range(30):
+        peer.say(state(2, 10.0 * number, 0.0, 0.0, 20.0, 0))
+        time.sleep(0.005)
+    _until(lambda: session.status["text"].endswith("30 messages") and session.told(0)["updates"])
+    ends = [update["set"]["end_ms"] for update in session.told(0)["updates"]]
+    assert all(b - a >= attached_session.UPDATE_MS for a, b in itertools.pairwise(ends))
 
 
 @pytest.mark.parametrize(
