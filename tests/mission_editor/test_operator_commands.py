@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +13,10 @@ from ground_station_tools import flying
 
 from cratous.services.cli import main
 from cratous.services.ground_station.live_session import NotObeyed
+from cratous.services.ground_station.server import LONGEST, page_files
 from cratous.services.loading.document import parse_document
 from cratous.services.loading.yaml_mission import loaded
-from cratous.services.mission_editor.operator_commands import HEAD, commanded
+from cratous.services.mission_editor.operator_commands import HEAD, MOST_CORNERS, commanded
 from cratous.spec.errors import BadInput
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -80,6 +82,14 @@ def test_zones_and_tasks_are_added_and_taken_away() -> None:
 def test_what_is_no_command_or_not_possible_is_refused(asked: Any, error: type[Exception]) -> None:
     with pytest.raises(error):
         commanded(TEXT, "m.yaml", 0, 24_000, asked)
+
+
+def test_a_page_can_send_as_many_corners_as_it_draws() -> None:
+    (drawn,) = re.findall(r"keep_out: \[3, (\d+)\]", page_files()["/operate.js"].body.decode())
+    assert int(drawn) == MOST_CORNERS
+    farthest = [[-9_999_999.9, -9_999_999.9]] * MOST_CORNERS
+    asked = {"do": "command", "command": {"what": "keep_out", "places": farthest}}
+    assert len(json.dumps(asked, separators=(",", ":"))) <= LONGEST
 
 
 def test_a_variant_that_would_have_it_elsewhere_is_refused() -> None:
