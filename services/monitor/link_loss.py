@@ -2,8 +2,7 @@
 
 By what each ICAROUS said of it (`LinkLossState`), held against the kernel `loss_step`: from the mode before the
 one that it told must follow, whatever was permitted or ended. It begins within a heartbeat after the silence has
-become too long; a connection that had ended for longer, and nothing said, is a violation. Of a vehicle that was not
-heard for longer over a connection that stood, and said nothing, it is not known whether it heard UxAS.
+become too long; a connection that had ended for longer, and nothing said, is a violation.
 """
 
 from __future__ import annotations
@@ -33,16 +32,13 @@ NO_LOSS = Loss(LINKED, 0)
 @dataclass
 class Told:
     """One vehicle: loss: as it said last; said: what it flew since when, in words; wrong: what it should not have said
-    or done, with the time [ms]; down_ms: when its connection ended [ms], None while it stands; silent_ms: since when it is
-    not heard [ms], None while it is; unsure: what is not known of that; margin_ms: the least that was left as a mode
-    began [ms]."""
+    or done, with the time [ms]; down_ms: when its connection ended [ms], None while it stands; margin_ms: the least
+    that was left as a mode began [ms]."""
 
     loss: Loss = NO_LOSS
     said: list[str] = field(default_factory=list)
     wrong: list[tuple[int, str]] = field(default_factory=list)
     down_ms: int | None = None
-    silent_ms: int | None = None
-    unsure: str = ""
     margin_ms: int | None = None
     checks: int = 0
 
@@ -88,11 +84,8 @@ class LinkLossWatch:
             return
         if body.Alive:
             self._missed(told, body.Time)
-            told.down_ms = told.silent_ms = None
-            return
-        if told.silent_ms is None:
-            told.silent_ms = body.Time
-        if told.down_ms is None and body.Note.startswith("link lost"):
+            told.down_ms = None
+        elif told.down_ms is None and body.Note.startswith("link lost"):
             told.down_ms = body.Time
 
     def end(self, body: Any) -> None:
@@ -103,19 +96,14 @@ class LinkLossWatch:
 
     def _missed(self, told: Told, now_ms: int) -> None:
         """Whether a connection has been down for so long that something should have been said."""
-        if told.silent_ms is None or told.loss.mode != LINKED or self._asked is None:
+        if told.down_ms is None or told.loss.mode != LINKED or self._asked is None:
             return
         bound_ms = self._asked.after_ms + LATEST_BEATS * self._beat_ms
         since = told.loss.since_ms
         # what ended after the connection did was said meanwhile
-        if told.down_ms is not None and not in_time(max(told.down_ms, since), now_ms, bound_ms):
+        if not in_time(max(told.down_ms, since), now_ms, bound_ms):
             text = f"the link was down since {told.down_ms / 1000:.2f} s, and it did nothing"
             told.wrong.append((now_ms, text))
-        elif not in_time(max(told.silent_ms, since), now_ms, bound_ms):
-            at_s = told.silent_ms / 1000
-            told.unsure = (
-                f"it was not heard from {at_s:.2f} s on: whether it heard UxAS is not known"
-            )
 
     def verdicts(self) -> list[Verdict]:
         """One verdict a vehicle."""
@@ -126,9 +114,9 @@ class LinkLossWatch:
         if told.wrong:
             outcome, (at_ms, text) = Outcome.VIOLATED, told.wrong[0]
             note = f"{text}; {note}" if note else text
-        elif not self._over or told.unsure:
-            why = told.unsure if self._over else "the messages stop too early"
-            outcome, note = Outcome.UNKNOWN, f"{note}; {why}" if note else why
+        elif not self._over:
+            outcome = Outcome.UNKNOWN
+            note = f"{note}; the messages stop too early" if note else "the messages stop too early"
         elif not note:
             note = "it was never without the link for long enough"
         kernels = tuple(qualified(kernel) for kernel in (loss_step, in_time)) if told.checks else ()
