@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+import os
 import random
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 import pytest
@@ -140,6 +141,25 @@ def test_what_is_no_tile_is_refused(
     (tmp_path / "s.xml").write_text(scenario())
     assert main(["sim", str(tmp_path / "s.xml"), "--terrain", str(path)]) == 2
     assert text in capsys.readouterr().err
+
+
+def test_a_pipe_and_a_folder_that_cannot_be_listed_are_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pipe = tmp_path / "N45W121.hgt"
+    os.mkfifo(pipe)
+    handle = os.open(pipe, os.O_RDWR)  # so that nothing waits
+    os.write(handle, b" " * 80)
+    with pytest.raises(BadInput, match="not a file"):
+        Terrain([pipe])
+    os.close(handle)
+
+    def locked(folder: Path) -> NoReturn:
+        raise PermissionError(13, "Permission denied", str(folder))
+
+    monkeypatch.setattr(os, "scandir", locked)
+    with pytest.raises(BadInput, match=r"cannot read.*Permission denied"):
+        Terrain([tmp_path])
 
 
 def test_a_height_that_no_place_has_and_a_tile_that_changes_are_refused(tmp_path: Path) -> None:
