@@ -85,6 +85,8 @@ def test_it_begins_and_ends_at_the_times_that_are_given() -> None:
     assert stand[-1].Location.Latitude == pytest.approx(LAT, abs=1e-5)
     slow = order(lmcp.new("SpeedOverrideAction", Speed=5.0))
     assert len(moving(driven((1.0, timed), (15.0, slow), seconds=45.0))) > 30, "it still ends"
+    gone = lmcp.new("RemoveEntities", EntityList=[1])
+    assert driven((1.0, timed), (5.0, gone), seconds=15.0)[-1].Time <= 5000
     past = driven((40.0, timed), seconds=60.0)
     assert past[-1].Location.Latitude == pytest.approx(LAT, abs=1e-5)
 
