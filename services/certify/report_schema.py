@@ -7,21 +7,19 @@ and plan are those of the records is tested.
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Iterator
 from functools import cache
 from importlib.resources import files
 from itertools import islice
 from typing import Any
 
+from cratous.services.loading.schema_check import Check, fits
 from cratous.spec.files.printable import printable
-from cratous.spec.files.schema_fits import Check, fits
 
 SCHEMA_NAME = "report.schema.json"
 FEW = 20
 """So many departures are listed; a report that is another thing altogether has thousands."""
 SHORT = 120
-WHOLE = re.compile("-?[0-9]+")
 
 
 def schema_text() -> str:
@@ -53,33 +51,12 @@ def departures(report: Any) -> list[str]:
 
 
 def _departures(report: Any) -> Iterator[str]:
-    for error in _validator().iter_errors(_without_tracks(report)):
+    for error in _validator().iter_errors(report):
         path = "".join(
             f"[{part}]" if isinstance(part, int) else f".{_cut(str(part))}"
             for part in error.absolute_path
         )
         yield f"{path.removeprefix('.') or 'report'}: {_cut(error.message)}"
-
-
-def _without_tracks(report: Any) -> Any:
-    """The same without tracks, where they are as the schema has them: it takes long over each of their numbers."""
-    flight = report.get("flight") if isinstance(report, dict) else None
-    tracks = flight.get("tracks") if isinstance(flight, dict) else None
-    if not isinstance(flight, dict) or not isinstance(tracks, dict):
-        return report
-    if all(map(_is_track, tracks, tracks.values())):
-        return {**report, "flight": {**flight, "tracks": {}}}
-    return report
-
-
-def _is_track(number: Any, rows: Any) -> bool:
-    """Rows of five numbers each, below the number of an aircraft."""
-    if not isinstance(number, str) or WHOLE.fullmatch(number) is None or type(rows) is not list:
-        return False
-    return all(
-        type(row) is list and len(row) == 5 and {float, int}.issuperset(map(type, row))
-        for row in rows
-    )
 
 
 def _cut(text: str) -> str:
