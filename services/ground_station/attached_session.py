@@ -32,6 +32,8 @@ WINDOW_MS, MOST_ROWS, LOOK_MS = 3_600_000, 200_000, 5000
 AIRCRAFT, ROUTES, SHAPES, PLACES, EVENTS, WAITING = 1000, 2000, 2000, 100_000, 1000, 1000
 UPDATES = 600
 """So many updates a page may be behind; one that is further behind begins anew."""
+UPDATE_MS = 100
+"""What comes within it is one update."""
 SILENT_MS = 3000
 """If nothing has come for so long, it is said."""
 CONNECTED = "connected"
@@ -57,6 +59,7 @@ class AttachedSession:
         self._new_events: deque[dict[str, Any]] = deque(maxlen=EVENTS)
         self._updates: deque[dict[str, Any]] = deque(maxlen=UPDATES)
         self._count = self._shown = self._looked_ms = self._last_ms = self._refused = 0
+        self._flushed_ms = 0
         self._window_ms = WINDOW_MS
         self._vehicles: list[dict[str, Any]] = []
         self._said = "nobody listens there yet; trying"
@@ -77,7 +80,8 @@ class AttachedSession:
 
     def _is_over(self, now_ms: int) -> bool:
         with self._changed:
-            self._flush(now_ms)
+            if lasted(self._flushed_ms, now_ms, UPDATE_MS):
+                self._flush(now_ms)
             return self._ending
 
     def _report(self, _severity: str, said: str) -> None:
@@ -120,6 +124,7 @@ class AttachedSession:
 
     def _flush(self, now_ms: int) -> None:
         """What is new becomes an update."""
+        self._flushed_ms = now_ms
         self._forget(now_ms)
         fixed: dict[str, Any] = {"end_ms": now_ms, "unread": self._unread()}
         fixed["window_ms"] = self._window_ms

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -16,7 +17,7 @@ class Bounded:
         self._most, self._places, self._key = most, places, key
         self._rows: dict[Any, Row] = {}
         self._held = self._number = self.let_go = 0
-        self._new: list[Row] = []
+        self._new: deque[Row] = deque(maxlen=most)
 
     def append(self, row: Row) -> None:
         """Keep one more."""
@@ -41,7 +42,7 @@ class Bounded:
         """What came since the last time that this was asked, and is still kept."""
         kept = {id(row) for row in self._rows.values()}
         taken = [row for row in self._new if id(row) in kept]
-        self._new = []
+        self._new.clear()
         return taken
 
 

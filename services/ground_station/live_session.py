@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from cratous.core.authority.timeliness import lasted
 from cratous.services.ground_station.json_process import JsonProcess
 from cratous.services.ground_station.pace import RATES
 from cratous.spec.errors import BadInput
@@ -44,7 +45,7 @@ class LiveSession:
 
     def __init__(self, module: str, asked: dict[str, Any], commanded: Amend | None = None) -> None:
         """module: what flies, as `python -m` takes it; asked: its argument; commanded: gives, for a time of the
-        flight [ms] and a command, the argument of the flight with it. Raises NotObeyed or BadInput."""
+        flight [ms] and a command, the argument of the flight with it, which has `until_ms`. Raises NotObeyed or BadInput."""
         self.token = secrets.token_urlsafe(24)
         self.status: dict[str, Any] = {"state": "loading", "rate": 1.0, "text": ""}
         self._updates: list[str] = []
@@ -53,7 +54,7 @@ class LiveSession:
         self._commanding = threading.Lock()
         self._operator, self._seen_s = "", 0.0
         self._module, self._commanded = module, commanded
-        self._flight = self._now_ms = 0
+        self._flight = self._now_ms = self._until_ms = 0
         self._process = self._start(asked)
 
     def _start(self, asked: dict[str, Any]) -> JsonProcess:
@@ -158,17 +159,21 @@ class LiveSession:
         self._process.say({key: asked[key] for key in ("do", "rate") if key in asked})
 
     def _command(self, command: Any) -> None:
-        """Fly anew with a command, up to where it is known; a page that asks next commands on."""
+        """Fly anew with a command, up to where it is known."""
         if self._commanded is None:
             raise NotObeyed(409, "this flight takes no commands that change its mission")
         with self._commanding:
             if self.status["state"] != "paused":
                 raise NotObeyed(409, "the flight has to be paused for a command")
+            if not lasted(0, self._now_ms, self._until_ms):
+                raise NotObeyed(
+                    409, f"the flight is flown anew up to {self._until_ms / 1000:g} s first"
+                )
             asked = self._commanded(self._now_ms, command)
             with self._changed:
                 before = self._process
-                self._flight += 1
-                self._updates, self._begin, self._operator = [], None, ""
+                self._flight, self._now_ms, self._until_ms = self._flight + 1, 0, asked["until_ms"]
+                self._updates, self._begin = [], None
                 self.status = {
                     **self.status,
                     "state": "loading",

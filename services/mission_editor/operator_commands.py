@@ -20,7 +20,8 @@ KEEP_OUT, GO_TO, LOITER, DROP, END_ZONE = KINDS = (
     "keep_out", "go_to", "loiter", "drop_task", "end_zone",
 )  # fmt: skip
 LABEL = "by the operator"
-MOST_CORNERS, FARTHEST_M, LONGEST_S = 50, 1e7, 86_400.0
+MOST_CORNERS, FARTHEST_M, LONGEST_S = 38, 1e7, 86_400.0
+"""So many corners, the farthest ones too, fit into what a page may send."""
 HEAD = "# Commanded by the operator in flight; this file flown again gives the same log.\n"
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from itertools import count
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
@@ -40,10 +41,11 @@ def path_of(body: Any, circle_m: Callable[[float], float] | None) -> Path:
     mode = body.RepeatMode.name
     numbers, told = [w.Number for w in order], dict[int, int]()
     if mode == "ReverseCourse":
-        free = max((w.Number for w in body.WaypointList), default=0) + 1
-        for k, w in enumerate(order[-2:0:-1]):
-            numbers.append(free + k)
-            told[free + k] = w.Number
+        taken = {w.Number for w in body.WaypointList}
+        free = (n for n in count(1) if n not in taken)
+        for w, number in zip(order[-2:0:-1], free, strict=False):
+            numbers.append(number)
+            told[number] = w.Number
             order.append(w)
     again = mode != "SinglePass" and len(order) > 1
     ways = []

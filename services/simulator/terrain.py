@@ -10,7 +10,7 @@ import os
 from collections.abc import Iterable, Iterator
 from math import degrees, floor, radians
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -186,7 +186,7 @@ def _files(path: Path) -> Iterator[Path]:
         yield path
         return
     count = 0
-    for folder, folders, names in os.walk(path):
+    for folder, folders, names in os.walk(path, onerror=_cannot_list):
         folders.sort()
         for name in sorted(names):
             if Path(name).suffix.lower() in SUFFIXES:
@@ -199,3 +199,7 @@ def _files(path: Path) -> Iterator[Path]:
     if not count:
         raise BadInput("a folder without tiles of terrain", where=str(path),
                        expected=f"files with {', '.join(SUFFIXES)}")  # fmt: skip
+
+
+def _cannot_list(error: OSError) -> NoReturn:
+    raise BadInput("cannot read", where=str(error.filename), got=str(error.strerror)) from error

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from stat import S_ISREG
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from cratous.spec.errors import BadInput
+from cratous.spec.files.text_file import bytes_of
 
 SUFFIXES = (".dt0", ".dt1", ".dt2", ".hgt")
 VOID = -32768
@@ -21,6 +23,8 @@ LOWEST_M, HIGHEST_M = -12_000, 9_000
 """Heights that DTED may have."""
 MOST_POSTS = 3601
 HEADERS_BYTES = 80 + 648 + 2700
+LARGEST = HEADERS_BYTES + MOST_POSTS * (12 + 2 * MOST_POSTS)
+"""Of a tile [bytes]."""
 SENTINEL = 0xAA
 
 
@@ -37,12 +41,14 @@ class TileFile(NamedTuple):
 def tile_file(path: Path) -> TileFile:
     """A file, by its name or header and its size; BadInput for one that is no tile."""
     try:
-        size = path.stat().st_size
+        found = path.stat()
+        if not S_ISREG(found.st_mode):  # from a pipe it might wait for ever
+            raise BadInput("not a file", where=str(path), expected="a tile of terrain")
         with path.open("rb") as file:
             head = file.read(80)
     except OSError as error:
         raise BadInput("cannot read", where=str(path), got=error.strerror or str(error)) from error
-    return (_srtm if path.suffix.lower() == ".hgt" else _dted)(path, head, size)
+    return (_srtm if path.suffix.lower() == ".hgt" else _dted)(path, head, found.st_size)
 
 
 def _srtm(path: Path, _head: bytes, size: int) -> TileFile:
@@ -97,10 +103,7 @@ def heights_of(tile: TileFile) -> np.ndarray[Any, np.dtype[np.int16]]:
 
     BadInput with the place for a file that is not what it was, or is corrupt.
     """
-    try:
-        data = tile.path.read_bytes()
-    except OSError as error:
-        raise BadInput("cannot read", where=str(tile.path), got=str(error.strerror)) from error
+    data = bytes_of(tile.path, LARGEST, "a tile of terrain")
     again = tile_file(tile.path)
     if again != tile or len(data) != tile.path.stat().st_size:
         raise BadInput("a tile that has changed since the start", where=str(tile.path))

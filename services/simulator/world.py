@@ -236,8 +236,10 @@ class World:
                     item=f"AirVehicleState {body.ID}",
                     expected="its AirVehicleConfiguration before it",
                 )
-            before = self.aircraft.get(body.ID)
-            self.aircraft[body.ID] = aircraft_of(body, airframe, before, where)
+            one = aircraft_of(body, airframe, self.aircraft.get(body.ID), where)
+            if self.terrain is not None:  # a corrupt tile is refused with who brings it up
+                self.terrain.elevation(one.motion.lat_rad, one.motion.lon_rad)
+            self.aircraft[body.ID] = one
             self._mounted[body.ID] = payload.placed(self._mounted[body.ID], body)
         elif kind in ("MissionCommand", "VehicleActionCommand") or self._follows(body):
             self._command(body, where)

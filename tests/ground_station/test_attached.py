@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import socket
 import time
 from collections.abc import Callable, Iterator
@@ -78,6 +79,11 @@ def test_what_comes_is_kept_and_told(peer: Peer, session: AttachedSession) -> No
     peer.say(zone("KeepOutZone", 5, *box(0, 0, 100, 200)), mission(2, (0, 0), (500, 0)))
     peer.say(state(2, 0.0, 0.0, 0.0, 20.0, 0), state(1, 900.0, 300.0, 90.0, 20.0, 0))
     peer.client.sendall(b"rubbish")
+    place = state(2, 0.0, 0.0, 0.0, 20.0, 0).Location
+    peer.say(lmcp.new("PointSearchTask", TaskID=5, SearchLocation=place))
+    peer.say(lmcp.new("RemoveTasks", TaskList=[5]))
+    _until(lambda: session.begun()["tasks"] and "to_ms" in session.begun()["tasks"][0])
+    assert "to_ms" not in session.begun()["zones"][0]
     peer.say(lmcp.new("RemoveZones", ZoneList=[5]))
     _until(lambda: session.begun()["zones"] and "to_ms" in session.begun()["zones"][0])
     found = session.begun()
@@ -115,6 +121,16 @@ def test_a_connection_that_is_lost_is_told_and_made_again(
     assert len(texts) == 3
     peer.close()
     _until(lambda: session.status["state"] == "cut off")
+
+
+def test_an_error_of_ours_is_told(
+    peer: Peer, session: AttachedSession, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(session, "_positions", None)
+    peer.accept()
+    peer.say(state(2, 0.0, 0.0, 0.0, 20.0, 0))
+    session._thread.join(LIMIT_S)
+    assert session._failed.startswith("internal error of CRATOUS: AttributeError")
 
 
 def test_where_nobody_listens_it_says_so_and_goes_on() -> None:
@@ -164,6 +180,20 @@ def test_what_is_new_of_a_thing_takes_its_place_and_the_oldest_goes() -> None:
     assert list(rows) == []
     assert rows.let_go == 5
     assert rows.take_new() == []
+    for _ in range(10):  # one thing again and again, and nobody asks what is new
+        rows.append({"id": 6})
+    assert len(rows._new) <= 3
+    assert rows.take_new() == [{"id": 6}]
+
+
+def test_messages_that_come_fast_are_few_updates(peer: Peer, session: AttachedSession) -> None:
+    peer.accept()
+    for number in range(30):
+        peer.say(state(2, 10.0 * number, 0.0, 0.0, 20.0, 0))
+        time.sleep(0.005)
+    _until(lambda: session.status["text"].endswith("30 messages") and session.told(0)["updates"])
+    ends = [update["set"]["end_ms"] for update in session.told(0)["updates"]]
+    assert all(b - a >= attached_session.UPDATE_MS for a, b in itertools.pairwise(ends))
 
 
 @pytest.mark.parametrize(

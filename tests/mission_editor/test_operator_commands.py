@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +12,12 @@ from chromium_tools import browsing
 from ground_station_tools import flying
 
 from cratous.services.cli import main
+from cratous.services.ground_station import live_session
 from cratous.services.ground_station.live_session import NotObeyed
+from cratous.services.ground_station.server import LONGEST, page_files
 from cratous.services.loading.document import parse_document
 from cratous.services.loading.yaml_mission import loaded
-from cratous.services.mission_editor.operator_commands import HEAD, commanded
+from cratous.services.mission_editor.operator_commands import HEAD, MOST_CORNERS, commanded
 from cratous.spec.errors import BadInput
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -82,11 +85,55 @@ def test_what_is_no_command_or_not_possible_is_refused(asked: Any, error: type[E
         commanded(TEXT, "m.yaml", 0, 24_000, asked)
 
 
+def test_a_page_can_send_as_many_corners_as_it_draws() -> None:
+    (drawn,) = re.findall(r"keep_out: \[3, (\d+)\]", page_files()["/operate.js"].body.decode())
+    assert int(drawn) == MOST_CORNERS
+    farthest = [[-9_999_999.9, -9_999_999.9]] * MOST_CORNERS
+    asked = {"do": "command", "command": {"what": "keep_out", "places": farthest}}
+    assert len(json.dumps(asked, separators=(",", ":"))) <= LONGEST
+
+
 def test_a_variant_that_would_have_it_elsewhere_is_refused() -> None:
     asked = {"what": "go_to", "vehicle": 1, "places": [[900, 300]]}
     with pytest.raises(BadInput, match="other places"):
         commanded(TEXT, "m.yaml", 7, 24_000, asked)
     assert commanded(TEXT, "m.yaml", 7, 24_000, {"what": "drop_task", "id": 1}).at_ms > 24_000
+
+
+def test_no_command_is_taken_until_the_flight_is_where_the_last_one_was(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    flights: list[Any] = []
+
+    class Flight:
+        def __init__(self, _module: str, heard: Any, *_: Any) -> None:
+            self.at = lambda ms: heard({"set": {"end_ms": ms}}, "{}")
+            self.stands = lambda: heard({"status": {"state": "paused"}}, "{}")
+            flights.append(self)
+
+        def say(self, _asked: Any) -> None: ...
+
+        def end(self, _patience_s: float) -> None: ...
+
+    monkeypatch.setattr(live_session, "JsonProcess", Flight)
+    given: list[int] = []
+
+    def amended(now_ms: int, _command: Any) -> dict[str, Any]:
+        given.append(now_ms)
+        return {"until_ms": now_ms + 100}
+
+    session = live_session.LiveSession("flies", {}, amended)
+    asked = {"do": "command", "command": {}}
+    flights[0].at(5000)
+    flights[0].stands()
+    session.order(session.token, "a", asked)
+    flights[1].at(3000)
+    flights[1].stands()  # as it says while it flies up to the command
+    with pytest.raises(NotObeyed, match=r"up to 5\.1 s first"):
+        session.order(session.token, "a", asked)
+    flights[1].at(5100)
+    session.order(session.token, "a", asked)
+    assert given == [5000, 5100]
 
 
 @pytest.mark.slow

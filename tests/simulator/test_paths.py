@@ -62,6 +62,11 @@ def test_there_and_back_again_the_waypoints_keep_their_numbers() -> None:
     assert stretches(two)[:5] == [0, 1, 2, 1, 2]
     one = driven((0.5, path((40.0, 0.0), RepeatMode="ReverseCourse")), seconds=20.0)
     assert one[-1].Groundspeed == 0
+    first, middle, last = path((9.0, 0.0), (18.0, 0.0), (27.0, 0.0)).WaypointList
+    highest = 2**63 - 1  # no number is above it
+    ways = [first, middle.copy(PauseTime=0, NextWaypoint=highest), last.copy(Number=highest)]
+    later = path(RepeatMode="ReverseCourse", StartTime=2000, WaypointList=ways)
+    assert stretches(driven((0.5, later), seconds=40.0))[:6] == [0, 1, 2, highest, 2, 1]
 
 
 def test_it_begins_and_ends_at_the_times_that_are_given() -> None:
@@ -80,6 +85,8 @@ def test_it_begins_and_ends_at_the_times_that_are_given() -> None:
     assert stand[-1].Location.Latitude == pytest.approx(LAT, abs=1e-5)
     slow = order(lmcp.new("SpeedOverrideAction", Speed=5.0))
     assert len(moving(driven((1.0, timed), (15.0, slow), seconds=45.0))) > 30, "it still ends"
+    gone = lmcp.new("RemoveEntities", EntityList=[1])
+    assert driven((1.0, timed), (5.0, gone), seconds=15.0)[-1].Time <= 5000
     past = driven((40.0, timed), seconds=60.0)
     assert past[-1].Location.Latitude == pytest.approx(LAT, abs=1e-5)
 

@@ -81,6 +81,15 @@ def test_ids_of_more_than_32_bits_are_unknown_or_tell_nothing() -> None:
     looking = tuple(g._replace(elevation_deg=-90.0) for g in mounted)
     assert len(list(perceptions([Body(1, here, looking), below], 0))) == 1
     assert list(perceptions([Body(2**32, here, looking), below], 0)) == []
+    # of nine cameras the message has place for eight
+    nine = tuple(g._replace(cameras=g.cameras * 9) for g in looking)
+    (told,) = perceptions([Body(1, here, nine), below], 0)
+    assert list(told.PerceiverPayloads) == [2] * 8
+    assert lmcp.binary.pack(told)
+    west, east = (side * (math.pi - 5e-6) for side in (1, -1))
+    across = [Body(1, here._replace(lon_rad=west), looking),
+              Body(2, below.motion._replace(lon_rad=east), ())]  # fmt: skip
+    assert len(list(perceptions(across, 0))) == 1, "beyond the 180th meridian"
 
 
 def inside(point: tuple[float, float], ring: Sequence[tuple[float, ...]]) -> bool:
@@ -202,3 +211,22 @@ def test_a_track_follows_perceptions_of_others_and_ends_by_another_action() -> N
     other = lmcp.new("TrackEntityAction", EntityID=2, SensorID=77)
     pointing(1, command.copy(VehicleActionList=[other]))
     assert world.unheard["TrackEntityAction"] == 1, "no such sensor"
+    again = command.copy(VehicleActionList=[other.copy(SensorID=2)])
+    assert pointing(1, again, seen) == "LatLonSlaved"
+    assert world.unheard["EntityPerception"] == 1
+    gone = lmcp.new("RemoveEntities", EntityList=[1])
+    for body in (gone, seen):
+        world.receive(body)
+    assert world.unheard["EntityPerception"] == 2, "who tracked it is gone"
+
+
+def test_what_drives_tracks_too() -> None:
+    loads = of_text(scenario(payloads=CAMERA), "x").events[0].body.PayloadConfigurationList
+    world = World((), 60)
+    track = lmcp.new("TrackEntityAction", EntityID=2, SensorID=2)
+    order = lmcp.new("VehicleActionCommand", VehicleID=1, VehicleActionList=[track])
+    seen = lmcp.new("EntityPerception", PerceivedEntityID=2, Location=lmcp.new("Location3D", **AT))
+    for body in (*vehicle(PayloadConfigurationList=list(loads)), order, seen):
+        world.receive(body)
+    assert world.warnings() == []
+    assert world.states()[0].PayloadStateList[0].PointingMode.name == "LatLonSlaved"

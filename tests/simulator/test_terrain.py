@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+import os
 import random
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from driving_tools import mission, vehicle
 from simulator_tools import CAMERA, DIRECTOR, DOWN, ordered, scenario
 from terrain_tools import dted, srtm
 
+from cratous.bridge import lmcp
 from cratous.services.cli import main
 from cratous.services.simulator import terrain as terrain_module
 from cratous.services.simulator.earth import EQUATOR_M
@@ -141,6 +143,25 @@ def test_what_is_no_tile_is_refused(
     assert text in capsys.readouterr().err
 
 
+def test_a_pipe_and_a_folder_that_cannot_be_listed_are_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pipe = tmp_path / "N45W121.hgt"
+    os.mkfifo(pipe)
+    handle = os.open(pipe, os.O_RDWR)  # so that nothing waits
+    os.write(handle, b" " * 80)
+    with pytest.raises(BadInput, match="not a file"):
+        Terrain([pipe])
+    os.close(handle)
+
+    def locked(folder: Path) -> NoReturn:
+        raise PermissionError(13, "Permission denied", str(folder))
+
+    monkeypatch.setattr(os, "scandir", locked)
+    with pytest.raises(BadInput, match=r"cannot read.*Permission denied"):
+        Terrain([tmp_path])
+
+
 def test_a_height_that_no_place_has_and_a_tile_that_changes_are_refused(tmp_path: Path) -> None:
     grid = np.zeros((1201, 1201), int)
     grid[2, 3] = 9500
@@ -232,6 +253,25 @@ def test_what_drives_goes_up_and_down_and_what_sails_does_not(tmp_path: Path) ->
         wanted = height(hill, place.Latitude, place.Longitude) if rises else 0.0
         assert place.Altitude == pytest.approx(wanted, abs=0.01)
         assert (place.Altitude > 20) is rises
+
+
+def test_a_state_over_a_corrupt_tile_is_refused_and_the_others_go_on(
+    tmp_path: Path, north: Path
+) -> None:
+    """Also a client's own: the tile is read when the state is taken, not in the next step."""
+    bad = dted(tmp_path, 30, -87, slope)
+    bad.write_bytes(bad.read_bytes()[:-1] + b"\xff")
+    world, _ = flown(scenario(), 2, Terrain([north, bad]))
+    flies = lmcp.new("Location3D", Latitude=30.5, Longitude=-86.5, Altitude=900.0)
+    before = world.aircraft[1].motion
+    configuration, state = vehicle(ID=2)
+    world.receive(configuration)
+    for body in (lmcp.new("AirVehicleState", ID=1, Location=flies), state.copy(ID=2)):
+        with pytest.raises(BadInput, match="record 120 of 121"):
+            world.receive(body, "client")
+    world.tick()
+    assert world.aircraft[1].motion.lat_rad == pytest.approx(before.lat_rad, abs=1e-6)
+    assert 2 not in world.drivers.there
 
 
 def test_the_command_takes_terrain_and_warns(

@@ -3,7 +3,7 @@
 import { RATES } from "./address.js";
 import { seconds } from "./units.js";
 
-const EVERY_MS = 150, PATIENCE = 5;
+const EVERY_MS = 150, PATIENCE = 5, PAGE = "page";
 const OVER = ["ended", "stopped", "failed", "lost"];
 const FLOWN = {
   loading: "not flown yet", planning: "not flown yet", paused: "flown now", flying: "flown now", ended: "flown to its end",
@@ -19,7 +19,8 @@ export class Live {
     this.recording = recording;
     this.changed = changed;
     this.token = new URLSearchParams(location.search).get("token") || "";
-    this.page = crypto.randomUUID();
+    this.page = sessionStorage.getItem(PAGE) ?? crypto.randomUUID();
+    sessionStorage.removeItem(PAGE); // a copy of this page is another one
     this.next = recording.next ?? 0;
     this.failures = 0;
     this.heads = {};
@@ -77,7 +78,11 @@ export class Live {
     } catch { /* counted below */ }
     this.failures = told ? 0 : this.failures + 1;
     if (told) {
-      if (told.again || told.flight !== this.recording.flight) { location.reload(); return; } // too far behind: all of it anew
+      if (told.again || told.flight !== this.recording.flight) { // too far behind, or flown anew: all of it anew, by the same page
+        sessionStorage.setItem(PAGE, this.page);
+        location.reload();
+        return;
+      }
       told.updates.forEach(update => this.take(update));
       this.next = told.next;
       this.status = told.status;

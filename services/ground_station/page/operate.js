@@ -2,7 +2,7 @@
 
 const by = id => document.getElementById(id);
 // what is drawn for each: least and most places; null: it is picked from a list
-const DRAWN = { keep_out: [3, 50], go_to: [1, 1], loiter: [1, 1], drop_task: null, end_zone: null };
+const DRAWN = { keep_out: [3, 38], go_to: [1, 1], loiter: [1, 1], drop_task: null, end_zone: null };
 const HINTS = { keep_out: "Click the corners of the keep-out on the map; Enter ends it, Esc gives it up.", go_to: "Click the place on the map; Esc gives it up.", loiter: "Click the place on the map; Esc gives it up." };
 const NAMES = { keep_out: "A keep-out zone", go_to: "A task to fly through a place", loiter: "A task to loiter at a place", drop_task: "A task is dropped", end_zone: "A zone ends" };
 
