@@ -247,7 +247,9 @@ def _as_written(function: types.FunctionType, code: types.CodeType) -> bool:
         base = PACKAGES[top].joinpath(*parts)
         if file not in (base.with_suffix(".py"), base / "__init__.py"):
             return False
-    return _written(file).get(_name(code)) == _hash(code)
+    # the code of another function of the file is as written too, and not this one's
+    own = (code.co_name, code.co_qualname) == (function.__name__, function.__qualname__)
+    return own and _written(file).get(_name(code)) == _hash(code)
 
 
 def runs_as_written(function: types.FunctionType) -> bool:

@@ -160,6 +160,15 @@ def test_a_function_replaced_in_memory_is_caught(product: Path) -> None:
     assert "  violation: " in done.stdout  # it calls the replaced one
 
 
+def test_a_function_that_runs_another_function_of_its_file_is_caught(product: Path) -> None:
+    code = "import cratous.core.authority.timeliness as t\n"
+    code += "t.in_time.__code__ = t.lasted.__code__\n"
+    for renamed in ("", "t.in_time.__name__ = t.in_time.__qualname__ = 'lasted'\n"):
+        done = check(product, code + renamed)
+        assert done.returncode == 1, done.stdout + done.stderr
+        assert "timeliness.in_time: " in done.stdout or "  in_time: " in done.stdout
+
+
 PLANT = """
 import sys
 from collections.abc import Iterator
