@@ -13,8 +13,8 @@ from importlib.resources import files
 from itertools import islice
 from typing import Any
 
-from cratous.services.loading.schema_check import Check, fits
 from cratous.spec.files.printable import printable
+from cratous.spec.files.schema_check import Check, fits
 
 SCHEMA_NAME = "report.schema.json"
 FEW = 20

@@ -11,14 +11,17 @@ speeds are over ground. Zones and the ways that are told are not looked at here:
 
 from __future__ import annotations
 
-import copy
+from collections import deque
 from typing import NamedTuple
 
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import Ability, Motion, smallest_turn, velocity_of
 from cratous.core.avoidance.prediction import Intruder, buffered
+from cratous.core.daa.history import Shown
+from cratous.core.daa.persistence import Held
 from cratous.core.daa.session import Instant, Session
-from cratous.core.daa.state import ALT, DIMENSIONS, HDIR, HS, VS, Aircraft, Sigma
+from cratous.core.daa.state import ALT, HDIR, HS, VS, Aircraft, Sigma
+from cratous.services.icarous.band_history import AlertHistory, Bands, DimensionHistory
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.traffic_monitor import nearest
 from cratous.spec.daa.parameters import (
@@ -65,14 +68,6 @@ class Whose(NamedTuple):
     daa: Daa
     heartbeat_ms: int
     told: bool
-
-
-class Bands(NamedTuple):
-    """What was said last, and the history that the next look goes on from. at_ms: when [ms]."""
-
-    at_ms: int
-    session: Session
-    instant: Instant
 
 
 def parameters_of(whose: Whose, ability: Ability, sum_volumes: bool) -> Parameters:
@@ -137,22 +132,55 @@ def parameters_of(whose: Whose, ability: Ability, sum_volumes: bool) -> Paramete
     )
 
 
-def watched(whose: Whose, before: Bands | None, sensed: Sensed) -> Bands | None:
-    """What is said to a vehicle now; what was said last where a second has not gone by since, None where nobody is seen."""
+def watched(
+    whose: Whose, before: Bands | None, sensed: Sensed
+) -> tuple[Bands | None, Instant | None]:
+    """What is remembered and what is said now: nothing new where a second has not gone by since, nothing at all where
+    nobody is seen."""
     if before is not None and not lasted(before.at_ms, sensed.now_ms, PERIOD_MS):
-        return before
+        return before, None
     if not sensed.intruders:
-        return None
-    wide = any(other.spread.wide_m or other.spread.wide_m_s for other in sensed.intruders)
-    parameters = parameters_of(whose, sensed.ability, wide)
-    session = Session(parameters)
-    if before is not None and before.session.parameters == parameters:
-        session = copy.deepcopy(before.session)
+        return None, None
+    loose = any(other.spread.wide_m or other.spread.wide_m_s for other in sensed.intruders)
+    session = Session(parameters_of(whose, sensed.ability, loose))
+    if before is not None and (before.ability, before.loose) == (sensed.ability, loose):
+        _remember(session, before)
     own = _own(whose.vehicle_id, sensed.motion)
     others = [_other(one) for one in sensed.intruders]
     dimensions = _dimensions(sensed.ability) if whose.told else [HDIR]
     instant = session.step(sensed.now_ms / 1000, own, others, dimensions)
-    return Bands(sensed.now_ms, session, instant)
+    return _history(session, sensed, loose), instant
+
+
+def _history(session: Session, sensed: Sensed, loose: bool) -> Bands:
+    """A session as plain values."""
+    alerts = tuple(
+        AlertHistory(*key, tuple(one.values), one.level, one.raised_s)
+        for key, one in sorted(session.shown.items())
+    )
+    dimensions = tuple(
+        DimensionHistory(
+            tuple(bands.last), bands.held, bands.held_s,
+            *ways.held, ways.shrunk_up, ways.shrunk_down, ways.since_s,
+        )
+        for bands, ways in zip(session.bands, session.ways, strict=True)
+    )  # fmt: skip
+    return Bands(sensed.now_ms, sensed.ability, loose, alerts, dimensions)
+
+
+def _remember(session: Session, before: Bands) -> None:
+    """Let a new session go on from the history of another one under the same parameters."""
+    p = session.parameters
+    session.time_s = before.at_ms / 1000
+    for one in before.alerts:
+        session.shown[one.intruder, one.alerter] = Shown(
+            p.alerting_m, p.alerting_n, deque(one.values), one.level, one.raised_s
+        )
+    for bands, ways, old in zip(session.bands, session.ways, before.dimensions, strict=True):
+        bands.last, bands.held, bands.held_s = deque(old.last), old.held, old.held_s
+        ways.held = Held(old.up, old.down, old.prefer_up)
+        ways.shrunk_up, ways.shrunk_down = old.shrunk_up, old.shrunk_down
+        ways.since_s = old.since_s
 
 
 def _dimensions(ability: Ability) -> list[int]:
@@ -166,17 +194,13 @@ def resolutions(bands: Bands | None, course_rad: float) -> tuple[float, ...]:
     beyond the nearest value that resolves, since that is the edge of a band [rad]."""
     if bands is None:
         return ()
-    for guidance, held in zip(bands.instant.guidance, bands.instant.held, strict=True):
-        if guidance.dimension == DIMENSIONS[HDIR]:
-            sides = [(held.up, STEP_DEG * DEG), (held.down, -STEP_DEG * DEG)]
-            if not held.prefer_up:
-                sides.reverse()
-            return tuple(
-                smallest_turn(course_rad, value + beyond)
-                for value, beyond in sides
-                if value is not None
-            )
-    return ()
+    held = bands.dimensions[HDIR]
+    sides = [(held.up, STEP_DEG * DEG), (held.down, -STEP_DEG * DEG)]
+    if not held.prefer_up:
+        sides.reverse()
+    return tuple(
+        smallest_turn(course_rad, value + beyond) for value, beyond in sides if value is not None
+    )
 
 
 def _own(number: int, motion: Motion) -> Aircraft:

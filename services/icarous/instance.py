@@ -12,7 +12,7 @@ is decided by the kernels of `core.authority.cycle`.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from cratous.bridge.text_protocol import Heartbeat, SetMode, SetVelocity
 from cratous.core.authority.cycle import (
@@ -66,9 +66,6 @@ from cratous.services.icarous.traffic_monitor import (
 from cratous.spec.authority.cycle import MONITOR, NOTHING, OFFER, WITHDRAW
 from cratous.spec.mission.plan import Pose
 from cratous.spec.records import replace
-
-if TYPE_CHECKING:
-    from cratous.services.icarous.bands import Bands
 
 LINK_LOST_MS = 2000
 """The bridge counts as lost when nothing was heard for this long [ms]: four heartbeats."""
@@ -128,7 +125,6 @@ class Instance:
             fresh = state.asking.idle()
             state = replace(state, held=None, search=IDLE, threats=(), asking=fresh)
             state = permits.resumed(self.config, state, sensed, in_turn)
-        said = state.bands
         state = replace(state, cycle=cycle, courses=now, ways=ways, beats=state.beats + 1)
         state, lost = link_loss.heartbeat(self.config, state, sensed)
         if watches:
@@ -136,19 +132,19 @@ class Instance:
         else:
             state, out = self._fly(state, sensed, in_turn)
         beat = Heartbeat(sequence=state.beats, time_s=sensed.now_ms / 1000)
-        if self.config.records and state.bands is not None and state.bands is not said:
-            out = (self._guides(sensed, state.bands), *out)
         return state, (*lost, *out, Up(self.config.vehicle_id, beat))
 
     def _watch(self, state: State, sensed: Sensed, in_turn: frozenset[int]) -> Step:
         """MONITOR: take over if a conflict is foreseen that is ours to act on, or the link is lost."""
         state, conflict = self._foreseen(state, sensed, in_turn)
+        state, said = self._guided(state, sensed, bool(state.threats))
         takes = loss_takes(state.no_link.loss, conflict is not None)
         cycled = cycle_watched(state.cycle, takes, sensed.now_ms, RELAPSE_MS)
         if cycled.act == NOTHING:
-            return replace(state, cycle=cycled.cycle), ()
+            return replace(state, cycle=cycled.cycle), said
         if conflict is None or state.no_link.loss.mode != LINKED:
-            return self._without_link(state, sensed, in_turn, cycled)
+            state, out = self._without_link(state, sensed, in_turn, cycled)
+            return state, (*said, *out)
         vid, first_s = self.config.vehicle_id, conflict.first_s
         reason = f"{conflict.why}: loss predicted in {first_s:.1f} s"
         if conflict.intruder_id:
@@ -159,7 +155,8 @@ class Instance:
         foresees = Foresees(vid, sensed.now_ms, conflict.intruder_id, first_s, describe(choice))
         wish = Wish(vid, cycled.act, reason, conflict.intruder_id)
         offer = self._offer(state, sensed, choice)
-        return state, (wish, foresees, *offer, *self._commands(sensed, choice, cycled.act))
+        commands = self._commands(sensed, choice, cycled.act)
+        return state, (*said, wish, foresees, *offer, *commands)
 
     def _without_link(
         self, state: State, sensed: Sensed, in_turn: frozenset[int], cycled: Cycled
@@ -180,7 +177,6 @@ class Instance:
         limits = nearest(sensed.ability, scene.volume, self.config.heartbeat_ms)
         own, seen = self.config.vehicle_id, sensed.intruders
         found = threats(own, ahead, seen, state.threats, sensed.now_ms, limits, in_turn)
-        state = self._guided(state, sensed) if found else replace(state, bands=None)
         state = permits.looked(self.config, replace(state, threats=found), sensed, ahead)
         urgent = most_urgent(permits.acting(state, found))
         if urgent is not None:
@@ -193,7 +189,7 @@ class Instance:
 
     def _fly(self, state: State, sensed: Sensed, in_turn: frozenset[int]) -> Step:
         """AVOID and HANDBACK: fly the manoeuvre, and see whether the way back is free."""
-        state = self._guided(state, sensed)
+        state, guides = self._guided(state, sensed, True)
         lost = state.no_link.loss.mode != LINKED
         lasting = state.search.waits(sensed.now_ms)
         free = not lost and way_back_is_free(self.config, state, sensed, in_turn, lasting)
@@ -208,7 +204,7 @@ class Instance:
             state, choice = link_loss.flown(self.config, state, sensed, in_turn)
         else:
             state, choice = manoeuvre(self.config, state, sensed, in_turn, free)
-        out: list[FromInstance] = []
+        out: list[FromInstance] = [*guides]
         vid, text = self.config.vehicle_id, describe(choice)
         if cycled.act != NOTHING:
             of_uxas = cycled.act == OFFER and proposed is not None
@@ -251,18 +247,22 @@ class Instance:
         out += [Up(vid, line)] if line is not None else []
         return replace(state, asking=found._replace(said=())), number, out
 
-    def _guided(self, state: State, sensed: Sensed) -> State:
-        """With what detect and avoid says, once a second."""
+    def _guided(
+        self, state: State, sensed: Sensed, wanted: bool
+    ) -> tuple[State, tuple[FromInstance, ...]]:
+        """With what detect and avoid says, once a second while it is wanted, and that for the record."""
+        if not wanted:
+            return replace(state, bands=None), ()
         # not needed in a flight without conflicts
         from cratous.services.icarous.bands import Whose, watched
 
         config = self.config
         whose = Whose(config.vehicle_id, config.daa, config.heartbeat_ms, config.records)
-        return replace(state, bands=watched(whose, state.bands, sensed))
-
-    def _guides(self, sensed: Sensed, bands: Bands) -> Guides:
-        """What it has said, for the record."""
-        return Guides(self.config.vehicle_id, sensed.now_ms, sensed.motion, bands.instant)
+        bands, instant = watched(whose, state.bands, sensed)
+        state = replace(state, bands=bands)
+        if instant is None or not config.records:
+            return state, ()
+        return state, (Guides(config.vehicle_id, sensed.now_ms, sensed.motion, instant),)
 
     def _offer(self, state: State, sensed: Sensed, choice: Choice) -> tuple[FromInstance, ...]:
         """The certificate of a manoeuvre, for the gate, or why there is none."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from cratous.core.authority.cycle import Cycle
 from cratous.core.authority.timeliness import lasted
@@ -11,6 +11,7 @@ from cratous.core.avoidance.prediction import Intruder
 from cratous.core.avoidance.resolution import Choice
 from cratous.core.permit.encounter import Encounter
 from cratous.services.icarous.asking import Asking
+from cratous.services.icarous.band_history import Bands
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.lost import LostLink, NoLink
 from cratous.services.icarous.others import Ways
@@ -18,9 +19,6 @@ from cratous.services.icarous.traffic_monitor import Threat, Tracks
 from cratous.services.mission.frames import Projection
 from cratous.spec.authority.cycle import MONITOR
 from cratous.spec.mission import Daa, Position
-
-if TYPE_CHECKING:
-    from cratous.services.icarous.bands import Bands
 
 START = Cycle(MONITOR, 0, False, 0, False, 0)
 """UxAS flies, and has always done so."""

@@ -8,8 +8,8 @@ from importlib.resources import files
 from typing import Any
 
 from cratous.services.loading.document import Document, Key, item_name
-from cratous.services.loading.schema_check import fits
 from cratous.spec.errors import BadInput
+from cratous.spec.files.schema_check import fits
 
 _KINDS = {
     "object": "a mapping",

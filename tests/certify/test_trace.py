@@ -104,8 +104,8 @@ def test_a_definition_of_another_package_is_found_without_importing_it(
     )
     (top / "spec" / "broken.py").write_text("def here(:\n")
     monkeypatch.syspath_prepend(tmp_path)
-    assert trace._definition(top.name, "plain.here") == ("spec/plain.py", "")
-    assert trace._definition(top.name, "deep.row_holds") == ("spec/deep/__init__.py", "")
+    assert trace.definition_of(top.name, "plain.here") == ("spec/plain.py", "")
+    assert trace.definition_of(top.name, "deep.row_holds") == ("spec/deep/__init__.py", "")
     for name in (
         "plain.unbound",
         "plain.value",
@@ -116,13 +116,13 @@ def test_a_definition_of_another_package_is_found_without_importing_it(
         "../x.here",
         ".",
     ):
-        assert trace._definition(top.name, name) == ("", f"its definition {name} does not exist")
+        assert trace.definition_of(top.name, name) == ("", f"its definition {name} does not exist")
     assert top.name not in sys.modules
 
 
 @pytest.mark.parametrize("package", ["", "..", "json", "sys", "no_such_package", "a/b", "__main__"])
 def test_a_package_that_has_no_definitions(package: str) -> None:
-    assert trace._definition(package, "tool.main") == (
+    assert trace.definition_of(package, "tool.main") == (
         "",
         "its definition tool.main does not exist",
     )

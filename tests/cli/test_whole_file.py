@@ -200,6 +200,7 @@ KEPT = {
     "services/results/former.py": "opened for reading",
     "services/campaign/store.py": "results in SQLite, in transactions",
     "services/cli/campaign_flight.py": "a mission in a temporary folder",
+    "services/cli/serve_flight.py": "what was commanded, beside the results in their hidden folder, renamed when whole",
     "services/processes/children.py": "what processes say, inside the hidden folder of a run",
     "services/uxas/diagram.py": "inside a hidden folder of this process, renamed when whole",
 }

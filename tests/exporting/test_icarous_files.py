@@ -153,7 +153,7 @@ def test_a_planned_route_is_written_without_what_lies_on_its_legs() -> None:
     [
         (["--format", "qgc"], "one of 1, 2"),
         (["--format", "qgc", "--vehicle", "9"], "one of 1, 2"),
-        (["--format", "qgc", "--vehicle", "1"], "--plan, or points to fly through"),
+        (["--format", "qgc", "--vehicle", "1"], "a plan (--plan), or points to fly through"),
         (["--format", "geofence"], "one or more"),
         (["--format", "geofence", "--plan"], "--plan goes with"),
         (["--format", "kml", "--vehicle", "1"], "--vehicle goes with --format qgc"),

@@ -7,7 +7,7 @@ from dataclasses import FrozenInstanceError, replace
 from typing import Any
 
 import pytest
-from flight_tools import flown, meeting, of_type, with_deadline
+from flight_tools import flown, meeting, of_type, plain_steps, with_deadline
 
 from cratous.bridge import lmcp
 from cratous.core.executive.steps import Answered
@@ -23,7 +23,15 @@ from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.executive import Executive
 from cratous.services.flight.executive_state import Config, first_state
-from cratous.services.flight.messages import NotPlanned, Planned, ToExecutive, ToVehicle
+from cratous.services.flight.messages import (
+    Begin,
+    HeardAgain,
+    NotHeard,
+    NotPlanned,
+    Planned,
+    ToExecutive,
+    ToVehicle,
+)
 from cratous.services.flight.replan_triggers import touched_by
 from cratous.services.flight.vehicle import VehicleNode
 from cratous.services.mission.frames import Projection
@@ -139,8 +147,23 @@ def test_a_step_changes_nothing_but_its_answer(monkeypatch: pytest.MonkeyPatch) 
     result, _ = flown(mission, plan)
     assert (result.takeovers, list(result.failed)) == (1, [1])
     # ways back are asked for where UxAS plans live alone (test_ways_back_asked)
-    assert seen["Executive"] == {m.__name__ for m in ToExecutive.__args__} - {"RouteAsked"}
+    # and that a link is lost means something with `link_loss:` alone (below)
+    others = {"RouteAsked", "NotHeard", "HeardAgain"}
+    assert seen["Executive"] == {m.__name__ for m in ToExecutive.__args__} - others
     assert seen["VehicleNode"] == {m.__name__ for m in ToVehicle.__args__} - {"LimitsAre"}
+
+
+def test_that_a_vehicle_is_not_heard_is_a_step_like_any_other() -> None:
+    mission, plan = with_deadline()
+    actor = Executive(Config(mission, Projection(mission.frame), ()))
+    start = AirState(mission.vehicles[0].position, 0.0, 22.0, 0.0)
+    messages = (Begin(0, ((1, start),)), NotHeard(1, 0), HeardAgain(1, 500, False))
+    chains = [state.find(1) for state in plain_steps(actor, first_state(mission, plan), messages)]
+    assert [(c.unlinked, c.suspended) for c in chains if c is not None] == [
+        (False, False),
+        (True, True),
+        (False, True),
+    ]
 
 
 def test_a_settled_task_does_not_fail_again(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import pytest
 from icarous_tools import ABILITY, NORTH, PROJECTION, VOLUME
@@ -10,10 +11,12 @@ from icarous_tools import ABILITY, NORTH, PROJECTION, VOLUME
 from cratous.bridge.lmcp.jsonform import to_data
 from cratous.core.authority.gate import UXAS, Gate
 from cratous.core.avoidance.prediction import Intruder, Spread
+from cratous.core.daa.session import Instant
 from cratous.services.certify.alerted import AlertReader
 from cratous.services.flight.notices import guidance
 from cratous.services.icarous import proposal
-from cratous.services.icarous.bands import STEP_DEG, Bands, Whose, resolutions, watched
+from cratous.services.icarous.band_history import Bands
+from cratous.services.icarous.bands import STEP_DEG, Whose, resolutions, watched
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Guides, Sensed
@@ -37,10 +40,22 @@ def sensed(now_ms: int, *others: Intruder) -> Sensed:
     return Sensed(now_ms, NORTH, ABILITY, others, Gate(UXAS, 1, False))
 
 
-def bands(*others: Intruder) -> Bands:
-    found = watched(WHOSE, None, sensed(0, *others))
-    assert found is not None
-    return found
+class Found(NamedTuple):
+    """What is remembered, and what is said."""
+
+    bands: Bands
+    instant: Instant
+
+
+def look(whose: Whose, now: Sensed) -> Found:
+    remembered, instant = watched(whose, None, now)
+    assert remembered is not None
+    assert instant is not None
+    return Found(remembered, instant)
+
+
+def bands(*others: Intruder) -> Found:
+    return look(WHOSE, sensed(0, *others))
 
 
 def said_of(one: object) -> object:
@@ -50,7 +65,7 @@ def said_of(one: object) -> object:
     )
 
 
-def heading_bands(of: Bands) -> list[tuple[float, float]]:
+def heading_bands(of: Found) -> list[tuple[float, float]]:
     guidance = of.instant.guidance[0]
     return [(b.low, b.high) for b in guidance.bands if b.region >= MID]
 
@@ -60,7 +75,7 @@ def test_the_present_course_is_in_a_band_and_the_preferred_turn_out_of_it(side: 
     found = bands(crossing(side))
     assert [a.level for a in found.instant.alerts] == [1]
     assert found.instant.guidance[0].region == MID
-    turns = resolutions(found, NORTH.heading_rad)
+    turns = resolutions(found.bands, NORTH.heading_rad)
     # behind the one that crosses is the shorter way
     assert turns
     assert math.copysign(1.0, turns[0]) == side
@@ -73,12 +88,14 @@ def test_the_present_course_is_in_a_band_and_the_preferred_turn_out_of_it(side: 
 
 
 def test_the_mirror_image_is_the_mirror_image() -> None:
-    right, left = (resolutions(bands(crossing(side)), NORTH.heading_rad) for side in (1.0, -1.0))
+    right, left = (
+        resolutions(bands(crossing(side)).bands, NORTH.heading_rad) for side in (1.0, -1.0)
+    )
     assert right == pytest.approx([-turn for turn in left])
 
 
 def test_who_is_known_within_bounds_only_has_wider_bands() -> None:
-    def width(of: Bands) -> float:
+    def width(of: Found) -> float:
         return sum(high - low for low, high in heading_bands(of))
 
     exact, loose = bands(crossing(1.0)), bands(crossing(1.0, Spread(60.0, 2.0, 10.0, 0.5)))
@@ -112,12 +129,12 @@ def test_the_proposal_tries_what_the_bands_prefer_first_and_no_wide_turn(
     monkeypatch.setattr(proposal, "keeps_clear", lambda *given: tried.append(given[-1].heading_rad))
     for side in (1.0, -1.0):
         found = bands(crossing(side))
-        turns = _told(State(bands=found), NORTH.heading_rad)
+        turns = _told(State(bands=found.bands), NORTH.heading_rad)
         assert turns
         assert math.copysign(1.0, turns[0]) == side
         assert all(abs(turn) <= math.radians(TURNS_DEG[-1]) for turn in turns)
         tried.clear()
-        state, now = State(bands=found), sensed(0, crossing(side))
+        state, now = State(bands=found.bands), sensed(0, crossing(side))
         assert _soonest(CONFIG, state, now, frozenset(), (NORTH.heading_rad, 22.0)) is None
         begin, small = [0.0, *turns], math.radians(TURNS_DEG[0])
         assert tried[: len(begin) + 2] == pytest.approx([*begin, side * small, -side * small])
@@ -145,17 +162,15 @@ def test_the_record_has_the_alert_and_the_bands() -> None:
 def test_an_airframe_that_cannot_climb_has_no_bands_of_climbs() -> None:
     level = sensed(0, crossing(1.0))
     level = level._replace(ability=level.ability._replace(max_climb_m_s=0.0))
-    found = watched(WHOSE, None, level)
-    assert found is not None
+    found = look(WHOSE, level)
     assert [g.dimension for g in found.instant.guidance] == ["hdir", "hs"]
     assert all(b.region >= NONE for g in found.instant.guidance for b in g.bands)
 
 
 def test_where_nobody_reads_them_headings_alone_are_looked_at_and_the_turns_are_the_same() -> None:
-    untold = watched(WHOSE._replace(told=False), None, sensed(0, crossing(1.0)))
-    assert untold is not None
+    untold = look(WHOSE._replace(told=False), sensed(0, crossing(1.0)))
     assert [g.dimension for g in untold.instant.guidance] == ["hdir"]
-    assert resolutions(untold, 0.3) == resolutions(bands(crossing(1.0)), 0.3)
+    assert resolutions(untold.bands, 0.3) == resolutions(bands(crossing(1.0)).bands, 0.3)
     state = State(told=Told(waypoints=WAY, next_index=1, speed_m_s=22.0))
     _, out = Instance(CONFIG._replace(records=False)).handle(state, sensed(0, crossing(1.0)))
     assert not any(isinstance(one, Guides) for one in out)

@@ -14,7 +14,7 @@ from jsonschema import Draft202012Validator
 
 from cratous.services.certify.report_schema import departures
 from cratous.services.loading.schema import mission_schema
-from cratous.services.loading.schema_check import fits
+from cratous.spec.files.schema_check import fits
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 VALUES: list[Any] = [

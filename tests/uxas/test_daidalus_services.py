@@ -11,7 +11,8 @@ from daidalus_sky import SEES, Sky, head_on, intervals, state
 
 from cratous.bridge import lmcp
 from cratous.core.daa.session import Session
-from cratous.services.uxas.daidalus import detection, parameters
+from cratous.services.daa.intervals import SERIES
+from cratous.services.uxas.daidalus import parameters
 from cratous.services.uxas.daidalus.states import aircraft, wind_of
 from cratous.spec.daa.parameters import NEAR, Parameters
 from cratous.spec.errors import BadInput
@@ -54,7 +55,7 @@ def test_intervals_are_those_of_the_engine_at_each_state_of_the_ownship(tmp_path
 
 
 def _lists() -> dict[str, str]:
-    return {parts[2]: parts[1] for parts in detection.SERIES.values()}
+    return {parts[2]: parts[1] for parts in SERIES.values()}
 
 
 def parameters_with(text: str) -> Parameters:
