@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import Ability, Motion, smallest_turn, velocity_of
-from cratous.core.avoidance.prediction import Intruder, buffered
+from cratous.core.avoidance.prediction import EXACT, Intruder, buffered
 from cratous.core.daa.history import Shown
 from cratous.core.daa.persistence import Held
 from cratous.core.daa.session import Instant, Session
@@ -141,7 +141,7 @@ def watched(
         return before, None
     if not sensed.intruders:
         return None, None
-    loose = any(other.spread.wide_m or other.spread.wide_m_s for other in sensed.intruders)
+    loose = any(other.spread != EXACT for other in sensed.intruders)
     session = Session(parameters_of(whose, sensed.ability, loose))
     if before is not None and (before.ability, before.loose) == (sensed.ability, loose):
         _remember(session, before)

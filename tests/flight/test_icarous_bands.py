@@ -101,6 +101,12 @@ def test_who_is_known_within_bounds_only_has_wider_bands() -> None:
     exact, loose = bands(crossing(1.0)), bands(crossing(1.0, Spread(60.0, 2.0, 10.0, 0.5)))
     assert width(loose) > width(exact)
 
+    def height(of: Found) -> float:
+        return sum(b.high - b.low for b in of.instant.guidance[3].bands if b.region >= MID)
+
+    # also of one whose height alone is not known exactly
+    assert height(bands(crossing(1.0, Spread(high_m=60.0)))) > height(exact)
+
 
 def test_it_is_said_once_a_second_while_a_loss_is_foreseen_and_the_state_before_is_left_alone() -> (
     None
