@@ -21,6 +21,17 @@ def level_name(level: int) -> str:
     return LEVELS.get(level, str(level))
 
 
+def none_said(report: dict[str, Any]) -> str:
+    """What it means that a report lists no alert."""
+    looks = report["log"]["by_topic"].get(TOPIC, 0)
+    if looks:
+        return f"None: {looks} looks of detect and avoid are in the log."
+    return (
+        "The log has no look of detect and avoid. In a flight of cratous run there is none where no loss of well clear "
+        "is foreseen and ICAROUS does not fly, without avoidance, and with --processes, whose logs do not have them."
+    )
+
+
 class AlertReader:
     """Follows the messages of a log; `found` is what has been alerted so far, in the order of beginning."""
 

@@ -9,7 +9,7 @@ from typing import Any
 from cratous.core.kernel.names import short
 from cratous.services.assumptions.said import measured
 from cratous.services.certify import templates
-from cratous.services.certify.alerted import level_name
+from cratous.services.certify.alerted import level_name, none_said
 from cratous.services.certify.blame_said import sentence
 from cratous.services.certify.charts import altitude_view, separation_view
 from cratous.services.certify.command import flown_in_processes
@@ -49,6 +49,7 @@ def _environment() -> Any:
     environment.filters["own_blamed"] = own_blamed
     environment.filters["own_margin"] = own_margin
     environment.filters["alert_level"] = level_name
+    environment.filters["no_alerts"] = none_said
     environment.filters["cost"] = lambda value, kind: cost_text(kind, value)
     return environment
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from cratous.services.assumptions.said import measured
-from cratous.services.certify.alerted import level_name
+from cratous.services.certify.alerted import level_name, none_said
 from cratous.services.certify.html import margin, seconds
 from cratous.services.full_report import document
 from cratous.services.full_report.front import loss_parts
@@ -51,7 +51,7 @@ def _trajectory(report: Data, chains: Data) -> Iterator[document.Part]:
     alerted = seconds(min(a["from_ms"] for a in alerts)) if alerts else document.NOT_OBSERVED
     yield document.Words(
         f"Conflict messages: {report['log']['by_topic'].get(CONFLICT, 0)}. First takeover: {first}. "
-        f"First alert: {alerted}."
+        f"First alert: {alerted}. " + ("" if alerts else none_said(report))
     )
     if alerts:
         spans = [

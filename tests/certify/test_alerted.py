@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from cratous.services.certify.alerted import AlertReader
+from cratous.services.certify.alerted import TOPIC, AlertReader, none_said
 from cratous.spec.errors import BadInput
 
 
@@ -41,3 +41,11 @@ def test_an_alert_lasts_from_the_first_message_to_the_last_without_one_in_betwee
 def test_what_cannot_be_told_is_a_typed_error(wrong: dict[str, Any]) -> None:
     with pytest.raises(BadInput, match="WellClearViolationIntervals at 7000 ms"):
         AlertReader().add({**told(1, (2, 1.0, 40.0)), **wrong}, 7000)
+
+
+def test_nobody_alerted_and_nobody_asked_are_told_apart() -> None:
+    def said(**by_topic: int) -> str:
+        return none_said({"log": {"by_topic": by_topic}})
+
+    assert said(**{TOPIC: 3}) == "None: 3 looks of detect and avoid are in the log."
+    assert said(**{"cratous.Heartbeat": 3}).startswith("The log has no look of detect and avoid.")
