@@ -23,6 +23,13 @@ class Loss(NamedTuple):
     since_ms: int
 
 
+class Heartbeat(NamedTuple):
+    """What a heartbeat leads to: loss: the mode afterwards; act: what is new."""
+
+    loss: Loss
+    act: int
+
+
 def is_mode(mode: int) -> bool:
     """It is one of the five."""
     return not (mode < LINKED or mode > OVER)
@@ -48,26 +55,25 @@ def is_after_heartbeat(
     bound: int,
     permitted: bool,
     ended: bool,
-    after: Loss,
-    act: int,
+    after: Heartbeat,
 ) -> bool:
     """Heard in time there is no mode. Else what was chosen and flown to its end stays so, and of the others the
     one that is wanted is flown, since it was wanted first. permitted: the way of what is chosen is, and what is
     flown is ended once the vehicle is at its end."""
     if not too_old(heard, now, bound):
         if before.mode == LINKED:
-            return after == before and act == NOTHING
-        return after == Loss(LINKED, now) and act == REJOIN
+            return after == Heartbeat(before, NOTHING)
+        return after == Heartbeat(Loss(LINKED, now), REJOIN)
     if before.mode == OVER:
-        return after == before and act == NOTHING
+        return after == Heartbeat(before, NOTHING)
     if ended and before.mode == chosen and chosen != LOITER:
-        return after == Loss(OVER, now) and act == END
+        return after == Heartbeat(Loss(OVER, now), END)
     mode = wanted(chosen, permitted)
     if before.mode == mode:
-        return after == before and act == NOTHING
+        return after == Heartbeat(before, NOTHING)
     if mode == chosen:
-        return after == Loss(mode, now) and act == BEGIN
-    return after == Loss(mode, now) and act == FALL_BACK
+        return after == Heartbeat(Loss(mode, now), BEGIN)
+    return after == Heartbeat(Loss(mode, now), FALL_BACK)
 
 
 def must_fly(loss: Loss, foreseen: bool) -> bool:
