@@ -170,7 +170,7 @@ def report() -> dict[str, Any]:
             "takeovers": flight.takeovers, "events": flight.events,
             "served": list(flight.served.values()), "unserved": [6],
         },
-        "log": {"digest": "2" * 64, "messages": len(LOG)},
+        "log": {"digest": "2" * 64, "messages": len(LOG), "by_topic": {}},
         "proofs": {
             "line": "1 kernel", "solver": "z3", "problems": [{"kernel": "k", "what": "changed"}],
             "calls": "recorded", "loops": {"c.loop": {"machine code": 4}}, "uncounted": [],
