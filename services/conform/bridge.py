@@ -109,7 +109,8 @@ def _deviation(case: dict[str, Any]) -> Result:
     name = f"{lat:g} {lon:g}, {true_m:.1f} m"
     if not near_line(here, a, b, true_m + off_m):
         return failed(name, "taken for farther", f"expected {true_m:g} m from the leg")
-    if true_m > off_m and near_line(here, a, b, true_m - off_m):
+    nearer_m = max(0.0, true_m - off_m)
+    if nearer_m and near_line(here, a, b, nearer_m):
         return failed(name, "taken for nearer", f"expected {true_m:g} m from the leg")
     return passed(name)
 
