@@ -137,8 +137,10 @@ def run_one(
     from cratous.services.cli.relation_places import RelationPlaces
     from cratous.services.loading import load
     from cratous.services.results.folder import results_folder
+    from cratous.services.startup import ahead
 
     loaded = load(path, seed)
+    ahead.begin(len(loaded.tasks))
     target, places = out / folder_name(loaded), RelationPlaces(loaded)
 
     def placed(text: str) -> None:
