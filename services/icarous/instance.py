@@ -52,6 +52,7 @@ from cratous.services.icarous.messages import (
 )
 from cratous.services.icarous.offers import Refused, certified
 from cratous.services.icarous.others import with_ways
+from cratous.services.icarous.pace import change_ms, pace_of
 from cratous.services.icarous.proposal import describe, manoeuvre
 from cratous.services.icarous.return_to_path import PERSIST_MS, RELAPSE_MS, onto
 from cratous.services.icarous.state import IDLE, Config, State
@@ -122,8 +123,12 @@ class Instance:
         loose = loose_courses(sensed.intruders)
         in_turn = turning(now, state.courses, beat_s, loose) - {o.id for o in others if o.way}
         if flew and watches:
+            beats_ms = 2 * self.config.heartbeat_ms
             fresh = state.asking.idle()
-            state = replace(state, held=None, search=IDLE, threats=(), asking=fresh)
+            pace_ms = sensed.now_ms + beats_ms + change_ms(sensed, pace_of(state.told, sensed))
+            state = replace(
+                state, held=None, search=IDLE, threats=(), asking=fresh, pace_ms=pace_ms
+            )
             state = permits.resumed(self.config, state, sensed, in_turn)
         state = replace(state, cycle=cycle, courses=now, ways=ways, beats=state.beats + 1)
         state, lost = link_loss.heartbeat(self.config, state, sensed)
