@@ -74,7 +74,9 @@ def plan(
 
     from cratous.core import ledger
     from cratous.services.cli.progress import waiting
+    from cratous.services.startup import ahead
 
+    ahead.begin(max((len(one.tasks) for one in loaded if isinstance(one, Mission)), default=0))
     with waiting("holding the code against its proofs", as_json):
         standing = ledger.require(allow_unproved=allow_unproved)
     job = _Job(as_json, certificate, task, standing)
