@@ -20,7 +20,7 @@ from cratous.services.monitor.hand import HandWatch
 from cratous.services.monitor.landing import LandingWatch
 from cratous.services.monitor.link_loss import LinkLossWatch
 from cratous.services.monitor.observation import Ending, Presence
-from cratous.services.monitor.required_rows import missing, promised, watched
+from cratous.services.monitor.required_rows import END, missing, promised, watched
 from cratous.services.monitor.samples import Sample, Sampler
 from cratous.services.monitor.separation import SeparationWatch
 from cratous.spec.mission import Mission
@@ -164,7 +164,9 @@ def _whole(requirement: str, parts: list[Verdict]) -> Verdict:
     outcome = worst([v.outcome for v in parts])
     telling = [v for v in parts if v.outcome is outcome]
     measured = [v for v in telling if v.margin is not None]
-    chosen = min(measured, key=lambda v: v.margin or 0.0, default=telling[0] if telling else None)
+    # nothing is measured: what names a task says more than that the mission ended so
+    first = next((v for v in telling if v.item != END), telling[0] if telling else None)
+    chosen = min(measured, key=lambda v: v.margin or 0.0, default=first)
     if chosen is None:
         return Verdict(requirement, "", outcome, Kind.OBSERVED, "nothing was observed")
     kinds = {v.kind for v in parts}
