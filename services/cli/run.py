@@ -137,8 +137,10 @@ def run_one(
     from cratous.services.cli.relation_places import RelationPlaces
     from cratous.services.loading import load
     from cratous.services.results.folder import results_folder
+    from cratous.services.startup import ahead
 
     loaded = load(path, seed)
+    ahead.begin(len(loaded.tasks))
     target, places = out / folder_name(loaded), RelationPlaces(loaded)
 
     def placed(text: str) -> None:
@@ -187,6 +189,9 @@ def _show(report: dict[str, Any], folder: Path) -> None:
             f"p{served['task']}: {served['phase'].lower()} by {who} "
             f"at {served['time_ms'] / 1000:.1f} s, {100 * served['served']:.1f} % served{note}"
         )
+    for change in flight["changes"]:
+        what = f"{change['what']}: {change['consequence']}"
+        say(f"change at {change['time_ms'] / 1000:.1f} s: {what}")
     for line in lines([one for one in report["blame"] if one["verdict"] != "unknown"]):
         say(line)
     for row in report["assumptions"]:
