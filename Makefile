@@ -83,6 +83,7 @@ crosshair: venv
 
 fuzz: venv
 	$(BIN)/python tests/programs/fuzz_lmcp.py --count 1000000
+	$(BIN)/python tests/programs/fuzz_lines.py --lines 1000000
 
 daa-fuzz: venv
 	$(BIN)/python tests/programs/daa_scenes.py 100000
