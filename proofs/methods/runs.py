@@ -22,11 +22,25 @@ Run = tuple[Fold[Any], Any, tuple[Any, ...]]
 """A fold, an arbitrary accumulator of it, and its context."""
 
 
+class Beside(NamedTuple):
+    """What becomes of a state that no fold keeps: of steps of several kernels together, or of what is so out there.
+
+    start: before the first item; state: an arbitrary one; step(accumulators): the state after one more item, from all
+    accumulators before it.
+    """
+
+    start: Any
+    state: Any
+    step: Callable[[list[Any]], Any]
+
+
 class Items(NamedTuple):
-    """The arbitrary values of one item; each: what every item satisfies."""
+    """The arbitrary values of one item; each: what every item satisfies; more: values that no fold is given, but what
+    is beside them is."""
 
     values: tuple[Any, ...]
     each: Any = True
+    more: tuple[Any, ...] = ()
 
 
 def along_items(
@@ -38,28 +52,31 @@ def along_items(
     goal: Callable[[list[Any]], Any],
     text: str,
     models: Sequence[Run] = (),
+    beside: Sequence[Beside] = (),
     known: Callable[[list[Any]], None] = lambda accumulators: None,
 ) -> None:
     """Show `goal(results)` of folds over the same items, of any number.
 
     invariant(accumulators): what holds after any number of items; known(accumulators): uses lemmas on one
-    more item, from the accumulators before it, and states no premises; models: folds of definitions, whose accumulators come after the others'.
+    more item, from the accumulators before it, and states no premises; models: folds of definitions, whose accumulators come
+    after the others'; beside: states that come after these.
     """
     if c.prefix:
         return  # used as a lemma, an induction has no goals to offer, as with `Claim.fold`
-    values, each = item
+    values, each, *more = item
     if isinstance(c, OnNumbers):
         both = (*runs, *models)
         inductions.along_items(
-            c, both, item=values, invariant=invariant, goal=goal, text=text, each=each, known=known
-        )
+            c, both, item=values, invariant=invariant, goal=goal, text=text, each=each, known=known,
+            beside=beside,
+        )  # fmt: skip
         return
     folds = [REPLACED.get(fold, fold) for fold, _, _ in (*runs, *models)]
-    accumulators = [acc for _, acc, _ in (*runs, *models)]
+    accumulators = [acc for _, acc, _ in (*runs, *models)] + [one.state for one in beside]
     contexts = [context for _, _, context in (*runs, *models)]
     readers = [c.use] * len(runs) + [c.define] * len(models)
-    arbitrary(c, tuple(accumulators), (values, tuple(contexts), each))
-    own = spread(names_in(values), c)
+    arbitrary(c, tuple(accumulators), (values, tuple(contexts), each, *more))
+    own = spread(names_in((values, *more)), c)
     # base and use hold of no item at all, so nothing may be given about one
     if shared := sorted(own & names_in(tuple(contexts))):
         raise ValueError(f"the context depends on the item's {shared[0]}: it is the same for each")
@@ -68,7 +85,7 @@ def along_items(
     for fold in folds[: len(runs)]:
         if qualified(fold) not in c.kernels:
             c.kernels.append(qualified(fold))
-    starts = [fold.start for fold in folds]
+    starts = [fold.start for fold in folds] + [one.start for one in beside]
     before = len(c.facts)
     held, base = statement(invariant(accumulators)), statement(invariant(starts))
     for term in (held, base):
@@ -85,18 +102,19 @@ def along_items(
     of_item = list(c.premises)
     c._grant(held)
     known(accumulators)
+    kept = accumulators[: len(folds)]
     after = [
         read(fold.step, acc, *values, *context)
-        for read, fold, acc, context in zip(readers, folds, accumulators, contexts, strict=True)
-    ]
+        for read, fold, acc, context in zip(readers, folds, kept, contexts, strict=True)
+    ] + [one.step(accumulators) for one in beside]
     c._owe("step", f"{text}: one more item", statement(invariant(after)))
     no_more_premises(c, len(of_item))
     c.premises, c.facts = list(of_any), c.facts[:before]
     c._grant(held)
     results = [
         acc if fold.finish is None else read(fold.finish, acc)
-        for read, fold, acc in zip(readers, folds, accumulators, strict=True)
-    ]
+        for read, fold, acc in zip(readers, folds, kept, strict=True)
+    ] + accumulators[len(folds) :]
     wanted = statement(goal(results))
     shared = sorted(free_names(wanted) & spread(own, c))
     if shared:

@@ -81,21 +81,28 @@ def along_items(
     text: str,
     each: Any,
     known: Callable[[list[Any]], None],
+    beside: Sequence[Any] = (),
 ) -> None:
     """`proofs.methods.runs.along_items`: one more item, or up to LONGEST of the same."""
-    values = [fold.start for fold, _, _ in runs]
-    arbitrary = [acc for _, acc, _ in runs]
+    values = [fold.start for fold, _, _ in runs] + [one.start for one in beside]
+    arbitrary = [acc for _, acc, _ in runs] + [one.state for one in beside]
+
+    def results(accumulators: list[Any]) -> list[Any]:
+        kept = accumulators[: len(runs)]
+        return [*_results(c, runs, kept), *accumulators[len(runs) :]]
+
     c.show(invariant(values), f"{text}: no items")
     count = 1 if _at_arbitrary_ones(c) else LONGEST
     if count == 1 and truth(invariant(arbitrary)):
-        c.show(goal(_results(c, runs, arbitrary)), f"{text}: no more items")
+        c.show(goal(results(arbitrary)), f"{text}: no more items")
         values = arbitrary
     c.premise(each)
     for k in range(count):
         known(values)
-        values = _stepped(c, runs, values, item)
+        after = _stepped(c, runs, values[: len(runs)], item)
+        values = [*after, *(one.step(values) for one in beside)]
         c.show(invariant(values), f"{text}: after {k + 1} more items")
-        c.show(goal(_results(c, runs, values)), f"{text}: of {k + 1} more items")
+        c.show(goal(results(values)), f"{text}: of {k + 1} more items")
 
 
 def every_term(

@@ -23,7 +23,13 @@ import z3
 from cratous.core import ledger as gate
 from cratous.core.ledger import records
 from cratous.proofs import ledger
-from cratous.proofs.engine import definition_subset, prover, symbolic, worker_processes
+from cratous.proofs.engine import (
+    definition_subset,
+    prover,
+    solver_memory,
+    symbolic,
+    worker_processes,
+)
 from cratous.proofs.judgement import Judgement, judge
 from cratous.proofs.ledger.report_formats import failure_text
 from cratous.proofs.self_test.case import Case
@@ -151,9 +157,14 @@ def attempt(case: Case) -> Trial:
 def attempts(cases: Sequence[Case], jobs: int = 1) -> Iterator[Trial]:
     """Try these cases, so many at once; the trials come as they are done."""
     prepare()
-    tried: Sequence[Callable[[], Trial]] = [partial(attempt, case) for case in cases]
-    for _, trial in worker_processes.each(tried, jobs):
-        yield trial
+    plain = [case for case in cases if not case.without]
+    # the compiler makes a process twice as large, and few of them need it
+    for some in (plain, [case for case in cases if case.without]):
+        if some and some is not plain:
+            importlib.import_module("numba")
+        tried: Sequence[Callable[[], Trial]] = [partial(attempt, case) for case in some]
+        for _, trial in worker_processes.each(tried, jobs):
+            yield trial
 
 
 @functools.cache
@@ -161,7 +172,7 @@ def prepare() -> None:
     """Read what every ledger hashes, and wake the solver, so that forked processes find it done."""
     gate.check()
     _ = gate.Keys().shared  # the tables of all modules that a key is made from
+    solver_memory.keep()
     z3.Solver(ctx=z3.main_ctx()).check()
-    importlib.import_module("numba")  # as long as several cases
     gc.collect()
     gc.freeze()  # else each process copies what its collector looks at

@@ -26,14 +26,17 @@ TAKEOVER_LASTS = "system_a_takeover_that_lasts_is_declared"
 MISSION_ENDS = "system_a_mission_ends"
 SILENCE = "system_silence_is_noticed_within_one_heartbeat"
 HAND = "system_the_hand_is_clear_until_a_surprise_or_its_expiry"
+CLEAR = "system_a_vehicle_is_clear_until_a_surprise_or_an_expiry"
+LOOKED = "system_a_way_that_is_looked_ahead_at_is_clear"
 BEARS_ON: dict[str, tuple[str, ...]] = {
+    "G2": (CLEAR, LOOKED, HAND),
     "G3": (MISSION_ENDS, TAKEOVER_LASTS),
     "G4": (*AUTHORITY, TAKEOVER_ENDS, TAKEOVER_LASTS),
     "G5": (SILENCE,),
 }
 """Which theorem on the composed system says something of which guarantee."""
-OF_A_PART: dict[str, tuple[str, ...]] = {"G1": (HAND,), "G2": (HAND,)}
-"""Which says something of a part of it alone: while a certificate is in hand."""
+OF_A_PART: dict[str, tuple[str, ...]] = {"G1": (HAND,)}
+"""Which says something of a part of it alone: of zones, while a certificate is in hand."""
 PLACED = frozenset(n for some in (BEARS_ON, OF_A_PART) for names in some.values() for n in names)
 
 

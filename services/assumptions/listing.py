@@ -19,6 +19,8 @@ TAKEOVER_ENDS = ("a_takeover_whose_way_back_stays_free_ends",)
 SILENCE = ("silence_is_noticed_within_one_heartbeat",)
 PERMIT = ("permitted_has_no_hit", "disc_within_holds_every_place")
 HAND = ("the_hand_is_clear_until_a_surprise_or_its_expiry",)
+CLEAR = ("a_vehicle_is_clear_until_a_surprise_or_an_expiry",)
+LOOKED = ("a_way_that_is_looked_ahead_at_is_clear",)
 ONE_COMMANDER = "exactly one commander at any time"
 REPLAYED = "the replay of the gate (G4) judges each command and each report by itself"
 SAMPLED = (
@@ -99,7 +101,7 @@ LISTING = (
     Assumption(
         "ICAROUS at each heartbeat",
         "ICAROUS looks at the gate at each heartbeat before it does anything",
-        GATE,
+        (*GATE, *CLEAR),
         ("G2", "G4"),
         "that ICAROUS commands while it has the vehicle",
         BY_EPOCH,
@@ -201,7 +203,7 @@ LISTING = (
     Assumption(
         "intruder in its tube",
         "an intruder that a takeover avoids flies straight on, within half of what the buffer leaves",
-        PERMIT,
+        (*PERMIT, *CLEAR),
         ("G2",),
         "that what ICAROUS flies is clear of this intruder, by the prediction of the takeover",
         SAMPLED,
@@ -211,7 +213,7 @@ LISTING = (
     Assumption(
         "tracking",
         "a vehicle under ICAROUS flies the path that is predicted, within half of what the buffer leaves",
-        PERMIT,
+        (*PERMIT, *CLEAR),
         ("G1", "G2"),
         "that what ICAROUS flies is clear, by its predictions",
         SAMPLED,
@@ -221,28 +223,30 @@ LISTING = (
     Assumption(
         "sensed within its bound",
         "an aircraft is no farther from what was sensed of it than the bound that its track declares",
-        PERMIT,
+        (*PERMIT, *CLEAR),
         ("G2",),
         "that what ICAROUS keeps clear of holds the true places",
         SAMPLED,
         "each state that was sensed, at each heartbeat: how far from it the true one is, as a share of the bound",
     ),
     Assumption(
-        "offers begin at once",
-        "a certificate that is offered begins at the instant at which it is taken",
-        HAND,
-        ("G1", "G2"),
-        "that the certificate in hand is clear between its offer and its begin",
+        "flown as looked at",
+        "up to the next heartbeat a vehicle under UxAS flies the way that its ICAROUS has looked at, and every other "
+        "aircraft straight on or as was told, each within half of what the buffer leaves",
+        (*CLEAR, *LOOKED),
+        ("G2",),
+        "that what UxAS flies is clear, by the last look at its way",
         SAMPLED,
-        "offers that are taken and begin at another instant",
+        "each aircraft from heartbeat to heartbeat: how far it is from flying straight on (the way that is looked at is "
+        "not in the log)",
     ),
     Assumption(
         "permitted as offered",
-        "what a certificate is offered for, or is said to be permitted against, the kernels have permitted, up to its "
-        "expiry, and its id names one trajectory",
-        HAND,
+        "what is looked at, offered or said to be permitted is what is flown then, and the kernels have found it so, up to "
+        "the time that is named",
+        (*HAND, *CLEAR),
         ("G1", "G2"),
-        why_not="the trajectory of a certificate and its tracks are not in the log",
+        why_not="what is looked at, the trajectory of a certificate and its tracks are not in the log",
     ),
 )
 """All of them, in the order in which they are shown."""

@@ -66,7 +66,8 @@ class Seen(NamedTuple):
     velocity: Velocity
 
 
-def _off(here: Position, predicted: Position) -> Position:
+def off_by(here: Position, predicted: Position) -> Position:
+    """How far something is from where it was predicted [m]."""
     return Position(
         here.north_m - predicted.north_m,
         here.east_m - predicted.east_m,
@@ -74,13 +75,14 @@ def _off(here: Position, predicted: Position) -> Position:
     )
 
 
-class _Positions:
+class Positions:
     """Puts the samples of an aircraft together; the velocity in a sample is that of the step to come."""
 
     def __init__(self) -> None:
         self._coming: dict[int, Velocity] = {}
 
     def seen(self, message: Message) -> Seen:
+        """The sample, with the velocity that led there."""
         body = message.body
         coming = Velocity(body.VelocityNorth, body.VelocityEast, body.VelocityDown)
         came = self._coming.get(body.VehicleID, coming)
@@ -96,7 +98,7 @@ class IntruderWatch:
         self._room = room_of(mission.daa)
         self._ahead_ms = round(1000 * mission.daa.lookahead_s)
         self._instances = frozenset(mission.instances)
-        self._positions = _Positions()
+        self._positions = Positions()
         self._avoided: dict[int, set[int]] = {}
         self._sources: dict[tuple[int, int], int] = {}
         self._base: dict[tuple[int, int], Seen] = {}
@@ -154,7 +156,7 @@ class IntruderWatch:
 
     def _hold(self, own: int, other: int, base: Seen, here: Seen) -> None:
         v, p, t_s = base.velocity, base.position, (here.time_ms - base.time_ms) / 1000
-        off = _off(here.position, after(Piece(0.0, t_s, p, v), t_s))
+        off = off_by(here.position, after(Piece(0.0, t_s, p, v), t_s))
         self._record.see(math.hypot(off.north_m, off.east_m))
         text = (
             f"aircraft {other}, which {own} avoids, is {math.hypot(off.north_m, off.east_m):.4g} m beside and "
@@ -205,7 +207,7 @@ class TrackingWatch:
         self._period_ms = mission.simulation.heartbeat_ms
         self._bank = {v.id: v.max_bank_rad for v in mission.vehicles}
         self._gates = dict.fromkeys(mission.instances, UNTOUCHED)
-        self._positions = _Positions()
+        self._positions = Positions()
         self._ordered: dict[int, Order] = {}
         self._paths: dict[int, Path] = {}
         none = "" if mission.instances else NO_INSTANCE
@@ -258,7 +260,7 @@ class TrackingWatch:
         if not in_time(here.time_ms, path.until_ms, self._period_ms):
             del self._paths[number]
             return
-        off = _off(here.position, path.at((here.time_ms - path.since_ms) / 1000))
+        off = off_by(here.position, path.at((here.time_ms - path.since_ms) / 1000))
         beside_m = math.hypot(off.north_m, off.east_m)
         self._record.see(beside_m)
         text = (

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from cratous.services.assumptions.ahead import AheadWatch
 from cratous.services.assumptions.authority import CommandWatch, SteeringWatch
-from cratous.services.assumptions.hand import OfferWatch
 from cratous.services.assumptions.link import (
     ChangeWatch,
     ClockWatch,
@@ -40,7 +40,7 @@ class AssumptionWatch:
             SettledWatch(),
             IntruderWatch(mission),
             TrackingWatch(mission),
-            OfferWatch(mission),
+            AheadWatch(mission),
             SensedWatch(mission),
         )
         self._records: dict[str, Record] = {}

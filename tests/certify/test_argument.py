@@ -110,7 +110,7 @@ def test_no_text_says_more_than_the_theorem(report: dict[str, Any]) -> None:
             one.text == report["proofs"]["theorems"][one.id.removeprefix("G-theorem-")]["sentence"]
         )
         assert f"Sn-{one.id.removeprefix('G-theorem-')}" in one.supported_by
-    for of in ("G1", "G2"):
+    for of in OF_A_PART:
         found = elements[f"G-{of}-system"]
         assert found.state is State.NO_THEOREM
         assert found.text.endswith("says all of it; what there is speaks of a part")

@@ -26,7 +26,7 @@ from tampering import (
 )
 
 from cratous.bridge import lmcp
-from cratous.services.assumptions.link import DeliveryWatch
+from cratous.services.assumptions.link import DeliveryWatch, PeriodWatch
 from cratous.services.assumptions.listing import LISTING, State
 from cratous.services.assumptions.observed import Message
 from cratous.services.assumptions.said import sentence
@@ -86,7 +86,7 @@ def test_a_flight_in_which_all_hold() -> None:
         assert (row["since_ms"], row["lost"], row["stands"], row["note"]) == (None, "", "", "")
         assert row["observed"] is None or row["observed"] <= row["bound"]
     assert rows["intruder in its tube"]["bound"] == 150 * 0.25 / 2
-    assert 0 < rows["tracking"]["observed"] < 1
+    assert 0 < min(rows[n]["observed"] for n in ("tracking", "flown as looked at")) < 2
     unwatched = {one.name: ("not observed", one.why_not) for one in LISTING if not one.watch}
     assert {name: (rows[name]["state"], rows[name]["note"]) for name in unwatched} == unwatched
 
@@ -207,7 +207,7 @@ BREAKS: dict[str, tuple[Change, str]] = {
         lambda log: aside(1, taken_ms() + 3000, Altitude=5.0)(log),
         "m beside and 5 m above or below the path",
     ),
-    "offers begin at once": (alter({"Sigma": 0}, "HandState", ID=3), "begins at 0.00 s"),
+    "flown as looked at": (aside(90, 10_000, East=20.0), "if it had flown straight on from"),
     "sensed within its bound": (seen_elsewhere, "what 1 sensed of aircraft 90 is"),
 }
 
@@ -284,6 +284,21 @@ def test_faults_of_the_bridge_break_what_is_assumed_of_the_link(
         assert rows["heartbeat period"]["since_ms"] == 20_000 + 500
     for name in ("epochs kept", "epochs told", "first command", "clock"):
         assert rows[name]["state"] != "broken", "no loss or delay touches these"
+
+
+def test_of_one_instant_is_looked_at_once_unless_a_heartbeat_came_in_it() -> None:
+    state = lmcp.new("TruthState", VehicleID=1)
+    first = lmcp.new("Heartbeat", VehicleID=1, Direction="Up", Sequence=1)
+    watch, period = DeliveryWatch(WHOLE), PeriodWatch(WHOLE)
+    for now_ms, kind, body in (
+        (2500, "TruthState", state), (2500, "TruthState", state), (2500, "Heartbeat", first),
+    ):  # fmt: skip
+        for one in (watch, period):
+            one.message(Message(kind, now_ms, "", body))
+    (delivery,), (told,) = watch.records().values(), period.records().values()
+    assert told.checks == 1
+    # the first was late, then came late, and the second is late as well
+    assert delivery.checks == 3
 
 
 def test_what_was_not_watched_to_the_end_did_not_hold() -> None:

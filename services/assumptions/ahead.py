@@ -1,0 +1,55 @@
+"""The assumption that what was looked at at a heartbeat is flown until the next. Decided by the kernel `disc_within`.
+
+The way that an instance predicts is not in the log: what can be seen is how far each aircraft is from flying straight on,
+which the prediction of another aircraft is, and the first piece of its own way wherever that leads on.
+"""
+
+from __future__ import annotations
+
+import math
+
+from cratous.core.authority.timeliness import lasted
+from cratous.core.avoidance.prediction import Piece, after
+from cratous.core.permit.tubes import disc_within
+from cratous.services.assumptions.link import NO_INSTANCE
+from cratous.services.assumptions.motion import Positions, Seen, is_within, off_by, room_of
+from cratous.services.assumptions.observed import Message, Record
+from cratous.spec.mission import Mission
+
+
+class AheadWatch:
+    """Every aircraft, from one heartbeat to the next."""
+
+    def __init__(self, mission: Mission) -> None:
+        self._room = room_of(mission.daa)
+        self._period_ms = mission.simulation.heartbeat_ms
+        self._positions = Positions()
+        self._base: dict[int, Seen] = {}
+        none = "" if mission.instances else NO_INSTANCE
+        kernels = (disc_within, lasted)
+        self._record = Record("m", self._room.wide_m, kernels, none, waits="no aircraft was seen")
+
+    def message(self, message: Message) -> None:
+        """Where an aircraft is."""
+        if message.kind != "TruthState" or self._record.unseen:
+            return
+        number, here = message.body.VehicleID, self._positions.seen(message)
+        base = self._base.setdefault(number, here)
+        t_s = (here.time_ms - base.time_ms) / 1000
+        off = off_by(here.position, after(Piece(0.0, t_s, base.position, base.velocity), t_s))
+        beside_m = math.hypot(off.north_m, off.east_m)
+        self._record.see(beside_m)
+        text = (
+            f"aircraft {number} is {beside_m:.4g} m beside and {abs(off.alt_m):.4g} m above or below where it "
+            f"would be if it had flown straight on from {base.time_ms / 1000:.2f} s"
+        )
+        self._record.check(is_within(off, self._room), here.time_ms, number, text)
+        if lasted(base.time_ms, here.time_ms, self._period_ms):
+            self._base[number] = here
+
+    def end(self, at_ms: int) -> None:
+        """Nothing is open."""
+
+    def records(self) -> dict[str, Record]:
+        """See `Watch`."""
+        return {"flown as looked at": self._record}
