@@ -28,7 +28,8 @@ from cratous.services.startup import warm
 from cratous.services.loading import load
 from cratous.services.pipeline.plan import make_plan
 
-warm.warm_planning()
+for _, step in warm.PLANNING:
+    step()
 mission = load(Path(sys.argv[1]))
 with event.install_recorder("numba:compile") as seen, at_once():
     make_plan(mission)
