@@ -21,6 +21,7 @@ from cratous.services.flight.result import FlightResult
 from cratous.services.loading import load
 from cratous.services.logs.records import to_data
 from cratous.services.monitor import Monitor
+from cratous.services.parameters.listing import parameters_of
 from cratous.services.pipeline.plan import make_plan
 from cratous.services.system_model.replay import replay
 from cratous.spec.errors import BadInput
@@ -201,6 +202,16 @@ def test_what_makes_no_sense_is_refused(
     with pytest.raises(BadInput) as caught:
         require_reachable(load(path))
     assert said in str(caught.value)
+
+
+def test_what_follows_from_a_landing_is_a_parameter(landed: Flown, root: Path) -> None:
+    rows = parameters_of(landed.mission, root / "examples/landing/mission.yaml")
+    found = {row.name: row.value for row in rows}
+    assert (found["landing roll"], found["least site"], found["landing gate"]) == (
+        56.25,
+        35.625,
+        60,
+    )
 
 
 def test_a_site_that_no_way_reaches_leaves_another(root: Path, tmp_path: Path) -> None:
