@@ -26,7 +26,7 @@ from tampering import (
 )
 
 from cratous.bridge import lmcp
-from cratous.services.assumptions.link import DeliveryWatch
+from cratous.services.assumptions.link import DeliveryWatch, PeriodWatch
 from cratous.services.assumptions.listing import LISTING, State
 from cratous.services.assumptions.observed import Message
 from cratous.services.assumptions.said import sentence
@@ -284,6 +284,21 @@ def test_faults_of_the_bridge_break_what_is_assumed_of_the_link(
         assert rows["heartbeat period"]["since_ms"] == 20_000 + 500
     for name in ("epochs kept", "epochs told", "first command", "clock"):
         assert rows[name]["state"] != "broken", "no loss or delay touches these"
+
+
+def test_of_one_instant_is_looked_at_once_unless_a_heartbeat_came_in_it() -> None:
+    state = lmcp.new("TruthState", VehicleID=1)
+    first = lmcp.new("Heartbeat", VehicleID=1, Direction="Up", Sequence=1)
+    watch, period = DeliveryWatch(WHOLE), PeriodWatch(WHOLE)
+    for now_ms, kind, body in (
+        (2500, "TruthState", state), (2500, "TruthState", state), (2500, "Heartbeat", first),
+    ):  # fmt: skip
+        for one in (watch, period):
+            one.message(Message(kind, now_ms, "", body))
+    (delivery,), (told,) = watch.records().values(), period.records().values()
+    assert told.checks == 1
+    # the first was late, then came late, and the second is late as well
+    assert delivery.checks == 3
 
 
 def test_what_was_not_watched_to_the_end_did_not_hold() -> None:
