@@ -178,6 +178,7 @@ RING = [
 AROUND = [{"id": k, "kind": "keep_out", "vertices": ring} for k, ring in enumerate(RING, 21)]
 NEAR = [{"id": 8, "kind": "keep_out", "vertices": [[200, 1300], [400, 1300], [400, 1450], [200, 1450]]}]  # fmt: skip
 LAND = {"choice": "land", "after_s": 3}
+SINKS = {"id": 1, "position": {"north_m": 0, "east_m": 0, "alt_m": 300}, "heading_deg": 0, "speed_m_s": 15, "max_climb_m_s": 0.001}  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -192,6 +193,7 @@ LAND = {"choice": "land", "after_s": 3}
         ({"zones": NEAR}, "landing_sites[0].position: nobody may land at field; expected a disc on the ground that keeps zone 8"),
         ({"landing_sites": [{**FIELD, "radius_m": 35}]}, "landing_sites[0].radius_m: vehicle 1 does not come to a stand on field; expected at least 35.62 m"),
         ({"zones": AROUND, "landing_sites": [FIELD]}, "landing_sites: vehicle 1 can land nowhere"),
+        ({"vehicles": [SINKS]}, "field: its last descent takes longer than 1800 s"),
         ({"link_loss": LAND, "bridge": {"instances": 0}}, "nobody would act by it"),
     ],
 )  # fmt: skip
