@@ -19,9 +19,10 @@ from cratous.services.cli.job import plan_and_check
 from cratous.services.flight.loop import fly
 from cratous.services.loading import load
 from cratous.services.monitor import Monitor
+from cratous.services.monitor import _whole as whole_verdict
 from cratous.services.monitor.required_rows import PLAN_ROWS, promised, watched
 from cratous.spec.mission import Change, Mission, changes
-from cratous.spec.mission.guarantees import Outcome, Verdict
+from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission.plan import Plan
 
 TEXT = (
@@ -245,3 +246,10 @@ def test_that_nobody_was_met_is_said_only_of_who_was_seen(tmp_path: Path) -> Non
     assert judged((mission, plan, messages))[alone].outcome is Outcome.HOLDS
     gone = judged((mission, plan, messages), lambda m: not is_of(m, "TruthState"))
     assert gone[alone].outcome is Outcome.UNKNOWN
+
+
+def test_what_was_not_served_is_told_by_its_task() -> None:
+    items = ("end of mission", "task 5 served")
+    parts = [Verdict("G3", item, Outcome.VIOLATED, Kind.OBSERVED, "n") for item in items]
+    assert requirement_rows(constraint_rows(parts, "flight"))[2]["item"] == "task 5 served"
+    assert whole_verdict("G3", parts).note == "task 5 served: n"
