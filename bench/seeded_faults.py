@@ -38,7 +38,7 @@ CAMPAIGNS = {
     "zone": (
         "G1",
         "generator: {kind: converging, zones_beside: 2,\n"
-        "            ranges: {time_s: [30, 50], zone_gap_m: [5, 60], zone_place: [-0.7, 0]}}\nduration_s: 26\n",
+        "            ranges: {time_s: [30, 50], zone_gap_m: [2, 25], zone_place: [-0.7, 0]}}\nduration_s: 50\n",
     ),
     "waypoint": (
         "G3",

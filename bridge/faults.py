@@ -28,7 +28,54 @@ class _Waiting(NamedTuple):
     data: bytes
 
 
-Way = tuple[int, Direction]
+class FailingWay:
+    """Lines of one vehicle's connection in one direction: lost, changed, repeated and held back as `faults` says."""
+
+    def __init__(self, faults: BridgeFaults, vehicle_id: int, direction: Direction) -> None:
+        self._faults, self._direction = faults, direction
+        self._random = random.Random(f"{faults.seed} {vehicle_id} {direction}")
+        self._waiting: list[_Waiting] = []
+
+    def take(self, data: bytes, now_ms: int) -> None:
+        """A line is given to it."""
+        faults, draw = self._faults, self._random
+        if draw.random() < faults.loss:
+            return
+        if draw.random() < faults.truncation:
+            data = data[: draw.randrange(1, len(data))]
+        if draw.random() < faults.corruption:
+            k = draw.randrange(len(data))
+            data = data[:k] + bytes((data[k] ^ draw.randrange(1, 256),)) + data[k + 1 :]
+        for _ in range(1 + (draw.random() < faults.repeat)):
+            self._waiting.append(_Waiting(now_ms + draw.randint(0, faults.delay_ms), data))
+
+    def due(self, now_ms: int) -> list[bytes]:
+        """What arrives now, in order; nothing while ICAROUS does not read."""
+        if self._direction is Direction.DOWN and self._faults.icarous_does_not_read(now_ms):
+            return []
+        due = sorted((w for w in self._waiting if w.due_ms <= now_ms), key=lambda w: w.due_ms)
+        self._waiting = [w for w in self._waiting if w.due_ms > now_ms]
+        for k in range(len(due)):
+            if self._random.random() < self._faults.reorder:
+                due.insert(self._random.randrange(len(due)), due.pop(k))
+        return [one.data for one in due]
+
+    def breaks(self, now_ms: int) -> bool:
+        """Whether more waits for an ICAROUS that does not read than a connection holds."""
+        if self._direction is Direction.UP or not self._faults.icarous_does_not_read(now_ms):
+            return False
+        return sum(len(one.data) for one in self._waiting) > MOST_WAITING
+
+    def forged(self) -> bytes:
+        """A SETMOD that comes at this exchange and nobody sent; empty if none does."""
+        faults, draw = self._faults, self._random
+        if not faults.forged_modes or draw.random() >= faults.forged_modes:
+            return b""
+        return encode(SetMode(draw.choice(("ACTIVE", "PASSIVE")), draw.randrange(EPOCHS)))
+
+    def clear(self) -> None:
+        """The connection has ended: what was on its way is lost."""
+        self._waiting.clear()
 
 
 class FaultyBridge(Bridge):
@@ -42,14 +89,12 @@ class FaultyBridge(Bridge):
         segmenter: Segmenter | None = None,
     ) -> None:
         self._faults = faults
-        self._waiting: dict[Way, list[_Waiting]] = {}
-        self._random: dict[Way, random.Random] = {}
+        self._ways: dict[tuple[int, Direction], FailingWay] = {}
         self._done: set[str] = set()
         super().__init__(vehicle_ids, segmenter=segmenter)
         for vid in self.vehicle_ids:
             for direction in Direction:
-                self._waiting[vid, direction] = []
-                self._random[vid, direction] = random.Random(f"{faults.seed} {vid} {direction}")
+                self._ways[vid, direction] = FailingWay(faults, vid, direction)
 
     def exchange(self) -> list[Delivered]:
         """What arrives now, as of `Bridge.exchange`."""
@@ -76,7 +121,7 @@ class FaultyBridge(Bridge):
     def _break(self, vid: int) -> None:
         """The end of a connection: what was on its way is lost."""
         for direction in Direction:
-            self._waiting[vid, direction].clear()
+            self._ways[vid, direction].clear()
         if self.alive(vid):
             self.cut(vid)
 
@@ -84,45 +129,15 @@ class FaultyBridge(Bridge):
         """Let a line be lost, changed, repeated or delayed; False if the connection is dead."""
         if not self.alive(vehicle_id):
             return False
-        faults, draw = self._faults, self._random[vehicle_id, direction]
-        if draw.random() < faults.loss:
-            return True
-        if draw.random() < faults.truncation:
-            data = data[: draw.randrange(1, len(data))]
-        if draw.random() < faults.corruption:
-            k = draw.randrange(len(data))
-            data = data[:k] + bytes((data[k] ^ draw.randrange(1, 256),)) + data[k + 1 :]
-        for _ in range(1 + (draw.random() < faults.repeat)):
-            due_ms = self.now_ms + draw.randint(0, faults.delay_ms)
-            self._waiting[vehicle_id, direction].append(_Waiting(due_ms, data))
+        self._ways[vehicle_id, direction].take(data, self.now_ms)
         return True
 
     def _transmit(self) -> None:
         """Give to the sockets what is due; what comes of it is in the exchange that follows."""
-        for (vid, direction), waiting in self._waiting.items():
-            if direction is Direction.UP:
-                self._forge(vid)
-            if direction is Direction.DOWN and self._does_not_read():
-                if sum(len(one.data) for one in waiting) > MOST_WAITING:
-                    self._break(vid)
-                continue
-            due = sorted((w for w in waiting if w.due_ms <= self.now_ms), key=lambda w: w.due_ms)
-            waiting[:] = [w for w in waiting if w.due_ms > self.now_ms]
-            for one in self._reordered(due, self._random[vid, direction]):
-                super()._hand_over(vid, direction, one.data)
-
-    def _does_not_read(self) -> bool:
-        begin, end = self._faults.stops_reading_ms, self._faults.reads_again_ms
-        return begin is not None and begin <= self.now_ms and (end is None or self.now_ms < end)
-
-    def _reordered(self, due: list[_Waiting], draw: random.Random) -> list[_Waiting]:
-        for k in range(len(due)):
-            if draw.random() < self._faults.reorder:
-                due.insert(draw.randrange(len(due)), due.pop(k))
-        return due
-
-    def _forge(self, vid: int) -> None:
-        draw = self._random[vid, Direction.UP]
-        if self._faults.forged_modes and draw.random() < self._faults.forged_modes:
-            line = SetMode(draw.choice(("ACTIVE", "PASSIVE")), draw.randrange(EPOCHS))
-            super()._hand_over(vid, Direction.UP, encode(line))
+        for (vid, direction), way in self._ways.items():
+            if direction is Direction.UP and (line := way.forged()):
+                super()._hand_over(vid, Direction.UP, line)
+            if way.breaks(self.now_ms):
+                self._break(vid)
+            for data in way.due(self.now_ms):
+                super()._hand_over(vid, direction, data)

@@ -7,15 +7,18 @@ of the offer's epoch has come; that begins no epoch. A command acts if its epoch
 its sender has control, or is UxAS under an offer; any other must be dropped.
 
 Who has lost the link cannot hand back. A takeover that is open at the end is violated; where the link had been
-declared down (BridgeStatus) and was not declared alive again, it is unknown whether it would have ended.
+declared down (BridgeStatus) and was not declared alive again, it is unknown whether it would have ended. A takeover also ends
+where the vehicle has come to a stand on a landing site.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
+from cratous.judge.ground import down
 from cratous.judge.log import Bridge, Gate, Log
 from cratous.judge.mission import Mission
+from cratous.judge.tracks import Track
 from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, seconds
 
 UXAS, ICAROUS = "UxAS", "ICAROUS"
@@ -95,14 +98,15 @@ class _Story:
             self.fault(at_ms, f"that {self.owner} has control was not announced")
             self.said_owner = self.owner
 
-    def end(self, at_ms: int, down_ms: int | None) -> str:
+    def end(self, at_ms: int, down_ms: int | None, landed: bool) -> str:
         """The mission's end: control has been handed back. That a task failed meanwhile ends no takeover.
 
-        down_ms: since when the link is declared down, None if it is not. What is not known for that is answered.
+        down_ms: since when the link is declared down, None if it is not. What is not known for that is answered. landed:
+        it stands on a landing site.
         """
         self.settle(at_ms)
         self._announced(at_ms)
-        if self.open_ms is None:
+        if self.open_ms is None or landed:
             return ""
         said = f"the takeover of {seconds(self.open_ms)} was never handed back"
         if down_ms is None:
@@ -128,7 +132,7 @@ def _words(owner: str, epoch: int, offered: bool) -> str:
     return f"{owner} in epoch {epoch}{', offered' if offered else ''}"
 
 
-def rows(mission: Mission, log: Log) -> Iterator[Row]:
+def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
     """One row for each protected vehicle."""
     for vehicle in mission.protected:
         story = _Story()
@@ -136,13 +140,15 @@ def rows(mission: Mission, log: Log) -> Iterator[Row]:
             if said.vehicle == vehicle:
                 getattr(story, said.kind)(said)
         subject, item = ("authority", str(vehicle)), f"authority over vehicle {vehicle}"
-        doubt = ""
+        doubt, place = "", down(mission, flown.get(vehicle))
         if log.end_ms is not None:
-            doubt = story.end(log.end_ms, _down_ms(log.bridges.get(vehicle, []), log.end_ms))
+            silent_ms = _down_ms(log.bridges.get(vehicle, []), log.end_ms)
+            doubt = story.end(log.end_ms, silent_ms, place is not None and place.good)
         note = (
             f"{story.takeovers} takeovers, {story.handbacks} handbacks, {story.commands} commands, "
             f"{story.dropped} of them dropped"
         )
+        note += f"; it {place.words()}" if place is not None else ""
         if story.faults:
             at_ms, text = min(story.faults, key=lambda fault: fault[0])
             note = f"{text} (at {seconds(at_ms)}; {len(story.faults)} faults); {note}"

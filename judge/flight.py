@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from cratous.judge import (
+    alone,
     authority,
     compare,
     heartbeat,
@@ -115,7 +116,8 @@ def judged(mission: Mission, found: log.Log) -> list[Row]:
     good = {task for task, (verdict, *_) in served.items() if verdict == HOLDS}
     safe = [*zones.rows(mission, flown), *separation.rows(mission, flown)]
     rows = [*safe, *relations.rows(mission, found, done, good), *service.rows(flight, served)]
-    rows += authority.rows(mission, found)
+    rows += authority.rows(mission, found, flown)
+    rows += alone.rows(mission, found, flown)
     rows += heartbeat.rows(mission, found, _unsafe(safe))
     doubts = list(found.doubts)
     if found.end_ms is None:

@@ -2,7 +2,8 @@
 
 A silence that nobody declared is a violation. During one that was declared (BridgeStatus) the vehicle
 acts alone: if it then breaks a zone or loses well clear that is a violation; if not, it is not known
-whether it would have acted, and the verdict is unknown. A heartbeat whose number came before, or is below one that came,
+whether it would have acted, and the verdict is unknown. In a flight in processes the gate is not on board,
+so that nobody acts for the vehicle, and a silence is a violation however it was declared. A heartbeat whose number came before, or is below one that came,
 is no sign of life. Of a flight with the original's clients, whose protocol has none, it is unknown what ICAROUS would
 have said. What goes down is logged when it is sent: where the bridge was made to fail that it came is not known.
 """
@@ -18,6 +19,8 @@ from cratous.judge.mission import Mission
 from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, seconds
 
 PERIODS = 2
+IN_PROCESSES = "processes"
+"""A log with this in its meta data is of a flight whose gate stands in UxAS's process."""
 ORIGINAL = "--original-clients"
 """With this word in its command a flight had the original's clients."""
 
@@ -70,6 +73,9 @@ def _row(mission: Mission, log: Log, key: tuple[int, str], name: str, unsafe: li
         if not any(first <= at <= last for at in downs):
             note += f"; silent from {seconds(first)}, and nobody declared the bridge down"
             return Row("G5", subject, item, VIOLATED, note, first, len(beats))
+        if IN_PROCESSES in log.meta:
+            note += f"; down at {seconds(downs[0])}, and the gate is not on board: nobody avoided"
+            return Row("G5", subject, item, VIOLATED, note, downs[0], len(beats))
         if any(first <= at <= last for at in unsafe):
             note += f"; silent from {seconds(first)}, and unsafe alone"
             return Row("G5", subject, item, VIOLATED, note, first, len(beats))

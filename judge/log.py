@@ -21,11 +21,12 @@ OLD = ("seq", "time_ms", "source", "topic", "body")
 NEW = (*OLD, "address", "sender_group", "entity_id", "service_id", "content_type")
 KINDS = (
     "TruthState", "AirVehicleState", "TaskProgress", "MissionEnd", "GateState", "GatedCommand",
-    "CommandDropped", "AuthorityChange", "Heartbeat", "BridgeStatus", "PlanAccepted",
+    "CommandDropped", "AuthorityChange", "Heartbeat", "BridgeStatus", "PlanAccepted", "LinkLossState",
 )  # fmt: skip
 FLOWN = ("North", "East", "Altitude", "VelocityNorth", "VelocityEast", "VelocityDown")
 PHASES = ("Planned", "Transit", "Waiting", "Active", "Suspended", "Complete", "Failed")
 SIDES = ("UxAS", "ICAROUS")
+MODES = ("Linked", "Finish", "Loiter", "Return", "Over", "Land", "Final", "Landed")
 
 
 class State(NamedTuple):
@@ -81,10 +82,20 @@ class Beat(NamedTuple):
 
 
 class Bridge(NamedTuple):
-    """Whether the bridge to a vehicle is said to be alive."""
+    """Whether the bridge to a vehicle is said to be alive. lost: its connection has ended."""
 
     time_ms: int
     alive: bool
+    lost: bool = False
+
+
+class Alone(NamedTuple):
+    """What a vehicle says that it flies without the link, what was chosen, and when it last heard UxAS."""
+
+    time_ms: int
+    mode: str
+    chosen: str
+    heard_ms: int
 
 
 @dataclass
@@ -101,6 +112,7 @@ class Log:
     gates: list[Gate] = field(default_factory=list)
     beats: dict[tuple[int, str], list[Beat]] = field(default_factory=dict)
     bridges: dict[int, list[Bridge]] = field(default_factory=dict)
+    alone: dict[int, list[Alone]] = field(default_factory=dict)
     ends: list[tuple[int, str]] = field(default_factory=list)
     planned: frozenset[int] = frozenset()
     doubts: list[str] = field(default_factory=list)
@@ -323,8 +335,15 @@ def _beat(log: Log, body: Node, time_ms: int) -> None:
 
 
 def _bridge(log: Log, body: Node, _time_ms: int) -> None:
-    status = Bridge(body["Time"].whole, body["Alive"].flag)
+    lost = body.get("Note", "").text.startswith("link lost")
+    status = Bridge(body["Time"].whole, body["Alive"].flag, lost)
     log.bridges.setdefault(body["VehicleID"].whole, []).append(status)
+
+
+def _alone(log: Log, body: Node, _time_ms: int) -> None:
+    mode, chosen = body["Mode"].one_of(*MODES), body["Chosen"].one_of(*MODES)
+    said = Alone(body["Time"].whole, mode, chosen, body["Heard"].whole)
+    log.alone.setdefault(body["VehicleID"].whole, []).append(said)
 
 
 _READERS = {
@@ -339,6 +358,7 @@ _READERS = {
     "AuthorityChange": _owner("change", "Owner"),
     "Heartbeat": _beat,
     "BridgeStatus": _bridge,
+    "LinkLossState": _alone,
 }
 
 

@@ -87,6 +87,29 @@ class Traffic(NamedTuple):
     vanishes_ms: int | None
 
 
+class Site(NamedTuple):
+    """A disc on which vehicles may land: its middle, its ground [m MSL], its radius."""
+
+    name: str
+    north_m: float
+    east_m: float
+    ground_m: float
+    radius_m: float
+
+
+class WithoutLink(NamedTuple):
+    """What is flown without the link, as the log names it; after which silence; whether lines of the bridge may not
+    come, or late, while a connection stands."""
+
+    choice: str
+    after_ms: int
+    lines_fail: bool
+
+
+LOITER = "Loiter"
+CHOICES = ("finish", "loiter", "return", "land")
+
+
 class Volume(NamedTuple):
     """The well-clear volume: DTHR and ZTHR [m], TTHR and TCOA [s]."""
 
@@ -98,7 +121,7 @@ class Volume(NamedTuple):
 
 @dataclass(frozen=True)
 class Mission:
-    """All of it. lost, joins, added, removed: since when, by id [ms]."""
+    """All of it. lost, joins, added, removed: since when, by id [ms]; terrain_m: the ground where there is no site."""
 
     name: str
     latitude_deg: float
@@ -117,6 +140,9 @@ class Mission:
     seed: int = 0
     vehicle_said: Said = field(default_factory=dict)
     task_said: Said = field(default_factory=dict)
+    terrain_m: float = 0.0
+    sites: tuple[Site, ...] = ()
+    without_link: WithoutLink | None = None
 
     @property
     def protected(self) -> list[int]:
@@ -162,6 +188,13 @@ def from_log(data: Node) -> Mission:
             number = change["vehicle" if kind.startswith("vehicle") else "task"].whole
             said.append((kind, number, at))
     volume = Volume(*(daa[name].real for name in Volume._fields))
+    without_link, sites = None, tuple[Site, ...]()
+    if data["daa"].has("link_loss"):
+        loss = data["daa"]["link_loss"]
+        fails = lines_fail(simulation.get("bridge_faults"), "_ms")
+        choice = loss["choice"].one_of(*CHOICES).capitalize()
+        without_link = WithoutLink(choice, _not_negative(loss["after_ms"]), fails)
+        sites = tuple(_site(one) for one in loss.get("sites", []))
     mission = Mission(
         name=data["name"].text,
         latitude_deg=frame["latitude_deg"].real,
@@ -180,6 +213,9 @@ def from_log(data: Node) -> Mission:
         seed=data["seed"].whole,
         vehicle_said=said_of(said, "vehicle_joins", "vehicle_lost"),
         task_said=said_of(said, "task_added", "task_removed"),
+        terrain_m=frame.get("terrain_m", 0.0).real,
+        sites=sites,
+        without_link=without_link,
     )
     check(mission, data)
     return mission
@@ -238,6 +274,20 @@ def refuse_bad_ring(ring: tuple[Point, ...], data: Node) -> None:
             item=data.item,
             expected="at least three corners, and edges that meet nowhere else",
         )
+
+
+def _site(data: Node) -> Site:
+    numbers = data.reals("north_m", "east_m", "ground_m", "radius_m")
+    return Site(data["name"].text, *numbers)
+
+
+def lines_fail(faults: Node, unit: str) -> bool:
+    """Whether faults of the bridge lose, damage or delay lines, or ICAROUS stops reading. unit: at the end of names."""
+    if not isinstance(faults.data, dict):
+        return False
+    shares = ("loss", "truncation", "corruption", f"delay{unit}")
+    stops = faults.has(f"stops_reading{unit}")
+    return stops or any(faults.get(name, 0).real for name in shares)
 
 
 def pair(data: Node) -> Point:

@@ -56,6 +56,7 @@ def _refuse_deep(text: str) -> None:
 class _Reader:
     def __init__(self, root: Node) -> None:
         self.root, self.frame = root, root["frame"]
+        self.terrain_m = self.frame.get("terrain_m", 0.0).real
         self.origin = self.frame["latitude_deg"].real, self.frame["longitude_deg"].real
 
     def mission(self) -> m.Mission:
@@ -77,6 +78,11 @@ class _Reader:
         volume = root.get("daa", {}).get("well_clear", {})
         usual = {"dthr_m": 150.0, "zthr_m": 30.0, "tthr_s": 15.0, "tcoa_s": 0.0}
         simulation = root.get("simulation", {})
+        without_link = None
+        if root.has("link_loss"):
+            loss, fails = root["link_loss"], m.lines_fail(simulation.get("bridge_faults"), "_s")
+            choice = loss["choice"].one_of(*m.CHOICES).capitalize()
+            without_link = m.WithoutLink(choice, _ms(loss.get("after_s", 5)), fails)
         return m.Mission(
             name=root["name"].text,
             latitude_deg=self.origin[0],
@@ -94,7 +100,16 @@ class _Reader:
             limit_ms=_ms(simulation.get("limit_s", 7200)),
             vehicle_said=m.said_of(said, "vehicle_joins", "vehicle_lost"),
             task_said=m.said_of(said, "task_added", "task_removed"),
+            terrain_m=self.terrain_m,
+            sites=tuple(self.site(one) for one in root.get("landing_sites", [])),
+            without_link=without_link,
         )
+
+    def site(self, data: Node) -> m.Site:
+        """A landing site; without an altitude its ground is the terrain."""
+        place = data["position"]
+        ground = place.get("alt_m", self.terrain_m).real
+        return m.Site(data["name"].text, *self.point(place), ground, data["radius_m"].real)
 
     def point(self, data: Node) -> m.Point:
         """A place in metres, in degrees, or as a pair of metres."""

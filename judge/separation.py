@@ -18,7 +18,9 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 
+from cratous.judge.ground import grounded
 from cratous.judge.log import State
 from cratous.judge.mission import Mission, Volume
 from cratous.judge.tracks import Track
@@ -154,22 +156,30 @@ def _vertical(
 
 
 def rows(mission: Mission, flown: dict[int, Track]) -> Iterator[Row]:
-    """One row for each protected vehicle and each other aircraft, of the mission or of the log."""
+    """One row for each protected vehicle and each other aircraft, of the mission or of the log. Of a leg of one of ours
+    whose both ends are on the ground nothing is asked."""
     protected = mission.protected
     for own in protected:
         others = [i for i in sorted(flown) if i != own and not (i in protected and i < own)]
         for other in others:
-            yield _row(own, other, flown, mission.volume)
+            yield _row(own, other, flown, mission)
         if len(flown) == 1:
             subject = ("pair", str(own))
             note = "the mission and the log know of no other aircraft"
             yield Row("G2", subject, f"well clear of {own}", HOLDS, note)
 
 
-def _row(own: int, other: int, flown: dict[int, Track], volume: Volume) -> Row:
+def _row(own: int, other: int, flown: dict[int, Track], mission: Mission) -> Row:
     subject = ("pair", *map(str, sorted((own, other))))
     item = f"well clear of {own} and {other}"
-    pair = _watch(flown[own], flown[other], volume)
+    grounds = {
+        state.time_ms
+        for number in (own, other)
+        if number in mission.vehicles and mission.sites
+        for state, after in pairwise(flown[number].states)
+        if grounded(mission, state) and grounded(mission, after)
+    }
+    pair = _watch(flown[own], flown[other], mission.volume, grounds)
     doubt = flown[own].doubt or flown[other].doubt or _unmatched(flown[own], flown[other], pair)
     note = f"nearest {pair.nearest_m:.1f} m at {seconds(pair.nearest_ms)} within ZTHR of altitude"
     if pair.nearest_m == math.inf:
@@ -189,8 +199,8 @@ def _row(own: int, other: int, flown: dict[int, Track], volume: Volume) -> Row:
     return doubted(row, doubt)
 
 
-def _watch(one: Track, two: Track, volume: Volume) -> Pair:
-    """Every leg that both have flown from the same instant to the same instant."""
+def _watch(one: Track, two: Track, volume: Volume, grounds: set[int]) -> Pair:
+    """Every leg that both have flown from the same instant to the same instant, but those that begin at an instant of grounds."""
     pair = Pair()
     place = {time: k for k, time in enumerate(two.times)}
     a, b = one.states, two.states
@@ -198,11 +208,14 @@ def _watch(one: Track, two: Track, volume: Volume) -> Pair:
         j = place.get(a[i].time_ms)
         if j is None:
             continue
-        _measure(pair, a[i], b[j], volume)
+        if a[i].time_ms not in grounds:
+            _measure(pair, a[i], b[j], volume)
         if j + 1 == len(b) or b[j + 1].time_ms != a[i + 1].time_ms:
             continue
         pair.checks += 1
         pair.covered_ms += a[i + 1].time_ms - a[i].time_ms
+        if a[i].time_ms in grounds:
+            continue
         legs = a[i], a[i + 1], b[j], b[j + 1]
         _measure(pair, a[i + 1], b[j + 1], volume)
         if a[i].time_ms in one.unknown or a[i].time_ms in two.unknown:

@@ -57,11 +57,12 @@ class Judgement:
 
 class Memory(NamedTuple):
     """What is remembered from run to run: proofs, theorems as they were stated, and the folder in which the
-    relations of theorems are kept."""
+    relations of theorems are kept; write: what is made of each theorem's claim beside, and told."""
 
     cache: Cache | None = None
     recall: Recall | None = None
     relations: Path | None = None
+    write: ledger.Writer | None = None
 
 
 NOTHING = Memory()
@@ -117,6 +118,7 @@ def judge(
         cache=memory.cache,
         recall=memory.recall,
         machine=machine,
+        write=memory.write,
     )
     parts.ended(COMPARING)
     findings = [str(finding) for finding in inventory.findings]

@@ -16,7 +16,7 @@ import json
 import multiprocessing
 import resource
 import time
-from collections.abc import Callable, Container, Iterable
+from collections.abc import Callable, Container, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from multiprocessing.connection import Connection, wait
@@ -26,6 +26,7 @@ from typing import Any
 from cratous.core.files.whole_file import write_atomically
 from cratous.core.kernel.sources import ROOT, digest
 from cratous.proofs.engine import prover, worker_processes
+from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.smtlib import Seen
 from cratous.proofs.mutation.keys import Store
 from cratous.spec.errors import BadInput
@@ -147,22 +148,42 @@ class _Job:
         )
 
 
-def _jobs(theorem: prover.Theorem, folder: Path, known: Container[str]) -> list[_Job]:
-    """What was proved; only where something is not known is the theorem stated and exported."""
-    found = [
+def _proved(theorem: prover.Theorem) -> list[_Job]:
+    return [
         _Job(theorem.name, number, outcome.key, f"{owed.kind}: {owed.text}")
         for number, outcome in enumerate(theorem.outcomes, 1)
         for owed in [outcome.obligation]
         if outcome.status == "proved"
     ]
+
+
+def _jobs(theorem: prover.Theorem, folder: Path, known: Container[str]) -> list[_Job]:
+    """What was proved; only where something is not known is the theorem stated and exported."""
+    found = _proved(theorem)
     new = [job for job in found if job.key not in known]
     if not new:
         return found
     claim, sentence = prover.state(theorem.name, folder)
     if len(claim.obligations) != len(theorem.outcomes):
         raise ValueError(f"{theorem.name}: other obligations than those that were proved")
+    _write(new, claim, sentence)
+    return found
+
+
+def written(
+    theorem: prover.Theorem, claim: Claim, sentence: str, *, known: Container[str]
+) -> list[_Job]:
+    """What is to be asked of a theorem whose claim is at hand, as `recheck` would find it; known: keys with a
+    verdict."""
+    found = _proved(theorem)
+    _write([job for job in found if job.key not in known], claim, sentence)
+    return found
+
+
+def _write(jobs: Iterable[_Job], claim: Claim, sentence: str) -> None:
+    """The text of these obligations, and the ways of asking it."""
     seen: Seen = {}
-    for job in new:
+    for job in jobs:
         obligation = claim.obligations[job.number - 1]
         logic = prover.logic_of(obligation, seen)
         job.ways = [(logic, {})]
@@ -171,7 +192,6 @@ def _jobs(theorem: prover.Theorem, folder: Path, known: Container[str]) -> list[
         if logic != "ALL":
             job.ways.append(("ALL", {}))
         job.smt = prover.smt2(obligation, sentence, seen)
-    return found
 
 
 def _ask(job: _Job) -> tuple[str, str, float]:
@@ -222,6 +242,18 @@ def _worker(jobs: list[_Job], taken: Any, out: Connection, store: Store, solver:
     out.close()
 
 
+def _said(record: dict[str, Any] | None) -> dict[str, dict[str, Any]]:
+    """The verdicts of a record, if they are this solver's."""
+    if record is None or record.get("solver") != version():
+        return {}
+    return dict(record["obligations"])
+
+
+def writer(record: dict[str, Any], *, again: bool) -> Callable[[prover.Theorem, Claim, str], Any]:
+    """`written` for what a re-check with this record would ask."""
+    return partial(written, known=frozenset() if again else frozenset(_said(record)))
+
+
 def recheck(
     theorems: Iterable[prover.Theorem],
     *,
@@ -231,32 +263,28 @@ def recheck(
     record: dict[str, Any] | None = None,
     again: bool = False,
     store: Store | None = None,
+    texts: Mapping[str, list[Any]] | None = None,
 ) -> Recheck:
     """Put every proved obligation to cvc5.
 
     tell: called with each check, how many are done, and of how many. record: verdicts as `read`
     gives them; what this version of the solver has a verdict on there is not asked again, or, with
     `again`, is asked first in the way that answered then. store: where answers are kept between
-    runs; by default nowhere.
+    runs; by default nowhere. texts: what `written` has made of theorems while they were proved.
     """
     solver = version()
     kept = store or Store(None)
-    known: dict[str, dict[str, Any]] = {}
-    if record is not None and record.get("solver") == solver:
-        known = record["obligations"]
-    before = known
-    if again:
-        known = {}
+    before = _said(record)
+    known = {} if again else before
     import cvc5  # noqa: F401  (once here, so that the forked solvers have it already)
 
-    wanted: list[_Job] = []
-    stated: dict[int, list[_Job]] = dict(
-        worker_processes.each(
-            [partial(_jobs, theorem, folder, set(known)) for theorem in theorems], jobs
-        )
-    )
-    for number in sorted(stated):
-        wanted += stated[number]
+    ready = dict(texts or {})
+    asked = list(theorems)
+    rest = [theorem for theorem in asked if theorem.name not in ready]
+    tasks = [partial(_jobs, theorem, folder, set(known)) for theorem in rest]
+    for number, some in worker_processes.each(tasks, jobs):
+        ready[rest[number].name] = some
+    wanted: list[_Job] = [job for theorem in asked for job in ready[theorem.name]]
     for job in wanted:
         job.first(before.get(job.key, {"logic": ""})["logic"])
     # theorems may share an obligation: it is asked once
@@ -273,12 +301,12 @@ def recheck(
     done: list[Check] = []
     open_pipes = [pipe for pipe, _ in pipes]
     while open_pipes:
-        for ready in wait(open_pipes):
-            assert isinstance(ready, Connection)
+        for pipe in wait(open_pipes):
+            assert isinstance(pipe, Connection)
             try:
-                check = ready.recv()
+                check = pipe.recv()
             except EOFError:
-                open_pipes.remove(ready)
+                open_pipes.remove(pipe)
                 continue
             done.append(check)
             if tell is not None:

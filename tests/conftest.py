@@ -114,3 +114,11 @@ def opened() -> Iterator[list[Any]]:
     yield made
     for one in reversed(made):
         one.close()
+
+
+@pytest.fixture
+def straight_run_ins(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Vehicles come to a rendezvous by straight run-ins alone, as those that are elsewhere before."""
+    from cratous.services.following import meeting
+
+    monkeypatch.setattr(meeting, "_direct", lambda *_: None)

@@ -39,6 +39,9 @@ MAX_ELEMENTS = 1_000_000  # of arrays of anything but numbers, in one message to
 def pack(obj: LmcpObject) -> bytearray:
     """The bytes of an object with its header; BadInput if a value does not fit its field."""
     out = bytearray()
+    for field, value in zip(obj.fields, obj.values_of(obj), strict=True):
+        if field.array == 0 and isinstance(value, list):
+            _count(field, value)  # before all that is in it is looked at
     try:
         _pack_object(obj.copy().checked(), out, 0)
     except RecursionError:
@@ -88,18 +91,25 @@ def _pack_object(obj: LmcpObject | None, out: bytearray, depth: int) -> None:
             _pack_one(field, value, out, depth)
             continue
         if field.array == 0:
-            count = _LARGE_COUNT if field.large else _SMALL_COUNT
-            if len(value) >= 256**count.size:
-                raise BadInput(
-                    "array too long", item=field.name, expected=f"< {256**count.size} elements"
-                )
-            out += count.pack(len(value))
+            out += _count(field, value)
         code = CODES.get(field.kind)
         if code and field.kind != "char":
             out += struct.pack(f">{len(value)}{code}", *value)
         else:
             for element in value:
                 _pack_one(field, element, out, depth)
+
+
+def _count(field: model.Field, value: Any) -> bytes:
+    count = _LARGE_COUNT if field.large else _SMALL_COUNT
+    if len(value) >= 256**count.size:
+        raise BadInput(
+            "array too long",
+            item=field.name,
+            expected=f"< {256**count.size} elements",
+            got=f"{len(value)}",
+        )
+    return count.pack(len(value))
 
 
 def _pack_one(field: model.Field, value: Any, out: bytearray, depth: int) -> None:

@@ -2,7 +2,8 @@
 
 LINKED (0): UxAS is heard. FINISH (1): the known way is flown to its end. LOITER (2): a circle is flown.
 RETURN (3): a way to a named place is flown. OVER (4): what was chosen is flown to its end, and a circle is
-flown there. At each heartbeat the instance first asks what it is in, then takes the vehicle over or flies it
+flown there. LAND (5): a way to a landing site is flown. FINAL (6): its last descent is flown, to the ground. LANDED (7):
+the vehicle is on the ground. At each heartbeat the instance first asks what it is in, then takes the vehicle over or flies it
 (`core.authority.cycle`). Definitions: `spec.authority.link_loss`.
 """
 
@@ -11,7 +12,7 @@ from typing import NamedTuple
 from cratous.core.authority.timeliness import in_time
 from cratous.core.kernel import kernel
 
-LINKED, FINISH, LOITER, RETURN, OVER = 0, 1, 2, 3, 4
+LINKED, FINISH, LOITER, RETURN, OVER, LAND, FINAL, LANDED = 0, 1, 2, 3, 4, 5, 6, 7
 
 
 class Loss(NamedTuple):
@@ -23,7 +24,7 @@ class Loss(NamedTuple):
 
 class LossStep(NamedTuple):
     """The mode afterwards, and what is new: 0 nothing, 1 what is chosen begins, 2 nothing permits it and a circle is
-    flown, 3 it has been flown to its end, 4 UxAS is heard again."""
+    flown, 3 it has been flown to its end, 4 UxAS is heard again, 5 the last descent begins, 6 the ground is reached."""
 
     loss: Loss
     act: int
@@ -35,10 +36,16 @@ def loss_step(
 ) -> LossStep:
     """A heartbeat of the instance.
 
-    chosen: what the mission wants without the link, 1 to 3; heard: when UxAS was last heard [ms]; now: [ms];
+    chosen: what the mission wants without the link, 1 to 3 or 5; heard: when UxAS was last heard [ms]; now: [ms];
     bound: how long it may be silent [ms], >= 0; permitted: the way of what is chosen is, from here; ended: the
     vehicle is at the end of what it flies.
     """
+    if loss.mode == 7:
+        return LossStep(loss, 0)
+    if loss.mode == 6:
+        if ended:
+            return LossStep(Loss(7, now), 6)
+        return LossStep(loss, 0)
     if in_time(heard, now, bound):
         if loss.mode == 0:
             return LossStep(loss, 0)
@@ -48,8 +55,10 @@ def loss_step(
     if loss.mode == chosen:
         if chosen == 2:
             return LossStep(loss, 0)
-        if ended:
+        if ended and chosen != 5:
             return LossStep(Loss(4, now), 3)
+        if ended and permitted:
+            return LossStep(Loss(6, now), 5)
         if permitted:
             return LossStep(loss, 0)
         return LossStep(Loss(2, now), 2)

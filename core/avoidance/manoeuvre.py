@@ -102,10 +102,23 @@ class Way(NamedTuple):
     beyond: Piece | None
 
 
+class Pace(NamedTuple):
+    """The speed that a way is flown at once it is reached [m/s], and how fast it is changed to [m/s2]."""
+
+    speed_m_s: float
+    acceleration_m_s2: float
+
+
 def way_along(
-    now: Motion, points: Sequence[Position], horizon_s: float, start_s: float = 0.0
+    now: Motion,
+    points: Sequence[Position],
+    horizon_s: float,
+    start_s: float = 0.0,
+    pace: Pace | None = None,
 ) -> Way:
-    """Fly from the present position through points at the present speed."""
+    """Fly from the present position through points at the present speed, or changing to that of a pace."""
+    if pace is not None and pace.acceleration_m_s2 > 0 and pace.speed_m_s != now.speed_m_s:
+        return _paced(now, points, horizon_s, pace)
     pieces: list[Piece] = []
     p, t = now.position, start_s
     last = velocity_of(now.heading_rad, now.speed_m_s, 0.0)
@@ -124,6 +137,55 @@ def way_along(
         if t >= horizon_s:
             return Way(tuple(pieces), None)
     return Way(tuple(pieces), Piece(t, horizon_s - t, p, last))
+
+
+PACED_OFF_M = 0.5
+"""A change of speed is cut into pieces of which none is farther off than this [m]."""
+
+
+LEAST_M = 1e-6
+"""What is left of a leg when it is flown, by rounding [m]."""
+
+
+def _paced(now: Motion, points: Sequence[Position], horizon_s: float, pace: Pace) -> Way:
+    """The same with a change of speed, cut into pieces of constant speed."""
+    pieces: list[Piece] = []
+    p, t, speed = now.position, 0.0, now.speed_m_s
+    north, east, up = math.cos(now.heading_rad), math.sin(now.heading_rad), 0.0
+    for q in points:
+        left = math.hypot(q.north_m - p.north_m, q.east_m - p.east_m)
+        if left < 1.0:
+            continue
+        north, east = (q.north_m - p.north_m) / left, (q.east_m - p.east_m) / left
+        up = (q.alt_m - p.alt_m) / left
+        while left > LEAST_M:
+            duration, mean, speed = _changed(speed, pace, left)
+            v = Velocity(mean * north, mean * east, -mean * up)
+            pieces.append(Piece(t, min(duration, horizon_s - t), p, v))
+            p = after(pieces[-1], duration)
+            t, left = t + duration, left - mean * duration
+            if t >= horizon_s:
+                return Way(tuple(pieces), None)
+        p = q
+    return Way(
+        tuple(pieces), Piece(t, horizon_s - t, p, Velocity(speed * north, speed * east, 0.0))
+    )
+
+
+def _changed(speed_m_s: float, pace: Pace, left_m: float) -> tuple[float, float, float]:
+    """The next piece of a leg of which left_m is left: how long it is [s], its speed, and that after it [m/s]."""
+    gap = pace.speed_m_s - speed_m_s
+    if gap == 0:
+        return left_m / speed_m_s, speed_m_s, speed_m_s
+    whole_s = abs(gap) / pace.acceleration_m_s2
+    share = min(1.0, math.sqrt(8 * PACED_OFF_M / pace.acceleration_m_s2) / whole_s)
+    to = pace.speed_m_s if share == 1.0 else speed_m_s + share * gap
+    mean = (speed_m_s + to) / 2
+    # the leg ends within the piece
+    ends = min(1.0, left_m / (mean * share * whole_s))
+    if ends == 1.0:
+        return share * whole_s, mean, to
+    return left_m / mean, mean, speed_m_s + ends * (to - speed_m_s)
 
 
 def looked_at(way: Way, horizon_s: float) -> Way:

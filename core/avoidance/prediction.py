@@ -10,6 +10,7 @@ where the true one may (`core.daa.uncertainty`).
 from __future__ import annotations
 
 import math
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
@@ -138,16 +139,31 @@ def meetings(
     if not other.way and steady_s == math.inf:
         yield tuple(pieces), other
         return
+    begins = [piece.start_s for piece in pieces]
+    ends = [piece.start_s + piece.duration_s for piece in pieces]
+    ordered = begins == sorted(begins) and ends == sorted(ends)
     for leg in legs_of(other):
+        if ordered and ends and leg.start_s >= ends[-1]:
+            return
         held_m = other.hold_m if other.way and leg.duration_s == math.inf else 0.0
         for part in _cut(leg, steady_s):
-            run = tuple(_within(piece, part) for piece in pieces if _overlap(piece, part))
+            met = pieces
+            if ordered:  # those in the time of the part follow each other
+                before_s = part.start_s + part.duration_s
+                met = pieces[bisect_right(ends, part.start_s) : bisect_left(begins, before_s)]
+            run = tuple(_within(piece, part) for piece in met if _overlap(piece, part))
             if run:
-                begun = after(part, -part.start_s)
                 spread = other.spread.after(steady_s) if part.start_s >= steady_s else other.spread
-                spread = spread._replace(steady_s=math.inf)
-                straight_on = other._replace(position=begun, velocity=leg.velocity, way=())
-                yield run, straight_on._replace(hold_m=held_m, spread=spread)
+                yield (
+                    run,
+                    other._replace(
+                        position=after(part, -part.start_s),
+                        velocity=leg.velocity,
+                        way=(),
+                        hold_m=held_m,
+                        spread=spread._replace(steady_s=math.inf),
+                    ),
+                )
 
 
 def _cut(leg: Piece, at_s: float) -> tuple[Piece, ...]:

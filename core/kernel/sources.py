@@ -13,8 +13,10 @@ import functools
 import hashlib
 import inspect
 import json
+import linecache
 import os
 import sys
+import textwrap
 import types
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
@@ -64,6 +66,22 @@ def _place(file: Path, packages: tuple[tuple[str, Path], ...]) -> str:
             inside = file.relative_to(root).as_posix()
             return inside if name == "cratous" else f"{name}/{inside}"
     return file.name
+
+
+def text_of(function: Any) -> str:
+    """The text of a function in its file as it is now. Raises OSError where there is none, TypeError.
+
+    What an import may have put into `linecache` as the file's lines is left out.
+    """
+    inner = inspect.unwrap(function)
+    linecache.cache.pop(inspect.getsourcefile(inner) or "", None)
+    return textwrap.dedent(inspect.getsource(inner))
+
+
+def is_root(value: Any) -> bool:
+    """It is the library's own `math.sqrt`, which a package may have exchanged."""
+    builtin = isinstance(value, types.BuiltinFunctionType)
+    return builtin and (value.__module__, value.__name__) == ("math", "sqrt")
 
 
 def position(function: Any) -> str:

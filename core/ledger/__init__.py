@@ -23,6 +23,7 @@ from cratous.core.kernel.sources import altered_of, position, reached, stands_fo
 from cratous.core.ledger.kept_keys import keys_of
 from cratous.core.ledger.key_parts import MISSING, PARTS, compiler, solver_version
 from cratous.core.ledger.keys import Keys
+from cratous.core.ledger.meant_folds import other_parts
 from cratous.core.ledger.meant_names import Looked, replaced
 from cratous.core.ledger.package_home import (
     PRODUCT,
@@ -117,6 +118,9 @@ def _problems(home: Home, entries: dict[str, Entry], data: dict[str, Any]) -> It
         if not isinstance(entry.function, Fold) and not stands_for_itself(entry.function):
             yield Problem(name, "its module calls something else so, which would run in its place")
             continue
+        if isinstance(entry.function, Fold) and (other := list(other_parts(entry.function))):
+            yield Problem(name, "the fold that runs is not its file's: " + ", ".join(other))
+            continue
         if not record["proved"]:
             yield Problem(name, f"it is {record['status']}")
             continue
@@ -130,7 +134,7 @@ def _problems(home: Home, entries: dict[str, Entry], data: dict[str, Any]) -> It
             continue
         if wrong := altered_of(rests[name]):
             yield Problem(name, "the code that runs is not its file's: " + ", ".join(wrong))
-        elif other := replaced(rests[name].values(), looked):
+        elif other := replaced([*rests[name].values(), Fold], looked):
             yield Problem(
                 name, "names mean something else than their files say: " + ", ".join(other)
             )

@@ -28,6 +28,9 @@ from cratous.core.ledger.lookup_exceptions import EXCUSED
 from cratous.core.ledger.module_trees import Place, Tree
 from cratous.core.ledger.package_home import PRODUCT, Home, theorem_home, theorem_names, theorems
 
+_PRODUCT: list[Tree] = []
+"""The product's tree, once its keys were asked for: what its names mean is not looked up again."""
+
 
 class Keys:
     """The keys of one home as the files stand when they are asked for first.
@@ -42,8 +45,10 @@ class Keys:
         if not home.product:
             packages[home.name], parts[home.name] = home.root, ("",)
         self.tree = Tree(packages, parts, edits)
-        self.names = frozenset(theorem_names(home))
+        if _PRODUCT:
+            self.tree.take_over(_PRODUCT[0])
         self._files = {one: theorems(one) for one in (home, PRODUCT)}
+        self.names = frozenset(theorem_names(home, self._files))
         self._theorems: dict[str, tuple[str, tuple[str, ...]] | None] = {}
         self._statement: dict[str, Walk | None] = {}
         self._walks: dict[tuple[str, ...], Walk] = {}
@@ -244,12 +249,15 @@ class Keys:
     @functools.cached_property
     def shared(self) -> dict[str, str]:
         """The parts that all entries share."""
-        return {
+        found = {
             "prover": self.prover.digest,
             "solver": solver_version(),
             "readings": self.readings.digest,
             "flags": compiler(),
         }
+        if self.home.product and not self.tree.edits:
+            _PRODUCT[:] = [self.tree]
+        return found
 
     def of(
         self, entry: Entry, names: Iterable[str], records: Mapping[str, Any] | None = None

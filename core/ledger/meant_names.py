@@ -41,6 +41,7 @@ class _Said(NamedTuple):
     hides: frozenset[str]
 
 
+ALIASES = ("IOError", "EnvironmentError")
 BUILTINS = frozenset(name for name in vars(builtins) if not name.startswith("__"))
 
 
@@ -90,6 +91,8 @@ def _of(function: FunctionType) -> Iterator[str]:
         yield f"{module}.__builtins__"
     for used in names:
         if used not in scope:
+            if used in BUILTINS and used not in ALIASES and not _is_pythons(used):
+                yield f"builtins.{used}"
             continue
         value = scope[used]
         if used in said.meant:
@@ -99,6 +102,18 @@ def _of(function: FunctionType) -> Iterator[str]:
                 yield from _within(value, names)
         elif used in BUILTINS and used not in said.hides and not _part(module, used, value):
             yield f"{module}.{used}"
+
+
+def _is_pythons(name: str) -> bool:
+    """A name of the interpreter's means what it is called, and no function that it was given later."""
+    value = vars(builtins).get(name)
+    if isinstance(value, FunctionType):
+        return False
+    return _is_called(value, name) if inspect.isbuiltin(value) or inspect.isclass(value) else True
+
+
+def _is_called(value: Any, name: str) -> bool:
+    return not isinstance(value, FunctionType) and getattr(value, "__name__", None) == name
 
 
 def _within(module: ModuleType, names: tuple[str, ...]) -> Iterator[str]:
@@ -145,7 +160,8 @@ def _is_imported(value: Any, meant: _Meant) -> bool:
     if vars(source)[meant.name] is not value:
         return False
     if meant.module.split(".")[0] not in PACKAGES:
-        return True
+        # the library's own are no functions of Python's
+        return meant.module != "math" or not callable(value) or _is_called(value, meant.name)
     # its own module may have been given another thing as well
     said = _file_says(meant.module).meant.get(meant.name)
     return said is None or _is_one(value, said)

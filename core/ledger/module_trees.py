@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -36,22 +37,66 @@ class Tree:
         self._tables: dict[str, Table | None] = {}
         self._edges: dict[Place, tuple[tuple[str, tuple[Target, ...]], ...]] = {}
         self._meant: dict[tuple[str, tuple[str, ...]], tuple[Target, ...]] = {}
+        self._imported: dict[tuple[str, str, tuple[str, ...]], tuple[Target, ...]] = {}
+        self._found: dict[str, Path | None] = {}
+        self._folders: dict[str, bool] = {}
         self.open_classes: dict[Place, bool] = {}
         self.asked: set[str] = set()
         """The modules and folders that were looked for."""
+
+    def take_over(self, other: Tree) -> bool:
+        """Know what names mean as another tree does, whose packages are some of this one's.
+
+        Only if every file that it has read, and every name that it looked for, is there as it was, and
+        it imports nothing of what this tree has beside them: then each name means the same here.
+        """
+        mine = {name: self.packages.get(name) for name in other.packages}
+        more = self.packages.keys() - other.packages.keys()
+        if (
+            self.edits
+            or other.edits
+            or mine != other.packages
+            or not other.outside.isdisjoint(more)
+        ):
+            return False
+        same = (
+            all(self.table(name) is one for name, one in other._tables.items())
+            and all(self.file(name) == one for name, one in other._found.items())
+            and all(self._folder(name) == one for name, one in other._folders.items())
+        )
+        if same:
+            self._meant |= other._meant
+            self._imported |= other._imported
+        return same
+
+    @property
+    def outside(self) -> frozenset[str]:
+        """The packages that the modules which were read import from, and that are not of the tree."""
+        read = [one for one in self._tables.values() if one is not None]
+        named = {source for one in read for unit in one.units for _, source, _ in unit.imports}
+        named.update(star for one in read for star in one.stars)
+        return frozenset(source.split(".")[0] for source in named) - self.packages.keys()
 
     # -- modules ----------------------------------------------------------------------------------
     def file(self, module: str) -> Path | None:
         """The source file of a module of the tree."""
         self.asked.add(module)
+        if module not in self._found:
+            self._found[module] = self._file(module)
+        return self._found[module]
+
+    def _file(self, module: str) -> Path | None:
         top, *parts = module.split(".")
         if top not in self.packages:
             return None
-        base = self.packages[top].joinpath(*parts)
-        for file in (base.with_suffix(".py"), base / "__init__.py"):
-            if parts and (file in self.edits or file.is_file()):
-                return file
-        return base / "__init__.py" if not parts and (base / "__init__.py").is_file() else None
+        base = os.path.join(self.packages[top], *parts)
+        inside = os.path.join(base, "__init__.py")
+        if not parts:
+            return Path(inside) if os.path.isfile(inside) else None
+        for name in (f"{base}.py", inside):
+            if os.path.isfile(name) or (self.edits and Path(name) in self.edits):
+                return Path(name)
+        return None
 
     def table(self, module: str) -> Table | None:
         """What a module defines; None if it is not of the tree."""
@@ -76,7 +121,7 @@ class Tree:
         found: set[str] = set()
         for package, root in self.packages.items():
             for part in self.parts.get(package, ()):
-                found |= {module_name(package, root, f) for f in (root / part).rglob("*.py")}
+                found.update(_modules(package, root, part))
         return tuple(sorted(found))
 
     @functools.cached_property
@@ -121,10 +166,11 @@ class Tree:
         """What `from source import there`, or `import source`, means with these attributes."""
         if source.split(".")[0] not in self.packages:
             yield f"{source}.{there}"
-        elif there:
-            yield from self._inside(source, (there, *rest))
-        else:
-            yield from self._inside(source, rest)
+            return
+        key = (source, there, rest)
+        if key not in self._imported:
+            self._imported[key] = tuple(self._inside(source, (there, *rest) if there else rest))
+        yield from self._imported[key]
 
     def _inside(self, module: str, chain: tuple[str, ...]) -> Iterator[Target]:
         if not chain:
@@ -139,8 +185,13 @@ class Tree:
             yield f"nothing called {chain[0]}"
 
     def _folder(self, module: str) -> bool:
-        top, *parts = module.split(".")
-        return top in self.packages and self.packages[top].joinpath(*parts).is_dir()
+        if module not in self._folders:
+            top, *parts = module.split(".")
+            inside = top in self.packages
+            self._folders[module] = inside and os.path.isdir(
+                os.path.join(self.packages[top], *parts)
+            )
+        return self._folders[module]
 
     def whole(self, module: str) -> Iterator[Target]:
         """Everything that a module defines, for a use that cannot be told."""
@@ -208,10 +259,17 @@ DATA = (".lark", ".conf")
 """Files beside the modules that these may read; records say what was proved, and decide nothing."""
 
 
-def module_name(package: str, root: Path, file: Path) -> str:
-    """The dotted name of a file of a package."""
-    parts = file.relative_to(root).with_suffix("").parts
-    return ".".join((package, *(parts[:-1] if parts[-1] == "__init__" else parts)))
+def _modules(package: str, root: Path, part: str) -> Iterator[str]:
+    """The dotted names of the files below a folder of a package."""
+    for at, folders, files in os.walk(root / part):
+        folders.sort()
+        inside = os.path.relpath(at, root)
+        around = [package, *(() if inside == os.curdir else inside.split(os.sep))]
+        for file in files:
+            if file == "__init__.py":
+                yield ".".join(around)
+            elif file.endswith(".py"):
+                yield ".".join((*around, file.removesuffix(".py")))
 
 
 @functools.cache

@@ -102,10 +102,11 @@ def theorems(home: Home) -> dict[str, Path]:
     """What could be a theorem of this home: the files by name."""
     found: dict[str, Path] = {}
     for folder, _, names in os.walk(home.theorems):
+        around = "".join(f"{part}_" for part in Path(folder).relative_to(home.theorems).parts)
         for name in names:
             if name.endswith(".py"):
-                file = Path(folder, name)
-                found[theorem_name(file, home.theorems)] = file
+                # as `theorem_name` has it, which would take each path apart
+                found[around + name.removesuffix(".py")] = Path(folder, name)
     return found
 
 
@@ -114,8 +115,11 @@ def theorem_name(file: Path, folder: Path) -> str:
     return "_".join(file.relative_to(folder).with_suffix("").parts)
 
 
-def theorem_names(home: Home) -> set[str]:
-    """What could name a theorem of this home or of the product, alone or after its package."""
-    known = {one: theorems(one) for one in (home, PRODUCT)}
+def theorem_names(home: Home, files: Mapping[Home, dict[str, Path]] | None = None) -> set[str]:
+    """What could name a theorem of this home or of the product, alone or after its package.
+
+    files: `theorems` of each.
+    """
+    known = files or {one: theorems(one) for one in (home, PRODUCT)}
     whole = {f"{one.name}.{name}" for one, names in known.items() for name in names}
     return {name for names in known.values() for name in names} | whole

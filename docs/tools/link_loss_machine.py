@@ -10,9 +10,20 @@ from __future__ import annotations
 
 from itertools import product
 
-from cratous.core.authority.link_loss import LINKED, LOITER, OVER, Loss, loss_step
+from cratous.core.authority.link_loss import (
+    FINAL,
+    FINISH,
+    LAND,
+    LANDED,
+    LINKED,
+    LOITER,
+    OVER,
+    RETURN,
+    Loss,
+    loss_step,
+)
 
-NAMES = ("Linked", "Finish", "Loiter", "Return", "Over")
+NAMES = ("Linked", "Finish", "Loiter", "Return", "Over", "Land", "Final", "Landed")
 EITHER = (False, True)
 NOW, BOUND = 10, 5
 
@@ -20,8 +31,8 @@ NOW, BOUND = 10, 5
 def arrows() -> dict[tuple[int, int], set[str]]:
     """From which mode to which, and when."""
     found: dict[tuple[int, int], set[str]] = {}
-    for chosen in range(LINKED + 1, OVER):
-        for mode in {LINKED, LOITER, chosen, OVER}:
+    for chosen in (FINISH, LOITER, RETURN, LAND):
+        for mode in {LINKED, LOITER, chosen, OVER, FINAL, LANDED}:
             for heard, permitted, ended in product(EITHER, EITHER, EITHER):
                 heard_ms = NOW if heard else 0
                 step = loss_step(Loss(mode, 0), chosen, heard_ms, NOW, BOUND, permitted, ended)
@@ -33,6 +44,10 @@ def arrows() -> dict[tuple[int, int], set[str]]:
 
 
 def _why(after: int, chosen: int, heard: bool) -> str:
+    if after == LANDED:
+        return "on the ground"
+    if after == FINAL:
+        return "at the gate, permitted to the ground"
     if heard:
         return "UxAS is heard"
     if after == OVER:

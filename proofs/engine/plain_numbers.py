@@ -16,12 +16,12 @@ import copy
 import dis
 import functools
 import inspect
-import textwrap
 import types
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from typing import Any
 
+from cratous.core.kernel.sources import text_of
 from cratous.proofs.engine.lift import REPLACED, Visit
 from cratous.spec.errors import BadInput
 
@@ -80,7 +80,7 @@ class _Watching(ast.NodeTransformer):
 def _definition(function: Callable[..., Any]) -> ast.FunctionDef | None:
     """The function's syntax without decorators and annotations; None if it cannot be read."""
     try:
-        node = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
+        node = ast.parse(text_of(function)).body[0]
     except (OSError, TypeError, SyntaxError):
         return None
     if not isinstance(node, ast.FunctionDef):

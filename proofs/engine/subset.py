@@ -14,15 +14,14 @@ from __future__ import annotations
 
 import ast
 import builtins
-import inspect
 import sys
-import textwrap
 import types
 from collections.abc import Callable, Container
 from dataclasses import dataclass
 from typing import Any, get_type_hints
 
 from cratous.core.kernel import REGISTRY, Fold, entry_of, kernel, qualified
+from cratous.core.kernel.sources import text_of
 from cratous.proofs.engine.expressions import Kinds, Refused
 from cratous.proofs.engine.module_source import is_top
 from cratous.proofs.engine.value_kinds import Kind, Literal, fits, is_kind, merged, shown
@@ -61,7 +60,7 @@ class Finding:
 
 def syntax(function: Any) -> ast.FunctionDef:
     """The definition of a function as its file has it; TypeError for anything else."""
-    tree = ast.parse(textwrap.dedent(inspect.getsource(function)))
+    tree = ast.parse(text_of(function))
     node = tree.body[0]
     if not isinstance(node, ast.FunctionDef):
         raise TypeError(f"{function!r} is no function definition")

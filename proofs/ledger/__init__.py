@@ -18,14 +18,17 @@ from pathlib import Path
 from typing import Any
 
 from cratous.core import ledger as gate
-from cratous.core.kernel import REGISTRY, Entry, checkers, entry_of, supported
+from cratous.core.kernel import REGISTRY, Entry, Fold, checkers, entry_of, supported
 from cratous.core.kernel.names import short
 from cratous.core.kernel.sources import altered, position, reached
+from cratous.core.ledger.meant_folds import other_parts
+from cratous.core.ledger.meant_names import replaced
 from cratous.core.ledger.package_home import PRODUCT, Home
 from cratous.core.ledger.records import seal, sealed, texts
 from cratous.core.ledger.status import Grounds, status_of
-from cratous.proofs.engine import prover
+from cratous.proofs.engine import prover, solver_memory
 from cratous.proofs.engine.cache import Cache
+from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.subset import Finding, lint_all
 from cratous.proofs.ledger.proof_recall import Recall
 from cratous.proofs.running.all import compare_all, told
@@ -55,7 +58,8 @@ class Inventory:
 class Progress:
     """How far a theorem is: obligations done, of how many; at the end the theorem itself.
 
-    functions: what it looked into, where its functions are yet to be compared.
+    functions: what it looked into, where its functions are yet to be compared. written: what was made of its
+    claim beside.
     """
 
     name: str
@@ -63,9 +67,12 @@ class Progress:
     of: int
     theorem: prover.Theorem | None = None
     functions: Functions | None = None
+    written: Any = None
 
 
 Listener = Callable[[Progress], None]
+Writer = Callable[[prover.Theorem, Claim, str], Any]
+"""Makes something of a theorem, its stated claim and its sentence, in the theorem's own process."""
 
 
 def jobs_default() -> int:
@@ -77,7 +84,7 @@ def _tell(name: str, out: Connection, done: int, of: int) -> None:
     out.send(Progress(name, done, of))
 
 
-def _work(name: str, folder: Path, cache: Cache, out: Connection) -> None:
+def _work(name: str, folder: Path, cache: Cache, write: Writer | None, out: Connection) -> None:
     try:
         claim, sentence = prover.state(name, folder)
         tell = partial(_tell, name, out)
@@ -86,7 +93,8 @@ def _work(name: str, folder: Path, cache: Cache, out: Connection) -> None:
         if theorem.proved:
             ran, functions = run(name, claim, folder)
             theorem = theorem.after(ran)
-        out.send(Progress(name, 1, 1, theorem, functions))
+        written = None if write is None else write(theorem, claim, sentence)
+        out.send(Progress(name, 1, 1, theorem, functions, written))
     except Exception as error:
         out.send(error)
     finally:
@@ -101,12 +109,14 @@ def prove_theorems(
     cache: Cache | None = None,
     tell: Listener | None = None,
     machine: bool = True,
+    write: Writer | None = None,
 ) -> list[prover.Theorem]:
     """Prove these theorems on several cores, and run what is proved; in the order of the names.
 
-    machine: compare the functions' readings with machine code too. Raises whatever a theorem file
-    raises, for the first such file in that order.
+    machine: compare the functions' readings with machine code too; write: what else is made of each claim.
+    Raises whatever a theorem file raises, for the first such file in that order.
     """
+    solver_memory.keep()
     wanted = list(names)
     store = cache or Cache(None)
     fork = multiprocessing.get_context("fork")
@@ -118,7 +128,9 @@ def prove_theorems(
         while queue and len(running) < (jobs or jobs_default()):
             name = queue.pop()
             here, there = fork.Pipe(duplex=False)
-            process = fork.Process(target=_work, args=(name, folder, store, there), daemon=True)
+            process = fork.Process(
+                target=_work, args=(name, folder, store, write, there), daemon=True
+            )
             process.start()
             there.close()
             running[here] = (name, process)
@@ -170,11 +182,12 @@ def prove_all(
     cache: Cache | None = None,
     recall: Recall | None = None,
     machine: bool = True,
+    write: Writer | None = None,
 ) -> Inventory:
     """Prove these theorems, and look for whatever the ledger could not vouch for.
 
-    cache: solver answers; recall: theorems proved before, whose files are the same; machine: see
-    `prove_theorems`.
+    cache: solver answers; recall: theorems proved before, whose files are the same; machine, write: see
+    `prove_theorems`, for those that are proved anew.
     """
     entries = gate.load_all(home)
     folder = prover.home_folder(home)
@@ -185,7 +198,9 @@ def prove_all(
         if tell is not None:
             tell(Progress(name, 1, 1, theorem))
     rest = [name for name in wanted if name not in kept]
-    anew = prove_theorems(rest, folder=folder, jobs=jobs, cache=cache, tell=tell, machine=machine)
+    anew = prove_theorems(
+        rest, folder=folder, jobs=jobs, cache=cache, tell=tell, machine=machine, write=write
+    )
     memory.put(anew)
     kept |= {theorem.name: theorem for theorem in anew}
     theorems = [kept[name] for name in wanted]
@@ -199,8 +214,12 @@ def problems(entries: dict[str, Entry], home: Home = PRODUCT) -> list[str]:
     """Kernels and drivers that no proof could be bound to, each with its place and the reason."""
     found = []
     calls = {n: _called(e) | {n} for n, e in entries.items() if e.kind == "driver"}
+    if other := replaced([Fold], {}):
+        found.append(f"{position(Fold)}: not what its file says: {', '.join(other)}")
     for name, entry in entries.items():
         where = f"{position(entry.function)}: {name.rpartition('.')[2]}"
+        if isinstance(entry.function, Fold) and (other := list(other_parts(entry.function))):
+            found.append(f"{where}: the fold that runs is not its file's: {', '.join(other)}")
         if wrong := altered(entry.function):
             found.append(f"{where}: the code that runs is not its file's: {', '.join(wrong)}")
         if entry.kind == "driver":

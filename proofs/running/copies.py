@@ -13,6 +13,8 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
+from cratous.core.kernel.sources import is_root
+
 Root = Callable[[Any], Any]
 
 
@@ -52,7 +54,7 @@ def with_root(function: Callable[..., Any], root: Root) -> Callable[..., Any]:
     scope = dict(function.__globals__)
     for name in function.__code__.co_names:
         value = scope.get(name)
-        if value is math.sqrt:
+        if is_root(value):
             scope[name] = root
         elif inspect.isfunction(value):
             scope[name] = _Later(value, root)

@@ -23,7 +23,13 @@ import z3
 from cratous.core import ledger as gate
 from cratous.core.ledger import records
 from cratous.proofs import ledger
-from cratous.proofs.engine import definition_subset, prover, symbolic, worker_processes
+from cratous.proofs.engine import (
+    definition_subset,
+    prover,
+    solver_memory,
+    symbolic,
+    worker_processes,
+)
 from cratous.proofs.judgement import Judgement, judge
 from cratous.proofs.ledger.report_formats import failure_text
 from cratous.proofs.self_test.case import Case
@@ -161,6 +167,7 @@ def prepare() -> None:
     """Read what every ledger hashes, and wake the solver, so that forked processes find it done."""
     gate.check()
     _ = gate.Keys().shared  # the tables of all modules that a key is made from
+    solver_memory.keep()
     z3.Solver(ctx=z3.main_ctx()).check()
     importlib.import_module("numba")  # as long as several cases
     gc.collect()

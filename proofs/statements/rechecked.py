@@ -11,14 +11,12 @@ from __future__ import annotations
 
 import ast
 import dataclasses
-import inspect
-import textwrap
 import types
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from cratous.core.kernel import Entry, Refusal, entry_of
-from cratous.core.kernel.sources import ours
+from cratous.core.kernel.sources import ours, text_of
 
 Names = frozenset[str]
 Said = Mapping[str, Names]
@@ -215,7 +213,7 @@ def _is_fixed(kind: Any) -> bool:
 # ---- syntax --------------------------------------------------------------------------------------
 def _definition(function: Callable[..., Any]) -> ast.FunctionDef | None:
     try:
-        node = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
+        node = ast.parse(text_of(function)).body[0]
     except (OSError, SyntaxError):
         return None
     if not isinstance(node, ast.FunctionDef):

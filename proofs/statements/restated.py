@@ -10,10 +10,11 @@ from __future__ import annotations
 import ast
 import functools
 import inspect
-import textwrap
 import types
 from collections.abc import Callable
 from typing import Any, cast, get_type_hints
+
+from cratous.core.kernel.sources import text_of
 
 Form = tuple[Any, ...]
 """A node: what it is, then its parts."""
@@ -62,7 +63,7 @@ def _called(function: Callable[..., Any], arguments: list[Form], circle: tuple[A
 
 @functools.cache
 def _definition(function: Callable[..., Any]) -> ast.FunctionDef:
-    node = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
+    node = ast.parse(text_of(function)).body[0]
     assert isinstance(node, ast.FunctionDef)
     return node
 

@@ -126,27 +126,13 @@ class Own:
             missing.append("no theorem holds it against a definition")
         if {name, self._names[name]} & self._unproved:
             missing.append("the ledger did not vouch for it in this run")
-        below = tuple(self._proofs.theorem(theorem) for theorem in against)
-        bad = [n for n in below if self._argument.state(n) is not State.SUPPORTED]
         text = f"Kernel {self._names[name]} of the monitor, by the ledger as it is now"
         if whole is not None:
             text += f": {whole['status']}"
-            text += (
-                f", as a step of {definition.rpartition('.')[2]}"
-                if whole is not self._known[name]
-                else ""
-            )
-        text += f". Missing: {'; '.join(missing)}" if missing else ""
-        context: tuple[str, ...] = ()
-        if file:
-            said = f"Definition {definition} in {file}"
-            element = Element(f"C-definition-{plain(definition)}", Kind.CONTEXT, said)
-            context = (self._argument.add(element),)
-        state = State.NOT_PROVED if missing or bad else State.SUPPORTED
-        goal = f"G-own-kernel-{plain(self._names[name])}"
-        return self._argument.add(
-            Element(goal, Kind.GOAL, text, () if missing else below, context, state)
-        )
+            if whole is not self._known[name]:
+                text += f", as a step of {definition.rpartition('.')[2]}"
+        key = f"G-own-kernel-{plain(self._names[name])}"
+        return self._proofs.goal(key, text, (definition, file), against, missing)
 
 
 def _id(number: int) -> str:

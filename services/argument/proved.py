@@ -53,36 +53,40 @@ class Proofs:
             text += f", a step of {chain['step_of'].rpartition('.')[2]}"
         if chain["restates"]:
             text += f" ({chain['restates']})"
-        below = tuple(self.theorem(theorem) for theorem in chain["theorems"])
-        missing = chain["missing"] + [
-            f"{theorem}: {why}"
-            for theorem in chain["theorems"]
-            if (why := self._lacks(theorem)) and not chain["missing"]
-        ]
+        return self.goal(
+            f"G-kernel-{plain(name)}",
+            text,
+            (chain["definition"], chain["file"]),
+            chain["theorems"],
+            chain["missing"],
+        )
+
+    def goal(
+        self,
+        key: str,
+        text: str,
+        definition: tuple[str, str],
+        theorems: Iterable[str],
+        missing: list[str],
+    ) -> str:
+        """The goal on a kernel with this id: by its theorems, in the context of its definition; returns the id.
+
+        definition: its name and its file, which may be empty; missing: what its chain lacks but for theorems.
+        """
+        below = tuple(self.theorem(theorem) for theorem in theorems)
+        if not missing:
+            missing = [f"{theorem}: {why}" for theorem in theorems if (why := self._lacks(theorem))]
         context: tuple[str, ...] = ()
-        if chain["definition"] and chain["file"]:
-            context = (
-                self._argument.add(
-                    Element(
-                        f"C-definition-{plain(chain['definition'])}",
-                        Kind.CONTEXT,
-                        f"Definition {chain['definition']} in {chain['file']}",
-                    )
-                ),
-            )
+        name, file = definition
+        if name and file:
+            said = f"Definition {name} in {file}"
+            element = Element(f"C-definition-{plain(name)}", Kind.CONTEXT, said)
+            context = (self._argument.add(element),)
         if missing:
             text += f". Missing: {'; '.join(dict.fromkeys(missing))}"
         # a theorem that is there supports nothing where another part of the chain is missing
-        return self._argument.add(
-            Element(
-                f"G-kernel-{plain(name)}",
-                Kind.GOAL,
-                text,
-                () if missing else below,
-                context,
-                State.NOT_PROVED if missing else State.SUPPORTED,
-            )
-        )
+        below, state = ((), State.NOT_PROVED) if missing else (below, State.SUPPORTED)
+        return self._argument.add(Element(key, Kind.GOAL, text, below, context, state))
 
     def theorem(self, name: str) -> str:
         """The goal that a theorem holds, by its record and those of its lemmas; returns its id."""

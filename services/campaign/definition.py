@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib.resources import files
 from itertools import product
@@ -17,6 +17,7 @@ from cratous.services.loading import load
 from cratous.services.loading.document import Document, parse_document, read_document
 from cratous.services.loading.problems import refuse
 from cratous.services.loading.schema import schema_problems
+from cratous.services.requirements.own_files import OwnFile, own_file, refuse_clashes
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import MISSION_BYTES
 from cratous.spec.files.text_file import text_of
@@ -72,7 +73,10 @@ class Source:
 
 @dataclass(frozen=True)
 class Campaign:
-    """All that a campaign file says. seeds: empty if every mission is run once, as it is written."""
+    """All that a campaign file says. seeds: empty if every mission is run once, as it is written.
+
+    requirements: what every run has to hold, guarantees first; own: files that the others of them are in.
+    """
 
     name: str
     missions: tuple[Source, ...] = ()
@@ -86,6 +90,7 @@ class Campaign:
     description: str = ""
     kind: str = MISSIONS
     duration_s: float = DURATION_S
+    own: tuple[OwnFile, ...] = ()
 
     @property
     def random(self) -> bool:
@@ -101,10 +106,12 @@ def campaign_schema() -> dict[str, Any]:
     return schema
 
 
-def load_campaign(path: Path, seeds: range | None, options: tuple[Option, ...]) -> Campaign:
+def load_campaign(
+    path: Path, seeds: range | None, options: tuple[Option, ...], own: tuple[OwnFile, ...] = ()
+) -> Campaign:
     """The campaign in a file, or of one mission file with the seeds and options given.
 
-    BadInput with file, line, item, expected and got.
+    own: requirements of the user's own that every run has to hold besides. BadInput with file, line, item, expected and got.
     """
     if path.is_dir() and (path / "mission.yaml").is_file():
         path = path / "mission.yaml"
@@ -122,8 +129,17 @@ def load_campaign(path: Path, seeds: range | None, options: tuple[Option, ...]) 
         source = _source(path)
         name = str(data.get("name", path.stem)) if isinstance(data, dict) else path.stem
         found = Campaign(name, (source,), seeds=seeds or range(0), options=options or (Option(),))
+    found = _with_own(found, own)
     _check(found, document)
     return found
+
+
+def _with_own(campaign: Campaign, more: tuple[OwnFile, ...]) -> Campaign:
+    """The campaign that asks for the requirements in these files too."""
+    files = (*campaign.own, *more)
+    refuse_clashes(files)
+    names = [one.name for file in files for one in file.specification().requirements]
+    return replace(campaign, own=files, requirements=(*campaign.requirements, *names))
 
 
 def _source(path: Path, kind: str = MISSIONS, duration_s: float = DURATION_S) -> Source:
@@ -154,7 +170,7 @@ def _campaign(document: Document, folder: Path, seeds: range | None) -> Campaign
         seeds = range(first, last + 1)
     kind = data.get("kind", MISSIONS)
     duration_s = float(data.get("duration_s", DURATION_S))
-    usual = HELD if kind == ENCOUNTERS else ALL
+    asked = data.get("requirements", HELD if kind == ENCOUNTERS else ALL)
     options = tuple(
         Option(o["name"], o.get("daa", True), tuple(sorted(o.get("set", {}).items())))
         for o in data.get("options", [])
@@ -168,12 +184,13 @@ def _campaign(document: Document, folder: Path, seeds: range | None) -> Campaign
         seeds=seeds or range(0),
         vary=tuple(_variable(document, k, v) for k, v in enumerate(data.get("vary", []))),
         options=options or (Option(),),
-        requirements=tuple(sorted(set(data.get("requirements", usual)))),
+        requirements=tuple(sorted(set(asked) & set(ALL))),
         judge=data.get("judge", True),
         limits=Limits(**data.get("limits", {})),
         description=data.get("description", ""),
         kind=kind,
         duration_s=duration_s,
+        own=tuple(own_file(folder / name, name) for name in asked if name not in ALL),
     )
 
 
@@ -269,7 +286,7 @@ def _check_kind(campaign: Campaign, document: Document) -> None:
             what = "a whole flight has no duration"
             raise _wrong(document, ("duration_s",), what, f"kind: {ENCOUNTERS}", MISSIONS)
         return
-    for name in sorted(set(campaign.requirements) - set(HELD)):
+    for name in (one for one in campaign.requirements if one not in HELD):
         what = "an encounter has no bridge and no log, so nothing is known of it"
         raise _wrong(document, ("requirements",), what, ", ".join(HELD), name)
     if not campaign.judge:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from cratous.services.campaign.runs import Run
+from cratous.services.requirements.own_files import TAKEN
 from cratous.spec.mission.guarantees import Outcome, worst
 
 DISAGREE, LOST = "disagreement", "lost"
@@ -81,7 +82,10 @@ def row_of(run: Run, result: dict[str, Any] | None, requirements: tuple[str, ...
 
 
 def outcome_of(result: dict[str, Any] | None, requirements: tuple[str, ...]) -> str:
-    """The outcome of a result: what is not decided is never called holding."""
+    """The outcome of a result: what is not decided is never called holding.
+
+    A guarantee has to hold for the judge too; of requirements of the user's own the judge knows nothing.
+    """
     if result is None:
         return LOST
     if result["kind"] != "flown":
@@ -92,7 +96,7 @@ def outcome_of(result: dict[str, Any] | None, requirements: tuple[str, ...]) -> 
     found = [Outcome.HOLDS if result["proved"] else Outcome.UNKNOWN]
     for name in requirements:
         verdict = Outcome(result["requirements"][name]["verdict"])
-        if judge is not None and verdict is Outcome.HOLDS:
+        if judge is not None and verdict is Outcome.HOLDS and TAKEN.fullmatch(name):
             verdict = Outcome(judge.get("guarantees", {}).get(name, Outcome.UNKNOWN))
         found.append(verdict)
     return str(worst(found))

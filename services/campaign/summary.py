@@ -37,6 +37,7 @@ def build(campaign: Campaign, rows: list[Row], version: str) -> dict[str, Any]:
         "name": campaign.name,
         "description": campaign.description,
         "requirements": list(campaign.requirements),
+        "own": [file.named for file in campaign.own],
         "judged": campaign.judge,
         "disagreements": _disagreements(rows),
         "runs_in_all": len(rows),
@@ -99,6 +100,8 @@ def _limits(campaign: Campaign, rows: list[Row]) -> Iterator[str]:
         yield f"{refused} missions were refused as they were made; rates are over the others."
     if not campaign.judge:
         yield "The independent judge was not asked."
+    elif campaign.own:
+        yield "Requirements of one's own were judged by the monitor alone; the judge knows G1 to G5."
     if any(row.result and not row.result.get("proved", True) for row in rows):
         yield "Kernels without proof were flown, so no run is better than unknown."
 

@@ -69,6 +69,8 @@ def map_view(report: dict[str, Any]) -> dict[str, Any]:
     for zone, _ in zones:
         if zone["kind"] == "keep_out":
             shown += [(corner[0], corner[1]) for corner in zone["vertices"]]
+    sites = mission.get("daa", {}).get("link_loss", {}).get("sites", ())
+    shown += [(site["north_m"], site["east_m"]) for site in sites]
     scale = Scale(shown)
     return {
         "width": MAP_WIDTH,
@@ -84,6 +86,7 @@ def map_view(report: dict[str, Any]) -> dict[str, Any]:
             }
             for zone, from_s in zones
         ],
+        "sites": [{"name": site["name"], **_hold(site, scale)} for site in sites],
         "tasks": [_task(task, scale) for task in mission["tasks"]],
         "footprints": [
             {

@@ -8,7 +8,7 @@ from typing import Any
 from cratous.services.assumptions.listing import State
 from cratous.services.certify.command import flown_in_processes
 from cratous.services.monitor.plan_check import PART, WHOLE
-from cratous.services.monitor.required_rows import PLAN_ROWS, Row, Watched, missing, promised
+from cratous.services.monitor.required_rows import END, PLAN_ROWS, Row, Watched, missing, promised
 from cratous.spec.mission.guarantees import REQUIREMENTS, Outcome, Verdict, worst
 
 
@@ -94,8 +94,8 @@ def requirement_rows(rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
         chosen = min(
             measured,
             key=lambda row: (row["unit"] != "m", row["margin"]),
-            # nothing is measured: the row that most was seen for, not whichever comes first
-            default=max(telling, key=lambda row: row["checks"], default=None),
+            # nothing is measured: what names a task, then the row that most was seen for
+            default=max(telling, key=lambda row: (row["item"] != END, row["checks"]), default=None),
         )
         found.append(
             {

@@ -10,12 +10,13 @@ from typing import Any, NamedTuple
 import click
 
 from cratous.services.cli.job import silent as untold
+from cratous.services.cli.own_requirements import own_files, own_option
 from cratous.services.cli.progress import passing, waiting
 from cratous.services.cli.show import say, table
+from cratous.spec.errors import BadInput
 from cratous.spec.files.extras import told
 
 Tell = Callable[[str], None]
-ALL = ("G1", "G2", "G3", "G4", "G5")
 
 
 def seed_range(_ctx: Any, _param: Any, value: str | None) -> range | None:
@@ -52,7 +53,8 @@ class Wanted(NamedTuple):
 @click.option(
     "--reports", type=click.IntRange(0, 10), default=10, help="Worst flights to keep. [10]"
 )
-@click.option("--find", type=click.Choice(ALL), help="Search for a run that fails this, instead.")
+@own_option("Every run has to hold these requirements of your own too.")
+@click.option("--find", metavar="ID", help="Search for a run that fails G1 to G5 or one of these.")
 @click.option(
     "--budget", type=click.IntRange(1, 100_000), default=200, help="Runs of a search. [200]"
 )
@@ -61,13 +63,16 @@ class Wanted(NamedTuple):
 @click.option("--quiet", is_flag=True, help="No progress, only the result.")
 def campaign(
     file: Path, seeds: range | None, workers: int, scheduler: str | None, out: Path | None,
-    no_daa: bool, allow_unproved: bool, **wanted: Any,
+    no_daa: bool, allow_unproved: bool, requirements: tuple[Path, ...], **wanted: Any,
 ) -> int:  # fmt: skip
     """Fly and judge all runs of a campaign FILE, or all variants of a mission FILE.
 
     A run is named by a digest of all that decides it and stored once, so a campaign that was
     interrupted goes on, and a changed option flies only what it changes. campaign.json is the same
     whatever the workers, their order and what was lost on the way.
+
+    With --requirements (again for each file) every run has to hold requirements of your own besides
+    those that the campaign asks for; a campaign file names such files under `requirements`.
 
     \b
     Examples:  cratous campaign examples/campaigns/options.yaml --workers 2
@@ -77,7 +82,7 @@ def campaign(
     Exit codes: 0 all runs hold, 1 something is violated, without a plan, or judge and monitor
     disagree, 2 bad input, 3 something is unknown, excused, impossible or lost.
     """
-    from cratous.services.campaign.definition import load_campaign
+    from cratous.services.campaign.definition import ALL, load_campaign
 
     reports, find, budget, as_json, parquet, quiet = Wanted(**wanted)
     if parquet and find is not None:
@@ -85,7 +90,10 @@ def campaign(
     if parquet:
         with told():  # before anything is flown
             import pyarrow.parquet  # noqa: F401
-    found = load_campaign(file, seeds, (option_of(not no_daa),))
+    found = load_campaign(file, seeds, (option_of(not no_daa),), own_files(requirements))
+    if find is not None and find not in {*ALL, *found.requirements}:
+        asked = ", ".join(sorted({*ALL, *found.requirements}))
+        raise BadInput("there is no such requirement", item="--find", expected=asked, got=find)
     place = out or Path("out") / "campaigns" / found.name
     how = {"workers": workers, "scheduler": scheduler, "allow_unproved": allow_unproved}
     silent = quiet or as_json

@@ -68,16 +68,17 @@ def _case(mission: dict[str, Any], requirement: str, decides: dict[str, Any]) ->
     """The mission file, with what is expected of it; of an encounter nothing is, where it is flown whole."""
     import yaml
 
-    from cratous.services.campaign.definition import ENCOUNTERS
+    from cratous.services.campaign.definition import ALL, ENCOUNTERS
     from cratous.services.cli.campaign_flight import command
 
+    text = yaml.safe_dump(mission, sort_keys=False, allow_unicode=True)
     if decides["kind"] == ENCOUNTERS:
-        text = yaml.safe_dump(mission, sort_keys=False, allow_unicode=True)
         how = "flown" if decides["daa"] else "flown without avoidance"
         return f"# {requirement} is violated in this encounter ({how}), found by a search and made small\n{text}"
-    without = {"exit_code": 1, "violated": [requirement]}
-    expect = {"exit_code": 1} if decides["daa"] else {"without_daa": without}
-    text = yaml.safe_dump({**mission, "expect": expect}, sort_keys=False, allow_unicode=True)
+    if requirement in ALL:  # a mission file expects nothing of other requirements
+        without = {"exit_code": 1, "violated": [requirement]}
+        expect = {"exit_code": 1} if decides["daa"] else {"without_daa": without}
+        text = yaml.safe_dump({**mission, "expect": expect}, sort_keys=False, allow_unicode=True)
     return f"# {requirement} is violated, found by a search and made small:  {command(decides)}\n{text}"
 
 

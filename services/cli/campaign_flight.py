@@ -21,7 +21,7 @@ FLOWN, NO_PLAN, IMPOSSIBLE, FAILED = "flown", "no plan", "impossible", "failed"
 def fly_run(task: dict[str, Any]) -> dict[str, Any]:
     """The result of a run, as plain data that follows from `task` alone.
 
-    task: `decides` of a run (mission, seed, daa, allow_unproved, judge), and `keep`: a folder for its
+    task: `decides` of a run (mission, seed, daa, allow_unproved, judge, own), and `keep`: a folder for its
     results, None if only the result is wanted.
     """
     keep = task.get("keep")
@@ -67,10 +67,12 @@ def standing(allow_unproved: bool) -> Any:
 
 def _flown(file: Path, task: dict[str, Any], out: Path) -> dict[str, Any]:
     from cratous.services.loading import load
+    from cratous.services.requirements.own_files import files_of
 
     mission = load(file, task["seed"])
     proofs = standing(task["allow_unproved"])
-    settings = Settings(task["daa"], task["allow_unproved"], command(task))
+    own = files_of(task["own"])
+    settings = Settings(task["daa"], task["allow_unproved"], command(task), own)
     if task.get("keep") is not None:
         from cratous.services.certify.report import write_report
         from cratous.services.results.folder import results_folder
@@ -88,6 +90,8 @@ def command(task: dict[str, Any]) -> str:
     parts = ["cratous", "run", "mission.yaml"]
     parts += ["--seed", str(task["seed"])] if task["seed"] else []
     parts += ["--no-daa"] * (not task["daa"]) + ["--allow-unproved"] * task["allow_unproved"]
+    for own in task["own"]:
+        parts += ["--requirements", own["file"]]
     return shlex.join(parts)
 
 
@@ -95,12 +99,16 @@ def _result(
     mission: Any, report: dict[str, Any], folder: Path, task: dict[str, Any]
 ) -> dict[str, Any]:
     from cratous.services.certify.charts import separation_view
+    from cratous.services.certify.own_views import own_constraints
 
     view = separation_view(report)
     return {
         "kind": FLOWN,
         "proved": not report["proofs"]["problems"],
-        "requirements": {row["requirement"]: _requirement(row) for row in report["requirements"]},
+        "requirements": {
+            row["requirement"]: _requirement(row)
+            for row in (*report["requirements"], *own_constraints(report))
+        },
         "takeovers": len(report["flight"]["takeovers"]),
         "outcome": report["flight"]["outcome"],
         "end_ms": report["flight"]["end_ms"],

@@ -86,7 +86,12 @@ def _read(file: Path, notes: dict[Path, tuple[str, ...]]) -> tuple[Path, list[Ba
             from cratous.services.loading import load
             from cratous.services.loading.fitness import warnings_of
 
-            notes[file] = warnings_of(load(file))
+            mission = load(file)
+            if mission.link_loss is not None:
+                from cratous.services.flight.landing_reach import require_reachable
+
+                require_reachable(mission)
+            notes[file] = warnings_of(mission)
     except BadInput as error:
         return file, list(getattr(error, "problems", ())) or [error]
     return file, []

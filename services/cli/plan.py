@@ -71,10 +71,14 @@ def plan(
             loaded.append(error)
             if count == 1:
                 raise
+    if task is not None and isinstance(loaded[0], Mission):
+        _check_asked(task, loaded[0])
 
     from cratous.core import ledger
     from cratous.services.cli.progress import waiting
+    from cratous.services.startup import ahead
 
+    ahead.begin(max((len(one.tasks) for one in loaded if isinstance(one, Mission)), default=0))
     with waiting("holding the code against its proofs", as_json):
         standing = ledger.require(allow_unproved=allow_unproved)
     job = _Job(as_json, certificate, task, standing)
@@ -103,6 +107,18 @@ def plan(
     if as_json:
         click.echo(json.dumps({"requests": answers, "exit_code": code}, indent=1))
     return code
+
+
+def _check_asked(task: int, mission: Mission) -> None:
+    """BadInput for a task that the mission does not have."""
+    known = sorted(one.id for one in mission.tasks)
+    if task not in known:
+        raise BadInput(
+            "no such task in the mission",
+            item="--why",
+            expected="one of " + ", ".join(map(str, known)),
+            got=str(task),
+        )
 
 
 class _Job(NamedTuple):

@@ -40,6 +40,11 @@ from cratous.spec.mission import Mission
 STATES_MS = 550
 """The simulator tells states twice a second; so far apart [ms] are two of them at most."""
 
+UNCERTIFIED = (
+    "the bridge between processes has no message for certificates: a vehicle that ICAROUS has holds where it is, "
+    "without anybody avoiding, while its ICAROUS is not heard"
+)
+
 
 def run_in_processes(
     mission: Mission, path: Path, folder: Path, settings: Settings, how: InProcesses, tell: Tell
@@ -50,7 +55,7 @@ def run_in_processes(
     """
     digest = mission_hash(mission)
     mission = as_flown(mission if settings.daa else replace(mission, instances=()), how.original)
-    told = told_of(mission)
+    told = told_of(mission, how.original)
     standing = ledger.require(allow_unproved=settings.allow_unproved)
     tell(f"proofs: {standing.line}")
     proofs = inventory(standing, None)
@@ -93,4 +98,4 @@ def as_flown(mission: Mission, original: bool = False) -> Mission:
         known = "which ICAROUS is behind them is not known here; "
     note = f"{who}; {known}between two states, up to {STATES_MS} ms apart, aircraft are taken to fly straight"
     simulation = replace(mission.simulation, step_ms=STATES_MS)
-    return replace(mission, simulation=simulation, notes=(*mission.notes, note))
+    return replace(mission, simulation=simulation, notes=(*mission.notes, note, UNCERTIFIED))

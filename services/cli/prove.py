@@ -180,6 +180,7 @@ def prove(
     from cratous.core.kernel.names import fits, matching
     from cratous.core.ledger import records
     from cratous.proofs import ledger
+    from cratous.proofs import recheck as again
     from cratous.proofs.engine import cache, prover
     from cratous.proofs.judgement import Memory, judge
     from cratous.proofs.ledger import report_formats
@@ -230,16 +231,25 @@ def prove(
     workers = jobs or ledger.jobs_default()
     store, phases = TimedCache(cache.standard().folder), Phases(since=begun)
     recall = Recall(private_cache() / "theorems", home)
+    # each theorem is stated once, for both solvers
+    write = again.writer(again.read(), again=not new) if recheck else None
     remembered = Remembered(private_cache() / "remembered", home)
     bar = Bar("proving", len(names), not as_json and sys.stderr.isatty())
+    texts: dict[str, Any] = {}
+
+    def tell(progress: Any) -> None:
+        bar.step(progress.name, progress.done, progress.of)
+        if progress.written is not None:
+            texts[progress.name] = progress.written
+
     with bar:
         judged = judge(
             names,
             home,
             whole=whole,
-            tell=lambda progress: bar.step(progress.name, progress.done, progress.of),
+            tell=tell,
             jobs=workers,
-            memory=Memory(store, recall, private_cache() / "relations"),
+            memory=Memory(store, recall, private_cache() / "relations", write),
             phases=phases,
         )
     inventory = judged.inventory
@@ -259,7 +269,7 @@ def prove(
     if recheck:
         keep = home.product and not check
         phases.ended(REST)
-        data["recheck"] = second_solver(theorems, folder, workers, as_json, keep, whole, new)
+        data["recheck"] = second_solver(theorems, folder, workers, as_json, keep, whole, new, texts)
         phases.ended(SECOND)
     if mutate:
         functions = only or (("*",) if whole else ())

@@ -20,10 +20,11 @@ def second_solver(
     keep: bool,
     whole: bool,
     new: bool,
+    texts: dict[str, Any],
 ) -> dict[str, Any]:
     """Put the obligations to cvc5 and tell what it says; new: only those without a recorded verdict.
 
-    keep: write the record. whole: these are all theorems.
+    keep: write the record. whole: these are all theorems. texts: those that were written while they were proved.
     """
     from cratous.core.files.private_cache import private_cache
     from cratous.proofs import recheck
@@ -40,6 +41,7 @@ def second_solver(
             record=recheck.read(),
             again=not new,
             store=Store(private_cache() / "recheck"),
+            texts=texts,
         )
     if keep:
         recheck.write(found, theorems, whole=whole)

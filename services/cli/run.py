@@ -77,8 +77,6 @@ def run(
     command = ["cratous", "run", shown_path(mission)]
     command += ["--no-daa"] * no_daa + ["--allow-unproved"] * allow_unproved
     daa, quiet, rate = not no_daa, bool(how["quiet"]), how["rate"]
-    if how["requirements"] and seeds is not None:
-        raise click.UsageError("--requirements is of one flight: no --seeds")
     own = own_files(how["requirements"])
     for file in own:
         command += ["--requirements", file.name]
@@ -99,7 +97,7 @@ def run(
     if seeds is not None:
         if seed:
             raise click.UsageError("--seed and --seeds exclude each other")
-        return _many(mission, seeds, out, Settings(daa, allow_unproved), as_json, quiet)
+        return _many(mission, seeds, out, Settings(daa, allow_unproved, own=own), as_json, quiet)
     command += ["--seed", str(seed)] if seed else []
     settings = Settings(daa, allow_unproved, shlex.join(command), own)
     return fly_and_show(mission, seed, out, settings, as_json, quiet)
@@ -139,8 +137,10 @@ def run_one(
     from cratous.services.cli.relation_places import RelationPlaces
     from cratous.services.loading import load
     from cratous.services.results.folder import results_folder
+    from cratous.services.startup import ahead
 
     loaded = load(path, seed)
+    ahead.begin(len(loaded.tasks))
     target, places = out / folder_name(loaded), RelationPlaces(loaded)
 
     def placed(text: str) -> None:
@@ -189,6 +189,9 @@ def _show(report: dict[str, Any], folder: Path) -> None:
             f"p{served['task']}: {served['phase'].lower()} by {who} "
             f"at {served['time_ms'] / 1000:.1f} s, {100 * served['served']:.1f} % served{note}"
         )
+    for change in flight["changes"]:
+        what = f"{change['what']}: {change['consequence']}"
+        say(f"change at {change['time_ms'] / 1000:.1f} s: {what}")
     for line in lines([one for one in report["blame"] if one["verdict"] != "unknown"]):
         say(line)
     for row in report["assumptions"]:
@@ -217,7 +220,7 @@ def _many(
     from cratous.services.campaign.definition import load_campaign
     from cratous.services.cli.campaign import conducted, option_of, show, table_of_runs
 
-    campaign = load_campaign(mission, seeds, (option_of(settings.daa),))
+    campaign = load_campaign(mission, seeds, (option_of(settings.daa),), settings.own)
     how = {"workers": 1, "scheduler": None, "allow_unproved": settings.allow_unproved}
     silent = quiet or as_json
     with waiting("variants", silent) as wait, TemporaryDirectory(prefix="cratous-") as scratch:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -99,7 +100,7 @@ def uxas(
                 signal.signal(number, lambda *_: _stop(process))
             log("INFO", f"running {cfg_path} as entity {root['EntityID']}")
             limit = run_until or root["RunDuration_s"]
-            process.run(None if limit is None else float(limit))
+            process.run(None if limit is None else float(limit), _spare(config, without))
         log("INFO", "ended")
     finally:
         log.close()
@@ -125,12 +126,26 @@ def _require_proofs(config: Any, log: Any, allow_unproved: bool) -> None:
         log("WARN" if standing.problems else "INFO", f"proofs: {standing.line}")
 
 
+def _plans(config: Any, without: tuple[str, ...]) -> bool:
+    """Whether a service of the configuration works in compiled loops."""
+    return bool({e.type for e in config.entries if e.type not in without} & {*_COMPILING})
+
+
 def _compile_ahead(config: Any, without: tuple[str, ...], log: Any) -> None:
     """What plans has to answer in time, so the compiler is not to begin at the first request."""
-    if {e.type for e in config.entries if e.type not in without} & {*_COMPILING}:
+    if _plans(config, without):
         from cratous.services.startup.warm import ensure_planning
 
         ensure_planning(lambda text: log("WARN", text))
+
+
+def _spare(config: Any, without: tuple[str, ...]) -> Iterator[None] | None:
+    """What is done before the first request comes, so that it takes no longer than the second."""
+    if not _plans(config, without):
+        return None
+    from cratous.services.startup.spare import pieces
+
+    return pieces()
 
 
 def _versions() -> None:

@@ -2,7 +2,8 @@
 
 A case with `line` and `direction` is held against `strict` (`accept` or `reject`): how it is cut must change
 nothing, and one of kind `valid` is written again byte for byte. An event `send` of a session holds whole
-messages. What tells of the original's own behaviour (its publications, exits, formulas) is not covered.
+messages. A case with `true_m` is how far a place is from a leg, which our end has to take for neither nearer nor farther.
+What tells of the original's own behaviour (its publications, exits, its formula of the deviation) is not covered.
 """
 
 from __future__ import annotations
@@ -20,13 +21,22 @@ from cratous.bridge.text_protocol import (
 )
 from cratous.bridge.text_protocol.handshake import ACCEPT, HELLO, REFUSE, ClientHandshake
 from cratous.bridge.text_protocol.parser import Record
+from cratous.core.avoidance.way_ahead import near_line
+from cratous.core.kernel import Vec2
 from cratous.services.conform import Result, edge, failed, not_covered, passed
+from cratous.services.conform.values import number
+from cratous.services.mission.frames import Projection
 from cratous.spec.errors import BadInput
+from cratous.spec.mission import Frame
 
 ITS_OWN = ("split", "bug")
 """Kinds of cases where the original reads wrongly what is right: cut in pieces, or by a fault of its own."""
 WHOLE_BYTES = 65535
 """A line that the file gives shortened is so long."""
+
+
+SPHERE, ROUNDED_M = 0.01, 0.5
+"""Distances on a sphere differ from those on the ellipsoid by up to this share; of places that were rounded by this [m]."""
 
 
 def judge(case: dict[str, Any]) -> Result:
@@ -35,6 +45,8 @@ def judge(case: dict[str, Any]) -> Result:
         return _line(case)
     if case.get("ev") == "send":
         return _sent(case)
+    if "true_m" in case:
+        return _deviation(case)
     return not_covered(str(case.get("n", case.get("test", "?"))), "the original's own behaviour")
 
 
@@ -84,6 +96,23 @@ def _sent(case: dict[str, Any]) -> Result:
     if bad or not whole:
         return failed(name, "a message of the original's is not read", "; ".join(bad) or "nothing")
     return passed(name, len(whole))
+
+
+def _deviation(case: dict[str, Any]) -> Result:
+    """Whether the end, asked with a limit a little above and below the distance, says the right side of both."""
+    names = ("lat1", "lon1", "lat2", "lon2", "lat", "lon", "true_m")
+    lat1, lon1, lat2, lon2, lat, lon, true_m = (number(case, name) for name in names)
+    projection = Projection(Frame(lat1, lon1))
+    places = ((lat1, lon1), (lat2, lon2), (lat, lon))
+    a, b, here = (Vec2(*projection.to_local(*place)) for place in places)
+    off_m = SPHERE * true_m + ROUNDED_M
+    name = f"{lat:g} {lon:g}, {true_m:.1f} m"
+    if not near_line(here, a, b, true_m + off_m):
+        return failed(name, "taken for farther", f"expected {true_m:g} m from the leg")
+    nearer_m = max(0.0, true_m - off_m)
+    if nearer_m and near_line(here, a, b, nearer_m):
+        return failed(name, "taken for nearer", f"expected {true_m:g} m from the leg")
+    return passed(name)
 
 
 def _records(direction: Direction, *pieces: bytes, original: bool = False) -> list[Record]:

@@ -20,7 +20,7 @@ from cratous.services.flight.replan_triggers import (
 )
 from cratous.services.flight.task_transitions import begin, give_up, progress
 from cratous.services.loading.polygons import hard_zones
-from cratous.services.mission.availability import absent
+from cratous.services.mission.availability import absent, without
 from cratous.services.mission.wind import all_in_wind, in_wind, known_at, told, wind_at
 from cratous.spec.algebra.meaning import tasks
 from cratous.spec.executive import FOR_CHANGE
@@ -65,7 +65,7 @@ def accept(state: State, out: Out) -> None:
 
 def change(config: Config, state: State, due: Sequence[Change], out: Out) -> State:
     """These changes are known now; if they ask for another plan, that is asked for."""
-    known = known_at(config.mission, state.now_ms, dict(state.ends))
+    known = without(known_at(config.mission, state.now_ms, dict(state.ends)), dict(state.landed))
     state, blown = blow(config, replace(state, known=known), out)
     ended = {c.zone_id for c in due if isinstance(c, ZoneEnd)}
     zones = hard_zones(tuple(c.zone for c in due if c.zone and c.zone.id not in ended))
@@ -88,6 +88,11 @@ def change(config: Config, state: State, due: Sequence[Change], out: Out) -> Sta
     return replace(state, asked=Asked(FOR_CHANGE, what, why))
 
 
+def _absent(config: Config, state: State) -> dict[int, str]:
+    """The vehicles that take no part now, with the reasons."""
+    return {**absent(config.mission, state.now_ms), **dict(state.landed)}
+
+
 def ask(config: Config, state: State) -> AskPlan:
     """A plan for what is left, from where all are."""
     here = {vehicle.id for vehicle in state.known.vehicles}
@@ -97,7 +102,7 @@ def ask(config: Config, state: State) -> AskPlan:
         state.known,
         tuple((vid, air.pose) for vid, air in state.aircraft if vid in here),
         tuple((task, starts[task], ends[task]) for task in sorted(ends)),
-        tuple(absent(config.mission, state.now_ms).items()),
+        tuple(_absent(config, state).items()),
         state.failed,
         tuple(sorted(starts.keys() - ends.keys())),
     )
@@ -129,7 +134,7 @@ def unplanned(
 ) -> State:
     """After a change nothing that is left can be done."""
     todo = _open(state)
-    none = nobody_may(state.known, todo, absent(config.mission, state.now_ms))
+    none = nobody_may(state.known, todo, _absent(config, state))
     of = dict(no_plan.of)
     told = [(task, of.get(task) or f"{asked_for.what}: {no_plan.why}") for task in todo]
     begun: Out = []

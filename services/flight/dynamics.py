@@ -122,6 +122,17 @@ def advance(state: AirState, dt_s: float) -> AirState:
     )
 
 
+def touching_down(state: AirState, ground_m: float, dt_s: float) -> AirState:
+    """The state whose coming step ends on the ground at the latest."""
+    least = (ground_m - state.position.alt_m) / dt_s
+    return state._replace(climb_m_s=max(state.climb_m_s, least))
+
+
+def rolling(state: AirState, braking_m_s2: float, dt_s: float) -> AirState:
+    """The state of a vehicle on the ground with the velocity of the coming step: straight on, braking to a stand."""
+    return state._replace(speed_m_s=max(state.speed_m_s - braking_m_s2 * dt_s, 0.0), climb_m_s=0.0)
+
+
 def traffic_state(traffic: Traffic, now_ms: int) -> AirState | None:
     """Traffic at an instant: straight flight from where it appears; None while it is not there."""
     if now_ms < traffic.appears_ms:

@@ -39,6 +39,7 @@ from cratous.services.flight.messages import (
     RouteAsked,
     Say,
     SetOut,
+    Stands,
     Suspend,
     TakeBack,
     Tick,
@@ -100,6 +101,8 @@ class Executive:
                 state = interruption.unlinked(state, message)
             case HeardAgain():
                 state = interruption.linked(self.config, state, message, out)
+            case Stands():
+                state = interruption.landed(state, message)
             case Report(now_ms):
                 state = self._report(state, now_ms, out)
             case Closing():
@@ -217,7 +220,8 @@ class Executive:
         """
         now_ms, limit_ms = message.now_ms, self.config.mission.simulation.limit_ms
         flying = sum(chain.item is not None for chain in state.chains)
-        away = [vid for vid, gate in message.gates if gate.owner != UXAS]
+        down = dict(state.landed)
+        away = [vid for vid, gate in message.gates if gate.owner != UXAS and vid not in down]
         kinds = (*BRINGS_WORK, *(MAY_FREE_WORK if state.left_out else ()))
         expected = sum(c.kind in kinds for c in state.to_come)
         # while some fly it is no matter; of a search that was flown in part the rest is left

@@ -68,7 +68,8 @@ class State:
     of the vehicles, as told last; epochs: in which UxAS took a vehicle back (0 for others): what its commands
     name; starts, ends: real ones; failed: tasks with the reason; left_out: those that the plan in force
     leaves out, with the reason; in_part: tasks of which a part was flown, to its end;
-    commands, replans, finished: counts; hurry: some deadline is near; asked: for which plan."""
+    commands, replans, finished: counts; hurry: some deadline is near; asked: for which plan; landed: the vehicles on
+    the ground, which stay there, each with when and where in words."""
 
     known: Mission
     mission: Mission
@@ -90,6 +91,7 @@ class State:
     finished: int = 0
     hurry: bool = False
     asked: Asked | None = None
+    landed: tuple[tuple[int, str], ...] = ()
 
     def find(self, vehicle_id: int) -> Chain | None:
         """The chain of a vehicle, if it has one yet."""

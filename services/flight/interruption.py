@@ -14,6 +14,7 @@ from cratous.services.flight.messages import (
     NotHeard,
     Proposed,
     RouteAsked,
+    Stands,
     Suspend,
     TakeBack,
 )
@@ -22,7 +23,8 @@ from cratous.services.flight.task_transitions import NAME as EXECUTIVE
 from cratous.services.flight.task_transitions import NO_WAY, circling, fail, progress
 from cratous.spec.authority.cycle import TAKE_OVER
 from cratous.spec.executive import FAIL_TASK
-from cratous.spec.mission import Position
+from cratous.spec.mission import Change, Position
+from cratous.spec.mission.changes import VEHICLE_LANDED
 from cratous.spec.mission.plan import Pose
 from cratous.spec.records import replace
 
@@ -110,6 +112,18 @@ def linked(config: Config, state: State, message: HeardAgain, out: Out) -> State
     if not by_uxas:
         return state.put(chain)
     return _flown_back(config, state, replace(chain, suspended=False), now_ms, EXECUTIVE, out)
+
+
+def landed(state: State, message: Stands) -> State:
+    """A vehicle stands on the ground, and flies nothing more: what it has left is for others, or for nobody."""
+    vid, now_ms = message.vehicle_id, state.now_ms
+    where = f"at {message.site}" if message.site else "beside every landing site"
+    told = (
+        *state.landed,
+        (vid, f"it has landed {where}, and stands there since {now_ms / 1000:.2f} s"),
+    )
+    news = Change(now_ms, VEHICLE_LANDED, vehicle=vid)
+    return replace(state, landed=told, to_come=(*state.to_come, news))
 
 
 def _flown_back(

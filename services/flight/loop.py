@@ -55,6 +55,7 @@ from cratous.services.flight.messages import (
     Say,
     Sense,
     SetOut,
+    Stands,
     Surveyed,
     Suspend,
     TakeBack,
@@ -86,6 +87,7 @@ from cratous.services.icarous.messages import (
 )
 from cratous.services.mission.frames import Projection
 from cratous.services.mission.ground import floor_of
+from cratous.services.mission.landing import sites_of
 from cratous.services.sensing import surveillance
 from cratous.services.sensing.filter import Flown
 from cratous.services.sensing.surveillance import Surveillance
@@ -139,13 +141,14 @@ class Flight:
         self.mission, self.bus, self.bridge, self.instances = mission, bus, bridge, instances
         projection, simulation = Projection(mission.frame), mission.simulation
         floor, ground = floor_of(mission), Ground(mission.daa, simulation.heartbeat_ms)
+        dt_s, sites = simulation.step_ms / 1000, sites_of(mission)
         self.executive = Executive(Config(mission, projection, instances))
         self.executive_state = executive_state.first_state(mission, plan)
         live = isinstance(mission, LivePlanningMission)
         alone = mission.link_loss is not None
         self.link, self.link_state = UxasEnd(projection, live, alone), link_peers.State()
         self.vehicles = {
-            v.id: VehicleNode(v, projection, simulation.step_ms / 1000, floor, ground)
+            v.id: VehicleNode(v, projection, dt_s, floor, ground, sites, mission.frame.terrain_m)
             for v in sorted(mission.vehicles, key=lambda v: v.id)
         }
         self.vehicle_states = {vid: node.first() for vid, node in self.vehicles.items()}
@@ -214,7 +217,7 @@ class Flight:
         self._link(Beat(now, self._everyone()))
         self._exchange()
         for vid in self.instances:
-            self._vehicle(vid, Sense(now, self._everyone(), self.instances))
+            self._vehicle(vid, Sense(now, self._in_the_air(), self.instances))
         self._exchange()
         self._link(Watch(now))
 
@@ -249,6 +252,11 @@ class Flight:
         now = self.now_ms
         seen = [(t.id, s) for t in self.mission.traffic if (s := traffic_state(t, now)) is not None]
         return tuple(sorted({**dict(self._own()), **dict(seen)}.items()))
+
+    def _in_the_air(self) -> tuple[tuple[int, AirState], ...]:
+        """The same without those on the ground."""
+        down = {vid for vid, state in self.vehicle_states.items() if state.landed}
+        return tuple(one for one in self._everyone() if one[0] not in down)
 
     def _gates(self) -> tuple[tuple[int, Any], ...]:
         return tuple((vid, state.gate) for vid, state in self.vehicle_states.items())
@@ -312,7 +320,7 @@ class Flight:
             match answer:
                 case Say(body, source):
                     self._publish(body, source)
-                case Suspend() | TakeBack() | RouteAsked() | NotHeard() | HeardAgain():
+                case Suspend() | TakeBack() | RouteAsked() | NotHeard() | HeardAgain() | Stands():
                     self._executive(answer)
                 case LimitsAre(vid) | Look(vid):
                     self._vehicle(vid, answer)

@@ -209,6 +209,13 @@ class NotHeard(NamedTuple):
     now_ms: int
 
 
+class Stands(NamedTuple):
+    """A vehicle has come to a stand on the ground, and stays there. site: on which landing site, "" beside all."""
+
+    vehicle_id: int
+    site: str
+
+
 class HeardAgain(NamedTuple):
     """It is heard again. by_uxas: UxAS has the vehicle, as its gate says."""
 
@@ -352,7 +359,7 @@ class OnBoard(NamedTuple):
 
 
 ToVehicle = Commanded | Wished | Held | Surveyed | LimitsAre | Look | Sense | Choose | Move
-FromVehicle = Say | GateIs | OnBoard
+FromVehicle = Say | GateIs | OnBoard | Stands
 
 ToExecutive = (
     Begin
@@ -368,6 +375,7 @@ ToExecutive = (
     | RouteAsked
     | NotHeard
     | HeardAgain
+    | Stands
 )
 FromExecutive = (
     Proposed | Say | ZonesKnown | Route | Flown | Left | Look | LimitsAre | AskPlan | Over

@@ -20,6 +20,7 @@ from cratous.spec.mission.changes import (
     TASK_ADDED,
     TASK_REMOVED,
     VEHICLE_JOINS,
+    VEHICLE_LANDED,
     VEHICLE_LOST,
     ZONE_ENDS,
     ZoneEnd,
@@ -31,6 +32,7 @@ BRANCHES_MAX = 64
 """So many ways to resolve `+` are looked at for orders that are missed."""
 KINDS = {
     VEHICLE_LOST: executive.LOST,
+    VEHICLE_LANDED: executive.LOST,
     VEHICLE_JOINS: executive.JOINS,
     TASK_ADDED: executive.ADDED,
     TASK_REMOVED: executive.REMOVED,

@@ -187,6 +187,9 @@ def _loiter(config: Config, state: State, chain: Chain, at_ms: int, out: Out) ->
     finishing, so that one who has finished is in nobody's way.
     """
     finished, vid = state.finished + 1, chain.vehicle.id
+    if vid in dict(state.landed):
+        air = state.air(vid)
+        return state.put(chain.enter(Phase.DONE, Track((air.position,), air.heading_rad), at_ms))
     others = any(c.item is not None for c in state.chains if c.vehicle.id != vid)
     daa = state.mission.daa
     layer = 1.5 * daa.buffer * daa.well_clear.zthr_m * finished

@@ -39,7 +39,9 @@ from cratous.services.flight.dynamics import (
     advance,
     first_state,
     limits_of,
+    rolling,
     steer,
+    touching_down,
     turn_radius_m,
     turn_rate_rad_s,
 )
@@ -56,6 +58,7 @@ from cratous.services.flight.messages import (
     OnBoard,
     Say,
     Sense,
+    Stands,
     Surveyed,
     ToVehicle,
     Wished,
@@ -63,7 +66,9 @@ from cratous.services.flight.messages import (
 from cratous.services.flight.notices import authority_change, dropped, gate_state, hand_state
 from cratous.services.icarous.messages import Offers, Sensed
 from cratous.services.mission.frames import Projection, compass
+from cratous.services.mission.landing import BRAKING_M_S2, ground_m, is_down, site_under
 from cratous.spec.mission import Vehicle
+from cratous.spec.mission.link_loss import LandingSite
 from cratous.spec.mission.plan import Hold
 from cratous.spec.records import replace
 
@@ -79,7 +84,7 @@ HANDED_BACK = "the way back is free: handed back"
 class State:
     """air: where it is and how it flies until the next step; command: what the autopilot flies, None for
     nothing yet; roll_rad: of the last turn; takeovers: how often ICAROUS has taken the vehicle; held: the certificate
-    in hand."""
+    in hand; landed: it is on the ground, and stays there."""
 
     air: AirState
     limits: Limits
@@ -88,6 +93,7 @@ class State:
     roll_rad: float = 0.0
     takeovers: int = 0
     held: InHand = NOTHING_IN_HAND
+    landed: bool = False
 
 
 Step = tuple[State, tuple[FromVehicle, ...]]
@@ -96,13 +102,16 @@ Step = tuple[State, tuple[FromVehicle, ...]]
 @dataclass(frozen=True)
 class VehicleNode:
     """A vehicle in the simulator; what does not change. Steps of dt_s; it descends to floor_m at most; ground: by what
-    it holds a certificate, None where it is offered none."""
+    it holds a certificate, None where it is offered none; sites: where it may land, terrain_m: the ground elsewhere; it
+    comes to the ground where there are some."""
 
     vehicle: Vehicle
     projection: Projection
     dt_s: float
     floor_m: float
     ground: Ground | None = None
+    sites: tuple[LandingSite, ...] = ()
+    terrain_m: float = 0.0
 
     def first(self) -> State:
         """At mission start."""
@@ -128,7 +137,28 @@ class VehicleNode:
             case Choose(now_ms):
                 return self._choose(state, now_ms)
             case Move():
-                return replace(state, air=advance(state.air, self.dt_s)), ()
+                return self._moved(replace(state, air=advance(state.air, self.dt_s)))
+
+    def _moved(self, state: State) -> Step:
+        """A step was flown: perhaps onto the ground."""
+        p = state.air.position
+        if state.landed or not self.sites:
+            return state, ()
+        ground = ground_m(p, self.sites, self.terrain_m)
+        if not is_down(p.alt_m - ground):
+            return state, ()
+        return replace(
+            state, landed=True, air=state.air._replace(position=p._replace(alt_m=ground))
+        ), ()
+
+    def _rolls(self, state: State) -> Step:
+        """On the ground: straight on and slower, to a stand, which is told."""
+        air, still = rolling(state.air, BRAKING_M_S2, self.dt_s), state.air.speed_m_s == 0
+        after = replace(state, air=air, roll_rad=0.0)
+        if still or air.speed_m_s != 0:
+            return after, ()
+        site = site_under(air.position, self.sites)
+        return after, (Stands(self.vehicle.id, site.name if site is not None else ""),)
 
     def _say(self, body: Any) -> Say:
         return Say(body, f"vehicle/{self.vehicle.id}")
@@ -200,6 +230,8 @@ class VehicleNode:
 
     def _choose(self, state: State, now_ms: int) -> Step:
         """Choose the velocity of the coming step."""
+        if state.landed:
+            return self._rolls(state)
         state, said = self._alone(state, now_ms)
         dt, air, command = self.dt_s, state.air, state.command
         if isinstance(command, Follow):
@@ -209,6 +241,9 @@ class VehicleNode:
         elif command is None:
             command = _loiter_here(state)
         moved = steer(air, decide(command, air, state.limits, dt), state.limits, dt)
+        if self.sites:
+            ground = ground_m(air.position, self.sites, self.terrain_m)
+            moved = touching_down(moved, ground, dt)
         turn = math.remainder(moved.heading_rad - air.heading_rad, 2 * math.pi)
         roll_rad = math.atan(moved.speed_m_s * turn / dt / 9.80665)
         return replace(state, air=moved, command=command, roll_rad=roll_rad), said
@@ -227,8 +262,9 @@ class VehicleNode:
         """What the vehicle's ICAROUS instance gets: own state, what the airframe can do at its present
         speed, everybody else, the gate."""
         air, limits = state.air, state.limits
+        flown_m_s = limits.min_speed_m_s if state.landed else air.speed_m_s
         ability = Ability(
-            turn_rate_rad_s(air.speed_m_s, limits.max_bank_rad),
+            turn_rate_rad_s(flown_m_s, limits.max_bank_rad),
             limits.min_speed_m_s,
             limits.max_speed_m_s,
             limits.max_climb_m_s,
@@ -239,7 +275,8 @@ class VehicleNode:
         motion = Motion(air.position, air.heading_rad, air.speed_m_s, air.climb_m_s)
         seen = traffic_picture(self.vehicle.id, message)
         hand = state.held.hand
-        sensed = Sensed(message.now_ms, motion, ability, seen, state.gate, hand=hand)
+        gate, landed = state.gate, state.landed
+        sensed = Sensed(message.now_ms, motion, ability, seen, gate, hand=hand, landed=landed)
         return OnBoard(self.vehicle.id, sensed)
 
     def _air_vehicle_state(self, state: State, look: Look) -> Any:

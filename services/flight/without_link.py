@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from cratous.core.authority.link_loss import FINISH, LOITER, RETURN
+from cratous.core.authority.link_loss import FINISH, LAND, LOITER, RETURN
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.rejoining import Router
 from cratous.services.icarous.lost import LostLink
+from cratous.services.mission.landing import sites_of
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.mission.link_loss import WithoutLink, words
 from cratous.spec.mission.plan import Pose
@@ -16,6 +17,7 @@ CHOICES = {
     WithoutLink.FINISH: FINISH,
     WithoutLink.LOITER: LOITER,
     WithoutLink.RETURN: RETURN,
+    WithoutLink.LAND: LAND,
 }
 
 
@@ -27,9 +29,10 @@ def lost_link(mission: Mission, vehicle_id: int) -> LostLink | None:
     goal = loss.to or mission.vehicle(vehicle_id).position
     returns = loss.choice is WithoutLink.RETURN
     choice = CHOICES[loss.choice]
-    return LostLink(
-        choice, loss.after_ms, words(loss.choice, loss.name), _way, goal if returns else None
-    )
+    said, sites = words(loss.choice, loss.name), sites_of(mission)
+    goal_of = goal if returns else None
+    site = loss.name if sites else ""
+    return LostLink(choice, loss.after_ms, said, _way, goal_of, site, sites)
 
 
 def _way(

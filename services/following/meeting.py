@@ -1,30 +1,40 @@
-"""What a rendezvous asks for, and its options: for each vehicle and state a straight run-in to it.
+"""What a rendezvous asks for, and its options: for each vehicle and state a way to it.
 
-The run-in begins at a gate, with room beside it to wait in laps, and is so long that flown slowly it takes a
+The way begins at a gate, with room beside it to wait in laps, and is so long that flown slowly it takes a
 lap longer than flown fast, so that who waits there can arrive at any time to come. It ends beyond the state, so
-that the vehicle passes that straight on.
+that the vehicle passes that straight on. There are two: a direct one from just ahead of the vehicle, and a
+straight run-in, for who comes from elsewhere or is too near.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import combinations, islice
 from typing import Any, NamedTuple
 
 from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.kernel import Vec2
-from cratous.core.routing.dubins import pose_after
+from cratous.core.routing.dubins import cut, dubins, polyline_length_m, pose_after
 from cratous.core.routing.visibility import name_of
-from cratous.core.tasks.rendezvous import spares_a_lap
+from cratous.core.tasks.rendezvous import pace, spares_a_lap
 from cratous.services.following.asked import milliseconds, within
 from cratous.services.following.offering import WAYS_MOST, choice, flying, named
+from cratous.services.following.speeds import (
+    Limits,
+    lap_s,
+    limits_of,
+    over_ground,
+    waiting_of,
+    wind_of,
+)
 from cratous.services.following.stations import Station
 from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.places import RequestPlaces
 from cratous.services.pipeline.source import Known
 from cratous.services.planning.flyers import Flyer, flyer_of
-from cratous.services.planning.options import Dropped, Option, flight_ms, hold_rooms
+from cratous.services.planning.options import Dropped, HoldRoom, Option, flight_ms, hold_rooms
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Position, Task, Vehicle
 from cratous.spec.mission.plan import Pose
@@ -41,13 +51,13 @@ RUN_IN_RADII = 6.0
 """A run-in is so many turn radii long at least, so that it is flown straight."""
 RUN_IN_RESERVE = 1.25
 RUN_IN_MOST_M = 20_000.0
-LEAST_M_S = 1.0
-"""Who makes less way against the wind is taken to make this."""
-SLOWER = 2.0
-"""Who waits flies no slower than its nominal speed by this: a lap is so long that states show each quarter of it."""
 RUN_IN = "run-in, waiting at [m/s] "
 """The label of an option, before the speed at which its vehicle waits."""
-BEYOND_RADII = 2.5
+DIRECT_RADII = 1.2
+"""The straight end of a direct way, in radii of a turn at the fastest speed."""
+LEAD_S = 10.0
+"""A direct way begins so far ahead of where its vehicle is: all are heard before they are there."""
+BEYOND_RADII = 2.1
 """A run-in ends so many radii of a turn at the fastest speed beyond its state: at most two ahead the next begins."""
 
 
@@ -77,57 +87,6 @@ def meeting_of(body: Any, places: RequestPlaces) -> Met:
     return Met(needed, tolerance, wait, tuple(found))
 
 
-class Limits(NamedTuple):
-    """Speeds of a vehicle [m/s]."""
-
-    slowest_m_s: float
-    nominal_m_s: float
-    fastest_m_s: float
-
-
-def limits_of(vehicle: Vehicle) -> Limits:
-    """The speeds of a vehicle; one that its configuration leaves out is the nominal one."""
-    nominal = vehicle.speed_m_s
-    slowest = min(vehicle.min_speed_m_s or nominal, nominal)
-    return Limits(slowest, nominal, max(vehicle.max_speed_m_s, nominal))
-
-
-def wind_of(state: Any, heading_rad: float) -> Vec2:
-    """The wind that a vehicle's state tells, along a heading and across it [m/s]; BadInput for what is no wind."""
-    speed, source = getattr(state, "WindSpeed", 0.0), getattr(state, "WindDirection", 0.0)
-    if not (math.isfinite(speed) and math.isfinite(source)):
-        raise BadInput(
-            "a wind that is no number", where=f"state of vehicle {state.ID}",
-            item="WindSpeed, WindDirection", expected="finite numbers", got=f"{speed:g}, {source:g}",
-        )  # fmt: skip
-    off = math.radians(source) - heading_rad
-    return Vec2(-speed * math.cos(off), -speed * math.sin(off))
-
-
-def over_ground(limits: Limits, wind: Vec2) -> Limits:
-    """The speeds of a vehicle over ground, at least `LEAST_M_S`; wind: along its way and across it [m/s]."""
-    found = []
-    for speed in limits:
-        along = math.sqrt(max(speed**2 - wind.y**2, 0.0))
-        found.append(max(along + wind.x, LEAST_M_S))
-    return Limits(*found)
-
-
-def lap_s(flyer: Flyer, wind: Vec2 = Vec2(0.0, 0.0)) -> float:
-    """How long a lap of waiting takes [s], in a wind at most ten times as long as without one."""
-    calm_s = 2 * math.pi * flyer.radius_m / flyer.speed_m_s
-    return calm_s / max(1 - (wind.x**2 + wind.y**2) / flyer.speed_m_s**2, 0.1)
-
-
-def waiting_of(flyer: Flyer, limits: Limits, wind: Vec2) -> Flyer:
-    """How a vehicle flies while it waits: as slowly as it can, on the narrower circle of that, if a lap is shorter so."""
-    share = max(limits.slowest_m_s / limits.nominal_m_s, 1 / SLOWER)
-    slow = flyer._replace(
-        speed_m_s=share * flyer.speed_m_s, radius_m=share * share * flyer.radius_m
-    )
-    return min(flyer, slow, key=lambda one: lap_s(one, wind))
-
-
 def waits_as(option: Option) -> Flyer:
     """How the vehicle of an option flies while it waits."""
     speed = float(option.label.removeprefix(RUN_IN))
@@ -135,10 +94,64 @@ def waits_as(option: Option) -> Flyer:
     return option.flyer._replace(speed_m_s=speed, radius_m=share**2 * option.flyer.radius_m)
 
 
+def is_direct(option: Option) -> bool:
+    """Whether an option is a way from where its vehicle is, with a turn in it; else it is a straight run-in."""
+    return len(option.path) > 3
+
+
+def usual_m_s(option: Option, limits: Limits) -> float:
+    """The speed at which the vehicle of an option is planned to come [m/s]."""
+    return limits.brisk_m_s if is_direct(option) else limits.nominal_m_s
+
+
+def planned_m_s(option: Option) -> float:
+    """The speed at which the waypoints of an option are flown from its gate to its place [m/s]."""
+    if not is_direct(option):
+        return option.flyer.speed_m_s
+    length, beyond_ms = polyline_length_m(option.path[:-1]), _beyond_ms(option)
+    return 1000 * length / (option.duration_ms - beyond_ms)
+
+
+def _beyond_ms(option: Option) -> int:
+    beyond_m = math.dist(option.path[-2][:2], option.path[-1][:2])
+    return flight_ms(beyond_m, option.flyer.speed_m_s)
+
+
+def _together(
+    needed: int, able: Sequence[Vehicle], made: Sequence[tuple[Option, int]]
+) -> list[tuple[Option, int]]:
+    """With direct ways that are planned to be over at one time, where it is known who flies them: by all."""
+    direct = {option.vehicles[0]: option for option, _ in made if is_direct(option)}
+    limits = {vehicle.id: limits_of(vehicle) for vehicle in able}
+    if not len(direct) == sum(is_direct(option) for option, _ in made) == needed:
+        return list(made)
+    lengths = {v: polyline_length_m(option.path[:-1]) for v, option in direct.items()}
+    last_s = max(length / limits[v].brisk_m_s for v, length in lengths.items())
+    found = []
+    for option, k in made:
+        if is_direct(option):
+            length, own = lengths[option.vehicles[0]], limits[option.vehicles[0]]
+            speed = pace(length, last_s, own.slowest_m_s, own.brisk_m_s, 0.0).speed_m_s
+            lasts = flight_ms(length, speed) + _beyond_ms(option)
+            option = replace(option, duration_ms=lasts)
+        found.append((option, k))
+    return found
+
+
+def at_speed(made: Any, speed_m_s: float) -> Any:
+    """A TaskImplementationResponse whose vehicle flies to its place at a speed, from its gate on."""
+    own = [w for w in made.TaskWaypoints if w.AssociatedTasks]
+    there = [w.copy(Speed=speed_m_s) for w in own[1:-1]]
+    return made.copy(TaskWaypoints=[*made.TaskWaypoints[: -len(own)], own[0], *there, own[-1]])
+
+
 def options_of(
     context: Context, task: Task, met: Met, world: Known
 ) -> tuple[list[tuple[Option, int]], list[Dropped], list[str]]:
-    """The options with the numbers of their states; what is not offered, with the reason; what is not done."""
+    """The options with the numbers of their states; what is not offered, with the reason; what is not done.
+
+    A direct way comes after the straight run-in of its vehicle and state.
+    """
     made, dropped, notes = list[tuple[Option, int]](), list[Dropped](), list[str]()
     able = flying(context.inputs.mission.vehicles, task, dropped)
     known = [v.id for v in able]
@@ -156,15 +169,18 @@ def options_of(
                     Dropped(task.id, (vehicle.id,), "", f"RendezvousStates[{k}]: {found}")
                 )
             else:
-                number = len(made) + 1
-                made.append((named(found, number, vehicle.id), k))
+                state = world.get("state", vehicle.id)
+                direct = _direct(context, vehicle, found, state)
+                for one in (found, direct):
+                    if one is not None:
+                        made.append((named(one, len(made) + 1, vehicle.id), k))
                 own = pose._replace(alt_m=found.flyer.alt_m)
                 if own != pose:
                     notes.append(
                         f"vehicle {vehicle.id} passes RendezvousStates[{k}] of task {task.id} at its own "
                         f"altitude, {own.alt_m:g} m MSL, not at {pose.alt_m:g} m"
                     )
-    return made, dropped, notes
+    return _together(met.needed, able, made), dropped, notes
 
 
 def _option(
@@ -186,24 +202,61 @@ def _option(
         )
     at = pose._replace(alt_m=flyer.alt_m)
     gate = pose_after(at, 0, -length, 1.0)
-    # the radius of a turn grows with the square of the speed
-    beyond = BEYOND_RADII * flyer.radius_m * (limits.fastest_m_s / limits.nominal_m_s) ** 2
+    beyond = BEYOND_RADII * _widest(flyer, limits)
     end = pose_after(at, 0, beyond, 1.0)
     path = tuple(Position(*p[:3]) for p in (gate, at, end))
     leg = first_bad_leg(path, zones)
     if leg is not None:
         return f"its straight way there breaks {name_of(leg[1])}"
-    rooms = hold_rooms(gate, flyer.radius_m, zones)
-    rooms = tuple(
-        room
-        for room in rooms
-        if first_bad_leg((_middle(gate, waiting, room.clockwise), path[2]), zones) is None
-    )
+    rooms = _rooms(gate, flyer, waiting, end, context)
     if not rooms:
         return "its circle to wait on, before its straight way there, breaks a zone"
     lasts = flight_ms(length + beyond, flyer.speed_m_s)
     label = f"{RUN_IN}{waiting.speed_m_s!r}"
     return Option(task.id, 0, (), flyer, gate, end, path, lasts, rooms, label)
+
+
+def _widest(flyer: Flyer, limits: Limits) -> float:
+    """The radius of a turn at the fastest speed: it grows with the square of the speed."""
+    return flyer.radius_m * (limits.fastest_m_s / limits.nominal_m_s) ** 2
+
+
+def _rooms(
+    gate: Pose, flyer: Flyer, waiting: Flyer, on: Position | Pose, context: Context
+) -> tuple[HoldRoom, ...]:
+    """On which sides of a gate a vehicle may wait, and go on from there to a place."""
+    zones, goal = context.inputs.zones, Position(*on[:3])
+    return tuple(
+        room
+        for room in hold_rooms(gate, flyer.radius_m, zones)
+        if first_bad_leg((_middle(gate, waiting, room.clockwise), goal), zones) is None
+    )
+
+
+def _direct(context: Context, vehicle: Vehicle, straight: Option, state: Any) -> Option | None:
+    """The way to a state from just ahead of where a vehicle is, if it spares a lap and breaks no zone.
+
+    Its turns are so wide that they are flown at any speed of the vehicle.
+    """
+    flyer, limits, begin = straight.flyer, limits_of(vehicle), context.inputs.starts[vehicle.id]
+    gate = pose_after(begin._replace(alt_m=flyer.alt_m), 0, LEAD_S * flyer.speed_m_s, 1.0)
+    at = straight.end._replace(north_m=straight.path[1][0], east_m=straight.path[1][1])
+    wide_m, waiting = _widest(flyer, limits), waits_as(straight)
+    last = pose_after(at, 0, -DIRECT_RADII * wide_m, 1.0)
+    path = (*cut(dubins(gate, last, wide_m), last), *straight.path[1:])
+    length = polyline_length_m(path[:-1])
+    chord = math.atan2(at.east_m - gate.east_m, at.north_m - gate.north_m)
+    for heading in (chord, at.heading_rad):
+        wind = wind_of(state, heading)
+        ground = over_ground(limits, wind)
+        if not spares_a_lap(length, lap_s(waiting, wind), ground.slowest_m_s, ground.fastest_m_s):
+            return None
+    if first_bad_leg(path, context.inputs.zones) is not None:
+        return None
+    rooms = _rooms(gate, flyer, waiting, path[1], context)
+    lasts = flight_ms(length, limits.brisk_m_s) + _beyond_ms(straight)
+    made = replace(straight, start=gate, path=path, duration_ms=lasts, holds=rooms)
+    return made if rooms else None
 
 
 def _middle(gate: Pose, flyer: Flyer, clockwise: bool) -> Position:
@@ -226,7 +279,13 @@ def waiting_circle(option: Option) -> tuple[Station, bool]:
 
 def ways_of(met: Met, options: Sequence[tuple[Option, int]]) -> list[tuple[int, ...]]:
     """All ways to choose vehicles and to give each a state of its own, as the numbers of options; BadInput if they
-    are too many. One state for anybody is everybody's."""
+    are too many. One state for anybody is everybody's. The direct ways are taken all together, or none of them."""
+    found = _all_ways(met, [one for one in options if not is_direct(one[0])])
+    direct = _all_ways(met, options)  # of one vehicle and state the later one is taken
+    return [*direct, *found] if found != direct and 2 * len(found) <= WAYS_MOST else found
+
+
+def _all_ways(met: Met, options: Sequence[tuple[Option, int]]) -> list[tuple[int, ...]]:
     by_vehicle: dict[int, dict[int, int]] = {}
     for option, k in options:
         by_vehicle.setdefault(option.vehicles[0], {})[k] = option.option_id

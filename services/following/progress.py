@@ -4,14 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from itertools import pairwise
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from cratous.core.kernel import Vec2
-from cratous.services.following.meeting import Limits, lap_s, over_ground, waiting_circle
+from cratous.core.tasks.rendezvous import beyond
+from cratous.core.tasks.stations import in_ring
+from cratous.services.following.meeting import is_direct, waiting_circle, waits_as
 from cratous.services.following.part import Part
 from cratous.services.following.service import Following
+from cratous.services.following.speeds import Limits, lap_s, over_ground
 from cratous.services.planning.flyers import Flyer
+
+NEAR_GATE = 1.5
+"""A circle to wait on is left no farther from its gate than so many of its radii."""
 
 
 class Way(NamedTuple):
@@ -71,13 +78,49 @@ def heard(state: Following, vehicle: int, now_ms: int) -> Following:
 
 def place_of(part: Part) -> Vec2:
     """Where a vehicle is to be at the common time."""
-    return Vec2(*part.option.path[1][:2])
+    return Vec2(*part.option.path[-2][:2])
 
 
 def ahead_of(part: Part) -> Vec2:
-    """The direction of its run-in."""
-    heading = part.option.start.heading_rad
+    """The direction in which a vehicle passes its place."""
+    heading = part.option.end.heading_rad
     return Vec2(math.cos(heading), math.sin(heading))
+
+
+def course_of(part: Part, here: Vec2) -> float:
+    """The heading of what is left of a vehicle's way [rad]: of a direct one, before its end, that of the straight line."""
+    path, at = part.option.path, place_of(part)
+    if not is_direct(part.option) or in_ring(at, here, 0, math.dist(path[-3][:2], at)):
+        return part.option.end.heading_rad
+    return math.atan2(at.y - here.y, at.x - here.x)
+
+
+def way_left(
+    part: Part, here: Vec2, number: int, laps: bool, gone: bool, plan: Mapping[int, Any]
+) -> Way:
+    """What is left of a vehicle's way; number: of the waypoint that it makes for; plan: its waypoints by number."""
+    at, gate = place_of(part), Vec2(part.option.start.north_m, part.option.start.east_m)
+    on = part.begins + 1 if laps or not gone else number
+    if laps:
+        return Way(_along(part, here, on, plan), True, True, here=here)
+    if not gone:
+        left = math.dist(here, gate) + _along(part, gate, on, plan)
+        return Way(left, True, here=here)
+    if is_direct(part.option) and number < part.then - 2:  # not yet on the straight end
+        return Way(_along(part, here, on, plan), False)
+    ahead = ahead_of(part)
+    along_m = (at.x - here.x) * ahead.x + (at.y - here.y) * ahead.y
+    return Way(max(along_m, 0.0), False, False, beyond(here, at, ahead))
+
+
+def _along(part: Part, here: Vec2, number: int, plan: Mapping[int, Any]) -> float:
+    """The way from here to a waypoint and on along the plan to the place [m]; straight there, where that is the way."""
+    at, points = place_of(part), [plan.get(k) for k in range(number, part.then)]
+    if not is_direct(part.option) or not points or None in points:
+        return math.dist(here, at)
+    along = [here, *(Vec2(*point[:2]) for point in points if point is not None)]
+    past = math.dist(at, part.option.path[-1][:2])
+    return max(sum(math.dist(p, q) for p, q in pairwise(along)) - past, 0.0)
 
 
 def turn_left(part: Part, body: Any) -> float:
@@ -86,3 +129,15 @@ def turn_left(part: Part, body: Any) -> float:
     if not waiting_circle(part.option)[1]:
         off = -off
     return off % (2 * math.pi) / (2 * math.pi)
+
+
+def at_gate(part: Part, here: Vec2, heading_deg: float) -> bool:
+    """Whether a vehicle that waits is near its gate, and heads along its way, 45 degrees off at most."""
+    gate, heading = part.option.start, math.radians(heading_deg)
+    toward, origin = Vec2(math.cos(heading), math.sin(heading)), Vec2(0.0, 0.0)
+    reach_m = NEAR_GATE * waits_as(part.option).radius_m
+    near = in_ring(Vec2(gate.north_m, gate.east_m), here, 0, reach_m)
+    ahead = Vec2(math.cos(gate.heading_rad), math.sin(gate.heading_rad))
+    left = Vec2(ahead.x + ahead.y, ahead.y - ahead.x)
+    right = Vec2(ahead.x - ahead.y, ahead.y + ahead.x)
+    return near and beyond(toward, origin, left) and beyond(toward, origin, right)

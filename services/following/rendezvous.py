@@ -1,8 +1,8 @@
 """The service of a rendezvous: its vehicles pass their states at one time.
 
-Options, choices and lives go as for a task that keeps to what moves. A vehicle that makes for its run-in waits in
-laps beside its beginning until all are on theirs. Then the common time is set (`common_time`), the first that
-all can keep at their nominal speeds; each leaves its circle when `pace` and `another_lap` say so, and with
+Options, choices and lives go as for a task that keeps to what moves. A vehicle that comes to the gate of its way waits
+in laps beside it until all have begun theirs. Then the common time is set (`common_time`), the first that
+all can keep at their usual speeds; each leaves its circle when `pace` and `another_lap` say so, and with
 each of its states is told the speed at which it arrives then (SpeedOverrideAction). Who is late moves the common
 time on, if the others can wait for it. Complete: all have passed, each within the tolerance of it.
 """
@@ -19,7 +19,6 @@ from cratous.core.tasks.rendezvous import (
     Meeting,
     Pace,
     another_lap,
-    beyond,
     common_time,
     in_company,
     meeting_step,
@@ -30,19 +29,29 @@ from cratous.services.bus import Envelope
 from cratous.services.following import part as parts_of
 from cratous.services.following.meeting import (
     WAIT,
-    Limits,
     Met,
-    limits_of,
+    at_speed,
+    is_direct,
     meeting_of,
     offered,
     options_of,
+    planned_m_s,
+    usual_m_s,
     waiting_circle,
     waits_as,
     ways_of,
-    wind_of,
 )
 from cratous.services.following.part import Part
-from cratous.services.following.progress import Progress, Way, ahead_of, heard, place_of, turn_left
+from cratous.services.following.progress import (
+    Progress,
+    Way,
+    at_gate,
+    course_of,
+    heard,
+    place_of,
+    turn_left,
+    way_left,
+)
 from cratous.services.following.service import (
     SELECTED,
     SILENT_MS,
@@ -50,6 +59,7 @@ from cratous.services.following.service import (
     FollowingTaskService,
     Step,
 )
+from cratous.services.following.speeds import Limits, limits_of, wind_of
 from cratous.services.following.stations import EARLY, FLY, LATE
 from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.status import status
@@ -70,14 +80,12 @@ NO_END = -1
 """No end of waiting, as the kernels have it."""
 VANISHED_MS = 30_000
 """For a vehicle that was not heard for longer the others do not wait."""
-NEAR_GATE = 1.5
-"""A circle to wait on is left no farther from its gate than so many of its radii."""
+GATE_S = 4.0
+"""Who comes by a direct way is told to wait no sooner than so long before its gate."""
 
 
 class RendezvousTaskService(FollowingTaskService):
     """One rendezvous."""
-
-    # what is offered
 
     def _found(self, context: Context) -> tuple[list[Option], list[Dropped]]:
         if self._made is None or self._made[0] is not context:
@@ -109,6 +117,10 @@ class RendezvousTaskService(FollowingTaskService):
     def _limits(self, part: Part) -> Limits:
         vehicles = part.context.inputs.mission.vehicles
         return limits_of(next(v for v in vehicles if v.id == part.vehicle))
+
+    def _plan(self, request: Any, response: Any) -> list[Any]:
+        made, *more = super()._plan(request, response)
+        return [at_speed(made, planned_m_s(self._option(request))), *more]
 
     # what is flown
 
@@ -157,10 +169,8 @@ class RendezvousTaskService(FollowingTaskService):
         if not (lists or laps):
             return self._undone(state, f"vehicle {part.vehicle} flies it no more", out)
         try:
-            wind, before = wind_of(body, part.option.start.heading_rad), way.told if way else 0
-            way = self._way(part, body, laps, progress)._replace(
-                wind=wind, told=body.Time, before=before
-            )
+            before = way.told if way else 0
+            way = self._way(state, part, body, laps)._replace(before=before)
         except BadInput as error:
             if not part.blocked:
                 out.append(self._warning(f"vehicle {part.vehicle} is not steered: {error}"))
@@ -197,20 +207,15 @@ class RendezvousTaskService(FollowingTaskService):
             return f"{text}, and {', '.join(map(str, late))} has not come" if late else text
         return ""
 
-    def _way(self, part: Part, body: Any, laps: bool, progress: Progress) -> Way:
+    def _way(self, state: Following, part: Part, body: Any, laps: bool) -> Way:
         """What is left of a vehicle's way by its state; less than nothing where it has passed its state."""
-        here, at = self._here(part, body), place_of(part)
+        progress = state.meeting or Progress()
         gone = part.vehicle in progress.gone or body.CurrentWaypoint > part.begins
-        if laps:
-            share = turn_left(part, body) if part.vehicle in progress.slow else 1.0
-            return Way(math.dist(here, at), True, True, turn=share, here=here)
-        if not gone:
-            gate = part.option.start
-            run_in = math.dist((gate.north_m, gate.east_m), at)
-            return Way(math.dist(here, (gate.north_m, gate.east_m)) + run_in, True)
-        ahead = ahead_of(part)
-        along_m = (at.x - here.x) * ahead.x + (at.y - here.y) * ahead.y
-        return Way(max(along_m, 0.0), False, False, beyond(here, at, ahead))
+        here, plan = self._here(part, body), state.plans.get(part.vehicle, {})
+        way = way_left(part, here, body.CurrentWaypoint, laps, gone, plan)
+        share = turn_left(part, body) if part.vehicle in progress.slow else 1.0
+        wind = wind_of(body, course_of(part, here))
+        return way._replace(turn=share if laps else 0.0, wind=wind, told=body.Time)
 
     def _here(self, part: Part, body: Any) -> Vec2:
         where = f"state of vehicle {part.vehicle}"
@@ -278,7 +283,11 @@ class RendezvousTaskService(FollowingTaskService):
             again = another_lap(
                 way.left_m, left_s, way.lap_s(waits_as(part.option)), ground.nominal_m_s
             )
-            if said.act == FLY and not again and self._at_gate(part, body):
+            if (
+                said.act == FLY
+                and not again
+                and at_gate(part, self._here(part, body), body.Heading)
+            ):
                 return self._leaves(state, part, speed_m_s, out)
             return self._waits(state, part, out)
         if said.act == EARLY and way.waits:
@@ -306,7 +315,7 @@ class RendezvousTaskService(FollowingTaskService):
         )
 
     def _set(self, state: Following) -> Progress:
-        """The common time by what is left of all ways: at nominal speeds, else as fast as they fly; None: none."""
+        """The common time by what is left of all ways: at usual speeds, else as fast as they fly; None: none."""
         progress, now_ms = state.meeting, state.now_ms
         for fast in (False, True):
             meeting = Meeting(0, NO_END)
@@ -315,7 +324,7 @@ class RendezvousTaskService(FollowingTaskService):
                 limits = way.over_ground(self._limits(part))
                 soonest, latest = way.arrived, way.arrived
                 if way.arrived is None:
-                    speed = limits.fastest_m_s if fast else limits.nominal_m_s
+                    speed = limits.fastest_m_s if fast else usual_m_s(part.option, limits)
                     lap = way.turn * way.lap_s(waits_as(part.option))
                     soonest = now_ms + math.ceil(1000 * (lap + way.left_m / speed))
                     latest = now_ms + math.floor(1000 * way.left_m / limits.slowest_m_s)
@@ -325,23 +334,15 @@ class RendezvousTaskService(FollowingTaskService):
                 break
         return progress._replace(common=common.time if common.found else None)
 
-    def _at_gate(self, part: Part, body: Any) -> bool:
-        """Whether a vehicle that waits is near its gate, and heads for its state, 45 degrees off at most."""
-        here, gate = self._here(part, body), part.option.start
-        heading = math.radians(body.Heading)
-        toward = Vec2(math.cos(heading), math.sin(heading))
-        reach_m = NEAR_GATE * waits_as(part.option).radius_m
-        near = in_ring(Vec2(gate.north_m, gate.east_m), here, 0, reach_m)
-        ahead, origin = ahead_of(part), Vec2(0.0, 0.0)
-        left = Vec2(ahead.x + ahead.y, ahead.y - ahead.x)
-        right = Vec2(ahead.x - ahead.y, ahead.y + ahead.x)
-        return near and beyond(toward, origin, left) and beyond(toward, origin, right)
-
     def _waits(self, state: Following, part: Part, out: list[Any]) -> Step:
         """It waits in laps beside its gate, if it can and does not yet: slowly, as soon as it is there."""
         progress, way = state.meeting, state.meeting.ways[part.vehicle]
         circle, clockwise = waiting_circle(part.option)
-        flyer = part.option.flyer
+        flyer, gate = part.option.flyer, Vec2(*part.option.start[:2])
+        if is_direct(part.option) and not (
+            way.laps or in_ring(gate, way.here, 0, GATE_S * flyer.speed_m_s)
+        ):
+            return state, out  # there is time for the others to be heard
         slow = way.laps and in_ring(circle.at, way.here, 0, 3 * flyer.radius_m)
         if way.laps != slow or part.vehicle in progress.slow or not way.waits:
             return state, out
@@ -359,7 +360,7 @@ class RendezvousTaskService(FollowingTaskService):
         """It is sent on along its run-in."""
         number = parts_of.command_id(self._task_id, part.state.task.request)
         points = state.plans.get(part.vehicle, {})
-        along = part._replace(then=part.then - 1)
+        along = part._replace(then=part.begins + 1 if is_direct(part.option) else part.then - 1)
         command, why = parts_of.released(along, self._task_id, number, points)
         if command is None:
             text = f"vehicle {part.vehicle} cannot leave its circle: {why}"

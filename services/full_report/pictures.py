@@ -32,7 +32,7 @@ def _map(report: Data) -> Picture:
     for key, said, style in (
         ("traffic", "traffic", "traffic"), ("zones", "keep-out", "keep_out"),
         ("zones", "keep-in", "keep_in"), ("footprints", "some of the footprints", "footprint 0"),
-        ("holds", "loiter", "hold"),
+        ("sites", "landing site", "site"), ("holds", "loiter", "hold"),
     ):  # fmt: skip
         caption += [(said, style)] if view[key] else []
     return Picture("Map", view["width"], view["height"], tuple(_map_shapes(view)), tuple(caption))
@@ -45,6 +45,9 @@ def _map_shapes(view: Data) -> Iterator[Shape]:
         said += [f"until {zone['until_s']} s"] if zone["until_s"] is not None else []
         x, y = zone["at"]
         yield Label((x, y - 6), ", ".join((f"zone {zone['id']}", *said)), soft=True)
+    for site in view["sites"]:
+        yield Disc((site["x"], site["y"]), site["r"], "site")
+        yield Label((site["x"] + site["r"] + 4, site["y"] + 4), site["name"], soft=True)
     for task in view["tasks"]:
         x, y = task["x"], task["y"]
         if task["radius"]:

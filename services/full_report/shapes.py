@@ -58,7 +58,7 @@ STYLES = {
     "keep_out": Ink(BAD, 1.5, BAD, fill_opacity=0.16),
     "keep_in": Ink(GOOD, 2.0, dash=(10.0, 5.0)),
     "threshold": Ink(BAD, dash=(6.0, 4.0)),
-    "hold": Ink(WAIT, 1.5, dash=(4.0, 3.0)),
+    "hold": Ink(WAIT, 1.5, dash=(4.0, 3.0)), "site": Ink(GOOD, 2.0),
     "traffic": Ink(SOFT, 2.0, dash=(2.0, 4.0)),
     "taskline": Ink(TEXT, 9.0, stroke_opacity=0.3, round_ends=True),
     "taskpoint": Ink(TEXT, 2.0),

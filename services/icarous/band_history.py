@@ -35,11 +35,13 @@ class DimensionHistory(NamedTuple):
 
 
 class Bands(NamedTuple):
-    """When was looked last [ms], what the airframe could do then, whether some intruder was known within bounds only, and the
-    history by intruder and by dimension (heading first)."""
+    """When was looked last [ms], what the airframe could do then, whether some intruder was known within bounds only, the
+    history by intruder and by dimension (heading first), and the dimensions in which nothing keeps well clear: what
+    they resolve with regains it."""
 
     at_ms: int
     ability: Ability
     loose: bool
     alerts: tuple[AlertHistory, ...]
     dimensions: tuple[DimensionHistory, ...]
+    recovers: tuple[int, ...] = ()

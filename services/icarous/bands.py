@@ -40,7 +40,7 @@ from cratous.spec.daa.parameters import (
     Parameters,
     Volume,
 )
-from cratous.spec.mission import Daa, Position, Velocity, WellClear
+from cratous.spec.mission import Daa, Position, Resolution, Velocity, WellClear
 
 PERIOD_MS = 1000
 """Alerts and bands are looked for so often [ms]."""
@@ -50,6 +50,8 @@ STEPS = 12
 """Speeds, climbs and altitudes are tried in so many steps over what the airframe can do."""
 HIGHEST_M = 1e5
 """Altitudes are bounded by what can be reached within the look-ahead, and not by a ceiling [m MSL]."""
+FIRST = {Resolution.ALTITUDE: ALT, Resolution.SPEED: HS}
+"""The dimension of a kind of manoeuvre that a mission may ask for first."""
 M, N = 2, 4
 HYSTERESIS_S, PERSISTENCE_S = 5.0, 4.0
 PREFERRED_DEG, PREFERRED_M_S = 15.0, 100 * KNOT
@@ -62,7 +64,7 @@ RTCA DO-365B."""
 
 class Whose(NamedTuple):
     """Whose bands: the vehicle, what it keeps clear of, its heartbeat [ms]; told: somebody reads them, so all that the
-    airframe can change is looked at, and not headings alone."""
+    airframe can change is looked at, and not only what is steered by."""
 
     vehicle_id: int
     daa: Daa
@@ -76,8 +78,7 @@ def parameters_of(whose: Whose, ability: Ability, sum_volumes: bool) -> Paramete
     own, kind = daa.well_clear, TAUMOD_SUM if sum_volumes else TAUMOD
     wide = buffered(own, daa.buffer)
     acts_s = nearest(ability, wide, heartbeat_ms).last_s
-    climb = ability.max_climb_m_s
-    reach_m = max(climb * daa.lookahead_s, own.zthr_m)
+    climb, reach = ability.max_climb_m_s, reach_m(daa, ability)
 
     def level(volume: WellClear, time_s: float, region: int) -> Level:
         v = Volume(kind, volume.dthr_m, volume.zthr_m, volume.tthr_s, volume.tcoa_s)
@@ -94,12 +95,12 @@ def parameters_of(whose: Whose, ability: Ability, sum_volumes: bool) -> Paramete
         max_vs_m_s=climb,
         min_alt_m=ability.floor_m,
         max_alt_m=HIGHEST_M,
-        below_relative_alt_m=reach_m,
-        above_relative_alt_m=reach_m,
+        below_relative_alt_m=reach,
+        above_relative_alt_m=reach,
         step_hdir_rad=STEP_DEG * DEG,
         step_hs_m_s=(ability.max_speed_m_s - ability.min_speed_m_s) / STEPS,
         step_vs_m_s=2 * climb / STEPS,
-        step_alt_m=2 * reach_m / STEPS,
+        step_alt_m=2 * reach / STEPS,
         horizontal_accel_m_s2=ability.acceleration_m_s2,
         vertical_accel_m_s2=0.0,
         turn_rate_rad_s=ability.turn_rate_rad_s,
@@ -132,6 +133,11 @@ def parameters_of(whose: Whose, ability: Ability, sum_volumes: bool) -> Paramete
     )
 
 
+def reach_m(daa: Daa, ability: Ability) -> float:
+    """How far up and down altitudes are looked at [m]."""
+    return max(ability.max_climb_m_s * daa.lookahead_s, daa.well_clear.zthr_m)
+
+
 def watched(
     whose: Whose, before: Bands | None, sensed: Sensed
 ) -> tuple[Bands | None, Instant | None]:
@@ -147,9 +153,19 @@ def watched(
         _remember(session, before)
     own = _own(whose.vehicle_id, sensed.motion)
     others = [_other(one) for one in sensed.intruders]
-    dimensions = _dimensions(sensed.ability) if whose.told else [HDIR]
+    dimensions, steered = _dimensions(sensed.ability), steered_by(whose.daa)
+    dimensions = [d for d in dimensions if whose.told or d in steered]
     instant = session.step(sensed.now_ms / 1000, own, others, dimensions)
-    return _history(session, sensed, loose), instant
+    lost = tuple(
+        d for d, g in zip(dimensions, instant.guidance, strict=True) if g.recovery.computed
+    )
+    return _history(session, sensed, loose)._replace(recovers=lost), instant
+
+
+def steered_by(daa: Daa) -> tuple[int, ...]:
+    """The dimensions by which manoeuvres are proposed, the one that the mission asks for first."""
+    first = FIRST.get(daa.looks_first)
+    return (HDIR,) if first is None else (first, HDIR)
 
 
 def _history(session: Session, sensed: Sensed, loose: bool) -> Bands:
@@ -192,15 +208,17 @@ def _dimensions(ability: Ability) -> list[int]:
 def resolutions(bands: Bands | None, course_rad: float) -> tuple[float, ...]:
     """The turns off a course that the heading bands resolve with, the preferred side first: one step of the bands
     beyond the nearest value that resolves, since that is the edge of a band [rad]."""
-    if bands is None:
-        return ()
-    held = bands.dimensions[HDIR]
-    sides = [(held.up, STEP_DEG * DEG), (held.down, -STEP_DEG * DEG)]
+    found = () if bands is None else values(bands, HDIR, STEP_DEG * DEG)
+    return tuple(smallest_turn(course_rad, value) for value in found)
+
+
+def values(bands: Bands, dimension: int, beyond: float) -> tuple[float, ...]:
+    """What a dimension resolves with, or recovers with, the preferred side first: so far beyond the edge of a band."""
+    held = bands.dimensions[dimension]
+    sides = [(held.up, beyond), (held.down, -beyond)]
     if not held.prefer_up:
         sides.reverse()
-    return tuple(
-        smallest_turn(course_rad, value + beyond) for value, beyond in sides if value is not None
-    )
+    return tuple(value + more for value, more in sides if value is not None)
 
 
 def _own(number: int, motion: Motion) -> Aircraft:

@@ -120,9 +120,13 @@ class Certificate(NamedTuple):
         """Whether what is left of it is permitted against an intruder that is seen now."""
         age_s, volume = self.age_s(now_ms), buffered(daa.well_clear, daa.buffer)
         left = () if self.turns_into_hold(now_ms) else rest_of(self.pieces, age_s)
-        if not way_permits(left, other, volume, self.rho_m):
-            return False
-        standing = self._standing(now_ms)
+        return way_permits(left, other, volume, self.rho_m) and self.hold_is_permitted(
+            other, now_ms, daa
+        )
+
+    def hold_is_permitted(self, other: Intruder, now_ms: int, daa: Daa) -> bool:
+        """Whether what is left of its hold is: without what is flown before it."""
+        standing, volume = self._standing(now_ms), buffered(daa.well_clear, daa.buffer)
         return standing is None or hold_permits(standing, other, volume, self.hold_m, self.rise_m)
 
     def _standing(self, now_ms: int) -> Piece | None:

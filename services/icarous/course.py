@@ -11,18 +11,21 @@ from cratous.core.routing.polylines import Track
 from cratous.services.icarous.ending import TURN_MARGIN
 from cratous.services.icarous.messages import Sensed
 from cratous.spec.mission import Position
+from cratous.spec.mission.link_loss import LandingSite
 from cratous.spec.mission.plan import Hold, Pose
 
 
 class Course(NamedTuple):
     """hold: the circle at the end; speed_m_s: flown at; track: the way to it, None where there is none; s_m: how much
-    of that has been flown; offset_m: how far off it the vehicle is [m]."""
+    of that has been flown; offset_m: how far off it the vehicle is [m]; site: on whose ground the way ends, and not in
+    the circle, None for none: its last leg is the last descent."""
 
     hold: Hold
     speed_m_s: float
     track: Track | None = None
     s_m: float = 0.0
     offset_m: float = 0.0
+    site: LandingSite | None = None
 
     @property
     def middle(self) -> Position:
@@ -33,6 +36,11 @@ class Course(NamedTuple):
     def left(self) -> tuple[Position, ...]:
         """The points of the way that are still to be flown; () at its end."""
         return () if self.track is None else self.track.rest(self.s_m)[1:]
+
+    @property
+    def flown_to_its_end(self) -> bool:
+        """Its way has been, or for a landing that to the last descent."""
+        return not self.left[0 if self.site is None else 1 :]
 
     def flown(self, motion: Motion, beat_s: float) -> Course:
         """The same with the vehicle where it is a heartbeat later."""
@@ -70,7 +78,8 @@ def steered(course: Course, sensed: Sensed, beat_s: float) -> Choice:
     motion, ability = sensed.motion, sensed.ability
     p, step_m = motion.position, motion.speed_m_s * beat_s
     wide_m = 1.5 * motion.speed_m_s / ability.turn_rate_rad_s
-    if course.left and course.track is not None:
+    lands = course.site is not None
+    if course.track is not None and (course.left or lands):
         ahead_m = max(step_m, math.sqrt(abs(course.offset_m) * wide_m))
         aim = course.track.at(course.s_m + ahead_m)
         height_m = course.track.at(course.s_m + step_m).alt_m

@@ -3,6 +3,7 @@
 It is put to the kernels at each heartbeat, from where the vehicle is: each leg keeps the zones by how far it may
 be off it, the rest of the way and the laps of the look-ahead after it keep the buffered volume of everybody who is
 known, straight on or along a told way, with its thresholds of time, and the disc of the circle keeps its cylinder.
+A way to a landing site has no circle: it ends on the ground, and nothing after that is looked at.
 """
 
 from __future__ import annotations
@@ -41,6 +42,14 @@ def _refused(
     for zone in scene.zones:
         if not all(_keeps(piece, zone, aside_m) for piece in pieces):
             yield f"zone {zone.id} is in the way"
+    if course.site is not None:
+        yield from (
+            f"it is not permitted against {other.id}"
+            for other in sensed.intruders
+            if first_violation_s(pieces, other, scene.volume) is not None
+            or not way_is_clear(pieces, other, daa)
+        )
+        return
     disc_m = course.hold.radius_m + TRACKING_S * motion.speed_m_s
     if not zones_permit(course.middle, scene.zones, disc_m):
         yield "no circle there keeps the zones"

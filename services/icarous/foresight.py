@@ -10,6 +10,7 @@ from cratous.core.avoidance.resolution import Scene, first_zone_s
 from cratous.core.avoidance.way_ahead import near_line, there_within
 from cratous.services.icarous.ending import TURN_MARGIN, Ahead, horizon_s, with_hold
 from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.pace import at_pace, pace_of
 from cratous.services.icarous.permits import keeps_volume, way_is_clear
 from cratous.services.icarous.return_to_path import (
     flat,
@@ -39,6 +40,7 @@ def predicted(config: Config, state: State, sensed: Sensed, scene: Scene) -> Ahe
     """The own way ahead: along the waypoints and into the hold at their end while on the path (within ON_PATH_M),
     and in the hold for PASSED_S past the last one; else straight on."""
     told, motion, lookahead_s = state.told, sensed.motion, scene.lookahead_s
+    pace = pace_of(told, sensed) if state.paces(sensed.now_ms) else None
     here, index = flat(motion.position), told.next_index
     if 0 < index < len(told.waypoints):
         ahead = told.waypoints[index:]
@@ -47,13 +49,13 @@ def predicted(config: Config, state: State, sensed: Sensed, scene: Scene) -> Ahe
             # a waypoint that is as good as reached says nothing about the direction of flight
             if len(ahead) > 1 and there_within(here, goal, motion.speed_m_s, REACHED_S):
                 ahead = ahead[1:]
-            way = way_along(motion, ahead, horizon_s(scene))
-            return with_hold(way, sensed, scene, config.daa.well_clear, TURN_MARGIN)
+            way = way_along(motion, ahead, horizon_s(scene), pace=pace)
+            return with_hold(way, at_pace(sensed, pace), scene, config.daa.well_clear, TURN_MARGIN)
     passed = bool(told.waypoints) and index >= len(told.waypoints)
     if passed and there_within(here, flat(told.waypoints[-1]), motion.speed_m_s, PASSED_S):
         # until another way is told the vehicle circles here
-        way = way_along(motion, (), horizon_s(scene))
-        return with_hold(way, sensed, scene, config.daa.well_clear, TURN_MARGIN)
+        way = way_along(motion, (), horizon_s(scene), pace=pace)
+        return with_hold(way, at_pace(sensed, pace), scene, config.daa.well_clear, TURN_MARGIN)
     v = velocity_of(motion.heading_rad, motion.speed_m_s, motion.climb_m_s)
     return Ahead((Piece(0.0, lookahead_s, motion.position, v),), (scene.volume,))
 
@@ -90,17 +92,19 @@ def way_is_free(
 ) -> bool:
     """The same of the way from here by flyable turns onto points[0], and on by the others."""
     scene = scene_of(config, state, sensed)
-    radius_m = TURN_MARGIN * sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s
+    pace = pace_of(state.told, sensed)
+    flown = at_pace(sensed, pace)
+    radius_m = TURN_MARGIN * flown.motion.speed_m_s / flown.ability.turn_rate_rad_s
     now, horizon = sensed.motion, horizon_s(scene)
     met = state.avoided - in_turn
     asked = [o for o in scene.intruders if o.id in met or (lasting and o.id not in in_turn)]
-    for way in ways_back(now, radius_m, points, horizon):
-        ahead = with_hold(way, sensed, scene, config.daa.well_clear, TURN_MARGIN)
+    for way in ways_back(now, radius_m, points, horizon, pace):
+        ahead = with_hold(way, flown, scene, config.daa.well_clear, TURN_MARGIN)
         if ahead.first_of_all_s(scene.intruders) is not None:
             return False
         if first_zone_s(ahead.pieces, scene.zones, 5.0) is not None:
             return False
-    whole = [one.pieces for one in ways_back(now, radius_m, points, math.inf)]
+    whole = [one.pieces for one in ways_back(now, radius_m, points, math.inf, pace)]
     if lasting:
         # where a zone lies across it UxAS flies another way than this
         if any(first_zone_s(pieces, scene.zones, 5.0) is not None for pieces in whole):

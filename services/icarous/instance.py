@@ -23,7 +23,7 @@ from cratous.core.authority.cycle import (
     gate_wished,
 )
 from cratous.core.authority.gate import ICAROUS, gate_accepts
-from cratous.core.authority.link_loss import LINKED, loss_lets_go, loss_takes
+from cratous.core.authority.link_loss import FINAL, LANDED, LINKED, loss_lets_go, loss_takes
 from cratous.core.avoidance.manoeuvre import velocity_of
 from cratous.core.avoidance.resolution import Choice
 from cratous.services.icarous import asking, link_loss, permits
@@ -52,6 +52,7 @@ from cratous.services.icarous.messages import (
 )
 from cratous.services.icarous.offers import Refused, certified
 from cratous.services.icarous.others import with_ways
+from cratous.services.icarous.pace import change_ms, pace_of
 from cratous.services.icarous.proposal import describe, manoeuvre
 from cratous.services.icarous.return_to_path import PERSIST_MS, RELAPSE_MS, onto
 from cratous.services.icarous.state import IDLE, Config, State
@@ -122,8 +123,12 @@ class Instance:
         loose = loose_courses(sensed.intruders)
         in_turn = turning(now, state.courses, beat_s, loose) - {o.id for o in others if o.way}
         if flew and watches:
+            beats_ms = 2 * self.config.heartbeat_ms
             fresh = state.asking.idle()
-            state = replace(state, held=None, search=IDLE, threats=(), asking=fresh)
+            pace_ms = sensed.now_ms + beats_ms + change_ms(sensed, pace_of(state.told, sensed))
+            state = replace(
+                state, held=None, search=IDLE, threats=(), asking=fresh, pace_ms=pace_ms
+            )
             state = permits.resumed(self.config, state, sensed, in_turn)
         state = replace(state, cycle=cycle, courses=now, ways=ways, beats=state.beats + 1)
         state, lost = link_loss.heartbeat(self.config, state, sensed)
@@ -189,7 +194,7 @@ class Instance:
 
     def _fly(self, state: State, sensed: Sensed, in_turn: frozenset[int]) -> Step:
         """AVOID and HANDBACK: fly the manoeuvre, and see whether the way back is free."""
-        state, guides = self._guided(state, sensed, True)
+        state, guides = self._guided(state, sensed, not sensed.landed)
         lost = state.no_link.loss.mode != LINKED
         lasting = state.search.waits(sensed.now_ms)
         free = not lost and way_back_is_free(self.config, state, sensed, in_turn, lasting)
@@ -269,6 +274,8 @@ class Instance:
         if not self.config.certifies:
             return ()
         vid, scene = self.config.vehicle_id, scene_of(self.config, state, sensed)
+        if state.no_link.loss.mode in (FINAL, LANDED):
+            return (Uncertified(vid, 0, "the last descent to the ground ends in no hold"),)
         found = certified(sensed, scene, choice, self.config.daa)
         return (Uncertified(vid, *found) if isinstance(found, Refused) else Offers(vid, found),)
 

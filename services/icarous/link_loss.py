@@ -3,7 +3,7 @@
 Which mode is flown, since when, and until when is answered by the kernel `loss_step` at each heartbeat. What is
 chosen and the circle are courses (`services.icarous.course`), permitted from where the vehicle is; where not even a
 circle is, the manoeuvre that deviates least is flown, as in any takeover. A way that was not permitted is looked for
-anew after AGAIN_MS.
+anew after AGAIN_MS. A landing is flown to the gate of its last descent as any way is, and from there to the ground.
 """
 
 from __future__ import annotations
@@ -11,7 +11,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from cratous.core.authority.link_loss import FINISH, LINKED, LOITER, OVER, RETURN, loss_step
+from cratous.core.authority.link_loss import (
+    FINAL,
+    FINISH,
+    LAND,
+    LANDED,
+    LINKED,
+    LOITER,
+    OVER,
+    RETURN,
+    loss_step,
+)
 from cratous.core.authority.timeliness import in_time, lasted
 from cratous.core.avoidance.resolution import Choice
 from cratous.core.avoidance.way_ahead import near_line
@@ -20,17 +30,21 @@ from cratous.services.icarous import course as courses
 from cratous.services.icarous.course import Course
 from cratous.services.icarous.course_permits import refused
 from cratous.services.icarous.foresight import ON_PATH_M, scene_of
+from cratous.services.icarous.landing import approaches, in_order
 from cratous.services.icarous.lost import LostLink, NoLink
 from cratous.services.icarous.messages import Sensed, WithoutLink
 from cratous.services.icarous.proposal import AGAIN_MS, manoeuvre
 from cratous.services.icarous.return_to_path import bearing_rad, flat, onto, rejoin
 from cratous.services.icarous.state import IDLE, Config, State
-from cratous.spec.authority.link_loss import BEGIN, END, FALL_BACK, NOTHING, REJOIN
+from cratous.spec.authority.link_loss import BEGIN, COMMIT, END, FALL_BACK, NOTHING, REJOIN, TOUCH
 from cratous.spec.mission import Position
 from cratous.spec.mission.plan import Pose
 from cratous.spec.records import replace
 
 WAITS = "; a circle is flown until it is"
+NO_WAY = "no way there was found"
+ENDED = (OVER, FINAL, LANDED)
+"""In these nothing else is looked for."""
 
 
 class Tried(NamedTuple):
@@ -53,17 +67,22 @@ def heartbeat(
     if course is not None:
         course = course.flown(sensed.motion, _beat_s(config))
     chosen, mode, due = plan.choice, before.loss.mode, False
-    if not linked and mode != OVER and chosen != LOITER:
+    if not linked and mode not in ENDED and chosen != LOITER:
         due = mode in (LINKED, chosen) or lasted(before.tried_ms, now_ms, AGAIN_MS)
         going = course if mode == chosen else None
         tried = _tried(config, state, sensed, plan, going) if due else tried
-    ended = mode == chosen and course is not None and not course.left
+    ended = mode == chosen and course is not None and course.flown_to_its_end
+    ended = sensed.landed if mode == FINAL else ended
     stepped = loss_step(
         before.loss, chosen, heard_ms, now_ms, plan.after_ms, tried.course is not None, ended
     )
     mode = stepped.loss.mode
     if stepped.act == REJOIN:
         course = None
+    elif stepped.act == COMMIT:
+        course = tried.course
+    elif mode in (FINAL, LANDED):
+        pass  # the last descent is flown as it was permitted
     elif mode == chosen and chosen != LOITER:
         course = tried.course
     elif mode != LINKED:
@@ -74,14 +93,20 @@ def heartbeat(
         return after, ()
     if stepped.act == REJOIN:
         after = replace(after, held=None, search=IDLE)
-    vid, why = config.vehicle_id, _words(stepped.act, plan, tried, heard_ms, now_ms)
+    vid, why = config.vehicle_id, _words(stepped.act, plan, tried, course, now_ms - heard_ms)
     return after, (WithoutLink(vid, now_ms, mode, chosen, heard_ms, why),)
 
 
-def _words(act: int, plan: LostLink, tried: Tried, heard_ms: int, now_ms: int) -> str:
-    silent = f"nothing was heard of UxAS for {(now_ms - heard_ms) / 1000:g} s"
+def _words(act: int, plan: LostLink, tried: Tried, course: Course | None, silent_ms: int) -> str:
+    silent = f"nothing was heard of UxAS for {silent_ms / 1000:g} s"
+    site = course.site.name if course is not None and course.site is not None else ""
+    if act == TOUCH:
+        return f"landed at {site}"
+    if act == COMMIT:
+        return f"the last descent to {site}"
     if act == BEGIN:
-        return f"{silent}: {plan.words}"
+        other = "" if site in ("", plan.site) else f", here at {site}"
+        return f"{silent}: {plan.words}{other}{tried.why and f' ({tried.why})'}"
     if act == FALL_BACK:
         return f"{silent}: {plan.words}: {tried.why}{WAITS}"
     if act == END:
@@ -92,8 +117,12 @@ def _words(act: int, plan: LostLink, tried: Tried, heard_ms: int, now_ms: int) -
 def flown(
     config: Config, state: State, sensed: Sensed, in_turn: frozenset[int]
 ) -> tuple[State, Choice]:
-    """The manoeuvre to fly now without the link: along the course, or around what is in the way of all of them."""
+    """The manoeuvre to fly now without the link: along the course, or around what is in the way of all of them; none on
+    the ground."""
     course, goal = state.no_link.course, config.lost_link.goal if config.lost_link else None
+    if state.no_link.loss.mode == LANDED:
+        stands = Choice("heading", sensed.motion.heading_rad, 0.0, 0.0, 0.0, True, None)
+        return replace(state, held=None, search=IDLE), stands
     if course is not None:
         choice = courses.steered(course, sensed, _beat_s(config))
         return replace(state, held=None, search=IDLE), choice
@@ -113,12 +142,24 @@ def _tried(
     config: Config, state: State, sensed: Sensed, plan: LostLink, going: Course | None
 ) -> Tried:
     """The course that is flown if it is permitted still, else another one from here."""
-    scene, why = scene_of(config, state, sensed), ""
+    scene, told = scene_of(config, state, sensed), dict[str, str]()
     for course in _candidates(state, sensed, plan, going):
         why = refused(course, sensed, scene, config.daa, _beat_s(config))
+        site = course.site.name if course.site is not None else ""
         if not why:
-            return Tried(course)
-    return Tried(None, why or "no way there was found")
+            # of a site that was wanted more it is said why it is not landed at
+            found = course is not going and site not in ("", plan.site)
+            return Tried(course, _why_not(plan, sensed, told, site) if found else "")
+        if not site or site not in told:
+            told[site] = why
+    return Tried(None, told.get("") or _why_not(plan, sensed, told, "") or NO_WAY)
+
+
+def _why_not(plan: LostLink, sensed: Sensed, told: dict[str, str], site: str) -> str:
+    """Why the sites that are tried before one are not landed at. told: why a way there is not permitted."""
+    names = [one.name for one in in_order(plan, sensed.motion.position)] if plan.sites else []
+    before = names[: names.index(site)] if site in names else names
+    return "; ".join(f"{name}: {told.get(name, NO_WAY)}" for name in before)
 
 
 def _candidates(
@@ -126,6 +167,10 @@ def _candidates(
 ) -> Iterator[Course]:
     if going is not None:
         yield going
+    if plan.choice == LAND:
+        for site in in_order(plan, sensed.motion.position):
+            yield from approaches(plan, site, sensed, state.told.zones)
+        return
     motion, wide_m = sensed.motion, courses.radius_m(sensed)
     points = _known_way(state, sensed, wide_m) if plan.choice == FINISH else ()
     if plan.choice == RETURN and plan.goal is not None:

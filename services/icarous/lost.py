@@ -8,6 +8,7 @@ from typing import NamedTuple
 from cratous.core.authority.link_loss import LINKED, Loss
 from cratous.services.icarous.course import Course
 from cratous.spec.mission import Position, Zone
+from cratous.spec.mission.link_loss import LandingSite
 from cratous.spec.mission.plan import Pose
 
 FindWay = Callable[[Pose, Pose, float, float, tuple[Zone, ...]], tuple[Position, ...]]
@@ -15,14 +16,17 @@ FindWay = Callable[[Pose, Pose, float, float, tuple[Zone, ...]], tuple[Position,
 
 
 class LostLink(NamedTuple):
-    """choice: FINISH, LOITER or RETURN of `core.authority.link_loss`; after_ms: how long UxAS may be silent [ms]; words:
-    the choice; find: looks for a way; goal: where to return to, else None."""
+    """choice: FINISH, LOITER, RETURN or LAND of `core.authority.link_loss`; after_ms: how long UxAS may be silent [ms];
+    words: the choice; find: looks for a way; goal: where to return to, else None; site: the landing site that is named,
+    "" for none; sites: all of them."""
 
     choice: int
     after_ms: int
     words: str
     find: FindWay
     goal: Position | None = None
+    site: str = ""
+    sites: tuple[LandingSite, ...] = ()
 
 
 class NoLink(NamedTuple):

@@ -37,7 +37,7 @@ class Line(NamedTuple):
 class Sensed(NamedTuple):
     """A heartbeat is due. motion, ability: of the vehicle itself; intruders: everybody else, as its
     surveillance sees them; gate: how its actuator gate stands; here: how far the vehicle may be from where it is
-    taken to be; hand: the certificate behind the gate."""
+    taken to be; hand: the certificate behind the gate; landed: it is on the ground."""
 
     now_ms: int
     motion: Motion
@@ -46,6 +46,7 @@ class Sensed(NamedTuple):
     gate: Gate
     here: Off = NONE.here
     hand: Hand = EMPTY
+    landed: bool = False
 
 
 # from the instance ------------------------------------------------------------------------------

@@ -116,12 +116,15 @@ def _speed_m_s(pieces: tuple[Piece, ...]) -> float:
 def _held(
     circles: list[Certificate], hold_s: float, scene: Scene, sensed: Sensed, daa: Daa
 ) -> list[Certificate]:
-    """Those of the certificates with a hold that are permitted if it lasts hold_s [s], so much longer."""
+    """Those of the certificates with a hold that are permitted if it lasts hold_s [s], so much longer.
+
+    circles: their manoeuvre, the same of all, is permitted without a hold (`certified`).
+    """
     until_ms = circles[0].offer.expiry_ms + math.floor(1000 * hold_s)
     longer = [c._replace(offer=c.offer._replace(expiry_ms=until_ms)) for c in circles]
     return [
         one
         for one in longer
-        if all(one.permits(other, sensed.now_ms, daa) for other in sensed.intruders)
+        if all(one.hold_is_permitted(other, sensed.now_ms, daa) for other in sensed.intruders)
         and zones_permit(one.middle, scene.zones, one.hold_m)
     ]

@@ -26,6 +26,7 @@ from cratous.core.permit.remainder import way_permits
 from cratous.services.icarous.deviation import keeps_to
 from cratous.services.icarous.ending import Ahead
 from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.pace import pace_of
 from cratous.services.icarous.state import Config, Met, State
 from cratous.services.icarous.traffic_monitor import Threat
 from cratous.spec.mission import Daa
@@ -98,7 +99,8 @@ def _made(
 def _whole(state: State, sensed: Sensed) -> tuple[Piece, ...]:
     """The way that was told, from here to its end."""
     told = state.told
-    return way_along(sensed.motion, told.waypoints[told.next_index :], math.inf).pieces
+    pace = pace_of(told, sensed) if state.paces(sensed.now_ms) else None
+    return way_along(sensed.motion, told.waypoints[told.next_index :], math.inf, pace=pace).pieces
 
 
 def acting(state: State, found: Sequence[Threat]) -> tuple[Threat, ...]:

@@ -4,7 +4,8 @@ A turn that keeps clear over the whole look-ahead, off the course by up to 60 de
 much sooner, is flown on until the way back is free, at one of the instants that are looked at: for good (permitted to
 its end against everybody, no zone across it) if that can be had, else for the look-ahead. Where there is none, the
 manoeuvre that deviates least from the course is flown (`core.avoidance.resolution`). Where the mission asks for changes of
-altitude or of speed first, these are looked at before turns. What is proposed here decides
+altitude or of speed first, these are looked at before turns, first of all those that the bands resolve with. Where nothing
+keeps well clear, what is flown comes from the recovery bands first. What is proposed here decides
 nothing: control goes back only on a way that is free when it is flown.
 """
 
@@ -18,12 +19,21 @@ from cratous.core.authority.cycle import patience
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import Motion, fly_to
 from cratous.core.avoidance.prediction import after, later
-from cratous.core.avoidance.resolution import Choice, keeps_clear, of_kind, resolve
+from cratous.core.avoidance.resolution import (
+    Choice,
+    first_conflict_s,
+    keeps_clear,
+    of_kind,
+    resolve,
+    turn_back_s,
+)
+from cratous.services.icarous.ending import cylinder
 from cratous.services.icarous.foresight import scene_of, way_back_is_free
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.return_to_path import PERSIST_MS, bearing_rad, goal_index
 from cratous.services.icarous.state import Config, Search, State
-from cratous.spec.mission import Position
+from cratous.spec.daa.parameters import NMAC_HALF_HEIGHT_M, NMAC_RADIUS_M
+from cratous.spec.mission import Position, WellClear
 from cratous.spec.records import replace
 
 STEPS = 15
@@ -69,6 +79,8 @@ def manoeuvre(
             search = Search(now_ms, now_ms + math.ceil(1000 * at_s) + waits_ms, found.lasting)
             return replace(state, held=found.choice, search=search), found.choice
     choice = resolve(motion, sensed.ability, scene, course, speed, held)
+    if not choice.clear:
+        choice = _recovery(config, state, sensed, choice) or choice
     return replace(
         state, held=choice, search=state.search._replace(until_ms=0, lasting=False)
     ), choice
@@ -108,7 +120,10 @@ def _soonest(
         return found
 
     last = 2 * STEPS // 3
-    asked = of_kind(scene.first, sensed.motion, sensed.ability, scene, level)
+    asked = (
+        *_by_bands(config, state, sensed, level),
+        *of_kind(scene.first, sensed.motion, sensed.ability, scene, level),
+    )
     found = first(asked, last) if asked else None
     if found is not None:
         return found
@@ -118,6 +133,42 @@ def _soonest(
     until = found.step - SOONER if found is not None and found.lasting else last
     wide = after_turns(_either_side(WIDE_DEG, right_first), until)
     return wide if wide is not None and wide.lasting else found
+
+
+def _by_bands(config: Config, state: State, sensed: Sensed, level: Choice) -> tuple[Choice, ...]:
+    """The changes of the kind that the mission asks for first that the bands resolve with."""
+    if state.bands is None:
+        return ()
+    from cratous.services.icarous.band_choices import of_bands
+
+    return of_bands(state.bands, config.daa, sensed, level)
+
+
+def _recovery(config: Config, state: State, sensed: Sensed, least: Choice) -> Choice | None:
+    """What regains well clear soonest by the bands, where no manoeuvre keeps it: the first that keeps a near mid-air
+    collision clear over the look-ahead, and the zones until a turn back would; None where there is none, or the bands
+    know of a way to keep it. least: the one that keeps it longest."""
+    if state.bands is None or not state.bands.recovers:
+        return None
+    from cratous.services.icarous.band_choices import recovering
+
+    motion, ability, scene = sensed.motion, sensed.ability, scene_of(config, state, sensed)
+    speed = state.told.speed_m_s or motion.speed_m_s
+    level = Choice("heading", motion.heading_rad, speed, 0.0, 0.0, False, least.first_violation_s)
+    near = scene._replace(intruders=(), lookahead_s=turn_back_s(motion, ability))
+    hit = scene._replace(volume=nmac_of(config.daa.well_clear))
+    for one in recovering(state.bands, config.daa, sensed, level):
+        pieces = fly_to(motion, ability, *one[1:5], scene.lookahead_s)
+        if keeps_clear(motion, ability, near, one) and first_conflict_s(pieces, hit) is None:
+            first_s = first_conflict_s(pieces, scene)
+            return one._replace(first_violation_s=first_s, clear=first_s is None)
+    return None
+
+
+def nmac_of(own: WellClear) -> WellClear:
+    """The cylinder of a near mid-air collision, no larger than the mission's own."""
+    radius_m, half_m = min(NMAC_RADIUS_M, own.dthr_m), min(NMAC_HALF_HEIGHT_M, own.zthr_m)
+    return cylinder(radius_m, half_m)
 
 
 def _told(state: State, course_rad: float) -> tuple[float, ...]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 
-from cratous.core.avoidance.manoeuvre import Motion, Way, way_along
+from cratous.core.avoidance.manoeuvre import Motion, Pace, Way, way_along
 from cratous.core.avoidance.way_ahead import makes_for, near_line
 from cratous.core.kernel import Vec2
 from cratous.core.routing.dubins import cut, dubins_paths
@@ -117,8 +117,13 @@ def rejoining(
 
 
 def ways_back(
-    now: Motion, radius_m: float, points: tuple[Position, ...], horizon_s: float
+    now: Motion,
+    radius_m: float,
+    points: tuple[Position, ...],
+    horizon_s: float,
+    pace: Pace | None = None,
 ) -> tuple[Way, ...]:
-    """The flights from here onto points[0] and on through the others, of which UxAS takes one."""
+    """The flights from here onto points[0] and on through the others, of which UxAS takes one, at the speed of a pace
+    as soon as the vehicle comes to it."""
     onto = rejoining(now, radius_m, points[0], points[1] if len(points) > 1 else None)
-    return tuple(way_along(now, (*way[1:], *points[1:]), horizon_s) for way in onto)
+    return tuple(way_along(now, (*way[1:], *points[1:]), horizon_s, pace=pace) for way in onto)

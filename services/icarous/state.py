@@ -77,7 +77,8 @@ class State:
     courses: of the last heartbeat; held: the manoeuvre being flown; goal: index of the waypoint that
     it makes for; beats: heartbeats so far; met: the intruders because of which it has taken over; search: of the
     manoeuvre that is over soonest; ways: of the other vehicles of ours; asking: UxAS for a way back; bands: what detect
-    and avoid said last, while a loss is foreseen or ICAROUS flies; no_link: what it does while UxAS is not heard."""
+    and avoid said last, while a loss is foreseen or ICAROUS flies; no_link: what it does while UxAS is not heard;
+    pace_ms: until when UxAS, after a handback, may be bringing the vehicle to the speed that was told [ms]."""
 
     cycle: Cycle = START
     told: Told = field(default_factory=Told)
@@ -92,6 +93,11 @@ class State:
     asking: Asking = field(default_factory=Asking)
     bands: Bands | None = None
     no_link: NoLink = field(default_factory=NoLink)
+    pace_ms: int = 0
+
+    def paces(self, now_ms: int) -> bool:
+        """Whether UxAS, which has just taken it back, may still bring the vehicle to the speed that was told."""
+        return not lasted(self.pace_ms, now_ms, 0)
 
     @property
     def avoided(self) -> frozenset[int]:

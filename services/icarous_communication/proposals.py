@@ -19,6 +19,7 @@ from cratous.bridge.text_protocol import (
     SetMode,
     UxasPlans,
 )
+from cratous.core.authority.timeliness import in_time
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.messages import Down
 from cratous.services.flight.rejoining import Router
@@ -39,6 +40,8 @@ from cratous.spec.mission.plan import Pose
 
 KEPT = 4
 """So many answers are kept of each vehicle: it hands back onto one of the last."""
+MOST, WITHIN_MS = 4, 2000
+"""So many ways are planned for an instance in this time [ms]; ours asks once a second."""
 Places = tuple[tuple[float, float, float], ...]
 
 
@@ -48,6 +51,7 @@ class Proposals:
     def __init__(self) -> None:
         self._on, self._zones, self._router = True, tuple[Zone, ...](), Router(())
         self._given: dict[int, dict[int, Places]] = {}
+        self._planned_ms: dict[int, tuple[int, ...]] = {}
 
     def connected(self, vid: int) -> list[Out]:
         """An instance is there: it is told who plans live, and what it was given before is over."""
@@ -63,12 +67,17 @@ class Proposals:
         out: list[Out] = [Note("INFO", f"ways back in flight are planned by {who}")]
         return [*out, *(one for vid in seated for one in self.connected(vid))]
 
-    def asked(self, state: State, vid: int, line: RouteRequest) -> list[Out]:
+    def asked(self, state: State, vid: int, line: RouteRequest, now_ms: int) -> list[Out]:
         """A WPREQ of an instance; it is answered where that has its vehicle. state: of the service."""
         number, away = line.request, state.craft(vid).away is not None
         if number is None or not (self._on and away):
             why = "WPREQ without a number" if number is None else "WPREQ that is not for now"
             return [Refuse(why, f"vehicle {vid}: {line}"), *_answer(vid, number, (), 0.0)]
+        last = self._planned_ms.get(vid, ())  # kept over connections
+        if len(last) >= MOST and in_time(last[0], now_ms, WITHIN_MS):
+            why = f"more than {MOST} WPREQ in {WITHIN_MS / 1000:g} s"
+            return [Refuse(why, f"vehicle {vid}: {line}"), *_answer(vid, number, (), 0.0)]
+        self._planned_ms[vid] = (*last, now_ms)[-MOST:]
         places, why = self._found(state, vid, line)
         if places:
             given = {**self._given.get(vid, {}), number: places}

@@ -252,7 +252,7 @@ class IcarousCommunicationService:
             state = led_back(state, vid, places)
         state, out = self._step.heard(state, vid, line, now_ms)
         if self._proposals is not None and isinstance(line, RouteRequest):
-            out += self._proposals.asked(state, vid, line)
+            out += self._proposals.asked(state, vid, line, now_ms)
         elif isinstance(line, RouteRequest):
             out.append(Refuse("WPREQ of an ICAROUS", f"vehicle {vid}: no UseUxasRoutePlanner"))
         return state, out

@@ -1,4 +1,4 @@
-"""The section `link_loss` of a mission file as `LinkLoss`; the schema has its bounds."""
+"""The sections `link_loss` and `landing_sites` of a mission file as `LinkLoss`; the schema has their bounds."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from cratous.core.authority.timeliness import lasted
 from cratous.core.geofence.planar import keep_in_leg_ok
 from cratous.services.loading.checks import Where, start_is_allowed
 from cratous.services.loading.document import Document, item_name
+from cratous.services.loading.landing_sites import landing_sites, site_problems
 from cratous.services.loading.places import Places
 from cratous.services.loading.problems import refuse
 from cratous.services.mission.ground import floor_of
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import LinkLoss, Mission, Simulation
+from cratous.spec.mission import LandingLoss, LinkLoss, Mission, Simulation
 from cratous.spec.mission.link_loss import WithoutLink
 from cratous.spec.mission.link_loss import words as choice_words
 
@@ -29,16 +30,17 @@ def yaml_link_loss(
 
     instances: how many vehicles it is about.
     """
-    data = document.data.get("link_loss")
+    data, sites = document.data.get("link_loss"), landing_sites(document, places)
+    refuse([*site_problems(document, sites)])
     if data is None:
         return None
     to = data.get("to")
-    loss = LinkLoss(
-        WithoutLink(data["choice"]),
-        round(1000 * float(data.get("after_s", LinkLoss.after_ms / 1000))),
-        None if to is None else places.position(to["position"]),
-        "" if to is None else to["name"],
-    )
+    choice, name = WithoutLink(data["choice"]), "" if to is None else to["name"]
+    after_ms = round(1000 * float(data.get("after_s", LinkLoss.after_ms / 1000)))
+    place = None if to is None else places.position(to["position"])
+    loss = LinkLoss(choice, after_ms, place, name)
+    if choice is WithoutLink.LAND:
+        loss = LandingLoss(choice, after_ms, place, data.get("site", name), sites)
     sensed = "sensing" in document.data
     refuse([_problem(document, *one) for one in _found(loss, simulation, instances, sensed)])
     return loss

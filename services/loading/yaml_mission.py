@@ -22,6 +22,7 @@ from cratous.services.loading.checks import (
 )
 from cratous.services.loading.document import Document, item_key, read_document
 from cratous.services.loading.fitness import warnings_of
+from cratous.services.loading.landing_sites import ground_problems
 from cratous.services.loading.places import Places
 from cratous.services.loading.polygons import padded
 from cratous.services.loading.problems import refuse
@@ -131,7 +132,8 @@ def finish(mission: Mission, where: Any) -> Mission:
     if mission.link_loss is not None:
         notes.append(link_loss_words(mission.link_loss))
     mission = replace(mission, zones=zones, changes=known)
-    refuse([*start_problems(mission, where), *place_problems(mission, where)])
+    places = (*place_problems(mission, where), *ground_problems(mission, where))
+    refuse([*start_problems(mission, where), *places])
     said = [*mission.notes, *notes, *warnings_of(mission)]
     return replace(mission, notes=tuple(dict.fromkeys(said)))
 

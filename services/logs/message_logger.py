@@ -146,7 +146,7 @@ class MessageLogger:
             return state, ()
         entry, problem = entry_of(envelope)
         self.log.write(entry)
-        said: list[Any] = [] if problem is None else [_status("Error", str(problem))]
+        said: list[Any] = [] if problem is None else [_status("Warning", str(problem))]
         if self._texts is not None:
             self._texts.write(entry, _xml(entry))
         trouble = self.log.trouble or (self._texts.trouble if self._texts is not None else "")
@@ -212,8 +212,10 @@ def _xml(entry: Entry) -> str:
 
 
 def _status(kind: str, text: str) -> Any:
-    pair = lmcp.new("KeyValuePair", Key=SERVICE_TYPE, Value=text[:1000])
-    return lmcp.new("ServiceStatus", StatusType=kind, Info=[pair])
+    # of no request: an error without one ends the request that is planned
+    pairs = ((SERVICE_TYPE, text[:1000]), ("RequestID", "0"))
+    info = [lmcp.new("KeyValuePair", Key=key, Value=value) for key, value in pairs]
+    return lmcp.new("ServiceStatus", StatusType=kind, Info=info)
 
 
 def _stem(attributes: Mapping[str, str], where: str) -> str:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Container
 
 from cratous.services.mission.wind import Wind, in_wind, wind_at
 from cratous.spec.mission import Mission, Vehicle
 from cratous.spec.mission.changes import VEHICLE_JOINS, VEHICLE_LOST, split, without_vehicles
+from cratous.spec.records import replace
 
 
 def absent(mission: Mission, now_ms: int) -> dict[int, str]:
@@ -23,6 +25,12 @@ def absent(mission: Mission, now_ms: int) -> dict[int, str]:
         elif in_wind(vehicle, wind) is None:
             found[vehicle.id] = _too_windy(vehicle, wind)
     return found
+
+
+def without(known: Mission, landed: Container[int]) -> Mission:
+    """The mission without the vehicles that have landed."""
+    here = tuple(vehicle for vehicle in known.vehicles if vehicle.id not in landed)
+    return known if here == known.vehicles else replace(known, vehicles=here)
 
 
 def _lost_ms(mission: Mission, vehicle_id: int, now_ms: int) -> int:

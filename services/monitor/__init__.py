@@ -17,9 +17,10 @@ from cratous.services.monitor.bridge import BridgeWatch
 from cratous.services.monitor.completion import CompletionWatch
 from cratous.services.monitor.constraints import ConstraintWatch
 from cratous.services.monitor.hand import HandWatch
+from cratous.services.monitor.landing import LandingWatch
 from cratous.services.monitor.link_loss import LinkLossWatch
 from cratous.services.monitor.observation import Ending, Presence
-from cratous.services.monitor.required_rows import missing, promised, watched
+from cratous.services.monitor.required_rows import END, missing, promised, watched
 from cratous.services.monitor.samples import Sample, Sampler
 from cratous.services.monitor.separation import SeparationWatch
 from cratous.spec.mission import Mission
@@ -50,11 +51,12 @@ class Monitor:
         self.presence = Presence(mission.simulation.step_ms)
         self.constraints = ConstraintWatch(mission, self.presence)
         self.separation = SeparationWatch(mission, self.presence)
-        self.completion = CompletionWatch(mission, plan, self.presence)
+        self.landing = LandingWatch(mission)
+        self.completion = CompletionWatch(mission, plan, self.presence, self.landing.down)
         self.authority = AuthorityWatch(mission)
         self.bridge = BridgeWatch(mission, says_beats)
         self.hand = HandWatch.of(mission)
-        self.link_loss = LinkLossWatch(mission)
+        self.link_loss = LinkLossWatch(mission, self.landing.down)
         self._assumed = AssumptionWatch(mission)
         self._last_ms, self._over = 0, False
         self._tell, self._tell_broken = on_violation, on_broken
@@ -95,7 +97,7 @@ class Monitor:
                 self._step(*step)
             self._last_ms, self._over = body.Time, True
             self.completion.end(body)
-            self.authority.end(body)
+            self.authority.end(body, self.landing.down)
             self.bridge.end(body)
             self.link_loss.end(body)
             self.hand.end(body.Time)
@@ -111,7 +113,9 @@ class Monitor:
     def _step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
         self.presence.step(before, after)
         self.constraints.step(before, after)
-        self.separation.step(before, after)
+        flown = self.landing.step(before, after)
+        if all(flown):
+            self.separation.step(*flown)
         self.completion.step(before, after)
 
     def assumptions(self) -> list[dict[str, Any]]:
@@ -160,7 +164,9 @@ def _whole(requirement: str, parts: list[Verdict]) -> Verdict:
     outcome = worst([v.outcome for v in parts])
     telling = [v for v in parts if v.outcome is outcome]
     measured = [v for v in telling if v.margin is not None]
-    chosen = min(measured, key=lambda v: v.margin or 0.0, default=telling[0] if telling else None)
+    # nothing is measured: what names a task says more than that the mission ended so
+    first = next((v for v in telling if v.item != END), telling[0] if telling else None)
+    chosen = min(measured, key=lambda v: v.margin or 0.0, default=first)
     if chosen is None:
         return Verdict(requirement, "", outcome, Kind.OBSERVED, "nothing was observed")
     kinds = {v.kind for v in parts}

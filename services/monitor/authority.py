@@ -6,16 +6,18 @@ reports must be what `gate_after`, `gate_takeover` or `gate_offer` makes of the 
 
 A takeover that is open when the mission ends is violated, unless the link to the vehicle was said to be down and
 still was (BridgeStatus): that is a declared failure, but whether it is why nobody handed back is not in the
-messages, so it is unknown.
+messages, so it is unknown. It ends on the ground too, at a landing site of the mission.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from cratous.core.authority import gate as gates
 from cratous.core.kernel import qualified
+from cratous.services.monitor.landing import Down
 from cratous.services.monitor.required_rows import authority_item
 from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
@@ -31,7 +33,7 @@ ON_CHANGE = {qualified(gates.gate_takeover), qualified(gates.gate_offer)}
 class Command:
     """What has been seen of the authority over one vehicle; `due`: what must be reported next; forged:
     dropped commands of epochs that were never given; refused: modes that could not be true; down: since when and
-    why its link is down, as was said last, empty while it is not; unended: the takeover that a link that is
+    why its link is down, as was said last, empty while it is not; landed: where its last takeover ended on the ground; unended: the takeover that a link that is
     down has left open at the end, empty if there is none; had: since when [ms] who commands, from 0 on."""
 
     gate: gates.Gate = field(default_factory=lambda: gates.Gate(gates.UXAS, 0, False))
@@ -46,6 +48,7 @@ class Command:
     refused: int = 0
     down: str = ""
     unended: str = ""
+    landed: str = ""
     had: list[tuple[int, str]] = field(default_factory=lambda: [(0, NAMES[gates.UXAS])])
     faults: list[tuple[int, str]] = field(default_factory=list)
     kernels: set[str] = field(default_factory=set)
@@ -131,12 +134,17 @@ class AuthorityWatch:
             seen.longest_ms = max(seen.longest_ms, time_ms - seen.open_ms)
             seen.open_ms = None
 
-    def end(self, body: Any) -> None:
-        """The mission ended: no takeover may be left open, unless the link is said to be down."""
+    def end(self, body: Any, down: Mapping[int, Down]) -> None:
+        """The mission ended: no takeover may be left open, unless the link is said to be down, or the vehicle has landed.
+
+        down: who is on the ground."""
         self._ended = True
-        for seen in self.vehicles.values():
+        for number, seen in self.vehicles.items():
             self._missing(seen, body.Time)
-            if seen.open_ms is not None:
+            place = down.get(number)
+            if seen.open_ms is not None and place is not None and place.site:
+                seen.landed = place.words()
+            elif seen.open_ms is not None:
                 text = f"the takeover of {seen.open_ms / 1000:.2f} s was never handed back"
                 if seen.down:
                     seen.unended = f"{text}; the link was declared {seen.down}, to the end"
@@ -153,6 +161,9 @@ class AuthorityWatch:
                 many = "takeover" if seen.takeovers == 1 else "takeovers"
                 note = f"{seen.takeovers} {many}, each handed back"
                 note += f" (longest {seen.longest_ms / 1000:.2f} s)"
+            if seen.landed:
+                back = f"{seen.takeovers - 1} handed back, the last one "
+                note = f"{seen.takeovers} {many}, {back if seen.takeovers > 1 else ''}{seen.landed}"
             note += f"; {seen.commands} commands, {seen.dropped} of them stale and dropped"
             if seen.forged:
                 note += f", {seen.forged} of these of an epoch that was never given"

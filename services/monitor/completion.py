@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
@@ -16,6 +16,7 @@ from cratous.core.tasks.coverage_steps import enough_seen
 from cratous.core.tasks.service import Watched as Seen
 from cratous.core.tasks.service import service_verdict
 from cratous.services.monitor.coverage import CoverageWatch
+from cratous.services.monitor.landing import Down
 from cratous.services.monitor.observation import Ending, Presence
 from cratous.services.monitor.required_rows import END, Watched, served_item
 from cratous.services.monitor.samples import Sample
@@ -54,9 +55,13 @@ class Doing:
 
 
 class CompletionWatch:
-    """Completion and service of every task that the mission asks for. `presence`: who was seen when."""
+    """Completion and service of every task that the mission asks for. `presence`: who was seen when; down: who is on
+    the ground."""
 
-    def __init__(self, mission: Mission, plan: Plan, presence: Presence) -> None:
+    def __init__(
+        self, mission: Mission, plan: Plan, presence: Presence, down: Mapping[int, Down]
+    ) -> None:
+        self._down = down
         self._mission, self._coverage = mission, CoverageWatch(mission)
         self._presence = presence
         self._kinds = {task.id: task for task in mission.tasks}
@@ -172,7 +177,7 @@ class CompletionWatch:
             note = unseen
         evidence = None
         if outcome is Outcome.VIOLATED:
-            could, evidence = prospects(self._mission, self._kinds[task], seen.end_ms)
+            could, evidence = prospects(self._mission, self._kinds[task], seen.end_ms, self._down)
             note = f"{note}; {could}"
         return Verdict(
             "G3",

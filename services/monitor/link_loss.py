@@ -4,16 +4,29 @@ By what each ICAROUS said of it (`LinkLossState`), held against the kernel `loss
 one that it told must follow, whatever was permitted or ended. It begins within a heartbeat after the silence has
 become too long; a connection that had ended for longer, and nothing said, is a violation. Where lines of a bridge were
 made to be lost or late, whether UxAS was heard in between is not logged, and so that enough was said is not known.
+Who says to have landed has to be on the ground of a landing site, to stay and to stand there, and who is there to say so.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from cratous.core.authority.link_loss import FINISH, LINKED, LOITER, RETURN, Loss, loss_step
+from cratous.core.authority.link_loss import (
+    FINISH,
+    LAND,
+    LANDED,
+    LINKED,
+    LOITER,
+    RETURN,
+    Loss,
+    loss_step,
+)
 from cratous.core.authority.timeliness import in_time
+from cratous.core.avoidance.landing import on_ground
 from cratous.core.kernel import qualified
+from cratous.services.monitor.landing import Down
 from cratous.services.monitor.required_rows import alone_without_link_item
 from cratous.spec.mission import FaultySimulation, Mission, Simulation
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
@@ -23,6 +36,7 @@ NUMBERS = {
     WithoutLink.FINISH: FINISH,
     WithoutLink.LOITER: LOITER,
     WithoutLink.RETURN: RETURN,
+    WithoutLink.LAND: LAND,
 }
 LATEST_BEATS = 2
 """After so many heartbeats more the end of a connection has been noticed: one to notice it, one for the last line."""
@@ -56,7 +70,9 @@ def _may_not_come(simulation: Simulation) -> bool:
 class LinkLossWatch:
     """What the vehicles with an ICAROUS instance flew without the link; nothing where the mission does not say."""
 
-    def __init__(self, mission: Mission) -> None:
+    def __init__(self, mission: Mission, down: Mapping[int, Down]) -> None:
+        """down: who is on the ground, as the aircraft were."""
+        self._down = down
         self._asked, self._beat_ms = mission.link_loss, mission.simulation.heartbeat_ms
         there = mission.instances if self._asked is not None else ()
         self._told = {number: Told() for number in there}
@@ -102,8 +118,26 @@ class LinkLossWatch:
     def end(self, body: Any) -> None:
         """The mission ended."""
         self._over = True
-        for told in self._told.values():
+        for vehicle, told in self._told.items():
             self._missed(told, body.Time)
+            if text := self._on_the_ground(vehicle, told, body.Time):
+                told.wrong.append((body.Time, text))
+
+    def _on_the_ground(self, vehicle: int, told: Told, now_ms: int) -> str:
+        """What is wrong with how a vehicle has landed, or has not; empty if nothing."""
+        down, said = self._down.get(vehicle), told.loss.mode == LANDED
+        if down is None:
+            return "it said that it had landed, and was in the air" if said else ""
+        if not down.site:
+            return "it came to the ground beside every landing site"
+        if said and not down.stands:
+            return f"{down.words()}, and did not stand there at the end"
+        if down.wrong:
+            return f"{down.words()}, and {down.wrong}"
+        # it says so at the heartbeat after it has come down
+        if not said and not in_time(down.since_ms, now_ms, LATEST_BEATS * self._beat_ms):
+            return f"{down.words()}, and did not say so"
+        return ""
 
     def _missed(self, told: Told, now_ms: int) -> None:
         """Whether a connection has been down for so long that something should have been said."""
@@ -122,6 +156,9 @@ class LinkLossWatch:
 
     def _verdict(self, vehicle: int, told: Told) -> Verdict:
         outcome, note, at_ms = Outcome.HOLDS, ", ".join(told.said), None
+        down = self._down.get(vehicle)
+        if down is not None:
+            note = f"{note}; {down.words()}" if note else down.words()
         if told.wrong:
             outcome, (at_ms, text) = Outcome.VIOLATED, told.wrong[0]
             note = f"{text}; {note}" if note else text
@@ -134,7 +171,8 @@ class LinkLossWatch:
             note += "over a bridge that was made to fail: whether UxAS was heard is not logged"
         elif not note:
             note = "it was never without the link for long enough"
-        kernels = tuple(qualified(kernel) for kernel in (loss_step, in_time)) if told.checks else ()
+        asked: list[Any] = [loss_step, in_time] if told.checks else []
+        kernels = tuple(qualified(kernel) for kernel in [*asked, *([on_ground] if down else [])])
         margin = None if told.margin_ms is None else told.margin_ms / 1000
         return Verdict(
             "G5", alone_without_link_item(vehicle), outcome, Kind.OBSERVED, note,

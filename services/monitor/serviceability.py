@@ -6,10 +6,12 @@ time were left is the planner's matter, which the monitor does not repeat: that 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from cratous.core.schedule.rows import runs_forward
 from cratous.services.mission.availability import absent
+from cratous.services.monitor.landing import Down
 from cratous.services.monitor.outside import outside_zones
 from cratous.spec.mission import Mission, Task
 from cratous.spec.mission.changes import TASK_ADDED, split
@@ -17,10 +19,12 @@ from cratous.spec.mission.changes import TASK_ADDED, split
 OPEN = "not determined"
 
 
-def prospects(mission: Mission, task: Task, end_ms: int) -> tuple[str, dict[str, Any]]:
+def prospects(
+    mission: Mission, task: Task, end_ms: int, down: Mapping[int, Down]
+) -> tuple[str, dict[str, Any]]:
     """In words and as data: whether the task could have been served, and the state of each vehicle
-    at the end."""
-    why = _unable(mission, task, end_ms)
+    at the end. down: those on the ground."""
+    why = _unable(mission, task, end_ms, down)
     vehicles = [
         {"vehicle": v.id, "unable": why.get(v.id, "")}
         for v in sorted(mission.vehicles, key=lambda v: v.id)
@@ -35,7 +39,7 @@ def prospects(mission: Mission, task: Task, end_ms: int) -> tuple[str, dict[str,
             **found,
             "outside_zones": cut.data,
         } if cut.data else found
-    since_ms, asked_ms = _since(mission, task, end_ms), _asked(mission, task)
+    since_ms, asked_ms = _since(mission, task, end_ms, down), _asked(mission, task)
     said = "; ".join(f"vehicle {v['vehicle']}: {v['unable']}" for v in vehicles)
     never = runs_forward(since_ms, asked_ms)
     text = f"no vehicle could do it from {max(since_ms, asked_ms) / 1000:.2f} s on: {said}"
@@ -45,7 +49,7 @@ def prospects(mission: Mission, task: Task, end_ms: int) -> tuple[str, dict[str,
     return text, {"could_be_served": answer, "since_ms": since_ms, "vehicles": vehicles}
 
 
-def _unable(mission: Mission, task: Task, now_ms: int) -> dict[int, str]:
+def _unable(mission: Mission, task: Task, now_ms: int, down: Mapping[int, Down]) -> dict[int, str]:
     """Who can not do a task at an instant, and why."""
     away = absent(mission, now_ms)
     found = {}
@@ -54,16 +58,19 @@ def _unable(mission: Mission, task: Task, now_ms: int) -> dict[int, str]:
             found[vehicle.id] = "it is not eligible"
         elif vehicle.id in away:
             found[vehicle.id] = away[vehicle.id]
+        elif vehicle.id in down and runs_forward(down[vehicle.id].since_ms, now_ms):
+            found[vehicle.id] = f"it {down[vehicle.id].words()}"
     return found
 
 
-def _since(mission: Mission, task: Task, end_ms: int) -> int:
+def _since(mission: Mission, task: Task, end_ms: int, down: Mapping[int, Down]) -> int:
     """From when on nobody could do the task, up to the end; nobody can at the end."""
     happened, _ = split(mission.changes, end_ms)
-    instants = sorted({0, *(change.at_ms for change in happened)}, reverse=True)
+    landed = (place.since_ms for place in down.values())
+    instants = sorted({0, *(change.at_ms for change in happened), *landed}, reverse=True)
     since = end_ms
     for instant in instants:
-        if len(_unable(mission, task, instant)) < len(mission.vehicles):
+        if len(_unable(mission, task, instant, down)) < len(mission.vehicles):
             break
         since = instant
     return since

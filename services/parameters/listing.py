@@ -27,6 +27,7 @@ from cratous.services.loading.document import read_document
 from cratous.services.loading.schema import mission_schema
 from cratous.services.loading.yaml_mission import MAX_BANK_DEG, MAX_CLIMB_M_S
 from cratous.services.mission.ground import GROUND_MARGIN, floor_of
+from cratous.services.parameters.landing import landing_rows
 from cratous.services.parameters.parameter import DEFAULT, DERIVED, FIXED, GIVEN, Parameter
 from cratous.services.parameters.sensed import SECTION, rows_of
 from cratous.spec.mission import LivePlanningMission, Mission, Vehicle
@@ -54,7 +55,7 @@ def parameters_of(mission: Mission, path: Path) -> tuple[Parameter, ...]:
     for k, vehicle in enumerate(mission.vehicles):
         rows += _of_vehicle(vehicle, _at(written, ("vehicles", k)))
         if vehicle.id in mission.instances:
-            rows += _derived(mission, vehicle)
+            rows += [*_derived(mission, vehicle), *landing_rows(mission, vehicle)]
     return (*rows, *_fixed())
 
 

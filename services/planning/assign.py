@@ -28,11 +28,13 @@ from cratous.core.assignment.anytime import (
 )
 from cratous.core.assignment.by_sets import by_sets
 from cratous.core.assignment.chains import chains_below
+from cratous.core.assignment.compiled import SMALL_TASKS
 from cratous.core.assignment.instance import TASKS_MAX, Instance
 from cratous.core.assignment.layers import DEALS_TASKS, look_ahead, refute
 from cratous.core.assignment.optimality import shows_optimal
 from cratous.core.assignment.repair import repaired
 from cratous.core.assignment.settlement import Settler
+from cratous.services.planning import coming
 from cratous.services.planning.assign_problem import (
     Part,
     arrays,
@@ -152,6 +154,8 @@ def _searched(
     problem: AssignmentProblem, limits: Limits, branches: tuple[Part, ...], complete: bool,
     progress: Progress | None,
 ) -> tuple[_Run, list[Proof]]:  # fmt: skip
+    if any(len(part.tasks) > SMALL_TASKS for part in branches):
+        coming.ready(coming.ASSIGNMENT)
     if limits.seconds is not None:
         warm()
     made = [arrays(problem, part) for part in branches]
@@ -211,14 +215,8 @@ def _list_chains(run: _Run, proofs: list[Proof]) -> None:
 @functools.cache
 def warm() -> None:
     """Have everything compiled, so that no limit of time is spent on that."""
-    # four tasks: fewer would be run by CPython
-    rows = tuple(tuple(None if a == b else 1 for b in range(4)) for a in range(5))
     for semantics in (TIME, ORDER):
-        p = AssignmentProblem(
-            "", (1,), (0,), tuple(Choice(t, 1, 1, (1,)) for t in (1, 2, 3, 4)), (rows,),
-            ".(p1 p2 p3 p4)", semantics=semantics,
-        )  # fmt: skip
-        i = arrays(p, parts(p)[0][0])
+        i = simple_instance(semantics)
         _, moves = greedy(i)
         assert moves is not None
         improve(i, moves, 1, 1)
@@ -229,6 +227,16 @@ def warm() -> None:
         if semantics == ORDER:
             by_sets(i)
         estimate(i, look_ahead(i))
+
+
+def simple_instance(semantics: str) -> Instance:
+    """Of four tasks in a row: fewer would be run by CPython."""
+    rows = tuple(tuple(None if a == b else 1 for b in range(4)) for a in range(5))
+    p = AssignmentProblem(
+        "", (1,), (0,), tuple(Choice(t, 1, 1, (1,)) for t in (1, 2, 3, 4)), (rows,),
+        ".(p1 p2 p3 p4)", semantics=semantics,
+    )  # fmt: skip
+    return arrays(p, parts(p)[0][0])
 
 
 def _anneal(run: _Run, made: list[Instance], firsts: list[Moves | None]) -> None:

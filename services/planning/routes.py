@@ -12,6 +12,7 @@ import numpy as np
 from cratous.core.assignment.problem import START
 from cratous.core.routing.bulk import FOUND
 from cratous.core.routing.visibility import Roadmap, Route, route, routes
+from cratous.services.planning import coming
 from cratous.services.planning.leaving import WayOut, way_out
 from cratous.services.planning.options import Flyer, flight_ms, flyer_of
 from cratous.services.planning.vias import Flown, inner, joined
@@ -138,6 +139,8 @@ class Routes:
             flat = [key for key in left if key[0].alt_m == key[2].alt_m]
             self._times.update((key, None) for key in left if key not in set(flat))
             left = flat
+        if len(left) > coming.MANY_WAYS:
+            coming.ready(coming.ROUTES)
         for roadmap in self._roadmaps(flyer.radius_m):
             if not left:
                 return

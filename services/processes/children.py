@@ -109,6 +109,12 @@ class Children:
                 lines = deque(self.said(name).splitlines(), LAST_LINES)
                 raise ProcessEnded(name, code, tuple(lines))
 
+    def signalled(self, name: str, number: signal.Signals) -> None:
+        """Send a signal to those whose name begins so and that still run."""
+        for one, child in self.running.items():
+            if one.startswith(name) and child.poll() is None:
+                child.send_signal(number)
+
     def end(self) -> dict[str, int]:
         """SIGTERM to all, SIGKILL to those that have not ended in time; the exit codes."""
         for child in reversed(self.running.values()):

@@ -20,9 +20,12 @@ UNSAID = frozenset({"protected", "power_w", "camera_id", "cruise_m", "notes"})
 """Fields that no message has, or that the reader fills in: they change nothing of the flight."""
 
 
-def told_of(mission: Mission) -> Told:
-    """The messages of a mission; BadInput, which names the field, for what they or the processes cannot do."""
-    for item, wrong, what, expected in _asked(mission):
+def told_of(mission: Mission, original: bool = False) -> Told:
+    """The messages of a mission; BadInput, which names the field, for what they or the processes cannot do.
+
+    original: ICAROUS is behind clients of the original's, which others start.
+    """
+    for item, wrong, what, expected in _asked(mission, original):
         if wrong:
             raise BadInput(
                 f"{what}, which processes of their own cannot fly",
@@ -42,14 +45,15 @@ def told_of(mission: Mission) -> Told:
     return told
 
 
-def _asked(mission: Mission) -> Iterator[tuple[str, bool, str, str]]:
+def _asked(mission: Mission, original: bool) -> Iterator[tuple[str, bool, str, str]]:
     """Field, whether it asks for too much, what it asks for, and what would do."""
     alone = not mission.instances
     yield "vehicles", alone, "no vehicle has an ICAROUS instance", "a protected vehicle"
     changes = mission.changes
     yield "changes", bool(changes), "something becomes known in flight", "no changes"
     faulty = isinstance(mission.simulation, FaultySimulation)
-    yield "simulation.bridge_faults", faulty, "the bridge is made to fail", "no bridge_faults"
+    fails = "the bridge to the original's clients is made to fail"
+    yield "simulation.bridge_faults", faulty and original, fails, "no bridge_faults"
     sensed = mission.sensing is not None
     yield "sensing", sensed, "ICAROUS is given what sensors see", "no sensing"
     lost = mission.link_loss is not None

@@ -7,6 +7,7 @@ simulator's clock stands from its first states until then.
 from __future__ import annotations
 
 import re
+import signal
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -20,6 +21,7 @@ from cratous.bridge.tcp_port import TcpPort
 from cratous.services.exporting.messages import Told
 from cratous.services.processes.agreement import agrees
 from cratous.services.processes.children import GRACE_S, Children, ProcessEnded, free_port
+from cratous.services.processes.failing_bridge import FailingBridge
 from cratous.services.processes.files import (
     ORIGINAL_PORT,
     Ports,
@@ -29,7 +31,7 @@ from cratous.services.processes.files import (
 )
 from cratous.services.processes.recorder import Recorder
 from cratous.spec.errors import BadInput, CratousError, NoPlan
-from cratous.spec.mission import Mission
+from cratous.spec.mission import FaultySimulation, Mission
 from cratous.spec.mission.plan import Plan, in_part_of
 
 Tell = Callable[[str], None]
@@ -118,6 +120,8 @@ class _Flight:
         self.news_s: dict[str, float] = {}
         self.look_s = 0.0
         self.stood: set[str] = set()
+        self.failing: FailingBridge | None = None
+        self.stands = False
 
     # the start ------------------------------------------------------------------------------------
 
@@ -144,8 +148,9 @@ class _Flight:
             how.tell(
                 f"start the original's clients, for vehicle {who}: UxAS waits for {len(instances)}"
             )
+        doors = self._doors(instances)
         for vehicle in () if how.original else instances:
-            where = f"127.0.0.1:{ports.icarous}"
+            where = f"127.0.0.1:{doors[vehicle]}"
             self._start(
                 f"icarous_{vehicle}", "icarous", "--vehicle", str(vehicle), "--mission",
                 str(how.path.resolve()), "--mission-hash", how.digest, "--connect", where,
@@ -159,6 +164,27 @@ class _Flight:
         self.heard.clear()
         self.flown = True
         self._control("Running", how.rate)
+
+    def _doors(self, instances: list[int]) -> dict[int, int]:
+        """By vehicle, the port at which its ICAROUS finds UxAS: through a bridge that fails, if that is asked for."""
+        simulation = self.mission.simulation
+        if not isinstance(simulation, FaultySimulation):
+            return dict.fromkeys(instances, self.ports.icarous)
+        faults = simulation.bridge_faults
+        self.failing = FailingBridge(faults, instances, simulation.heartbeat_ms)
+        self.failing.leads_to(self.ports.icarous)
+        return self.failing.ports
+
+    def _fail(self) -> int:
+        """What goes over a bridge that fails, and whether ICAROUS stands still now; how many bytes went."""
+        simulation, now_ms = self.mission.simulation, self.recorder.now_ms
+        if self.failing is None or not isinstance(simulation, FaultySimulation):
+            return 0
+        silent = simulation.bridge_faults.icarous_is_silent(now_ms) and self.flown
+        if silent != self.stands:
+            self.stands = silent
+            self.children.signalled("icarous_", signal.SIGSTOP if silent else signal.SIGCONT)
+        return self.failing.step(now_ms)
 
     def _start(self, name: str, *arguments: str) -> None:
         pid = self.children.start(name, *arguments)
@@ -236,6 +262,7 @@ class _Flight:
                 self.stood.add(name)
             elif name in self.stood:
                 self._cut(name)
+        arrived += self._fail()
         if not arrived or is_due(self.look_s, now_s):
             self.look_s = now_s + LOOK_S
             self.children.watch()
@@ -320,7 +347,11 @@ class _Flight:
         self.recorder.failed(task, vehicle, self.failed.get(task, text))
 
     def close(self) -> None:
-        """Let go of the connections."""
+        """Let go of the connections, and of who was made to stand still: it has to end."""
+        if self.stands:
+            self.children.signalled("icarous_", signal.SIGCONT)
+        if self.failing is not None:
+            self.failing.close()
         for port in (self.uxas, self.simulator):
             if port is not None:
                 port.close()

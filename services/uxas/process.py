@@ -12,7 +12,7 @@ import os
 import resource
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +31,8 @@ from cratous.services.uxas.manager import ServiceManager, startup
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 
 _LONGEST_POLL_MS = 200  # so that a signal or a discrete clock is seen
+_QUIET_MS = 20
+"""A piece of what can be done at any time is done when nothing has come, or is due, for so long."""
 _FILES = 65536
 _NEVER_MS = 2**62
 
@@ -64,6 +66,7 @@ class Process:
         self._poller: zmq.Poller | None = None
         self._handles: list[tuple[Any, int]] = []
         self._faults: Counter[tuple[str, str, str]] = Counter()
+        self._spare: Iterator[None] | None = None
         self.stopping = False
         joined = _addresses(config, ("HubSUB", "HubPUSH"))
         hosts = _addresses(config, ("HubPUB", "HubPULL"))
@@ -127,11 +130,13 @@ class Process:
         found: list[Any] = [p for p in (self._hub, self._satellite) if p is not None]
         return found + list(self.manager.bridges.values())
 
-    def run(self, until_s: float | None = None) -> None:
+    def run(self, until_s: float | None = None, spare: Iterator[None] | None = None) -> None:
         """Turn until `until_s` seconds are over, KillService -1 comes, or `stopping` is set.
 
         The start is complete when all entities that services wait for have connected; time counts from then on.
+        spare: what is done piece by piece when nothing else is there to do; not in virtual time, which has no such time.
         """
+        self._spare = None if self._virtual else spare
         while self._awaits() and not (self.stopping or self.manager.ended):
             self.turn()
         startup(self.bus)
@@ -203,11 +208,30 @@ class Process:
             if port.port.due_s is not None:
                 wait_ms = min(wait_ms, 1000 * (port.port.due_s - now_s))
         wait = max(0, int(wait_ms + 0.999))
-        if handles:
-            with contextlib.suppress(InterruptedError):
-                self._poller.poll(wait)
-        else:
-            time.sleep(wait / 1000)
+        spare = self._spare is not None and wait > _QUIET_MS
+        if not self._heard(_QUIET_MS if spare else wait) and spare:
+            self._use_spare_time()
+
+    def _heard(self, wait_ms: int) -> bool:
+        """Wait so long for something to come; whether it has."""
+        if not self._handles:
+            time.sleep(wait_ms / 1000)
+            return False
+        assert self._poller is not None
+        with contextlib.suppress(InterruptedError):
+            return bool(self._poller.poll(wait_ms))
+        return True  # a signal has come
+
+    def _use_spare_time(self) -> None:
+        """Do one piece of what can be done at any time."""
+        assert self._spare is not None
+        try:
+            next(self._spare)
+        except StopIteration:
+            self._spare = None
+        except Exception as error:
+            self._spare = None
+            self.log("WARN", f"the first request will take longer: {type(error).__name__}: {error}")
 
     def _admit(self, curve: Any) -> None:
         from cratous.bridge.zmq_curve import Doorkeeper

@@ -9,11 +9,13 @@ from typing import NamedTuple
 
 from cratous.spec.authority.link_end import too_old
 
-LINKED, FINISH, LOITER, RETURN, OVER = 0, 1, 2, 3, 4
+LINKED, FINISH, LOITER, RETURN, OVER, LAND, FINAL, LANDED = 0, 1, 2, 3, 4, 5, 6, 7
 """UxAS is heard; the known way is flown to its end; a circle is flown; a way to a named place is flown; what was
-chosen has been flown to its end, and a circle is flown there."""
-NOTHING, BEGIN, FALL_BACK, END, REJOIN = 0, 1, 2, 3, 4
-"""What is new: nothing; what is chosen begins; nothing permits it, a circle is flown; it has ended; UxAS is heard."""
+chosen has been flown to its end, and a circle is flown there; a way to a landing site is flown; the last descent is,
+to the ground; the vehicle is on the ground."""
+NOTHING, BEGIN, FALL_BACK, END, REJOIN, COMMIT, TOUCH = 0, 1, 2, 3, 4, 5, 6
+"""What is new: nothing; what is chosen begins; nothing permits it, a circle is flown; it has ended; UxAS is heard; the
+last descent begins; the ground is reached."""
 
 
 class Loss(NamedTuple):
@@ -31,13 +33,18 @@ class Heartbeat(NamedTuple):
 
 
 def is_mode(mode: int) -> bool:
-    """It is one of the five."""
-    return not (mode < LINKED or mode > OVER)
+    """It is one of the eight."""
+    return not (mode < LINKED or mode > LANDED)
 
 
 def may_be_chosen(mode: int) -> bool:
     """A mission can ask for it."""
-    return is_mode(mode) and mode != LINKED and mode != OVER
+    return not (mode < FINISH or mode > RETURN) or mode == LAND
+
+
+def is_committed(mode: int) -> bool:
+    """The vehicle is so low that nothing but the ground ends it, or is there."""
+    return not (mode < FINAL or mode > LANDED)
 
 
 def wanted(chosen: int, permitted: bool) -> int:
@@ -58,16 +65,25 @@ def is_after_heartbeat(
     after: Heartbeat,
 ) -> bool:
     """Heard in time there is no mode. Else what was chosen and flown to its end stays so, and of the others the
-    one that is wanted is flown, since it was wanted first. permitted: the way of what is chosen is, and what is
-    flown is ended once the vehicle is at its end."""
+    one that is wanted is flown, since it was wanted first. The last descent begins at the end of the way to a landing
+    site, while it is permitted to the ground, and ends there, whatever is heard; who has landed stays. permitted: the
+    way of what is chosen is, and what is flown is ended once the vehicle is at its end."""
+    if before.mode == LANDED:
+        return after == Heartbeat(before, NOTHING)
+    if before.mode == FINAL:
+        if ended:
+            return after == Heartbeat(Loss(LANDED, now), TOUCH)
+        return after == Heartbeat(before, NOTHING)
     if not too_old(heard, now, bound):
         if before.mode == LINKED:
             return after == Heartbeat(before, NOTHING)
         return after == Heartbeat(Loss(LINKED, now), REJOIN)
     if before.mode == OVER:
         return after == Heartbeat(before, NOTHING)
-    if ended and before.mode == chosen and chosen != LOITER:
+    if ended and before.mode == chosen and chosen != LOITER and chosen != LAND:
         return after == Heartbeat(Loss(OVER, now), END)
+    if ended and before.mode == chosen and chosen == LAND and permitted:
+        return after == Heartbeat(Loss(FINAL, now), COMMIT)
     mode = wanted(chosen, permitted)
     if before.mode == mode:
         return after == Heartbeat(before, NOTHING)

@@ -13,7 +13,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from cratous.spec.mission.bridge_faults import BridgeFaults
-from cratous.spec.mission.link_loss import WithoutLink
+from cratous.spec.mission.link_loss import LandingSite, WithoutLink
 from cratous.spec.mission.sensing import Sensing
 
 
@@ -292,6 +292,13 @@ class LinkLoss:
     after_ms: int = 5000
     to: Position | None = None
     name: str = ""
+
+
+@dataclass(frozen=True)
+class LandingLoss(LinkLoss):
+    """The same where it lands. name: of the site, "" for the nearest; sites: all that it may land at."""
+
+    sites: tuple[LandingSite, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -39,8 +39,19 @@ class BridgeFaults:
 
     def icarous_is_silent(self, now_ms: int) -> bool:
         """Whether ICAROUS stands still at an instant [ms]."""
-        begin, end = self.silent_ms, self.speaks_again_ms
-        return begin is not None and begin <= now_ms and (end is None or now_ms < end)
+        return _within(self.silent_ms, self.speaks_again_ms, now_ms)
+
+    def icarous_does_not_read(self, now_ms: int) -> bool:
+        """Whether ICAROUS takes nothing from its connection at an instant [ms]."""
+        return _within(self.stops_reading_ms, self.reads_again_ms, now_ms)
+
+    def is_cut(self, now_ms: int) -> bool:
+        """Whether no connection stands at an instant [ms]."""
+        return _within(self.cut_ms, self.reconnect_ms, now_ms)
+
+
+def _within(begin_ms: int | None, end_ms: int | None, now_ms: int) -> bool:
+    return begin_ms is not None and begin_ms <= now_ms and (end_ms is None or now_ms < end_ms)
 
 
 SHARES = ("loss", "repeat", "reorder", "truncation", "corruption", "forged_modes")

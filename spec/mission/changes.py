@@ -15,6 +15,8 @@ VEHICLE_LOST, VEHICLE_JOINS = "vehicle_lost", "vehicle_joins"
 TASK_ADDED, TASK_REMOVED = "task_added", "task_removed"
 ZONE, ZONE_ENDS = "zone", "zone_ends"
 WIND = "wind"
+VEHICLE_LANDED = "vehicle_landed"
+"""Of no mission file: what the flight itself leads to."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,7 @@ def words(change: Change) -> str:
     return {
         VEHICLE_LOST: f"vehicle {change.vehicle} is lost",
         VEHICLE_JOINS: f"vehicle {change.vehicle} joins",
+        VEHICLE_LANDED: f"vehicle {change.vehicle} has landed",
         TASK_ADDED: f"task {change.task} is requested",
         TASK_REMOVED: f"task {change.task} is removed",
     }[change.kind]

@@ -28,6 +28,15 @@ def test_a_case_with_another_verdict_or_another_form_fails() -> None:
     assert bridge.judge({**hello, "line": "okay"}).status == "not covered"
 
 
+def test_a_distance_from_a_leg_is_neither_more_nor_less_than_it_is() -> None:
+    leg = {"lat1": 45.3, "lon1": -121, "lat2": 45.3, "lon2": -120.9, "lat": 45.3045, "lon": -120.95}
+    assert bridge.judge({**leg, "true_m": 499.2}).status == "passed"
+    assert bridge.judge({**leg, "true_m": 480.0}).label == "taken for farther"
+    assert bridge.judge({**leg, "true_m": 520.0}).label == "taken for nearer"
+    with pytest.raises(BadInput, match="lat2"):
+        bridge.judge({"true_m": 1.0, "lat1": 0.0, "lon1": 0.0})
+
+
 @pytest.mark.parametrize("wrong", [{"strict": "maybe"}, {"line": 5}, {"direction": "sideways"}])
 def test_what_is_no_case_is_refused(wrong: dict[str, object]) -> None:
     with pytest.raises(BadInput):
@@ -36,8 +45,9 @@ def test_what_is_no_case_is_refused(wrong: dict[str, object]) -> None:
 
 @pytest.mark.skipif(not VECTORS.is_dir(), reason="no ../shared/vectors/cratous")
 def test_the_published_lines_and_sessions(capsys: pytest.CaptureFixture[str]) -> None:
-    files = [str(VECTORS / "examples.jsonl"), str(VECTORS / "sessions")]
+    names = ("examples.jsonl", "deviation_formula.jsonl", "sessions")
+    files = [str(VECTORS / name) for name in names]
     assert main(["conform", "bridge", *files, "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
-    assert (report["failed"], report["passed"]) == (0, 67 + 155)
+    assert (report["failed"], report["passed"]) == (0, 67 + 200 + 155)
     assert report["knife_edges"] == 8

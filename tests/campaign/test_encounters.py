@@ -256,6 +256,22 @@ def test_a_separation_that_is_too_small_is_refused_and_found(tmp_path: Path) -> 
     assert outcome_of({**right, "proved": False}, ("G2",)) == "unknown"
 
 
+def test_zones_not_seen_after_a_takeover_are_found(tmp_path: Path) -> None:
+    campaign = _campaign(
+        tmp_path,
+        "generator: {kind: converging, zones_beside: 2,\n"
+        "            ranges: {time_s: [30, 50], zone_gap_m: [2, 25], zone_place: [-0.7, 0]}}\n"
+        "duration_s: 50\nseeds: [1, 1]\n",
+    )
+    (run,) = runs_of(campaign, "v", True)
+    right = fly_run(run.decides)
+    with seeded("zone"):
+        wrong = fly_run(run.decides)
+    for result, verdict in ((right, "holds"), (wrong, "violated")):
+        assert result["requirements"]["G1"]["verdict"] == verdict
+        assert result["judge"]["guarantees"]["G1"] == verdict
+
+
 def test_a_skipped_point_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file, _ = _bent(tmp_path)
     data = yaml.safe_load(file.read_text())

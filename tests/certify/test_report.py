@@ -21,6 +21,7 @@ from cratous.services.certify.timeline import bars, read_flight
 from cratous.services.certify.verdicts import constraint_rows, requirement_rows
 from cratous.services.loading import load
 from cratous.services.logs.log import Row
+from cratous.services.monitor import _whole as whole_verdict
 from cratous.spec.mission.guarantees import REQUIREMENTS, Kind, Outcome, Verdict
 
 
@@ -328,6 +329,13 @@ def test_a_requirement_without_margins_is_told_by_what_most_was_seen_for() -> No
     for one, checks in zip(rows, (3, 158, 4), strict=True):
         one["margin"], one["checks"], one["note"] = None, checks, f"{checks} checks"
     assert requirement_rows(rows)[3]["note"] == "158 checks"
+
+
+def test_what_was_not_served_is_told_by_its_task() -> None:
+    items = ("end of mission", "task 5 served")
+    parts = [Verdict("G3", item, Outcome.VIOLATED, Kind.OBSERVED, "n") for item in items]
+    assert requirement_rows(constraint_rows(parts, "flight"))[2]["item"] == "task 5 served"
+    assert whole_verdict("G3", parts).note == "task 5 served: n"
 
 
 def test_paper_has_the_answer_and_the_inventory_only_when_asked_for() -> None:

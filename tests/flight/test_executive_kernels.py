@@ -29,6 +29,7 @@ from cratous.services.flight.messages import (
     NotHeard,
     NotPlanned,
     Planned,
+    Stands,
     ToExecutive,
     ToVehicle,
 )
@@ -147,8 +148,8 @@ def test_a_step_changes_nothing_but_its_answer(monkeypatch: pytest.MonkeyPatch) 
     result, _ = flown(mission, plan)
     assert (result.takeovers, list(result.failed)) == (1, [1])
     # ways back are asked for where UxAS plans live alone (test_ways_back_asked)
-    # and that a link is lost means something with `link_loss:` alone (below)
-    others = {"RouteAsked", "NotHeard", "HeardAgain"}
+    # and that a link is lost, or somebody lands, means something with `link_loss:` alone (below)
+    others = {"RouteAsked", "NotHeard", "HeardAgain", "Stands"}
     assert seen["Executive"] == {m.__name__ for m in ToExecutive.__args__} - others
     assert seen["VehicleNode"] == {m.__name__ for m in ToVehicle.__args__} - {"LimitsAre"}
 
@@ -158,7 +159,9 @@ def test_that_a_vehicle_is_not_heard_is_a_step_like_any_other() -> None:
     actor = Executive(Config(mission, Projection(mission.frame), ()))
     start = AirState(mission.vehicles[0].position, 0.0, 22.0, 0.0)
     messages = (Begin(0, ((1, start),)), NotHeard(1, 0), HeardAgain(1, 500, False))
-    chains = [state.find(1) for state in plain_steps(actor, first_state(mission, plan), messages)]
+    steps = plain_steps(actor, first_state(mission, plan), (*messages, Stands(1, "field")))
+    *chains, landed = [state.find(1) for state in steps]
+    assert landed == chains[-1]
     assert [(c.unlinked, c.suspended) for c in chains if c is not None] == [
         (False, False),
         (True, True),

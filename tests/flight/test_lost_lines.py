@@ -122,7 +122,7 @@ def test_what_is_lost_once_is_sent_again(lost: set[int]) -> None:
     assert not wire.down.lost
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(st.sets(st.integers(1, 400), max_size=150), st.integers(0, 3))
 def test_with_any_losses_it_is_in_force_whole_or_not_at_all(lost: set[int], passed: int) -> None:
     wire = Wire(lost)

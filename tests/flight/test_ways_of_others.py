@@ -217,6 +217,8 @@ def test_no_instant_is_left_out_where_ways_are_cut() -> None:
     for run, straight_on in runs:
         middle = run[0].start_s + run[0].duration_s / 2
         assert later(straight_on, middle).position == pytest.approx(later(one, middle).position)
+    # in no order of time each piece is looked at for each leg
+    assert runs == [(run[::-1], straight_on) for run, straight_on in meetings(own[::-1], one)]
 
 
 @pytest.mark.parametrize(("was_deg", "turns"), [(85, True), (90, False), (95, False), (None, True)])

@@ -110,8 +110,9 @@ def test_a_takeover_that_is_open_at_the_end_is_unknown_only_where_the_link_is_de
 # ---- G5 -----------------------------------------------------------------------------------------
 
 
-def beats(folder: Path, skip=(), status=(), zones=(), instances=(1,)) -> str:
+def beats(folder: Path, skip=(), status=(), zones=(), instances=(1,), **meta) -> str:
     scene = Scene(instances=list(instances), zones=list(zones))
+    scene.meta |= meta
     scene.straight(1, (0, 0, 300), NORTH)
     scene.beats(1, skip)
     for at, alive in status:
@@ -183,6 +184,10 @@ def test_a_declared_silence_is_safe_or_not(tmp_path: Path) -> None:
     assert beats(tmp_path, quiet, [(9000, False)]) == "violated"  # not about this silence
     there = zone(7, "keep_out", (60, -5), (60, 5), (70, 5), (70, -5))
     assert beats(tmp_path, quiet, [(2500, False)], [there]) == "violated"
+    # nobody avoids without the bridge where the gate is not on board
+    processes = {"pids": {"uxas": 7}, "ports": {}}
+    assert beats(tmp_path, quiet, [(2500, False)], processes=processes) == "violated"
+    assert beats(tmp_path, (), (), processes=processes) == "holds"
 
 
 # ---- the report beside it -------------------------------------------------------------------------

@@ -182,6 +182,7 @@ def test_trouble_is_said_once_on_the_bus_and_again_when_it_is_over(tmp_path: Pat
             said += list(more)
         assert [s.StatusType.name for s in said] == ["Error"]
         assert "cannot be written" in said[0].Info[0].Value
+        assert said[0].Info[1].Value == "0", "it ends no request"
         old = resource.getrlimit(resource.RLIMIT_FSIZE)
         resource.setrlimit(resource.RLIMIT_FSIZE, (-1, old[1]))
         assert logger.log.flush()
@@ -189,6 +190,16 @@ def test_trouble_is_said_once_on_the_bus_and_again_when_it_is_over(tmp_path: Pat
         (back,) = more
         assert f"{logger.log.lost} messages lost" in back.Info[0].Value
         logger.close()
+
+
+def test_what_has_no_form_for_the_log_ends_no_request(tmp_path: Path) -> None:
+    """The cost matrix of many tasks is longer than an LMCP array: it is logged as text."""
+    logger = MessageLogger(tmp_path)
+    body = lmcp.new("KeyValuePair", Key="x" * 70_000)
+    _, (said,) = logger.handle(logger.start(), Envelope(0, 0, "sim", STATE, body), 0)
+    assert said.StatusType.name == "Warning"
+    assert [(pair.Key, pair.Value) for pair in said.Info[1:]] == [("RequestID", "0")]
+    logger.close()
 
 
 def test_a_small_day_of_traffic(root: Path, tmp_path: Path) -> None:

@@ -218,3 +218,10 @@ def test_why_this_vehicle_is_told_for_each_other_one() -> None:
     ]  # fmt: skip
     with pytest.raises(BadInput, match="no such task in the plan"):
         why(plan_of, plan, 9, {})
+
+
+def test_why_of_no_task_is_refused_before_planning(tmp_path: Path) -> None:
+    file = tmp_path / "mission.yaml"
+    file.write_text((ROOT / "examples/crossing/mission.yaml").read_text())
+    with pytest.raises(BadInput, match="no such task in the mission"):
+        _check_asked(9, load(file))

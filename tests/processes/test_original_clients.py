@@ -82,7 +82,7 @@ def test_the_secret_is_then_the_one_of_the_environment(
 
 def test_the_report_does_not_say_which_icarous_flew(crossing: Mission) -> None:
     mission = replace(crossing, notes=())
-    (ours,), (theirs,) = as_flown(mission).notes, as_flown(mission, original=True).notes
+    (ours, _), (theirs, _) = as_flown(mission).notes, as_flown(mission, original=True).notes
     assert "and 2 of ICAROUS" in ours
     assert "2 clients of the original's; which ICAROUS is behind them is not known here" in theirs
 

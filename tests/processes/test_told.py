@@ -70,7 +70,6 @@ def aircraft(**more: Any) -> Traffic:
 
 
 CHANGES: list[tuple[str, Callable[[Mission], Mission]]] = [
-    ("simulation.bridge_faults", lambda m: replace(m, simulation=FaultySimulation())),
     ("frame.terrain_m", lambda m: replace(m, frame=replace(m.frame, terrain_m=20.0))),
     ("cost", lambda m: replace(m, cost="DISTANCE")),
     ("gap", lambda m: replace(m, gap=0.1)),
@@ -114,6 +113,14 @@ def test_what_cannot_be_flown_is_refused_by_its_field(
         told_of(change(crossing(root)))
     assert wrong.value.item == item
     assert "--processes" in wrong.value.expected
+
+
+def test_a_bridge_to_the_original_s_clients_is_not_made_to_fail(root: Path) -> None:
+    mission = replace(crossing(root), simulation=FaultySimulation())
+    assert told_of(mission).tasks
+    with pytest.raises(BadInput) as wrong:
+        told_of(mission, original=True)
+    assert wrong.value.item == "simulation.bridge_faults"
 
 
 @pytest.mark.parametrize(("example", "item"), [("popup", "changes"), ("search", "tasks[3].kind")])

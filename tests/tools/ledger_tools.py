@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 PARTS = ("spec", "core", "proofs", "bridge", "services")
@@ -70,3 +72,14 @@ def check(home: Path, first: str = "") -> subprocess.CompletedProcess[str]:
         text=True,
         timeout=900,
     )
+
+
+@contextlib.contextmanager
+def restored(*files: Path) -> Iterator[None]:
+    """Whatever is done to the files: afterwards they are as they were."""
+    before = {file: file.read_text() for file in files}
+    try:
+        yield
+    finally:
+        for file, text in before.items():
+            file.write_text(text)

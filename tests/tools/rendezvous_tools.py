@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
 from following_tools import aircraft
-from pipeline_tools import Rig, place, request
+from pipeline_tools import PIPELINE, Rig, place, request
+from uxas_flight import Flight, fly, local
+from uxas_tools import write_cfg
 
 from cratous.bridge import lmcp
+from cratous.services.simulator.world import Event
 
 PLACES = ((0.04, 0.0), (0.04, 0.004), (0.045, 0.01))
 
@@ -85,3 +89,46 @@ def waiting(rig: Rig, one: Any) -> Any:
     )
     there = place(first.Latitude, first.Longitude)
     return one.copy(Mode="Loiter", CurrentCommand=command.CommandID, Location=there, Heading=0.0)
+
+
+def flown(
+    folder: Path,
+    *tasks: Any,
+    at: dict[int, float],
+    seconds: float,
+    wind: tuple[float, ...] = (),
+    east: float = 0.002,
+) -> Flight:
+    """Vehicles, which begin at latitudes, each so far east of the one before [deg], do tasks."""
+    kinds = "".join(f'<Service Type="{kind}"/>\n' for kind in PIPELINE)
+    kinds += "".join(f'<Service Type="WaypointPlanManagerService" VehicleID="{v}"/>\n' for v in at)
+    bodies = list[Any]()
+    for k, (vehicle, latitude) in enumerate(at.items()):
+        configuration, state = aircraft(vehicle, latitude)
+        there = place(latitude, east * k)
+        bodies += [configuration.copy(MinimumSpeed=15.0), state.copy(Location=there)]
+    if wind:
+        # its speed, and where it comes from
+        bodies.insert(0, lmcp.new("WeatherReport", WindSpeed=wind[0], WindDirection=wind[1]))
+    events = [Event(0.1 * k, body, "") for k, body in enumerate(bodies)]
+    said = [(1.0, one) for one in tasks]
+    numbers = [one.TaskID for one in tasks]
+    said.append(
+        (
+            3.0,
+            request(
+                *numbers,
+                vehicles=tuple(at),
+                TaskRelationships=".(" + " ".join(f"p{n}" for n in numbers) + ")",
+            ),
+        )
+    )
+    return fly(write_cfg(folder, kinds), events, seconds, said)
+
+
+def passed_s(flight: Flight, vehicle: int, at: tuple[float, float]) -> tuple[float, float]:
+    """When a vehicle was nearest to a place [s], and how near [m]."""
+    states = flight.states(vehicle)
+    away = [math.hypot(*p) for p in local([s.Location for s in states], place(*at))]
+    k = min(range(len(away)), key=away.__getitem__)
+    return states[k].Time / 1000, away[k]

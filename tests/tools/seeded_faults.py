@@ -19,10 +19,11 @@ from cratous.services.cli import campaign_flight
 from cratous.services.flight import encounter
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Sensed
+from cratous.spec.authority.cycle import MONITOR
 from cratous.spec.mission import WellClear
 
-BLIND_MS = range(20_000, 22_000)
-"""When zones are not seen."""
+BLIND_MS = 2000
+"""For how long zones are not seen once ICAROUS has taken over."""
 LEGS = 1000
 """One in so many is skipped."""
 
@@ -39,17 +40,27 @@ def _small(volume: WellClear) -> StandardThresholds:
 
 
 def zone(patch: pytest.MonkeyPatch) -> None:
-    """For two seconds of a flight an ICAROUS instance knows of no zone."""
-    right = Instance.handle
+    """An ICAROUS instance knows of no zone for the first two seconds of each takeover, the choice of its manoeuvre included."""
+    right, began_ms = Instance.handle, dict[int, int]()
 
-    def blind(self: Instance, state: Any, message: Any) -> Any:
-        if not (isinstance(message, Sensed) and message.now_ms in BLIND_MS):
-            return right(self, state, message)
+    def unseeing(self: Instance, state: Any, message: Any) -> Any:
         known = state.told.zones
         after, out = right(self, replace(state, told=replace(state.told, zones=())), message)
         return replace(after, told=replace(after.told, zones=known)), out
 
-    patch.setattr(Instance, "handle", blind)
+    def late(self: Instance, state: Any, message: Any) -> Any:
+        vehicle = self.config.vehicle_id
+        if isinstance(message, Sensed) and state.cycle.mode != MONITOR:
+            blind = message.now_ms - began_ms.get(vehicle, message.now_ms) < BLIND_MS
+            return (unseeing if blind else right)(self, state, message)
+        after, out = right(self, state, message)
+        if after.cycle.mode == MONITOR:
+            return after, out
+        began_ms[vehicle] = message.now_ms
+        blindly, sent = unseeing(self, state, message)
+        return (after, out) if blindly.cycle.mode == MONITOR else (blindly, sent)
+
+    patch.setattr(Instance, "handle", late)
 
 
 def waypoint(patch: pytest.MonkeyPatch) -> None:

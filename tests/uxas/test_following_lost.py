@@ -153,6 +153,7 @@ def test_who_is_hardly_faster_and_does_not_come_up_is_not_offered(tmp_path: Path
     assert said.endswith(f"it would not come up with entity {ENTITY}")
 
 
+@pytest.mark.usefixtures("straight_run_ins")
 @pytest.mark.shows("Task services", "RemoveTasks")
 def test_who_circles_for_a_task_that_is_removed_is_sent_on(tmp_path: Path) -> None:
     rig, state = escorted(tmp_path)

@@ -12,6 +12,7 @@ from route_rig import PLANE, Rig, obeys, place, vehicle
 
 from cratous.bridge import lmcp
 from cratous.bridge import text_protocol as tp
+from cratous.services.icarous_communication import proposals
 from cratous.spec.errors import BadInput
 
 SERVICE = "IcarousCommunicationService"
@@ -109,6 +110,21 @@ def test_what_cannot_be_answered_is_answered_without_a_way(
     rig.tell(lmcp.new("OwnRoutePlanner", Plans=True, Reason="test"))
     rig.until(lambda: len(one.all(tp.UxasPlans)) == 2)
     assert answered(rig, one, wanted(3000.0, 8))
+
+
+def test_an_instance_that_asks_again_and_again_is_planned_for_no_more(
+    tmp_path: Path, opened: list[Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(proposals, "WITHIN_MS", 600_000)  # whatever the machine's speed
+    monkeypatch.setattr(proposals, "MOST", 2)
+    rig = Rig(tmp_path, opened, LIVE)
+    one = rig.fake(1)
+    flying(rig)
+    one.say(tp.SetMode("ACTIVE", 1))
+    rig.until(lambda: rig.said.has("ICAROUS has it"))
+    got = [bool(answered(rig, one, wanted(3000.0, k))) for k in range(1, 5)]
+    assert got == [True, True, False, False]
+    assert rig.said.has("more than 2 WPREQ in 600 s")
 
 
 def test_nobody_asks_a_uxas_that_does_not_plan_live(tmp_path: Path, opened: list[Any]) -> None:

@@ -11,81 +11,19 @@ from typing import Any
 
 import pytest
 from following_tools import aircraft
-from pipeline_tools import PIPELINE, Rig, must_fly, place, request
-from rendezvous_tools import PLACES, meeting, told, under_way
-from uxas_flight import Flight, fly, local
-from uxas_tools import write_cfg
+from pipeline_tools import Rig, must_fly, place, request
+from rendezvous_tools import PLACES, flown, meeting, passed_s, told, under_way
 
 from cratous.bridge import lmcp
-from cratous.services.simulator.world import Event
 
-TASKS = "Task services"
-
-
-def flown(
-    folder: Path,
-    *tasks: Any,
-    at: dict[int, float],
-    seconds: float,
-    wind: tuple[float, ...] = (),
-    east: float = 0.002,
-) -> Flight:
-    """Vehicles, which begin at latitudes, each so far east of the one before [deg], do tasks."""
-    kinds = "".join(f'<Service Type="{kind}"/>\n' for kind in PIPELINE)
-    kinds += "".join(f'<Service Type="WaypointPlanManagerService" VehicleID="{v}"/>\n' for v in at)
-    bodies = list[Any]()
-    for k, (vehicle, latitude) in enumerate(at.items()):
-        configuration, state = aircraft(vehicle, latitude)
-        there = place(latitude, east * k)
-        bodies += [configuration.copy(MinimumSpeed=15.0), state.copy(Location=there)]
-    if wind:
-        # its speed, and where it comes from
-        bodies.insert(0, lmcp.new("WeatherReport", WindSpeed=wind[0], WindDirection=wind[1]))
-    events = [Event(0.1 * k, body, "") for k, body in enumerate(bodies)]
-    said = [(1.0, one) for one in tasks]
-    numbers = [one.TaskID for one in tasks]
-    said.append(
-        (
-            3.0,
-            request(
-                *numbers,
-                vehicles=tuple(at),
-                TaskRelationships=".(" + " ".join(f"p{n}" for n in numbers) + ")",
-            ),
-        )
-    )
-    return fly(write_cfg(folder, kinds), events, seconds, said)
-
-
-def passed_s(flight: Flight, vehicle: int, at: tuple[float, float]) -> tuple[float, float]:
-    """When a vehicle was nearest to a place [s], and how near [m]."""
-    states = flight.states(vehicle)
-    away = [math.hypot(*p) for p in local([s.Location for s in states], place(*at))]
-    k = min(range(len(away)), key=away.__getitem__)
-    return states[k].Time / 1000, away[k]
-
-
-@pytest.mark.shows(TASKS, "VehicleActionCommand", "TaskComplete")
-def test_three_vehicles_pass_their_states_at_one_time(tmp_path: Path) -> None:
-    at = {1: 0.0, 2: 0.004, 3: 0.012}
-    flight = flown(tmp_path, meeting(1, 2, 3), at=at, seconds=320.0, east=-0.015)
-    (complete,) = flight.of("TaskComplete")
-    assert complete.EntitiesInvolved == [1, 2, 3]
-    found = [passed_s(flight, v, PLACES[v - 1]) for v in (1, 2, 3)]
-    times = [time for time, _ in found]
-    assert max(times) - min(times) <= 2.0
-    assert max(away for _, away in found) < 40
-    # the last one, who comes from the side, need not wait for those who end their laps
-    assert [v for v in at if any(s.Mode.name == "Loiter" for s in flight.states(v))] == [1, 2]
-    # and nobody flew at another speed than its own limits
-    speeds = [s.Airspeed for v in at for s in flight.states(v) if s.Time > 60_000]
-    assert 14.9 < min(speeds) <= max(speeds) < 30.1
+pytestmark = pytest.mark.usefixtures("straight_run_ins")
 
 
 def test_the_wind_moves_the_common_time_and_not_the_vehicles_apart(tmp_path: Path) -> None:
     """A wind from behind: the slowest that they fly over ground is 23 m/s, and a lap takes longer."""
     at, wind = {1: 0.0, 2: -0.01, 3: 0.01}, (8.0, 180.0)
     flight = flown(tmp_path, meeting(1, 2, 3), at=at, seconds=270.0, wind=wind)
+    assert [v for v in at if any(s.Mode.name == "Loiter" for s in flight.states(v))]
     assert flight.of("TaskComplete")[0].EntitiesInvolved == [1, 2, 3]
     found = [passed_s(flight, v, PLACES[v - 1]) for v in (1, 2, 3)]
     assert max(time for time, _ in found) - min(time for time, _ in found) <= 2.0

@@ -12,8 +12,10 @@ from rendezvous_tools import PLACES, coming, sent_on, under_way, waiting
 
 from cratous.bridge import lmcp
 from cratous.core.kernel import Vec2
-from cratous.services.following.meeting import Limits, waiting_of
+from cratous.services.following.speeds import Limits, waiting_of
 from cratous.services.planning.flyers import Flyer
+
+pytestmark = pytest.mark.usefixtures("straight_run_ins")
 
 
 @pytest.mark.parametrize("change", [{"AssociatedTasks": []}, {"Location": place(math.nan)}])
@@ -77,10 +79,10 @@ def test_who_waits_flies_slowly_where_that_makes_its_laps_shorter(tmp_path: Path
 
 
 def test_a_lap_is_waited_at_the_usual_speed_where_the_wind_makes_that_the_shorter_one() -> None:
-    flyer, limits = Flyer(20.0, 80.0, 300.0, 3.0, ()), Limits(12.0, 20.0, 30.0)
+    flyer, limits = Flyer(20.0, 80.0, 300.0, 3.0, ()), Limits(12.0, 20.0, 27.0, 30.0)
     assert waiting_of(flyer, limits, Vec2(0.0, 0.0))[:2] == pytest.approx((12.0, 28.8))
     assert waiting_of(flyer, limits, Vec2(11.5, 0.0)) is flyer
-    assert waiting_of(flyer, Limits(20.0, 20.0, 20.0), Vec2(0.0, 0.0))[:2] == flyer[:2]
+    assert waiting_of(flyer, Limits(20.0, 20.0, 20.0, 20.0), Vec2(0.0, 0.0))[:2] == flyer[:2]
 
 
 def left(rig: Any) -> list[int]:

@@ -37,6 +37,9 @@ class WithoutLink(LmcpEnum):
     Loiter = 2
     Return = 3
     Over = 4
+    Land = 5
+    Final = 6
+    Landed = 7
 
 class Verdict(LmcpEnum):
     Holds = 0

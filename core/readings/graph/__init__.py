@@ -12,11 +12,10 @@ from __future__ import annotations
 import ast
 import functools
 import inspect
-import math
-import textwrap
 from collections.abc import Callable, Iterator
 from typing import Any, get_type_hints
 
+from cratous.core.kernel.sources import is_root, text_of
 from cratous.core.readings.graph.nodes import Node, NotInSubset, Program, Record, Terms, Value
 
 COMPARISONS = {
@@ -68,7 +67,7 @@ def inlined(terms: Terms, function: Callable[..., Any], *args: Value) -> Node:
 
 @functools.cache
 def _definition(function: Callable[..., Any]) -> ast.FunctionDef:
-    tree = ast.parse(textwrap.dedent(inspect.getsource(function)))
+    tree = ast.parse(text_of(function))
     node = tree.body[0]
     if not isinstance(node, ast.FunctionDef):
         raise NotInSubset(f"{function!r} is no function definition")
@@ -254,7 +253,7 @@ class _Walk:
             return Record(target, tuple(self.cast(value, kind) for value, kind in pairs))
         if inspect.isfunction(target):
             return _Walk(self.terms, target).call(args)
-        if name in ("abs", "min", "max", "sqrt") and target in (None, math.sqrt):
+        if name in ("abs", "min", "max", "sqrt") and (target is None or is_root(target)):
             nodes = [arg for arg in args if isinstance(arg, Node)]
             if len(nodes) != len(args) or not nodes:
                 raise self.outside(at, f"{name} of a record")

@@ -12,12 +12,12 @@ import builtins
 import dis
 import inspect
 import math
-import textwrap
 import types
 from collections.abc import Callable
 from typing import Any, get_type_hints
 
 from cratous.core.kernel import Fold, entry_of
+from cratous.core.kernel.sources import text_of
 from cratous.spec.errors import BadInput
 
 NUMBERS = (bool, int, float)
@@ -195,7 +195,7 @@ class _Renaming(ast.NodeTransformer):
 
 def _definition(function: Callable[..., Any]) -> ast.FunctionDef:
     """The function's syntax without decorators and docstring."""
-    node = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
+    node = ast.parse(text_of(function)).body[0]
     if not isinstance(node, ast.FunctionDef):
         raise BadInput("this is no function definition", item=function.__qualname__)
     node.decorator_list = []

@@ -16,7 +16,7 @@ def claim(c: Claim) -> None:
     )
     may = c.define(link_loss.is_after_heartbeat, before, *seen, other)
     c.show(c.implies(may, c.same(other, stepped)), "and it can be no other: never two modes")
-    c.show(c.define(link_loss.is_mode, stepped.loss.mode), "it is one of the five")
+    c.show(c.define(link_loss.is_mode, stepped.loss.mode), "it is one of the eight")
 
     reason = c.boolean("reason")
     takes = c.define(link_loss.must_fly, before, reason)

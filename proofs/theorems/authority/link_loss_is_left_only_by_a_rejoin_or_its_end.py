@@ -1,6 +1,7 @@
 """A mode that was begun without the link is left only when UxAS is heard again, when it has been flown to its
 end, or when its way is no longer permitted; a circle that was flown for want of a permitted way is left for what
-is chosen once that is permitted. What has ended is left by a rejoin alone."""
+is chosen once that is permitted. What has ended is left by a rejoin alone. A last descent to the ground is another
+claim: it is left for the ground."""
 
 from cratous.core.authority.link_loss import loss_step
 from cratous.core.authority.timeliness import in_time
@@ -13,6 +14,8 @@ def claim(c: Claim) -> None:
     before, seen = any_loss(c)
     chosen, heard, now, bound, permitted, ended = seen
     after = c.use(loss_step, before, *seen).loss
+    committed = c.define(link_loss.is_committed, before.mode)
+    c.premise(c.negation(committed))
     lost, left = before.mode != link_loss.LINKED, after.mode != before.mode
     linked = c.use(in_time, heard, now, bound)
     c.show(
@@ -20,7 +23,8 @@ def claim(c: Claim) -> None:
     )
     goes_on = c.all_of(lost, left, c.negation(linked))
     is_chosen = before.mode == chosen
-    ends = c.all_of(ended, after.mode == link_loss.OVER)
+    end = c.any_of(after.mode == link_loss.OVER, after.mode == link_loss.FINAL)
+    ends = c.all_of(ended, end)
     falls = c.all_of(c.negation(permitted), after.mode == link_loss.LOITER)
     c.show(c.implies(c.all_of(goes_on, is_chosen), c.any_of(ends, falls)), "what is chosen")
     waits = c.all_of(before.mode == link_loss.LOITER, permitted, after.mode == chosen)

@@ -1,0 +1,117 @@
+"""G5 where the mission says what is flown without the link: did each vehicle begin it in time, and fly nothing else?
+
+By what each ICAROUS says (`LinkLossState`), by the connections that UxAS's end declares, and for a landing by where the
+vehicle was. Modes follow one another as `AFTER` has it. Where lines of the bridge were lost, damaged or late, or ICAROUS stopped
+reading, whether UxAS was heard is not in the log.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cratous.judge.ground import Down, down
+from cratous.judge.log import Alone, Log
+from cratous.judge.mission import LOITER, Mission, WithoutLink
+from cratous.judge.tracks import Track
+from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, seconds
+
+LINKED, OVER, LAND, FINAL, LANDED = "Linked", "Over", "Land", "Final", "Landed"
+NOTICED = 2
+"""So many heartbeats after the bound at the latest it has been said."""
+
+
+def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
+    """One row for each vehicle with an instance."""
+    asked = mission.without_link
+    if asked is None:
+        return
+    for vehicle in sorted(mission.instances):
+        subject, item = ("alone", str(vehicle)), f"what vehicle {vehicle} flies without the link"
+        said, place = log.alone.get(vehicle, []), down(mission, flown.get(vehicle))
+        faults = [*_faults(mission, asked, said), *_missed(mission, asked, log, vehicle, said)]
+        if log.end_ms is not None:
+            faults += _landing(mission, said, place, log.end_ms)
+        note = ", ".join(f"{one.mode} from {seconds(one.time_ms)}" for one in said)
+        note = note or "it was never said to be without the link"
+        note += f"; it {place.words()}" if place else ""
+        if faults:
+            at, text = min(faults)
+            yield Row("G5", subject, item, VIOLATED, f"{text}; {note}", at, len(said))
+        elif log.end_ms is None:
+            note = f"the log stops before the mission ends; {note}"
+            yield Row("G5", subject, item, UNKNOWN, note, None, len(said))
+        elif asked.lines_fail:
+            note += "; whether UxAS was heard over a bridge that was made to fail is not in the log"
+            yield Row("G5", subject, item, UNKNOWN, note, None, len(said))
+        else:
+            yield Row("G5", subject, item, HOLDS, note, None, len(said))
+
+
+def _after(mode: str, chosen: str) -> set[str]:
+    """What may follow a mode."""
+    if mode in (FINAL, LANDED):
+        return {LANDED} - {mode}
+    if mode == LINKED:
+        return {chosen, LOITER}
+    ends = {LAND: {FINAL}, LOITER: set[str]()}.get(chosen, {OVER})
+    found = {
+        LOITER: {LINKED, chosen},
+        OVER: {LINKED},
+        chosen: {LINKED, LOITER, *ends},
+    }.get(mode, set())
+    return found - {mode}
+
+
+def _faults(mission: Mission, asked: WithoutLink, said: list[Alone]) -> Iterator[tuple[int, str]]:
+    """What was said that cannot be."""
+    mode, beat_ms = LINKED, mission.heartbeat_ms
+    for one in said:
+        silent_ms = one.time_ms - one.heard_ms
+        if one.chosen != asked.choice:
+            yield (
+                one.time_ms,
+                f"{one.chosen} is said to be chosen, the mission wants {asked.choice}",
+            )
+        if one.mode not in _after(mode, asked.choice):
+            yield one.time_ms, f"{one.mode} does not follow {mode}"
+        heard = 0 <= silent_ms <= asked.after_ms
+        if one.mode not in (FINAL, LANDED) and heard != (one.mode == LINKED):
+            yield one.time_ms, f"{one.mode} after a silence of {silent_ms} ms"
+        if mode == LINKED and silent_ms > asked.after_ms + beat_ms:
+            yield one.time_ms, f"it began {silent_ms} ms after UxAS was last heard"
+        mode = one.mode
+
+
+def _missed(
+    mission: Mission, asked: WithoutLink, log: Log, vehicle: int, said: list[Alone]
+) -> Iterator[tuple[int, str]]:
+    """Connections that had ended for too long, and nothing was said."""
+    since: int | None = None
+    changes = [(s.time_ms, s.alive, s.lost) for s in log.bridges.get(vehicle, [])]
+    changes += [] if log.end_ms is None else [(log.end_ms, True, False)]
+    for at_ms, alive, lost in changes:
+        if not alive:
+            since = at_ms if since is None and lost else since
+            continue
+        before = [one for one in said if one.time_ms < at_ms]
+        mode, told_ms = (before[-1].mode, before[-1].time_ms) if before else (LINKED, 0)
+        bound_ms = asked.after_ms + NOTICED * mission.heartbeat_ms
+        if since is not None and mode == LINKED and at_ms - max(since, told_ms) > bound_ms:
+            yield at_ms, f"its connection had ended at {seconds(since)}, and it said nothing"
+        since = None
+
+
+def _landing(
+    mission: Mission, said: list[Alone], place: Down | None, end_ms: int
+) -> Iterator[tuple[int, str]]:
+    """What was said of the ground, and where the vehicle was."""
+    landed = [one.time_ms for one in said if one.mode == LANDED]
+    if place is None:
+        if landed:
+            yield landed[0], "it said that it had landed, and was in the air"
+    elif not place.good:
+        yield place.at_ms, f"it {place.words()}"
+    elif landed and landed[0] < place.at_ms:
+        yield landed[0], f"it said that it had landed before it {place.words()}"
+    elif not landed and end_ms - place.at_ms > NOTICED * mission.heartbeat_ms:
+        yield end_ms, f"it {place.words()}, and did not say so"

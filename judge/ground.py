@@ -1,0 +1,74 @@
+"""Who is on the ground: by where a vehicle was, at a landing site or beside all of them.
+
+A vehicle is on the ground where it is not above it by more than a centimetre: that of a site within its disc, the flat
+terrain elsewhere. In a mission without landing sites nobody is.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from cratous.judge.log import State
+from cratous.judge.mission import Mission, Site
+from cratous.judge.tracks import Track
+from cratous.judge.verdict import seconds
+
+NEAR_M = 0.01
+
+
+class Down(NamedTuple):
+    """The first contact [ms], at which site (None: beside all), and what is wrong with what followed; "" if nothing."""
+
+    at_ms: int
+    site: Site | None
+    fault: str
+
+    @property
+    def good(self) -> bool:
+        """It came down on a site, stayed, and stands there."""
+        return self.site is not None and not self.fault
+
+    def words(self) -> str:
+        """In words."""
+        where = f"on {self.site.name}" if self.site else "beside every landing site"
+        return (
+            f"came to the ground {where} at {seconds(self.at_ms)}{self.fault and ', ' + self.fault}"
+        )
+
+
+def site_at(mission: Mission, state: State) -> Site | None:
+    """The site in whose disc a state is, at whatever height."""
+    for site in mission.sites:
+        if math.dist((state.north_m, state.east_m), (site.north_m, site.east_m)) <= site.radius_m:
+            return site
+    return None
+
+
+def grounded(mission: Mission, state: State) -> bool:
+    """Whether a vehicle is on the ground at a state."""
+    if not mission.sites:
+        return False
+    site = site_at(mission, state)
+    ground = mission.terrain_m if site is None else site.ground_m
+    return state.alt_m <= ground + NEAR_M
+
+
+def down(mission: Mission, track: Track | None) -> Down | None:
+    """How a vehicle came to the ground; None if it did not."""
+    states = [] if track is None else track.states
+    first = next((k for k, state in enumerate(states) if grounded(mission, state)), None)
+    if first is None:
+        return None
+    site, fault = site_at(mission, states[first]), ""
+    for state in states[first:]:
+        if not grounded(mission, state):
+            fault = f"and was in the air again at {seconds(state.time_ms)}"
+        elif site_at(mission, state) != site:
+            fault = f"and rolled beyond it by {seconds(state.time_ms)}"
+        if fault:
+            break
+    last = states[-1]
+    if not fault and (last.north_m_s or last.east_m_s or last.up_m_s):
+        fault = "and did not stand there at the end"
+    return Down(states[first].time_ms, site, fault)

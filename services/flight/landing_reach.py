@@ -1,0 +1,77 @@
+"""Whether a way that keeps the zones leads each vehicle from its start to a landing site of the mission."""
+
+from __future__ import annotations
+
+from cratous.core.avoidance.drift import NONE
+from cratous.core.avoidance.manoeuvre import Ability, Motion
+from cratous.core.avoidance.prediction import buffered
+from cratous.core.avoidance.resolution import Scene
+from cratous.services.flight.dynamics import (
+    MAX_ACCELERATION_M_S2,
+    first_state,
+    limits_of,
+    turn_rate_rad_s,
+)
+from cratous.services.flight.vehicle import UNTOUCHED
+from cratous.services.flight.without_link import lost_link
+from cratous.services.icarous.course_permits import refused
+from cratous.services.icarous.landing import approaches, in_order
+from cratous.services.icarous.lost import LostLink
+from cratous.services.icarous.messages import Sensed
+from cratous.services.loading.polygons import hard_zones
+from cratous.services.mission.ground import floor_of
+from cratous.services.mission.landing import sites_of
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Mission, Vehicle
+
+
+def require_reachable(mission: Mission) -> None:
+    """BadInput where a vehicle that is to land without the link could land at no site from its start, by the zones
+    that are known then and with nobody else in the air."""
+    if not sites_of(mission):
+        return
+    for number in mission.instances:
+        plan = lost_link(mission, number)
+        if plan is None:
+            continue
+        why = _why_not(mission, mission.vehicle(number), plan)
+        if why:
+            raise BadInput(
+                f"vehicle {number} can land nowhere",
+                where=mission.source,
+                item="landing_sites",
+                expected="a site that a way from its start leads to, clear of the zones",
+                got="; ".join(why),
+            )
+
+
+def _why_not(mission: Mission, vehicle: Vehicle, plan: LostLink) -> list[str]:
+    """Why no site is reached; empty if one is."""
+    sensed, daa = _at_start(mission, vehicle), mission.daa
+    zones = hard_zones(mission.zones)
+    volume = buffered(daa.well_clear, daa.buffer)
+    scene = Scene((), zones, volume, daa.lookahead_s, NONE.here, daa.looks_first)
+    beat_s, said = mission.simulation.heartbeat_ms / 1000, list[str]()
+    for site in in_order(plan, vehicle.position):
+        why = "no way there was found"
+        for course in approaches(plan, site, sensed, zones):
+            why = refused(course, sensed, scene, daa, beat_s)
+            if not why:
+                return []
+        said.append(f"{site.name}: {why}")
+    return said
+
+
+def _at_start(mission: Mission, vehicle: Vehicle) -> Sensed:
+    air, limits = first_state(vehicle), limits_of(vehicle)
+    ability = Ability(
+        turn_rate_rad_s(air.speed_m_s, limits.max_bank_rad),
+        limits.min_speed_m_s,
+        limits.max_speed_m_s,
+        limits.max_climb_m_s,
+        MAX_ACCELERATION_M_S2,
+        floor_of(mission),
+        mission.simulation.step_ms / 1000,
+    )
+    motion = Motion(air.position, air.heading_rad, air.speed_m_s, air.climb_m_s)
+    return Sensed(0, motion, ability, (), UNTOUCHED)

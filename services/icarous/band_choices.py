@@ -1,0 +1,65 @@
+"""Manoeuvres that the bands propose: those that resolve, and where nothing does those that regain well clear soonest.
+
+One step of the bands beyond the edge of a band, on the preferred side first: another direction, another speed, or a climb
+or descent to another altitude, at what the airframe can do. What is flown of it is decided by `core.avoidance` and the
+permit, against the ways that are known and the zones, of which the bands know nothing.
+"""
+
+from __future__ import annotations
+
+import math
+
+from cratous.core.avoidance.manoeuvre import Ability, Motion
+from cratous.core.avoidance.resolution import Choice
+from cratous.core.daa.state import ALT, HDIR, HS
+from cratous.services.icarous.band_history import Bands
+from cratous.services.icarous.bands import STEP_DEG, STEPS, reach_m, steered_by, values
+from cratous.services.icarous.messages import Sensed
+from cratous.spec.daa.parameters import DEG
+from cratous.spec.mission import Daa
+
+
+def of_bands(bands: Bands, daa: Daa, sensed: Sensed, level: Choice) -> tuple[Choice, ...]:
+    """Changes of the kind that the mission asks for first, on the heading of `level`; none where that is turns."""
+    return tuple(
+        one
+        for dimension in steered_by(daa)
+        if dimension != HDIR
+        for one in _choices(bands, dimension, daa, sensed, level)
+    )
+
+
+def recovering(bands: Bands, daa: Daa, sensed: Sensed, level: Choice) -> tuple[Choice, ...]:
+    """Those that regain well clear, where nothing of their kind keeps it; the kind that the mission asks for first."""
+    return tuple(
+        one
+        for dimension in steered_by(daa)
+        if dimension in bands.recovers
+        for one in _choices(bands, dimension, daa, sensed, level)
+    )
+
+
+def _choices(
+    bands: Bands, dimension: int, daa: Daa, sensed: Sensed, level: Choice
+) -> tuple[Choice, ...]:
+    ability = sensed.ability
+    if dimension == HDIR:
+        turned = values(bands, HDIR, STEP_DEG * DEG)
+        return tuple(level._replace(heading_rad=heading) for heading in turned)
+    if dimension == HS:
+        low, high = ability.min_speed_m_s, ability.max_speed_m_s
+        speeds = values(bands, HS, (high - low) / STEPS)
+        return tuple(
+            level._replace(kind="speed", speed_m_s=min(max(one, low), high)) for one in speeds
+        )
+    heights = values(bands, ALT, 2 * reach_m(daa, ability) / STEPS)
+    return tuple(
+        _climb(sensed.motion, ability, max(one, ability.floor_m), level) for one in heights
+    )
+
+
+def _climb(motion: Motion, ability: Ability, alt_m: float, level: Choice) -> Choice:
+    """To an altitude, as fast as the airframe climbs."""
+    rise_m, most = alt_m - motion.position.alt_m, ability.max_climb_m_s
+    climb = math.copysign(most, rise_m)
+    return level._replace(kind="altitude", climb_m_s=climb, climb_for_s=abs(rise_m) / most)

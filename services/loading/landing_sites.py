@@ -1,0 +1,99 @@
+"""The section `landing_sites` of a mission file, and what is wrong with it; the schema has its bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cratous.core.avoidance.landing import roll_fits
+from cratous.core.permit.remainder import zones_permit
+from cratous.services.loading.checks import Where
+from cratous.services.loading.document import Document
+from cratous.services.loading.places import Places
+from cratous.services.mission.landing import BRAKING_M_S2, TOUCHES_OFF_BEATS, sites_of
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Mission, Position
+from cratous.spec.mission.link_loss import LandingSite, WithoutLink
+
+SECTION = "landing_sites"
+
+
+def landing_sites(document: Document, places: Places) -> tuple[LandingSite, ...]:
+    """The sites, in the order of the file. Left out, the altitude of a place is that of the terrain."""
+    found = []
+    for one in document.data.get(SECTION, []):
+        place = places.position(one["position"])
+        radius_m, ditch = float(one["radius_m"]), bool(one.get("ditch", False))
+        found.append(LandingSite(one["name"], *place, radius_m, ditch))
+    return tuple(found)
+
+
+def site_problems(document: Document, sites: tuple[LandingSite, ...]) -> Iterator[BadInput]:
+    """Sites that nobody lands at or that are called alike, and a landing that names none of them."""
+    loss = document.data.get("link_loss", {})
+    lands, names = loss.get("choice") == WithoutLink.LAND.value, [site.name for site in sites]
+    told = ", ".join(names) or "none"
+    if sites and not lands:
+        yield BadInput(
+            "nobody lands at these sites",
+            where=document.where((SECTION,)),
+            item=SECTION,
+            expected="link_loss with choice land beside them",
+            got=loss.get("choice", "none"),
+        )
+    for k, name in enumerate(names):
+        if name in names[:k]:
+            yield BadInput(
+                "two landing sites have the same name",
+                where=document.where((SECTION, k, "name")),
+                item=f"{SECTION}[{k}].name",
+                expected="names that differ",
+                got=name,
+            )
+    site = loss.get("site")
+    if site is not None and not lands:
+        yield BadInput(
+            "nobody lands there",
+            where=document.where(("link_loss", "site")),
+            item="link_loss.site",
+            expected="choice land",
+            got=loss["choice"],
+        )
+    if lands and (not sites or site not in (None, *names)):
+        yield BadInput(
+            "there is no such landing site" if site else "there is no landing site",
+            where=document.where(("link_loss", "site" if site else "choice")),
+            item="link_loss.site" if site else "link_loss.choice",
+            expected=f"one of landing_sites: {told}",
+            got=site or "none",
+        )
+
+
+def ground_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
+    """Sites that zones forbid at the start, and those that are too small for a vehicle to roll to a stand."""
+    beat_s = mission.simulation.heartbeat_ms / 1000
+    guarded = [mission.vehicle(number) for number in mission.instances]
+    for k, site in enumerate(sites_of(mission)):
+        place = Position(site.north_m, site.east_m, site.ground_m)
+        for zone in mission.zones:
+            if not zones_permit(place, (zone,), site.radius_m):
+                item = f"{SECTION}[{k}].position"
+                yield BadInput(
+                    f"nobody may land at {site.name}",
+                    where=where(item),
+                    item=item,
+                    expected=f"a disc on the ground that keeps zone {zone.id}",
+                    got=f"{site.radius_m:g} m around {site.north_m:g} m north, {site.east_m:g} m east,"
+                    f" at {site.ground_m:g} m MSL",
+                )
+        for vehicle in guarded:
+            speed = vehicle.min_speed_m_s
+            off_m = TOUCHES_OFF_BEATS * speed * beat_s
+            if not roll_fits(site.radius_m, speed, BRAKING_M_S2, off_m):
+                item, least_m = f"{SECTION}[{k}].radius_m", speed * speed / (4 * BRAKING_M_S2)
+                yield BadInput(
+                    f"vehicle {vehicle.id} does not come to a stand on {site.name}",
+                    where=where(item),
+                    item=item,
+                    expected=f"at least {least_m + off_m:.4g} m, for a landing at {speed:g} m/s",
+                    got=f"{site.radius_m:g} m",
+                )

@@ -1,0 +1,73 @@
+"""Who is on the ground, by where the aircraft were: at a landing site, or beside all of them.
+
+Well clear is asked of aircraft in the air: a leg whose both ends are on the ground of a site is none. Who has come to the ground
+has to stay, and to stand at the end. Decisions are those of the kernel `on_ground`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cratous.services.mission.landing import ground_m, is_down, site_under, sites_of
+from cratous.services.monitor.samples import Sample
+from cratous.spec.mission import Mission, Position
+
+
+@dataclass
+class Down:
+    """A vehicle on the ground. site: whose, "" beside all; since_ms: from when on; wrong: what it did there that
+    ends no flight; stands: it has not moved in its last step."""
+
+    site: str
+    since_ms: int
+    wrong: str = ""
+    stands: bool = False
+
+    def words(self) -> str:
+        """Where and since when."""
+        where = f"at {self.site}" if self.site else "beside every landing site"
+        return f"landed {where} at {self.since_ms / 1000:.2f} s"
+
+
+class LandingWatch:
+    """The vehicles that have come to the ground, by number; nobody where there is no landing site."""
+
+    def __init__(self, mission: Mission) -> None:
+        self._sites, self._terrain_m = sites_of(mission), mission.frame.terrain_m
+        self.down: dict[int, Down] = {}
+
+    def step(
+        self, before: dict[int, Sample], after: dict[int, Sample]
+    ) -> tuple[dict[int, Sample], dict[int, Sample]]:
+        """Two successive instants; those of them that fly."""
+        if not self._sites:
+            return before, after
+        for number in before.keys() & after.keys():
+            if after[number].ours:
+                self._leg(number, before[number], after[number])
+        still = {
+            n for n in self.down if n in before and n in after and self._stays(before[n], after[n])
+        }
+        flown = ({n: s for n, s in one.items() if n not in still} for one in (before, after))
+        return next(flown), next(flown)
+
+    def _stays(self, before: Sample, after: Sample) -> bool:
+        return self._is_down(before.position) and self._is_down(after.position)
+
+    def _leg(self, number: int, before: Sample, after: Sample) -> None:
+        down, place = self.down.get(number), after.position
+        if not self._is_down(place):
+            if down is not None and not down.wrong:
+                down.wrong = f"it was in the air again at {after.time_ms / 1000:.2f} s"
+            return
+        if down is None:
+            site = site_under(place, self._sites)
+            self.down[number] = Down("" if site is None else site.name, after.time_ms)
+            return
+        here = site_under(place, self._sites)
+        if (here.name if here else "") != down.site and not down.wrong:
+            down.wrong = f"it rolled beyond it by {after.time_ms / 1000:.2f} s"
+        down.stands = before.position == place
+
+    def _is_down(self, place: Position) -> bool:
+        return is_down(place.alt_m - ground_m(place, self._sites, self._terrain_m))

@@ -1,0 +1,25 @@
+"""Machine code that another process is making: who needs it waits for that, and does not make it once more.
+
+`services/startup/ahead.py` says what is coming; where nobody has said anything, nothing is waited for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+ROUTES, ASSIGNMENT = "routes", "assignment"
+MANY_WAYS = 300
+"""So many ways are searched in machine code soon, and fewer are not worth waiting for."""
+_coming: dict[str, Callable[[], None]] = {}
+
+
+def expect(name: str, wait: Callable[[], None]) -> None:
+    """Machine code of this name is being made; `wait` returns when that has ended, well or not."""
+    _coming[name] = wait
+
+
+def ready(name: str) -> None:
+    """Wait for what is coming under this name, if anything is."""
+    wait = _coming.pop(name, None)
+    if wait is not None:
+        wait()

@@ -1,0 +1,171 @@
+"""The bridge of a flight in processes over connections that fail: between each ICAROUS and UxAS, in flight time.
+
+Each ICAROUS connects here, and what it and UxAS say goes through line by line, by the same faults as in one process
+(`bridge.faults`). The handshake and the HELLO after it are left alone. A peer that does not take what it is sent in
+time ends its connection.
+"""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Sequence
+from contextlib import suppress
+
+from cratous.bridge.faults import FailingWay
+from cratous.bridge.text_protocol import Direction
+from cratous.bridge.text_protocol.handshake import ACCEPT, HELLO, SECRET_LENGTH
+from cratous.core.authority.timeliness import lasted
+from cratous.spec.mission.bridge_faults import BridgeFaults
+
+HOST = "127.0.0.1"
+READ = 65536
+MOST_UNSENT = 1 << 20
+"""Bytes that a peer may be behind."""
+GREETING = {Direction.DOWN: len(HELLO) + len(ACCEPT), Direction.UP: SECRET_LENGTH}
+"""So many bytes of the handshake go each way."""
+
+
+class _Half:
+    """One direction of one connection: what comes from one socket, and goes to the other."""
+
+    def __init__(self, way: FailingWay, direction: Direction) -> None:
+        self.way = way
+        self._greeting = GREETING[direction]
+        self._whole_lines = 1 if direction is Direction.UP else 0
+        self._part, self.unsent = b"", b""
+
+    def come(self, data: bytes, now_ms: int) -> None:
+        """Bytes from the one side: those of the handshake go on as they are, then each line by itself."""
+        head, data = data[: self._greeting], data[self._greeting :]
+        self._greeting -= len(head)
+        self.unsent += head
+        *lines, self._part = (self._part + data).split(b"\n")
+        for line in lines:
+            if self._whole_lines:
+                self._whole_lines -= 1
+                self.unsent += line + b"\n"
+            else:
+                self.way.take(line + b"\n", now_ms)
+        if len(self._part) > READ:  # no line of the protocol is so long
+            self.way.take(self._part, now_ms)
+            self._part = b""
+
+
+class _Connection:
+    """An ICAROUS and the end of UxAS that was opened for it."""
+
+    def __init__(self, near: socket.socket, far: socket.socket, ways: dict[Direction, FailingWay]):
+        self.open = True
+        for way in ways.values():
+            way.clear()
+        down, up = (_Half(ways[one], one) for one in (Direction.DOWN, Direction.UP))
+        self._halves = ((far, down, near), (near, up, far))
+        for one in (near, far):
+            one.setblocking(False)
+            one.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+
+    def step(self, now_ms: int, forges: bool) -> int:
+        """What has come and what is due; how many bytes came. forges: it is time for an exchange."""
+        count = 0
+        for source, half, sink in self._halves:
+            with suppress(BlockingIOError):
+                data = self._read(source)
+                count += len(data)
+                half.come(data, now_ms)
+            if forges and half is self._halves[1][1]:
+                half.unsent += half.way.forged()
+            if half.way.breaks(now_ms):
+                self.open = False
+            half.unsent += b"".join(half.way.due(now_ms))
+            with suppress(BlockingIOError):
+                half.unsent = half.unsent[self._write(sink, half.unsent) :]
+            if len(half.unsent) > MOST_UNSENT:
+                self.open = False
+        if not self.open:
+            self.close()
+        return count
+
+    def _read(self, source: socket.socket) -> bytes:
+        try:
+            data = source.recv(READ)
+        except ConnectionError:
+            data = b""
+        self.open &= bool(data)
+        return data
+
+    def _write(self, sink: socket.socket, data: bytes) -> int:
+        try:
+            return sink.send(data) if data else 0
+        except ConnectionError:
+            self.open = False
+            return 0
+
+    def close(self) -> None:
+        """Both ends are told that it has ended."""
+        self.open = False
+        for source, _, _ in self._halves:
+            source.close()
+
+
+class FailingBridge:
+    """Listens for the ICAROUS of each vehicle, at `ports`, and takes it to UxAS; `step` does what is to be done."""
+
+    def __init__(self, faults: BridgeFaults, vehicles: Sequence[int], heartbeat_ms: int) -> None:
+        """heartbeat_ms: of the mission, in each of which are two exchanges."""
+        self._faults, self._exchange_ms = faults, heartbeat_ms // 2
+        self._far = (HOST, 0)
+        self._listeners = {vid: socket.create_server((HOST, 0)) for vid in vehicles}
+        self._ways = {
+            vid: {one: FailingWay(faults, vid, one) for one in Direction} for vid in vehicles
+        }
+        self._connections: dict[int, _Connection] = {}
+        self._exchanged_ms = 0
+        for listener in self._listeners.values():
+            listener.setblocking(False)
+
+    @property
+    def ports(self) -> dict[int, int]:
+        """By vehicle, where its ICAROUS finds it."""
+        return {vid: one.getsockname()[1] for vid, one in self._listeners.items()}
+
+    def leads_to(self, port: int) -> None:
+        """Where UxAS listens."""
+        self._far = (HOST, port)
+
+    def step(self, now_ms: int) -> int:
+        """What has come goes through; how many bytes that was. now_ms: time of the flight."""
+        broken = self._faults.is_cut(now_ms)
+        for vid, listener in self._listeners.items():
+            with suppress(BlockingIOError):
+                near, _ = listener.accept()
+                self._opened(vid, near, broken)
+        forges = lasted(self._exchanged_ms, now_ms, self._exchange_ms)
+        if forges:
+            self._exchanged_ms = now_ms
+        count = 0
+        for vid, connection in list(self._connections.items()):
+            if broken:
+                connection.close()
+            else:
+                count += connection.step(now_ms, forges)
+            if not connection.open:
+                del self._connections[vid]
+        return count
+
+    def _opened(self, vid: int, near: socket.socket, broken: bool) -> None:
+        if vid in self._connections or broken:
+            near.close()
+            return
+        try:
+            far = socket.create_connection(self._far, timeout=5.0)
+        except OSError:  # UxAS is not there yet: it is tried again
+            near.close()
+            return
+        self._connections[vid] = _Connection(near, far, self._ways[vid])
+
+    def close(self) -> None:
+        """End all connections."""
+        for connection in self._connections.values():
+            connection.close()
+        for listener in self._listeners.values():
+            listener.close()

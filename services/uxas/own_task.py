@@ -1,0 +1,230 @@
+"""The base of a task kind of the user's own: what it says on the bus, but for the ways to fly it (docs/guides/own-task.md).
+
+It says TaskInitialized for each task that it knows, TaskPlanOptions for each request with one, asks the route planner for the
+way there, and answers with the waypoints. TaskActive and TaskComplete follow the vehicles' AssociatedTasks. What a way
+raises, or says amiss, ends the request with the reason.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.services.bus import Envelope
+from cratous.services.following.asked import within
+from cratous.services.pipeline.status import status
+
+TASK, CONFIGURATION = "afrl.cmasi.Task", "afrl.cmasi.EntityConfiguration"
+STATE, REMOVE = "afrl.cmasi.EntityState", "afrl.cmasi.RemoveTasks"
+UNIQUE = "uxas.messages.task.UniqueAutomationRequest"
+CHOICE = "uxas.messages.task.TaskImplementationRequest"
+ROUTES = "uxas.messages.route.RoutePlanResponse"
+ROUTES_FROM = 10**15
+"""Numbers of these services' route requests: beyond those of the other tasks."""
+REMEMBERED = 256
+"""Offers and questions that are remembered; the oldest makes room."""
+WAYS_MOST, PLACES_MOST, TAKES_MOST_S = 1_000, 10_000, 1e6
+
+
+class Place(NamedTuple):
+    """A place [degrees], and its altitude [m MSL], 0: the vehicle's own."""
+
+    latitude: float
+    longitude: float
+    altitude_m: float = 0.0
+
+
+class Flight(NamedTuple):
+    """One way to fly a task: its places in order, how long it takes [s], and the headings at its ends [degrees]."""
+
+    places: Sequence[Place]
+    takes_s: float
+    start_deg: float = 0.0
+    end_deg: float = 0.0
+
+
+class Held(NamedTuple):
+    """tasks and usual speeds [m/s] by id; offers: by request and task, the vehicle and flight of each option; asked: by
+    the number of a route request; active: vehicles by task."""
+
+    tasks: Mapping[int, Any] = MappingProxyType({})
+    speeds: Mapping[int, float] = MappingProxyType({})
+    offers: Mapping[tuple[int, int], tuple[tuple[int, Flight], ...]] = MappingProxyType({})
+    asked: Mapping[int, Any] = MappingProxyType({})
+    active: Mapping[int, int] = MappingProxyType({})
+
+
+Step = tuple[Held, Iterable[Any]]
+
+
+class OwnTask:
+    """One kind of tasks: every cmasi Task with the Label `label`, flown by what `flights` says."""
+
+    label = ""
+    subscribes: tuple[str, ...] = (TASK, CONFIGURATION, STATE, REMOVE, UNIQUE, CHOICE, ROUTES)
+
+    def __init__(self, name: str, values: Mapping[str, Any]) -> None:
+        """values: the attributes of the service."""
+        self.name, self.values = name, values
+
+    def flights(self, task: Any, speed_m_s: float) -> Sequence[Flight]:
+        """The ways in which a vehicle of this usual speed may fly a task; none: it cannot."""
+        raise NotImplementedError
+
+    def start(self) -> Held:
+        return Held()
+
+    def handle(self, state: Held, envelope: Envelope, now_ms: int) -> Step:
+        body, topic = envelope.body, envelope.topic
+        if topic == UNIQUE:
+            return self._offered(state, body)
+        if topic == CHOICE and body.TaskID in state.tasks:
+            return self._way_there(state, body)
+        if topic == ROUTES and body.ResponseID in state.asked:
+            return self._implemented(state, body)
+        if topic == REMOVE:
+            gone = {*body.TaskList}
+            left = {number: task for number, task in state.tasks.items() if number not in gone}
+            return state._replace(tasks=left), ()
+        if hasattr(body, "AssociatedTasks"):
+            return self._flown(state, body)
+        if hasattr(body, "NominalSpeed"):
+            return state._replace(speeds={**state.speeds, body.ID: body.NominalSpeed}), ()
+        if getattr(body, "Label", "") != self.label or not hasattr(body, "TaskID"):
+            return state, ()
+        tasks = {**state.tasks, body.TaskID: body}
+        return state._replace(tasks=tasks), [lmcp.new("TaskInitialized", TaskID=body.TaskID)]
+
+    def _offered(self, state: Held, body: Any) -> Step:
+        out = list[Any]()
+        for number in body.OriginalRequest.TaskList:
+            task = state.tasks.get(number)
+            if task is None:
+                continue
+            try:
+                found = self._found(state, task, body.OriginalRequest.EntityList)
+                out.append(_options(body.RequestID, number, found))
+            except Exception as error:
+                out.append(_failed(body.RequestID, number, error))
+                continue
+            offers = {**state.offers, (body.RequestID, number): found}
+            state = state._replace(offers=_newest(offers))
+        return state, out
+
+    def _found(
+        self, state: Held, task: Any, asked: Sequence[int]
+    ) -> tuple[tuple[int, Flight], ...]:
+        """The flights that are offered, each with its vehicle."""
+        may = task.EligibleEntities or asked or sorted(state.speeds)
+        found, where = list[tuple[int, Flight]](), f"task {task.TaskID} ({self.label})"
+        for vehicle in may:
+            if vehicle not in state.speeds or (asked and vehicle not in asked):
+                continue
+            flights = self.flights(task, state.speeds[vehicle])
+            for k, flight in enumerate(flights):
+                within(len(flight.places), 1, PLACES_MOST, where, f"flights[{k}].places")
+                within(flight.takes_s, 0.0, TAKES_MOST_S, where, f"flights[{k}].takes_s")
+                found.append((vehicle, flight))
+        within(len(found), 0, WAYS_MOST, where, "flights")
+        return tuple(found)
+
+    def _way_there(self, state: Held, body: Any) -> Step:
+        offer = state.offers.get((body.CorrespondingAutomationRequestID, body.TaskID), ())
+        chosen = dict(enumerate(offer, 1)).get(body.OptionID)
+        if chosen is None or chosen[0] != body.VehicleID:
+            error = LookupError(
+                f"no option {body.OptionID} of vehicle {body.VehicleID} was offered"
+            )
+            return state, [_failed(body.CorrespondingAutomationRequestID, body.TaskID, error)]
+        number, flight = ROUTES_FROM + body.RequestID, chosen[1]
+        route = lmcp.new(
+            "RouteConstraints", RouteID=1, StartLocation=body.StartPosition, StartHeading=body.StartHeading,
+            EndLocation=_location(flight.places[0]), EndHeading=flight.start_deg,
+        )  # fmt: skip
+        asked = _newest({**state.asked, number: (body, flight)})
+        return state._replace(asked=asked), [
+            lmcp.new(
+                "RoutePlanRequest", RequestID=number, AssociatedTaskID=body.TaskID, VehicleID=body.VehicleID,
+                OperatingRegion=body.RegionID, RouteRequests=[route], IsCostOnlyRequest=False,
+            )
+        ]  # fmt: skip
+
+    def _implemented(self, state: Held, body: Any) -> Step:
+        asked, flight = state.asked[body.ResponseID]
+        left = {number: one for number, one in state.asked.items() if number != body.ResponseID}
+        state, request = state._replace(asked=left), asked.CorrespondingAutomationRequestID
+        try:
+            return state, [_plan(asked, flight, body)]
+        except Exception as error:
+            return state, [_failed(request, asked.TaskID, error)]
+
+    def _flown(self, state: Held, body: Any) -> Step:
+        """Active from the first state of a vehicle that tells a task, complete with the first that tells it no more."""
+        out, active = list[Any](), dict(state.active)
+        for number in set(body.AssociatedTasks) & state.tasks.keys() - active.keys():
+            active[number] = body.ID
+            of = {"TaskID": number, "EntityID": body.ID}
+            out.append(lmcp.new("TaskActive", TimeTaskActivated=body.Time, **of))
+        for number, vehicle in state.active.items():
+            if vehicle == body.ID and number not in body.AssociatedTasks:
+                del active[number]
+                of = {"TaskID": number, "EntitiesInvolved": [vehicle]}
+                out.append(lmcp.new("TaskComplete", TimeTaskCompleted=body.Time, **of))
+        return state._replace(active=active), out
+
+
+def _newest(held: dict[Any, Any]) -> dict[Any, Any]:
+    return dict(list(held.items())[-REMEMBERED:])
+
+
+def _location(place: Place) -> Any:
+    lat, lon, alt = Place(*place)
+    return lmcp.new("Location3D", Latitude=lat, Longitude=lon, Altitude=alt)
+
+
+def _options(request: int, task: int, found: Sequence[tuple[int, Flight]]) -> Any:
+    options = [
+        lmcp.new(
+            "TaskOption", TaskID=task, OptionID=number, EligibleEntities=[vehicle], Cost=round(1000 * flight.takes_s),
+            StartLocation=_location(flight.places[0]), StartHeading=flight.start_deg,
+            EndLocation=_location(flight.places[-1]), EndHeading=flight.end_deg,
+        )
+        for number, (vehicle, flight) in enumerate(found, 1)
+    ]  # fmt: skip
+    names = " ".join(f"p{option.OptionID}" for option in options)
+    return lmcp.new(
+        "TaskPlanOptions", CorrespondingAutomationRequestID=request, TaskID=task,
+        Composition=f"+({names})" if names else "", Options=options,
+    )  # fmt: skip
+
+
+def _plan(asked: Any, flight: Flight, response: Any) -> Any:
+    """The waypoints of the way there and of the flight, at the speed and, if a place says none, altitude of the former."""
+    route = response.RouteResponses[0]
+    if not route.Waypoints:
+        why = "; ".join(pair.Value for pair in route.RouteError) or "the planner does not say why"
+        raise LookupError(f"vehicle {asked.VehicleID} has no way there: {why}")
+    wait = max(0, asked.TimeThreshold - asked.StartTime - route.RouteCost)
+    if wait:
+        raise LookupError(f"vehicle {asked.VehicleID} would have to wait {wait / 1000:g} s for it")
+    *way, last = route.Waypoints
+    for place in flight.places:
+        lat, lon, alt = Place(*place)
+        of = {"Latitude": lat, "Longitude": lon, "Altitude": alt or last.Altitude}
+        way.append(last.copy(**of, AssociatedTasks=[asked.TaskID]))
+    first = asked.StartingWaypointID
+    points = [w.copy(Number=first + k, NextWaypoint=first + k + 1) for k, w in enumerate(way)]
+    return lmcp.new(
+        "TaskImplementationResponse", ResponseID=asked.RequestID, TaskID=asked.TaskID,
+        CorrespondingAutomationRequestID=asked.CorrespondingAutomationRequestID,
+        OptionID=asked.OptionID, VehicleID=asked.VehicleID, TaskWaypoints=points,
+        FinalTime=asked.StartTime + route.RouteCost + round(1000 * flight.takes_s),
+        FinalLocation=_location(flight.places[-1]), FinalHeading=flight.end_deg,
+    )  # fmt: skip
+
+
+def _failed(request: int, task: int, error: Exception) -> Any:
+    text = f"task {task}: {type(error).__name__}: {error}"
+    return status(request, "Error", [("TaskID", str(task)), ("reason", text)])

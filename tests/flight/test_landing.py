@@ -1,0 +1,208 @@
+"""A vehicle whose link breaks lands where the mission says, by permitted ways, and everybody who watches knows."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+import yaml
+from judge_tools import Message, write
+
+from cratous.bridge import lmcp
+from cratous.judge import judge
+from cratous.services.bus import Bus
+from cratous.services.flight.landing_reach import require_reachable
+from cratous.services.flight.loop import fly
+from cratous.services.flight.result import FlightResult
+from cratous.services.loading import load
+from cratous.services.logs.records import to_data
+from cratous.services.monitor import Monitor
+from cratous.services.pipeline.plan import make_plan
+from cratous.services.system_model.replay import replay
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Mission
+from cratous.spec.mission.guarantees import Outcome, Verdict
+
+ROW = "what vehicle 1 flies without the link"
+FIELD = {"name": "field", "position": {"north_m": 300, "east_m": 1500}, "radius_m": 60}
+MEADOW = {"name": "meadow", "position": {"north_m": 1500, "east_m": -600}, "radius_m": 60, "ditch": True}  # fmt: skip
+
+
+class Flown(NamedTuple):
+    mission: Mission
+    log: list[Any]
+    result: FlightResult
+
+    def told(self, topic: str) -> list[Any]:
+        return [one.body for one in self.log if one.topic.rpartition(".")[2] == topic]
+
+    def modes(self, vehicle: int = 1) -> list[str]:
+        return [b.Mode.name for b in self.told("LinkLossState") if b.VehicleID == vehicle]
+
+    def verdicts(self, log: list[Any] | None = None) -> dict[str, Verdict]:
+        monitor = Monitor(self.mission, make_plan(self.mission))
+        for one in self.log if log is None else log:
+            monitor.tap(one)
+        return {v.item or v.requirement: v for v in monitor.verdicts()}
+
+    def judged(self, folder: Path, log: list[Any] | None = None) -> dict[str, str]:
+        rows = (
+            Message(one.time_ms, one.topic, json.loads(lmcp.to_json(one.body)))
+            for one in (self.log if log is None else log)
+        )
+        file = write(folder / "log.sqlite", {"mission": to_data(self.mission)}, rows)
+        return {row.item: row.verdict for row in judge(file).rows}
+
+
+def mission_file(root: Path, folder: Path, **sections: Any) -> Path:
+    data = yaml.safe_load((root / "examples/landing/mission.yaml").read_text())
+    del data["expect"]
+    path = folder / "mission.yaml"
+    found = {k: v for k, v in {**data, **sections}.items() if v is not None}
+    path.write_text(yaml.safe_dump(found))
+    return path
+
+
+def flown(path: Path) -> Flown:
+    mission = load(path)
+    bus, log = Bus(lmcp.full_names), list[Any]()
+    bus.tap(log.append)
+    return Flown(mission, log, fly(mission, make_plan(mission), bus))
+
+
+@pytest.fixture(scope="module")
+def landed(root: Path) -> Flown:
+    return flown(root / "examples/landing/mission.yaml")
+
+
+def test_it_comes_down_on_the_site_and_stands_there(landed: Flown) -> None:
+    assert landed.modes() == ["Land", "Final", "Landed"]
+    down_ms = landed.told("LinkLossState")[-1].Time
+    ground = [b for b in landed.told("TruthState") if b.Time >= down_ms]
+    assert all(math.hypot(b.North - 300, b.East - 1500) < 60 for b in ground)
+    assert {b.Altitude for b in ground} == {0.0}
+    assert ground[-1].VelocityNorth == ground[-1].VelocityEast == 0
+    before = [b for b in landed.told("TruthState") if b.Time < down_ms]
+    assert all(b.Altitude > 0 for b in before)
+    assert max(b.VelocityDown for b in before) <= 5
+
+
+def test_what_it_leaves_is_served_by_nobody_and_said_so(landed: Flown) -> None:
+    result, verdicts = landed.result, landed.verdicts()
+    assert result.outcome == "failed"
+    assert "it has landed at field" in result.failed[2]
+    assert verdicts["task 1 served"].outcome is Outcome.HOLDS
+    left = verdicts["task 2 served"]
+    assert left.outcome is Outcome.VIOLATED
+    assert "no vehicle could do it from" in left.note
+    for name in ("G2", "G4", ROW):
+        assert verdicts[name].outcome is Outcome.HOLDS, verdicts[name]
+    assert "landed at field" in verdicts[ROW].note
+    assert "landed at field" in verdicts["authority over vehicle 1"].note
+    assert replay(landed.mission, True, landed.log).finding is None
+
+
+def test_monitor_and_judge_see_a_landing_that_is_none(landed: Flown, tmp_path: Path) -> None:
+    down_ms = landed.told("LinkLossState")[-1].Time
+
+    def changed(topic: str, edit: Any) -> tuple[Outcome, str]:
+        log = list[Any]()
+        for one in landed.log:
+            body = one.body
+            if one.topic.endswith("TruthState") and one.time_ms < down_ms - 2000:
+                continue  # what is asked here is where it came down
+            if one.topic.endswith(topic):
+                data = json.loads(lmcp.to_json(body))
+                after = edit(data)
+                if after is None:
+                    continue
+                body = lmcp.from_json(json.dumps(after))
+            log.append(replace(one, body=body))
+        found = landed.verdicts(log)[ROW].outcome
+        return found, landed.judged(tmp_path, log)[ROW]
+
+    good = Outcome.HOLDS, "holds"
+    bad = Outcome.VIOLATED, "violated"
+    assert changed("LinkLossState", lambda d: d) == good
+    assert changed("TruthState", lambda d: {**d, "Altitude": d["Altitude"] + 5}) == bad
+    assert changed("TruthState", lambda d: {**d, "North": d["North"] + 200}) == bad
+    assert changed("LinkLossState", lambda d: d if d["Mode"] != "Landed" else None) == bad
+    assert changed("LinkLossState", lambda d: d if d["Mode"] != "Final" else None) == bad
+    assert changed("LinkLossState", lambda d: {**d, "Chosen": "Return"}) == bad
+    assert changed("LinkLossState", lambda d: {**d, "Heard": d["Heard"] - 1000}) == bad
+    assert changed("LinkLossState", lambda d: None) == bad
+
+
+def test_the_judge_knows_that_it_landed(landed: Flown, tmp_path: Path) -> None:
+    found = landed.judged(tmp_path)
+    assert found[ROW] == found["authority over vehicle 1"] == found["well clear of 1"] == "holds"
+    assert found["task 2 served"] == "violated"
+
+
+def test_who_is_on_the_ground_is_in_nobodys_way(root: Path, tmp_path: Path) -> None:
+    """Somebody hovers over the field: it ditches; that one flies low over the meadow once it stands there."""
+    hovers = {"id": 9, "position": {"north_m": 300, "east_m": 1500, "alt_m": 20}, "velocity": {"north_m_s": 0, "east_m_s": 0}}  # fmt: skip
+    passes = {"id": 10, "position": {"north_m": 1500, "east_m": -600, "alt_m": 25}, "velocity": {"north_m_s": 30, "east_m_s": 0}, "appears_s": 150}  # fmt: skip
+    found = flown(mission_file(root, tmp_path, traffic=[hovers, passes]))
+    assert found.modes()[-1] == "Landed"
+    reasons = [body.Reason for body in found.told("LinkLossState")]
+    assert "here at meadow (field: it is not permitted against 9)" in reasons[0]
+    assert reasons[-1] == "landed at meadow"
+    verdicts, judged = found.verdicts(), found.judged(tmp_path)
+    for other in (9, 10):
+        assert verdicts[f"well clear of 1 and {other}"].outcome is Outcome.HOLDS
+        assert judged[f"well clear of 1 and {other}"] == "holds"
+
+
+def test_heard_in_the_last_descent_it_lands_all_the_same(root: Path, tmp_path: Path) -> None:
+    faults = {"cut_s": 40, "reconnect_s": 135}
+    found = flown(
+        mission_file(root, tmp_path, simulation={"limit_s": 400, "bridge_faults": faults})
+    )
+    assert found.modes() == ["Land", "Final", "Landed"]
+    assert found.result.outcome == "failed"
+    assert found.verdicts()["G4"].outcome is Outcome.HOLDS
+
+
+RING = [
+    [[200, 1300], [400, 1300], [400, 1400], [200, 1400]],
+    [[200, 1600], [400, 1600], [400, 1700], [200, 1700]],
+    [[380, 1400], [400, 1400], [400, 1600], [380, 1600]],
+    [[200, 1400], [220, 1400], [220, 1600], [200, 1600]],
+]
+AROUND = [{"id": k, "kind": "keep_out", "vertices": ring} for k, ring in enumerate(RING, 21)]
+NEAR = [{"id": 8, "kind": "keep_out", "vertices": [[200, 1300], [400, 1300], [400, 1450], [200, 1450]]}]  # fmt: skip
+LAND = {"choice": "land", "after_s": 3}
+
+
+@pytest.mark.parametrize(
+    ("sections", "said"),
+    [
+        ({"landing_sites": None, "link_loss": LAND}, "link_loss.choice: there is no landing site"),
+        ({"link_loss": {**LAND, "site": "fild"}}, "link_loss.site: there is no such landing site; expected one of landing_sites: field, meadow; got fild"),
+        ({"link_loss": {"choice": "return"}}, "landing_sites: nobody lands at these sites"),
+        ({"landing_sites": None, "link_loss": {"choice": "return", "site": "field"}}, "link_loss.site: nobody lands there"),
+        ({"link_loss": {**LAND, "to": {"name": "a", "position": {"north_m": 0, "east_m": 0, "alt_m": 300}}}}, "link_loss.to: nothing returns there"),
+        ({"landing_sites": [FIELD, {**MEADOW, "name": "field"}]}, "landing_sites[1].name: two landing sites have the same name"),
+        ({"zones": NEAR}, "landing_sites[0].position: nobody may land at field; expected a disc on the ground that keeps zone 8"),
+        ({"landing_sites": [{**FIELD, "radius_m": 35}]}, "landing_sites[0].radius_m: vehicle 1 does not come to a stand on field; expected at least 35.62 m"),
+        ({"zones": AROUND, "landing_sites": [FIELD]}, "landing_sites: vehicle 1 can land nowhere"),
+        ({"link_loss": LAND, "bridge": {"instances": 0}}, "nobody would act by it"),
+    ],
+)  # fmt: skip
+def test_what_makes_no_sense_is_refused(
+    root: Path, tmp_path: Path, sections: dict[str, Any], said: str
+) -> None:
+    path = mission_file(root, tmp_path, **sections)
+    with pytest.raises(BadInput) as caught:
+        require_reachable(load(path))
+    assert said in str(caught.value)
+
+
+def test_a_site_that_no_way_reaches_leaves_another(root: Path, tmp_path: Path) -> None:
+    require_reachable(load(mission_file(root, tmp_path, zones=AROUND)))
+    require_reachable(load(mission_file(root, tmp_path, zones=AROUND, link_loss=LAND)))

@@ -1,0 +1,101 @@
+"""A first plan of many tasks has its machine code made by other processes; who needs it waits for them."""
+
+from __future__ import annotations
+
+import subprocess
+from typing import Any
+
+import numpy as np
+import pytest
+
+from cratous.core.assignment.annealing import anneal
+from cratous.core.assignment.anytime import greedy, improve
+from cratous.core.assignment.layers import look_ahead, tables
+from cratous.core.assignment.tables import latest_tables
+from cratous.core.readings.machine.compiled import machine
+from cratous.core.readings.tiered import at_once
+from cratous.core.routing.bulk import direct_many
+from cratous.core.routing.visibility import Roadmap, routes
+from cratous.services.planning import coming
+from cratous.services.planning.assign import simple_instance, solve
+from cratous.services.startup import ahead
+from cratous.spec.assignment.search import ORDER, AssignmentProblem, Choice
+from cratous.spec.mission import Zone, ZoneKind
+
+
+class Started:
+    """Stands for processes that compile: what was started, and how often it was waited for."""
+
+    def __init__(self, arguments: list[str], **_: Any) -> None:
+        self.name, self.waits, self.killed = arguments[-1], 0, False
+        ALL.append(self)
+
+    def wait(self, _limit_s: float = 0.0) -> int:
+        self.waits += 1
+        return 1
+
+    def poll(self) -> int | None:
+        return 1 if self.waits else None
+
+    def kill(self) -> None:
+        self.killed = True
+
+
+ALL: list[Started] = []
+
+
+@pytest.fixture
+def begun(monkeypatch: pytest.MonkeyPatch) -> list[Started]:
+    ALL.clear()
+    monkeypatch.setattr(subprocess, "Popen", Started)
+    monkeypatch.setattr(ahead.atexit, "register", lambda *_: None)
+    monkeypatch.setattr(ahead.os, "cpu_count", lambda: 2)
+    monkeypatch.setattr(ahead, "is_kept", lambda _: False)
+    monkeypatch.setattr(coming, "_coming", {})
+    return ALL
+
+
+def test_little_work_and_what_is_kept_start_nothing(
+    begun: list[Started], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ahead.begin(ahead.MANY_TASKS - 1)
+    monkeypatch.setattr(ahead, "is_kept", lambda _: True)
+    ahead.begin(50)
+    assert begun == []
+
+
+def test_who_needs_machine_code_waits_for_it_once(begun: list[Started]) -> None:
+    ahead.begin(ahead.MANY_TASKS)
+    assert [process.name for process in begun] == list(ahead.MAKERS)
+    choices = tuple(Choice(t, 1, 1, (1,)) for t in (1, 2, 3, 4))
+    rows = tuple(tuple(None if a == b else 1 for b in range(4)) for a in range(5))
+    problem = AssignmentProblem("", (1,), (0,), choices, (rows,), "|(p1 p2 p3 p4)")
+    for _ in range(2):
+        assert solve(problem).cost is not None
+    # that a process failed is no reason to wait again, nor not to plan
+    assert [process.waits for process in begun] == [0, 1]
+
+
+def test_a_process_that_nobody_waited_for_is_ended(begun: list[Started]) -> None:
+    ahead.begin(ahead.MANY_TASKS)
+    for process in begun:
+        ahead._end(process)  # type: ignore[arg-type]
+    assert all(process.killed and process.waits == 1 for process in begun)
+
+
+def test_what_is_made_ahead_is_what_a_plan_calls() -> None:
+    """Machine code is made by types: a plan that came with others would compile again."""
+    ahead.make_routes()
+    ahead.make_assignment()
+    loops = (direct_many, anneal, latest_tables)
+    kinds = [list(machine(loop).run.signatures) for loop in loops]  # type: ignore[attr-defined]
+    square = ((900.0, 900.0), (900.0, 990.0), (990.0, 990.0), (990.0, 900.0))
+    zone = Zone(1, ZoneKind.KEEP_OUT, square, 0.0, 500.0)
+    poses = np.array([[0.0, 0.0, 100.0, 0.0], [0.0, 500.0, 100.0, 1.0]])
+    with at_once():
+        routes(poses, poses[::-1], 50.0, Roadmap((zone,)), 0.1)
+        instance = simple_instance(ORDER)
+        improve(instance, greedy(instance)[1] or [], 1, 1)
+        tables(instance, look_ahead(instance), 20)
+    assert [list(machine(loop).run.signatures) for loop in loops] == kinds  # type: ignore[attr-defined]
+    assert all(len(kind) == 1 for kind in kinds)

@@ -1,0 +1,169 @@
+"""The bridge of a flight in processes over connections that fail: what goes through, and what does not."""
+
+from __future__ import annotations
+
+import socket
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from cratous.bridge.text_protocol.handshake import ACCEPT, DEFAULT_SECRET, HELLO
+from cratous.services.processes.failing_bridge import FailingBridge
+from cratous.spec.mission.bridge_faults import BridgeFaults
+
+BEAT_MS = 500
+HELLO_LINE = b"HELLO,id1.0,\n"
+
+
+class Wire:
+    """UxAS and the ICAROUS of vehicle 1, with the bridge between them, after the handshake."""
+
+    def __init__(self, bridge: FailingBridge, server: socket.socket, now_ms: int = 0) -> None:
+        self.bridge, self.server, self.now_ms = bridge, server, now_ms
+        self.near, self.far = self.opened()
+
+    def opened(self) -> tuple[socket.socket, socket.socket]:
+        """A new connection from end to end, or one that is refused: its far end is then not there."""
+        near = socket.create_connection(("127.0.0.1", self.bridge.ports[1]))
+        near.settimeout(5)
+        self.bridge.step(self.now_ms)
+        try:
+            far, _ = self.server.accept()
+        except TimeoutError:
+            return near, near
+        far.settimeout(5)
+        far.sendall(HELLO)
+        self.until(lambda: near.recv(len(HELLO), socket.MSG_PEEK) == HELLO)
+        near.recv(len(HELLO))
+        near.sendall(DEFAULT_SECRET.encode() + HELLO_LINE)
+        assert self.got(far, len(DEFAULT_SECRET) + len(HELLO_LINE)).endswith(HELLO_LINE)
+        far.sendall(ACCEPT)
+        assert self.got(near, len(ACCEPT)) == ACCEPT
+        return near, far
+
+    def until(self, done: Callable[[], object]) -> None:
+        """Steps of the bridge until something is so."""
+        limit_s = time.monotonic() + 10
+        while True:
+            self.bridge.step(self.now_ms)
+            with_limit = time.monotonic() < limit_s
+            try:
+                if done():
+                    return
+            except TimeoutError:
+                pass
+            assert with_limit
+
+    def got(self, end: socket.socket, count: int) -> bytes:
+        """So many bytes at an end."""
+        found = b""
+        end.settimeout(0.01)
+
+        def come() -> bool:
+            nonlocal found
+            found += end.recv(count - len(found))
+            return len(found) == count
+
+        self.until(come)
+        return found
+
+    def steps(self, now_ms: int, times: int = 20) -> None:
+        """The time of the flight is that now, and what was said has come to the bridge."""
+        self.now_ms = now_ms
+        for _ in range(times):
+            self.bridge.step(now_ms)
+            time.sleep(0.001)
+
+    def there(self, end: socket.socket) -> bytes:
+        """What lies at an end; b"" also for one that has ended."""
+        end.setblocking(False)
+        try:
+            return end.recv(1 << 20)
+        except (BlockingIOError, ConnectionError):
+            return b""
+
+
+@contextmanager
+def wire(**faults: float) -> Iterator[Wire]:
+    bridge = FailingBridge(BridgeFaults(seed=3, **faults), [1], BEAT_MS)  # type: ignore[arg-type]
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        server.settimeout(0.2)
+        bridge.leads_to(server.getsockname()[1])
+        one = Wire(bridge, server)
+        try:
+            yield one
+        finally:
+            bridge.close()
+            one.near.close()
+            one.far.close()
+
+
+def test_without_faults_everything_goes_through_however_it_is_cut() -> None:
+    with wire() as one:
+        lines = b"SETVEL,north1.0,east2.0,down0.0,\nHBEAT,seq1.0,time0.5,\n"
+        one.near.sendall(lines[:20])
+        one.steps(0)
+        one.near.sendall(lines[20:])
+        assert one.got(one.far, len(lines)) == lines
+        one.far.sendall(b"POSTN,a1.0,\n")
+        assert one.got(one.near, 12) == b"POSTN,a1.0,\n"
+        one.near.close()
+        one.until(lambda: one.far.recv(1) == b"")
+
+
+def test_lost_lines_do_not_come_and_the_handshake_does() -> None:
+    with wire(loss=1.0) as one:
+        one.near.sendall(b"HBEAT,seq1.0,time0.5,\n" * 50)
+        one.far.sendall(b"POSTN,a1.0,\n" * 50)
+        one.steps(0, 50)
+        assert one.there(one.far) == one.there(one.near) == b""
+
+
+def test_late_lines_come_by_the_time_of_the_flight() -> None:
+    with wire(delay_ms=1000) as one:
+        lines = [b"LINE%d\n" % k for k in range(100)]
+        one.far.sendall(b"".join(lines))
+        one.steps(0, 50)
+        before = one.there(one.near)
+        assert before.count(b"\n") < 50
+        one.now_ms = 1000
+        after = one.got(one.near, sum(map(len, lines)) - len(before))
+        assert sorted((before + after).splitlines(True)) == sorted(lines)
+
+
+def test_a_cut_connection_ends_and_none_is_opened_until_it_may() -> None:
+    with wire(cut_ms=2000, reconnect_ms=4000) as one:
+        one.steps(2000)
+        one.until(lambda: one.near.recv(1) == b"")
+        refused, there = one.opened()
+        assert refused is there, "UxAS is not reached"
+        assert refused.recv(1) == b""
+        one.now_ms = 4000
+        near, far = one.opened()
+        near.sendall(b"LINE\n")
+        assert one.got(far, 5) == b"LINE\n"
+        for end in (refused, near, far):
+            end.close()
+
+
+def test_who_does_not_read_for_too_long_is_cut_off() -> None:
+    with wire(stops_reading_ms=1000) as one:
+        one.steps(1000)
+        one.far.sendall(b"POSTN,a1.0,\n" * 100)
+        one.steps(1500)
+        assert one.there(one.near) == b""
+        one.far.settimeout(5)
+        one.far.sendall(b"POSTN,a1.0,\n" * 6000)
+        one.far.settimeout(0.01)
+        one.until(lambda: one.near.recv(1) == b"")
+
+
+def test_forged_modes_come_to_uxas_alone() -> None:
+    with wire(forged_modes=1.0) as one:
+        for now_ms in range(0, 5001, BEAT_MS // 2):
+            one.steps(now_ms, 3)
+        one.steps(5000)
+        lines = one.there(one.far).splitlines()
+        assert len(lines) == 20
+        assert all(line.startswith(b"SETMOD,type_") for line in lines)
+        assert one.there(one.near) == b""
