@@ -29,10 +29,12 @@ help:
 
 venv: $(STAMP)
 
+# byte code is made on all cores, pip would on one; a file of a package that is no Python of this version is no error
 $(STAMP): requirements.lock pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --requirement requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --require-hashes --requirement requirements.lock
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	$(BIN)/python -m compileall -qq -j 0 $(VENV)/lib || true
 	$(BIN)/python -m compileall -q -j 0 $(MODULES)
 	$(BIN)/cratous warm
 	@touch $(STAMP)
@@ -81,6 +83,7 @@ crosshair: venv
 
 fuzz: venv
 	$(BIN)/python tests/programs/fuzz_lmcp.py --count 1000000
+	$(BIN)/python tests/programs/fuzz_lines.py --lines 1000000
 
 daa-fuzz: venv
 	$(BIN)/python tests/programs/daa_scenes.py 100000

@@ -1,7 +1,7 @@
 """The second solver: cvc5 on every obligation, as exported SMT-LIB text and nothing else.
 
 Each obligation is read by cvc5 under its exact logic and, if that gives no answer, for polynomials
-by cylindrical coverings alone, and under ALL, in a process of its own with 5 s of CPU each. A
+by cylindrical coverings alone, and under ALL, in another process with 5 s of CPU each. A
 theorem is `confirmed` if cvc5 finds every obligation unsatisfiable, `contradicted` if it finds one
 satisfiable that z3 proved, else `no answer`. The verdicts are kept in `proofs/recheck.json` by the
 hash of the obligation, for the proof inventory; who asks all again asks first in the way that
@@ -14,8 +14,6 @@ from __future__ import annotations
 import importlib.metadata
 import json
 import multiprocessing
-import resource
-import time
 from collections.abc import Callable, Container, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
@@ -25,14 +23,15 @@ from typing import Any
 
 from cratous.core.files.whole_file import write_atomically
 from cratous.core.kernel.sources import ROOT, digest
+from cratous.proofs import second_solver
 from cratous.proofs.engine import prover, worker_processes
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.smtlib import Seen
 from cratous.proofs.mutation.keys import Store
+from cratous.proofs.second_solver import Asker, Way
 from cratous.spec.errors import BadInput
 
 FILE = ROOT / "proofs" / "recheck.json"
-CPU_SECONDS = 5
 CONFIRMED, NO_ANSWER, CONTRADICTED = "confirmed", "no answer", "contradicted"
 
 
@@ -83,46 +82,7 @@ def version() -> str:
         ) from error
 
 
-def solve(text: str, logic: str, options: dict[str, str] | None = None) -> str:
-    """sat, unsat or unknown, by cvc5 on SMT-LIB text under the given logic.
-
-    Raises ValueError for text that cvc5 refuses.
-    """
-    import cvc5
-
-    solver = cvc5.Solver()
-    for option, value in (options or {}).items():
-        solver.setOption(option, value)
-    parser = cvc5.InputParser(solver)
-    body = "\n".join(line for line in text.splitlines() if not line.startswith("(set-logic"))
-    solver.setLogic(logic)
-    parser.setStringInput(cvc5.InputLanguage.SMT_LIB_2_6, body, "obligation")
-    symbols = parser.getSymbolManager()
-    answer = "unknown"
-    while True:
-        command = parser.nextCommand()
-        if command.isNull():
-            return answer
-        if command.getCommandName() == "set-info":
-            # the expected status is for readers; a solver is not to be told
-            continue
-        said = str(command.invoke(solver, symbols)).strip()
-        if said in ("sat", "unsat", "unknown"):
-            answer = said
-        elif said.startswith("(error"):
-            raise ValueError(said)
-
-
-def _child(text: str, way: tuple[str, dict[str, str]], out: Connection) -> None:
-    """Ask once; the system ends this process when its CPU time is used up."""
-    used = time.process_time()
-    limit = int(used) + CPU_SECONDS
-    resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
-    out.send((solve(text, *way), time.process_time() - used))
-    out.close()
-
-
-def _named(way: tuple[str, dict[str, str]]) -> str:
+def _named(way: Way) -> str:
     """A way of asking, as `Check.logic` names it."""
     return " ".join([way[0], *way[1]])
 
@@ -136,7 +96,7 @@ class _Job:
     key: str
     text: str
     smt: str = ""
-    ways: list[tuple[str, dict[str, str]]] = field(default_factory=list)
+    ways: list[Way] = field(default_factory=list)
 
     def first(self, logic: str) -> None:
         """Ask first in this way, as `Check.logic` names it, if it is one of them."""
@@ -194,21 +154,11 @@ def _write(jobs: Iterable[_Job], claim: Claim, sentence: str) -> None:
         job.smt = prover.smt2(obligation, sentence, seen)
 
 
-def _ask(job: _Job) -> tuple[str, str, float]:
-    """One obligation: a fresh process for each way of asking, so that each has its whole budget."""
-    fork = multiprocessing.get_context("fork")
+def _ask(job: _Job, asker: Asker) -> tuple[str, str, float]:
+    """One obligation, each way of asking with its whole budget."""
     spent = 0.0
     for way in job.ways:
-        here, there = fork.Pipe(duplex=False)
-        process = fork.Process(target=_child, args=(job.smt, way, there), daemon=True)
-        process.start()
-        there.close()
-        try:
-            answer, seconds = here.recv()
-        except EOFError:
-            answer, seconds = "unknown", float(CPU_SECONDS)
-        process.join()
-        here.close()
+        answer, seconds = asker.ask(job.smt, way)
         spent += seconds
         if answer != "unknown":
             verdict = CONFIRMED if answer == "unsat" else CONTRADICTED
@@ -216,16 +166,22 @@ def _ask(job: _Job) -> tuple[str, str, float]:
     return NO_ANSWER, "", spent
 
 
-def _stored(job: _Job, store: Store, solver: str) -> tuple[str, str, float]:
+def _stored(job: _Job, store: Store, solver: str, asker: Asker) -> tuple[str, str, float]:
     """What the store has, or cvc5's answer; that there was none in this time is stored too."""
     key = digest(["cvc5", solver, job.key])
     none = digest(
-        ["cvc5", solver, job.key, f"none in {CPU_SECONDS} s", *sorted(map(str, job.ways))]
+        [
+            "cvc5",
+            solver,
+            job.key,
+            f"none in {second_solver.CPU_SECONDS} s",
+            *sorted(map(str, job.ways)),
+        ]
     )
     kept = store.get(key) or store.get(none)
     if kept is not None:
         return kept["verdict"], kept["logic"], 0.0
-    verdict, logic, seconds = _ask(job)
+    verdict, logic, seconds = _ask(job, asker)
     found = {"verdict": verdict, "logic": logic}
     store.put(none if verdict == NO_ANSWER else key, found)
     return verdict, logic, seconds
@@ -233,12 +189,14 @@ def _stored(job: _Job, store: Store, solver: str) -> tuple[str, str, float]:
 
 def _worker(jobs: list[_Job], taken: Any, out: Connection, store: Store, solver: str) -> None:
     """Take what is next until nothing is left, so that no worker waits for another's long ones."""
+    asker = Asker()
     while True:
         with taken.get_lock():
             number, taken.value = taken.value, taken.value + 1
         if number >= len(jobs):
             break
-        out.send(jobs[number].check(*_stored(jobs[number], store, solver)))
+        out.send(jobs[number].check(*_stored(jobs[number], store, solver, asker)))
+    asker.end()
     out.close()
 
 

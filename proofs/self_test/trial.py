@@ -157,9 +157,14 @@ def attempt(case: Case) -> Trial:
 def attempts(cases: Sequence[Case], jobs: int = 1) -> Iterator[Trial]:
     """Try these cases, so many at once; the trials come as they are done."""
     prepare()
-    tried: Sequence[Callable[[], Trial]] = [partial(attempt, case) for case in cases]
-    for _, trial in worker_processes.each(tried, jobs):
-        yield trial
+    plain = [case for case in cases if not case.without]
+    # the compiler makes a process twice as large, and few of them need it
+    for some in (plain, [case for case in cases if case.without]):
+        if some and some is not plain:
+            importlib.import_module("numba")
+        tried: Sequence[Callable[[], Trial]] = [partial(attempt, case) for case in some]
+        for _, trial in worker_processes.each(tried, jobs):
+            yield trial
 
 
 @functools.cache
@@ -169,6 +174,5 @@ def prepare() -> None:
     _ = gate.Keys().shared  # the tables of all modules that a key is made from
     solver_memory.keep()
     z3.Solver(ctx=z3.main_ctx()).check()
-    importlib.import_module("numba")  # as long as several cases
     gc.collect()
     gc.freeze()  # else each process copies what its collector looks at

@@ -52,6 +52,7 @@ class PeriodWatch:
     def __init__(self, mission: Mission) -> None:
         self._period_ms = mission.simulation.heartbeat_ms
         self._last = dict.fromkeys(mission.instances, 0)
+        self._looked: tuple[int, ...] = ()
         none = "" if self._last else NO_INSTANCE
         self._record = Record(
             "s", self._period_ms / 1000, (in_time,), none, waits="no heartbeat was seen"
@@ -62,7 +63,9 @@ class PeriodWatch:
         kind, now_ms, _, body = message
         if kind not in ("Heartbeat", "TruthState"):
             return
-        self._look(now_ms)
+        if now_ms not in self._looked:  # at one instant a heartbeat can only make it later
+            self._looked = (now_ms,)
+            self._look(now_ms)
         down = kind == "Heartbeat" and body.Direction.name == "Down"
         if down and body.VehicleID in self._last:
             self._last[body.VehicleID] = now_ms
@@ -93,6 +96,7 @@ class DeliveryWatch:
         self._bound_ms = PERIODS * self._period_ms
         self._next = dict.fromkeys(mission.instances, 1)
         self._came: dict[int, set[int]] = {number: set() for number in mission.instances}
+        self._looked: tuple[int, ...] = ()
         none = "" if self._next else NO_INSTANCE
         self._record = Record("s", self._bound_ms / 1000, (in_time,), none)
         self._record.waits = "no heartbeat was seen"
@@ -107,7 +111,10 @@ class DeliveryWatch:
             return
         if kind == "Heartbeat" and body.Direction.name == "Up" and body.VehicleID in self._next:
             self._come(body.VehicleID, body.Sequence, now_ms)
-        self._look(now_ms)
+            self._looked = ()
+        if now_ms not in self._looked:
+            self._looked = (now_ms,)
+            self._look(now_ms)
 
     def _come(self, vehicle: int, number: int, now_ms: int) -> None:
         sent_ms, came = self._sent_ms(number), self._came[vehicle]

@@ -82,7 +82,9 @@ def plan_and_check(mission: Mission, bus: Any) -> tuple[Plan, list[Verdict]]:
     return plan, check_plan(known, plan)
 
 
-TOLD = ("TaskPlanOptions", "AssignmentCostMatrix")
+OPTIONS, ASKED, ANSWERED, COSTS = TOLD = (
+    "TaskPlanOptions", "RoutePlanRequest", "RoutePlanResponse", "AssignmentCostMatrix",
+)  # fmt: skip
 
 
 def planning_told(at: Callable[[str, int, int], None], tasks: int) -> Callable[[Any], None]:
@@ -92,15 +94,15 @@ def planning_told(at: Callable[[str, int, int], None], tasks: int) -> Callable[[
 
     def tap(message: Any) -> None:
         name = message.topic.rpartition(".")[2]
-        if name not in seen:
-            return
+        if name not in seen or (name in (ASKED, ANSWERED) and seen[OPTIONS] < tasks):
+            return  # a task asks for routes of its own while it makes its options
         seen[name] += 1
-        if seen["AssignmentCostMatrix"]:
+        if seen[COSTS]:
             at("searching for the best assignment", 0, 0)
-        elif seen["TaskPlanOptions"] < tasks:
-            at("planning the options of the tasks", seen["TaskPlanOptions"], tasks)
+        elif seen[OPTIONS] < tasks:
+            at("planning the options of the tasks", seen[OPTIONS], tasks)
         else:
-            at("planning the ways between the tasks", 0, 0)
+            at("planning the ways between the tasks", seen[ANSWERED], seen[ASKED])
 
     return tap
 

@@ -15,7 +15,13 @@ from cratous.services.flight.dynamics import (
 from cratous.services.flight.vehicle import UNTOUCHED
 from cratous.services.flight.without_link import lost_link
 from cratous.services.icarous.course_permits import refused
-from cratous.services.icarous.landing import approaches, in_order
+from cratous.services.icarous.landing import (
+    LONGEST_MS,
+    approaches,
+    in_order,
+    sinks_too_slowly,
+)
+from cratous.services.icarous.link_loss import NO_WAY
 from cratous.services.icarous.lost import LostLink
 from cratous.services.icarous.messages import Sensed
 from cratous.services.loading.polygons import hard_zones
@@ -23,6 +29,8 @@ from cratous.services.mission.ground import floor_of
 from cratous.services.mission.landing import sites_of
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission, Vehicle
+
+SLOW = f"its last descent takes longer than {LONGEST_MS / 1000:g} s"
 
 
 def require_reachable(mission: Mission) -> None:
@@ -53,7 +61,7 @@ def _why_not(mission: Mission, vehicle: Vehicle, plan: LostLink) -> list[str]:
     scene = Scene((), zones, volume, daa.lookahead_s, NONE.here, daa.looks_first)
     beat_s, said = mission.simulation.heartbeat_ms / 1000, list[str]()
     for site in in_order(plan, vehicle.position):
-        why = "no way there was found"
+        why = SLOW if sinks_too_slowly(site, sensed.ability) else NO_WAY
         for course in approaches(plan, site, sensed, zones):
             why = refused(course, sensed, scene, daa, beat_s)
             if not why:

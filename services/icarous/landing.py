@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterator
 from itertools import pairwise
 
+from cratous.core.authority.timeliness import in_time
 from cratous.core.avoidance.manoeuvre import Ability
 from cratous.core.routing.dubins import polyline_length_m
 from cratous.core.routing.polylines import Track, circle_points
@@ -33,6 +34,8 @@ LEGS = 24
 """A lap is flown as so many legs."""
 MOST_LAPS = 50
 """A vehicle that would have to circle more often does not land there."""
+LONGEST_MS = 1_800_000
+"""Nor does one whose last descent would take longer [ms]."""
 
 
 def in_order(plan: LostLink, place: Position) -> list[LandingSite]:
@@ -50,8 +53,10 @@ def in_order(plan: LostLink, place: Position) -> list[LandingSite]:
 def approaches(
     plan: LostLink, site: LandingSite, sensed: Sensed, zones: tuple[Zone, ...]
 ) -> Iterator[Course]:
-    """Ways from where the vehicle is to the ground of a site."""
+    """Ways from where the vehicle is to the ground of a site; none where it sinks too slowly."""
     motion, ability = sensed.motion, sensed.ability
+    if sinks_too_slowly(site, ability):
+        return
     middle = Position(site.north_m, site.east_m, site.ground_m)
     straight = bearing_rad(motion.position, middle)
     turns = sorted(range(DIRECTIONS), key=lambda k: min(k, DIRECTIONS - k))
@@ -75,6 +80,12 @@ def approaches(
             track = Track((*whole, touch), motion.heading_rad)
             flown = courses(Pose(*gate, heading), motion, wide_m, track)[0]
             yield flown._replace(speed_m_s=ability.min_speed_m_s, site=site)
+
+
+def sinks_too_slowly(site: LandingSite, ability: Ability) -> bool:
+    """Whether the last descent of a vehicle to a site takes longer than it may."""
+    down_m = max(ability.floor_m - site.ground_m, 0.0)
+    return not in_time(0, math.ceil(1000 * down_m / (STEEP * ability.max_climb_m_s)), LONGEST_MS)
 
 
 def _last_descent(site: LandingSite, heading: float, ability: Ability) -> tuple[Position, Position]:

@@ -39,13 +39,20 @@ def begin(tasks: int) -> None:
     if tasks < MANY_TASKS or (os.cpu_count() or 1) < 2 or is_kept(direct_many):
         return
     for name in MAKERS:
-        environment = {**os.environ, ENDS_WITH: str(os.getpid())}
-        process = subprocess.Popen(
-            [sys.executable, "-m", __name__, name], env=environment,
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-        )  # fmt: skip
-        coming.expect(name, _waiter(process))
-        atexit.register(_end, process)
+        coming.expect(name, _waiter(start([__name__, name])))
+
+
+def start(module: list[str], stands_back: int = 0) -> subprocess.Popen[bytes]:
+    """A module of ours with its arguments, as a process that does not outlive this one."""
+    command = [sys.executable, "-m", *module]
+    if stands_back:
+        command = ["nice", "-n", str(stands_back), *command]
+    process = subprocess.Popen(
+        command, env={**os.environ, ENDS_WITH: str(os.getpid())},
+        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+    )  # fmt: skip
+    atexit.register(_end, process)
+    return process
 
 
 def _waiter(process: subprocess.Popen[bytes]) -> Callable[[], None]:
@@ -57,10 +64,9 @@ def _waiter(process: subprocess.Popen[bytes]) -> Callable[[], None]:
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
-    """What nobody has waited for is not needed any more."""
+    """What nobody has waited for is not needed any more; it ends by itself, and tidies up."""
     if process.poll() is None:
-        process.kill()
-        process.wait()
+        process.terminate()
 
 
 def make_routes() -> None:

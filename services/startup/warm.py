@@ -1,14 +1,13 @@
 """What `cratous warm` does: compile the kernels that the runtime uses on arrays, each step with a name.
 
 Part of the set-up, so that no mission waits for the compiler. `ensure_planning` asks for
-it where a service that has to answer in time begins in a cache that has not been filled: in a
-process of its own, because the compiler takes a minute and more memory than planning itself.
+it where a service that has to answer in time begins in a cache that has not been filled: in
+processes of their own, because the compiler takes a minute and more memory than planning itself.
 """
 
 from __future__ import annotations
 
 import hashlib
-import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
@@ -25,7 +24,8 @@ from cratous.core.readings.tiered import at_once
 from cratous.core.well_clear import horizontal_violation, violation, violation_within
 from cratous.services.loading import load
 from cratous.services.pipeline.plan import make_plan
-from cratous.services.planning import assign
+from cratous.services.planning import assign, coming
+from cratous.services.startup import ahead
 
 MISSION = """
 name: warm
@@ -109,6 +109,8 @@ def warm_gate() -> None:
     ledger.require(allow_unproved=True)
 
 
+BESIDE = 10
+"""How much what is compiled meanwhile stands back behind what answers (`nice`)."""
 Step = tuple[str, Callable[[], None]]
 PLANNING: tuple[Step, ...] = (
     ("the searches of the assignment", assign.warm),
@@ -143,18 +145,21 @@ def _taken(chain: Sequence[Step]) -> list[str]:
 
 
 def ensure_planning(say: Callable[[str], None]) -> None:
-    """Have planning's loops compiled, unless they are; `say` is told when that takes time."""
+    """Have planning's loops compiled, unless they are; `say` is told when that takes time.
+
+    What every larger plan needs is waited for; the rest is compiled while this process works, and not
+    beyond its end: the next one goes on with it.
+    """
     if _mark().is_file():
         return
-    say("the planning loops are compiled, once for this version and machine; this takes a minute")
-    done = subprocess.run(
-        [sys.executable, "-m", "cratous", "warm", "--planning", "--quiet"],
-        capture_output=True,
-        text=True,
-        check=False,
+    say(
+        "the planning loops are compiled, once for this version and machine: some are waited for, "
+        "the rest is compiled meanwhile (`cratous warm` does it ahead)"
     )
-    if done.returncode:
-        say(f"compiling ahead failed, so it is done when needed: {done.stderr.strip()[-300:]}")
+    ahead.begin(ahead.MANY_TASKS)
+    for name in ahead.MAKERS:
+        coming.ready(name)
+    ahead.start(["cratous", "warm", "--planning", "--quiet"], BESIDE)
 
 
 def _mark() -> Path:

@@ -51,7 +51,8 @@ def at_most(size: int, most: int, what: str, where: str, unit: str = "bytes") ->
 def json_of(text: str | bytes, where: str, most: int = DOCUMENT_BYTES) -> Any:
     """The data of a JSON text; BadInput for what is none or is beyond a bound.
 
-    Numbers are finite and texts are Unicode, which Python's own reader does not ask for.
+    Numbers are finite, texts are Unicode and a name stands once in an object, which Python's own
+    reader does not ask for.
     """
     at_most(len(text), most, "the JSON is too long", where)
     if isinstance(text, bytes):
@@ -74,7 +75,7 @@ def json_of(text: str | bytes, where: str, most: int = DOCUMENT_BYTES) -> Any:
         ) from None
     except UnicodeEncodeError:
         raise _wrong("half a character in a text", where, "Unicode", "a lone surrogate") from None
-    except _WrongNumber as error:
+    except _Refused as error:
         raise _wrong(str(error), where, error.expected, error.got) from None
     except RecursionError:
         raise _wrong("nested too deeply", where, f"at most {DEPTH} levels", "more") from None
@@ -119,7 +120,7 @@ def inflated(data: bytes, where: str, most: int = DOCUMENT_BYTES) -> bytes:
     return b"".join(parts)
 
 
-class _WrongNumber(Exception):
+class _Refused(Exception):
     def __init__(self, what: str, expected: str, got: str) -> None:
         super().__init__(what)
         self.expected, self.got = expected, got if len(got) <= 40 else f"{got[:37]}..."
@@ -127,23 +128,37 @@ class _WrongNumber(Exception):
 
 def _integer(text: str) -> int:
     if len(text.removeprefix("-")) > DIGITS:
-        raise _WrongNumber("a number with too many digits", f"at most {DIGITS}", text)
+        raise _Refused("a number with too many digits", f"at most {DIGITS}", text)
     return int(text)
 
 
 def _real(text: str) -> float:
     value = float(text) if len(text) <= 2 * DIGITS else float("inf")
     if value - value != 0:
-        raise _WrongNumber("not a number that a double holds", "a finite number", text)
+        raise _Refused("not a number that a double holds", "a finite number", text)
     return value
 
 
 def _no_constant(text: str) -> float:
-    raise _WrongNumber(f"{text} is not a JSON number", "a finite number", text)
+    raise _Refused(f"{text} is not a JSON number", "a finite number", text)
 
 
-_PLAIN = json.JSONDecoder(parse_constant=_no_constant)
-_CAREFUL = json.JSONDecoder(parse_int=_integer, parse_float=_real, parse_constant=_no_constant)
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """An object; of two values of one name Python's own reader keeps the last without a word."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        seen: set[str] = set()
+        for name, _ in pairs:
+            if name in seen:
+                raise _Refused("a name is given twice in one object", "each name once", name)
+            seen.add(name)
+    return found
+
+
+_PLAIN = json.JSONDecoder(parse_constant=_no_constant, object_pairs_hook=_once)
+_CAREFUL = json.JSONDecoder(
+    parse_int=_integer, parse_float=_real, parse_constant=_no_constant, object_pairs_hook=_once
+)
 
 
 def _not_deep(found: Any, where: str) -> None:

@@ -271,12 +271,16 @@ def test_nothing_is_evidence_where_calls_were_not_recorded() -> None:
 
 
 def test_the_map_keeps_one_scale_and_north_up() -> None:
-    view = map_view(report())
+    whole, site = report(), {"name": "s", "north_m": 200.0, "east_m": 100.0, "radius_m": 50.0}
+    whole["mission"]["daa"]["link_loss"] = {"sites": [site]}
+    view = map_view(whole)
     (task,) = view["tasks"]
     (x0, y0), (x1, y1) = (map(float, pair.split(",")) for pair in task["points"].split())
     assert x1 > x0, "east is right"
     assert y1 < y0, "north is up"
     assert abs((x1 - x0) / 200 - (y0 - y1) / 400) < 1e-3
+    said = [view["sites"][0][k] for k in "xyr"]
+    assert said == pytest.approx([(x0 + x1) / 2, (y0 + y1) / 2, (x1 - x0) / 4], abs=0.1)
     assert [piece["icarous"] for piece in view["tracks"][0]["pieces"]] == [False, True]
     kilometres = re.fullmatch(r"(\d+) (k?)m", view["bar"]["text"])
     assert kilometres

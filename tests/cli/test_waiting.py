@@ -71,14 +71,19 @@ def test_planning_tells_how_far_it_is() -> None:
     wait = Waiting("")
     tap = planning_told(wait.at, 2)
     said = [wait.text()]
-    for name in ("RoutePlanRequest", "TaskPlanOptions", "TaskPlanOptions", "AssignmentCostMatrix"):
+    ask, answer, options = "RoutePlanRequest", "RoutePlanResponse", "TaskPlanOptions"
+    for name in (ask, options, answer, options, ask, ask, answer, "AssignmentCostMatrix"):
         tap(SimpleNamespace(topic=f"uxas.messages.task.{name}"))
         said.append(wait.text())
     assert said == [
         "planning the options of the tasks: 0 of 2",
         "planning the options of the tasks: 0 of 2",
         "planning the options of the tasks: 1 of 2",
+        "planning the options of the tasks: 1 of 2",
         "planning the ways between the tasks",
+        "planning the ways between the tasks: 0 of 1",
+        "planning the ways between the tasks: 0 of 2",
+        "planning the ways between the tasks: 1 of 2",
         "searching for the best assignment",
     ]
 

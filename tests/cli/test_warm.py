@@ -8,7 +8,6 @@ import sys
 import time
 from functools import partial
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -29,7 +28,8 @@ from cratous.services.startup import warm
 from cratous.services.loading import load
 from cratous.services.pipeline.plan import make_plan
 
-warm.ensure_planning(print)
+for _, step in warm.PLANNING:
+    step()
 mission = load(Path(sys.argv[1]))
 with event.install_recorder("numba:compile") as seen, at_once():
     make_plan(mission)
@@ -49,24 +49,22 @@ def test_planning_compiles_nothing_once_it_is_warm() -> None:
 
 
 def test_what_is_warm_is_not_warmed_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    calls: list[Any] = []
-
-    def run(command: list[str], **_: Any) -> Any:
-        calls.append(command)
-        return SimpleNamespace(returncode=len(calls) - 1, stderr="no compiler")
-
+    did: list[Any] = []
     monkeypatch.setattr(warm, "private_cache", lambda: tmp_path)
-    monkeypatch.setattr(subprocess, "run", run)
+    monkeypatch.setattr(warm.ahead, "begin", did.append)
+    monkeypatch.setattr(warm.coming, "ready", did.append)
+    monkeypatch.setattr(warm.ahead, "start", lambda *call: did.append(call))
     said: list[str] = []
     warm.ensure_planning(said.append)
-    assert calls[0][1:] == ["-m", "cratous", "warm", "--planning", "--quiet"]
+    later = (["cratous", "warm", "--planning", "--quiet"], warm.BESIDE)
+    assert did == [warm.ahead.MANY_TASKS, "routes", "assignment", later]
     assert ["compiled, once" in text for text in said] == [True]
-    warm.ensure_planning(said.append)  # the other process has left no mark: it is asked again
-    assert said[-1].endswith("no compiler")
+    warm.ensure_planning(said.append)  # the other process has left no mark: it goes on
+    assert did[4:] == did[:4]
     (tmp_path / "warm").mkdir()
     warm._mark().touch()
     warm.ensure_planning(said.append)
-    assert len(calls) == 2
+    assert (len(did), len(said)) == (8, 2)
 
 
 def test_only_a_configuration_that_plans_has_to_be_warm(

@@ -21,6 +21,7 @@ from cratous.services.flight.result import FlightResult
 from cratous.services.loading import load
 from cratous.services.logs.records import to_data
 from cratous.services.monitor import Monitor
+from cratous.services.parameters.listing import parameters_of
 from cratous.services.pipeline.plan import make_plan
 from cratous.services.system_model.replay import replay
 from cratous.spec.errors import BadInput
@@ -177,6 +178,7 @@ RING = [
 AROUND = [{"id": k, "kind": "keep_out", "vertices": ring} for k, ring in enumerate(RING, 21)]
 NEAR = [{"id": 8, "kind": "keep_out", "vertices": [[200, 1300], [400, 1300], [400, 1450], [200, 1450]]}]  # fmt: skip
 LAND = {"choice": "land", "after_s": 3}
+SINKS = {"id": 1, "position": {"north_m": 0, "east_m": 0, "alt_m": 300}, "heading_deg": 0, "speed_m_s": 15, "max_climb_m_s": 0.001}  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -191,6 +193,7 @@ LAND = {"choice": "land", "after_s": 3}
         ({"zones": NEAR}, "landing_sites[0].position: nobody may land at field; expected a disc on the ground that keeps zone 8"),
         ({"landing_sites": [{**FIELD, "radius_m": 35}]}, "landing_sites[0].radius_m: vehicle 1 does not come to a stand on field; expected at least 35.62 m"),
         ({"zones": AROUND, "landing_sites": [FIELD]}, "landing_sites: vehicle 1 can land nowhere"),
+        ({"vehicles": [SINKS]}, "field: its last descent takes longer than 1800 s"),
         ({"link_loss": LAND, "bridge": {"instances": 0}}, "nobody would act by it"),
     ],
 )  # fmt: skip
@@ -201,6 +204,16 @@ def test_what_makes_no_sense_is_refused(
     with pytest.raises(BadInput) as caught:
         require_reachable(load(path))
     assert said in str(caught.value)
+
+
+def test_what_follows_from_a_landing_is_a_parameter(landed: Flown, root: Path) -> None:
+    rows = parameters_of(landed.mission, root / "examples/landing/mission.yaml")
+    found = {row.name: row.value for row in rows}
+    assert (found["landing roll"], found["least site"], found["landing gate"]) == (
+        56.25,
+        35.625,
+        60,
+    )
 
 
 def test_a_site_that_no_way_reaches_leaves_another(root: Path, tmp_path: Path) -> None:

@@ -198,6 +198,7 @@ def test_a_value_of_a_log_is_bounded(tmp_path: Path) -> None:
         ("0." + DIGITS + "e5000", "not a number that a double holds"),
         ("NaN", "NaN is not a JSON number"),
         ("[-Infinity]", "Infinity is not a JSON number"),
+        ('{"a": {"b": 1, "c": 2, "b": 3}}', "a name is given twice"),
         ('"\\ud800"', "half a character"),
         (b'"\xff"', "not a text file"),
         ("[" + "{}," * 1_000_001 + "{}]", "too many lists and objects"),

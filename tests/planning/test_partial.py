@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import chain, combinations
+from pathlib import Path
 from random import Random
 
 import pytest
 from planning_tools import FOUR, TWO, mission
 
 from cratous.bridge import lmcp
+from cratous.core import ledger
 from cratous.services.bus import Bus
+from cratous.services.cli import main
 from cratous.services.cli.plan import why_lines
 from cratous.services.monitor.plan_check import PART, WHOLE, check_plan
 from cratous.services.pipeline.plan import make_plan
@@ -220,8 +223,10 @@ def test_why_this_vehicle_is_told_for_each_other_one() -> None:
         why(plan_of, plan, 9, {})
 
 
-def test_why_of_no_task_is_refused_before_planning(tmp_path: Path) -> None:
-    file = tmp_path / "mission.yaml"
-    file.write_text((ROOT / "examples/crossing/mission.yaml").read_text())
-    with pytest.raises(BadInput, match="no such task in the mission"):
-        _check_asked(9, load(file))
+def test_why_of_no_task_is_refused_before_anything_that_takes_time(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(ledger, "require", None)
+    crossing = Path(__file__).parents[2] / "examples" / "crossing" / "mission.yaml"
+    assert main(["plan", str(crossing), "--why", "9"]) == 2
+    assert "no such task in the mission; expected one of 1, 2; got 9" in capsys.readouterr().err

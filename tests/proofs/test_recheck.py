@@ -9,7 +9,7 @@ import pytest
 import z3
 
 from cratous.core import ledger as gate
-from cratous.proofs import ledger, recheck
+from cratous.proofs import ledger, recheck, second_solver
 from cratous.proofs.engine import prover
 from cratous.proofs.engine.obligation import Obligation
 from cratous.proofs.mutation.keys import Store
@@ -45,15 +45,15 @@ def test_the_expected_status_is_not_believed():
     true = _text(x > 1, x * x > x)
     false = _text(x > 0, x * x > x)
     assert "(set-info :status unsat)" in false
-    assert recheck.solve(true, "QF_NRA") == "unsat"
-    assert recheck.solve(false, "QF_NRA") == "sat"
-    assert recheck.solve(true, "ALL") == "unsat"
-    assert recheck.solve(_text(x + y > 0), "QF_LRA") == "sat"
+    assert second_solver.solve(true, "QF_NRA") == "unsat"
+    assert second_solver.solve(false, "QF_NRA") == "sat"
+    assert second_solver.solve(true, "ALL") == "unsat"
+    assert second_solver.solve(_text(x + y > 0), "QF_LRA") == "sat"
 
 
 def test_text_that_is_no_smt_lib_is_an_error():
     with pytest.raises((ValueError, RuntimeError)):
-        recheck.solve("(assert (= x 1))(check-sat)", "ALL")
+        second_solver.solve("(assert (= x 1))(check-sat)", "ALL")
 
 
 def test_a_contradiction_is_seen(monkeypatch: pytest.MonkeyPatch):
@@ -69,13 +69,13 @@ def test_a_contradiction_is_seen(monkeypatch: pytest.MonkeyPatch):
 def test_no_answer_is_no_answer(monkeypatch: pytest.MonkeyPatch):
     """A solver that spends its CPU time is ended by the system, and nothing is concluded."""
     (theorem,) = ledger.prove_theorems(["geofence_straddles_is_its_definition"])
-    monkeypatch.setattr(recheck, "CPU_SECONDS", 0)
+    monkeypatch.setattr(second_solver, "CPU_SECONDS", 0)
 
     def busy(text: str, logic: str, options: dict[str, str] | None = None) -> str:
         while True:
             pass
 
-    monkeypatch.setattr(recheck, "solve", busy)
+    monkeypatch.setattr(second_solver, "solve", busy)
     found = recheck.recheck([theorem])
     assert found.verdict(theorem.name) == "no answer"
 
@@ -141,7 +141,7 @@ def test_a_run_that_was_stopped_goes_on(tmp_path: Path, monkeypatch: pytest.Monk
         asked.touch()
         return "unknown"
 
-    monkeypatch.setattr(recheck, "solve", refuse)
+    monkeypatch.setattr(second_solver, "solve", refuse)
     assert recheck.recheck([theorem], store=store).verdict(theorem.name) == "confirmed"
     assert not asked.exists()
     assert first.count("confirmed") == 1
@@ -152,7 +152,7 @@ def test_a_run_that_was_stopped_goes_on(tmp_path: Path, monkeypatch: pytest.Monk
     asked.unlink()
     assert recheck.recheck([theorem], store=store).verdict(theorem.name) == "no answer"
     assert not asked.exists()
-    monkeypatch.setattr(recheck, "CPU_SECONDS", recheck.CPU_SECONDS + 1)
+    monkeypatch.setattr(second_solver, "CPU_SECONDS", second_solver.CPU_SECONDS + 1)
     assert recheck.recheck([theorem], store=store).verdict(theorem.name) == "no answer"
     assert asked.exists()
 
@@ -168,7 +168,7 @@ def test_asked_again_the_way_that_answered_is_first(
             file.write(f"{logic}\n")
         return "unsat" if logic == "ALL" else "unknown"
 
-    monkeypatch.setattr(recheck, "solve", all_alone)
+    monkeypatch.setattr(second_solver, "solve", all_alone)
     found = recheck.recheck([theorem])
     assert set(asked.read_text().split()) > {"ALL"}
     file = tmp_path / "recheck.json"

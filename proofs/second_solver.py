@@ -1,0 +1,89 @@
+"""cvc5 as a solver that stands alone: it is given SMT-LIB text, in a process of its own, and nothing else."""
+
+from __future__ import annotations
+
+import multiprocessing
+import resource
+import time
+from multiprocessing.connection import Connection
+from typing import Any
+
+CPU_SECONDS = 5
+Way = tuple[str, dict[str, str]]
+"""How it is asked: the logic, and options."""
+
+
+def solve(text: str, logic: str, options: dict[str, str] | None = None) -> str:
+    """sat, unsat or unknown, by cvc5 on SMT-LIB text under the given logic.
+
+    Raises ValueError for text that cvc5 refuses.
+    """
+    import cvc5
+
+    # terms of its own, so that the answer depends on the text alone
+    solver = cvc5.Solver(cvc5.TermManager())
+    for option, value in (options or {}).items():
+        solver.setOption(option, value)
+    parser = cvc5.InputParser(solver)
+    body = "\n".join(line for line in text.splitlines() if not line.startswith("(set-logic"))
+    solver.setLogic(logic)
+    parser.setStringInput(cvc5.InputLanguage.SMT_LIB_2_6, body, "obligation")
+    symbols = parser.getSymbolManager()
+    answer = "unknown"
+    while True:
+        command = parser.nextCommand()
+        if command.isNull():
+            return answer
+        if command.getCommandName() == "set-info":
+            # the expected status is for readers; a solver is not to be told
+            continue
+        said = str(command.invoke(solver, symbols)).strip()
+        if said in ("sat", "unsat", "unknown"):
+            answer = said
+        elif said.startswith("(error"):
+            raise ValueError(said)
+
+
+def _answer(questions: Connection, asking: Connection) -> None:
+    """Answer until nobody asks; the system ends this process when a question takes too long."""
+    asking.close()  # the other end, so that only who asks holds it open
+    while True:
+        try:
+            text, way = questions.recv()
+        except EOFError:
+            return
+        used = time.process_time()
+        _, most = resource.getrlimit(resource.RLIMIT_CPU)
+        resource.setrlimit(resource.RLIMIT_CPU, (int(used) + CPU_SECONDS, most))
+        questions.send((solve(text, *way), time.process_time() - used))
+
+
+class Asker:
+    """Puts questions to cvc5 one after the other; a process that was ended is begun anew for the next."""
+
+    def __init__(self) -> None:
+        self._pipe: Connection | None = None
+        self._process: Any = None
+
+    def ask(self, text: str, way: Way) -> tuple[str, float]:
+        """sat, unsat or unknown, and the CPU seconds that it took."""
+        if self._pipe is None:
+            fork = multiprocessing.get_context("fork")
+            self._pipe, there = fork.Pipe()
+            self._process = fork.Process(target=_answer, args=(there, self._pipe), daemon=True)
+            self._process.start()
+            there.close()
+        try:
+            self._pipe.send((text, way))
+            answer: tuple[str, float] = self._pipe.recv()
+        except (EOFError, OSError):
+            self.end()
+            return "unknown", float(CPU_SECONDS)
+        return answer
+
+    def end(self) -> None:
+        """Nobody asks any more."""
+        if self._pipe is not None:
+            self._pipe.close()
+            self._process.join()
+            self._pipe = None
