@@ -14,7 +14,7 @@ import inspect
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from types import FunctionType, ModuleType
+from types import BuiltinFunctionType, FunctionType, ModuleType
 from typing import Any, NamedTuple
 
 from cratous.core.kernel import Fold
@@ -41,6 +41,10 @@ class _Said(NamedTuple):
     hides: frozenset[str]
 
 
+MADE = ("ExceptionGroup", "copyright", "credits", "exit", "help", "license", "quit")
+"""What Python makes as it starts: no kernel calls any of it."""
+HEAP_TYPE = 1 << 9
+"""Of the flags of a type: it was made by a class statement or as one would make it."""
 ALIASES = ("IOError", "EnvironmentError")
 BUILTINS = frozenset(name for name in vars(builtins) if not name.startswith("__"))
 
@@ -105,15 +109,16 @@ def _of(function: FunctionType) -> Iterator[str]:
 
 
 def _is_pythons(name: str) -> bool:
-    """A name of the interpreter's means what it is called, and no function that it was given later."""
+    """A name of the interpreter's means what it is called: its own function or type, or nothing to call."""
     value = vars(builtins).get(name)
-    if isinstance(value, FunctionType):
-        return False
-    return _is_called(value, name) if inspect.isbuiltin(value) or inspect.isclass(value) else True
+    return not callable(value) or name in MADE or _is_called(value, name)
 
 
 def _is_called(value: Any, name: str) -> bool:
-    return not isinstance(value, FunctionType) and getattr(value, "__name__", None) == name
+    """A function or type in C of this name: none that a package can make."""
+    own = isinstance(value, BuiltinFunctionType)
+    own = own or (isinstance(value, type) and not value.__flags__ & HEAP_TYPE)
+    return own and value.__name__ == name
 
 
 def _within(module: ModuleType, names: tuple[str, ...]) -> Iterator[str]:

@@ -38,6 +38,8 @@ class Tree:
         self._edges: dict[Place, tuple[tuple[str, tuple[Target, ...]], ...]] = {}
         self._meant: dict[tuple[str, tuple[str, ...]], tuple[Target, ...]] = {}
         self._imported: dict[tuple[str, str, tuple[str, ...]], tuple[Target, ...]] = {}
+        self._open: set[tuple[str, tuple[str, ...]]] = set()
+        self._circles: set[tuple[str, tuple[str, ...]]] = set()
         self._found: dict[str, Path | None] = {}
         self._folders: dict[str, bool] = {}
         self.open_classes: dict[Place, bool] = {}
@@ -137,10 +139,18 @@ class Tree:
     def meant(self, module: str, chain: tuple[str, ...]) -> tuple[Target, ...]:
         """What a name with its attributes means in a module; nothing for a builtin."""
         key = (module, chain)
-        if key not in self._meant:
-            self._meant[key] = ()  # imports that go in a circle bind nothing
-            self._meant[key] = tuple(dict.fromkeys(self._bound(module, chain)))
-        return self._meant[key]
+        if key in self._meant:
+            return self._meant[key]
+        if key in self._open:
+            self._circles.add(key)  # imports that go in a circle bind nothing
+            return ()
+        self._open.add(key)
+        found = tuple(dict.fromkeys(self._bound(module, chain)))
+        self._open.discard(key)
+        self._circles.discard(key)
+        if not self._circles:  # else it lacks what an open one will bind
+            self._meant[key] = found
+        return found
 
     def _bound(self, module: str, chain: tuple[str, ...]) -> Iterator[Target]:
         found = self.table(module)
@@ -168,9 +178,12 @@ class Tree:
             yield f"{source}.{there}"
             return
         key = (source, there, rest)
-        if key not in self._imported:
-            self._imported[key] = tuple(self._inside(source, (there, *rest) if there else rest))
-        yield from self._imported[key]
+        found = self._imported.get(key)
+        if found is None:
+            found = tuple(self._inside(source, (there, *rest) if there else rest))
+            if not self._circles:
+                self._imported[key] = found
+        yield from found
 
     def _inside(self, module: str, chain: tuple[str, ...]) -> Iterator[Target]:
         if not chain:

@@ -150,7 +150,10 @@ def _possible(conditions: list[z3.BoolRef]) -> bool:
 
 
 def _holds(model: z3.ModelRef, condition: z3.BoolRef) -> bool:
-    return bool(z3.is_true(model.eval(condition, model_completion=True)))
+    try:
+        return bool(z3.is_true(model.eval(condition, model_completion=True)))
+    except z3.Z3Exception:  # the solver was stopped before: it is asked again
+        return False
 
 
 def _decider(

@@ -163,7 +163,9 @@ def test_the_summary_of_a_run_shows_no_hidden_characters(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     served = {"task": 1, "vehicle": 2, "phase": "Failed", "time_ms": 0, "served": 0.0, "note": BAD}
+    change = {"time_ms": 0, "what": BAD, "consequence": BAD}
     flight = {"served": [served], "takeovers": [], "outcome": "failed", "end_ms": 0}
+    flight["changes"] = [change]
     broken = {"name": "clock", "text": "t", "state": "broken", "since_ms": 0, "note": BAD}
     broken |= {"guarantees": ["G5"], "lost": "l", "stands": "s"}
     report = {"requirements": [], "flight": flight, "verdict": "violated", "exit_code": 1}

@@ -5,8 +5,9 @@ from __future__ import annotations
 import builtins
 import linecache
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -74,26 +75,58 @@ def _rooted() -> Any:
     return next(f for f in kernels if "sqrt" in f.__code__.co_names)
 
 
-def test_another_root_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+class _Named:
+    """Called as another function is, and named so."""
+
+    def __init__(self, old: Callable[..., Any]) -> None:
+        self.old, self.__name__ = old, old.__name__
+
+    def __call__(self, *given: Any) -> Any:
+        return self.old(*given)
+
+
+INSTEAD: dict[str, Callable[[Callable[..., Any]], Any]] = {
+    "function": lambda old: lambda *given: old(*given),
+    "partial": partial,
+    "object": _Named,
+    "class": lambda old: type(old.__name__, (), {"__new__": lambda cls, *given: old(*given)}),
+}
+
+
+@pytest.mark.parametrize("how", INSTEAD)
+def test_another_root_is_told(monkeypatch: pytest.MonkeyPatch, how: str) -> None:
     kernel, old = _rooted(), math.sqrt
     assert is_root(old)
-
-    def root(x: float) -> float:
-        return old(x)
-
+    root = INSTEAD[how](old)
     monkeypatch.setattr(math, "sqrt", root)
     monkeypatch.setitem(kernel.__globals__, "sqrt", root)
     assert not is_root(math.sqrt)
     assert f"{kernel.__module__}.sqrt" in replaced(reached(kernel).values(), {})
 
 
-def test_another_builtin_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("how", INSTEAD)
+def test_another_builtin_is_told(monkeypatch: pytest.MonkeyPatch, how: str) -> None:
     kernels = [e.function for e in REGISTRY.values() if not isinstance(e.function, Fold)]
     kernel = next(f for f in kernels if "min" in f.__code__.co_names)
     assert replaced(reached(kernel).values(), {}) == []
-    old = builtins.min
-    monkeypatch.setattr(builtins, "min", lambda *given: old(*given))
+    monkeypatch.setattr(builtins, "min", INSTEAD[how](builtins.min))
     assert "builtins.min" in replaced(reached(kernel).values(), {})
+
+
+def test_imports_in_a_circle_mean_the_same_in_any_order(tmp_path: Path) -> None:
+    folder = tmp_path / "pkg"
+    folder.mkdir()
+    (folder / "__init__.py").write_text("")
+    (folder / "a.py").write_text("from pkg.b import f\n\n\ndef f():\n    pass\n")
+    (folder / "b.py").write_text("from pkg.a import f\n")
+    (folder / "c.py").write_text("from pkg.b import f\n")
+    asked = []
+    for first in ("c", "a", "b"):
+        tree = Tree({"pkg": folder}, {"pkg": ("",)})
+        tree.meant(f"pkg.{first}", ("f",))
+        asked.append([tree.meant(f"pkg.{one}", ("f",)) for one in "abc"])
+    assert asked[0] == asked[1] == asked[2]
+    assert all(asked[0])
 
 
 def test_lines_that_python_keeps_are_not_the_file(monkeypatch: pytest.MonkeyPatch) -> None:

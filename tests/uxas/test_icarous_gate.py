@@ -47,7 +47,7 @@ def test_the_commands_at_its_gate_tell_the_story_of_authority(
         kind = type(envelope.body).__name__
         if kind in ("GateState", "GatedCommand", "ModeRefused"):
             watch.message(kind, envelope.body, envelope.time_ms)
-    watch.end(lmcp.new("MissionEnd", Time=3000))
+    watch.end(lmcp.new("MissionEnd", Time=3000), {})
     (verdict,) = watch.verdicts()
     assert verdict.outcome is (Outcome.VIOLATED if during else Outcome.HOLDS), verdict.note
     assert ("without authority" if during else "1 takeover, each handed back") in verdict.note
