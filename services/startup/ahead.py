@@ -14,10 +14,13 @@ import math
 import os
 import subprocess
 import sys
+import threading
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 
+import cratous
 from cratous.core.assignment.anytime import greedy, improve
 from cratous.core.assignment.layers import look_ahead, tables
 from cratous.core.geofence.mission_leg_arrays import table
@@ -36,29 +39,45 @@ WAIT_S = 120.0
 
 def begin(tasks: int) -> None:
     """Have compiled what the plan of so many tasks needs, if that is much and is not kept yet."""
-    if tasks < MANY_TASKS or (os.cpu_count() or 1) < 2 or is_kept(direct_many):
+    if tasks < MANY_TASKS or _cores() < 2 or is_kept(direct_many):
         return
     for name in MAKERS:
-        coming.expect(name, _waiter(start([__name__, name])))
+        coming.expect(name, _waiter(_start([__name__, name]), WAIT_S))
 
 
-def start(module: list[str], stands_back: int = 0) -> subprocess.Popen[bytes]:
+def beside(module: list[str], stands_back: int) -> None:
+    """Have a module of ours compile behind what this process does, which uses it once that has ended."""
+    process = _start(module)
+    with contextlib.suppress(OSError):  # it has ended already
+        own = os.getpriority(os.PRIO_PROCESS, 0)
+        os.setpriority(os.PRIO_PROCESS, process.pid, own + stands_back)
+    threading.Thread(target=_waiter(process, None), daemon=True).start()
+
+
+def _cores() -> int:
+    """Those that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _start(module: list[str]) -> subprocess.Popen[bytes]:
     """A module of ours with its arguments, as a process that does not outlive this one."""
-    command = [sys.executable, "-m", *module]
-    if stands_back:
-        command = ["nice", "-n", str(stands_back), *command]
+    place = str(Path(cratous.__file__).absolute().parents[1])
+    paths = [*filter(None, [os.environ.get("PYTHONPATH")]), place]
     process = subprocess.Popen(
-        command, env={**os.environ, ENDS_WITH: str(os.getpid())},
+        # no module of the present folder comes first
+        [sys.executable, "-P", "-m", *module],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(paths), ENDS_WITH: str(os.getpid())},
         stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
     )  # fmt: skip
     atexit.register(_end, process)
     return process
 
 
-def _waiter(process: subprocess.Popen[bytes]) -> Callable[[], None]:
+def _waiter(process: subprocess.Popen[bytes], limit_s: float | None) -> Callable[[], None]:
     def wait() -> None:
         with contextlib.suppress(subprocess.TimeoutExpired):
-            process.wait(WAIT_S)
+            process.wait(limit_s)
+        is_kept.cache_clear()  # what was not kept may be now
 
     return wait
 

@@ -159,7 +159,7 @@ def ensure_planning(say: Callable[[str], None]) -> None:
     ahead.begin(ahead.MANY_TASKS)
     for name in ahead.MAKERS:
         coming.ready(name)
-    ahead.start(["cratous", "warm", "--planning", "--quiet"], BESIDE)
+    ahead.beside(["cratous", "warm", "--planning", "--quiet"], BESIDE)
 
 
 def _mark() -> Path:

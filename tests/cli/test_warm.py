@@ -53,7 +53,7 @@ def test_what_is_warm_is_not_warmed_again(tmp_path: Path, monkeypatch: pytest.Mo
     monkeypatch.setattr(warm, "private_cache", lambda: tmp_path)
     monkeypatch.setattr(warm.ahead, "begin", did.append)
     monkeypatch.setattr(warm.coming, "ready", did.append)
-    monkeypatch.setattr(warm.ahead, "start", lambda *call: did.append(call))
+    monkeypatch.setattr(warm.ahead, "beside", lambda *call: did.append(call))
     said: list[str] = []
     warm.ensure_planning(said.append)
     later = (["cratous", "warm", "--planning", "--quiet"], warm.BESIDE)

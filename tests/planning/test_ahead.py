@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import subprocess
+import time
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -30,7 +33,7 @@ class Started:
         self.name, self.waits, self.ended = arguments[-1], 0, False
         ALL.append(self)
 
-    def wait(self, _limit_s: float = 0.0) -> int:
+    def wait(self, _limit_s: float | None = 0.0) -> int:
         self.waits += 1
         return 1
 
@@ -49,8 +52,8 @@ def begun(monkeypatch: pytest.MonkeyPatch) -> list[Started]:
     ALL.clear()
     monkeypatch.setattr(subprocess, "Popen", Started)
     monkeypatch.setattr(ahead.atexit, "register", lambda *_: None)
-    monkeypatch.setattr(ahead.os, "cpu_count", lambda: 2)
-    monkeypatch.setattr(ahead, "is_kept", lambda _: False)
+    monkeypatch.setattr(ahead, "_cores", lambda: 2)
+    monkeypatch.setattr(ahead, "is_kept", functools.cache(lambda _: False))
     monkeypatch.setattr(coming, "_coming", {})
     return ALL
 
@@ -81,6 +84,45 @@ def test_a_process_that_nobody_waited_for_is_ended(begun: list[Started]) -> None
     for process in begun:
         ahead._end(process)  # type: ignore[arg-type]
     assert all(process.ended for process in begun)
+
+
+def test_what_is_made_meanwhile_is_seen_once_it_is_waited_for(
+    begun: list[Started], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else this process would go by what it has found in an empty cache until it ends."""
+    kept: list[bool] = [False]
+    monkeypatch.setattr(ahead, "is_kept", functools.cache(lambda _: kept[0]))
+    ahead.begin(ahead.MANY_TASKS)
+    kept[0] = True
+    assert not ahead.is_kept(direct_many)
+    coming.ready(coming.ROUTES)
+    assert ahead.is_kept(direct_many)
+
+
+def test_what_is_compiled_beside_needs_no_other_program_and_no_file_of_the_present_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "calendar.py").write_text("open('ran', 'w')")
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own" / "waits.py").write_text(
+        "import calendar, os, time\n"
+        "until = time.monotonic() + 30\n"
+        "while os.nice(0) < 19 and time.monotonic() < until:\n    time.sleep(0.01)\n"
+        "open('nice', 'w').write(str(os.nice(0)))\n"
+    )
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path / "own"))
+    seen = functools.cache(lambda _: False)
+    monkeypatch.setattr(ahead, "is_kept", seen)
+    seen(direct_many)
+    ahead.beside(["waits"], 20)
+    until = time.monotonic() + 60
+    while seen.cache_info().currsize and time.monotonic() < until:
+        time.sleep(0.01)
+    assert not seen.cache_info().currsize  # it is waited for, and leaves nothing behind
+    assert not Path("ran").exists()
+    assert Path("nice").read_text() == "19"
 
 
 def test_what_is_made_ahead_is_what_a_plan_calls() -> None:
