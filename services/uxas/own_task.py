@@ -87,7 +87,8 @@ class OwnTask:
         if topic == REMOVE:
             gone = {*body.TaskList}
             left = {number: task for number, task in state.tasks.items() if number not in gone}
-            return state._replace(tasks=left), ()
+            active = {number: of for number, of in state.active.items() if number not in gone}
+            return state._replace(tasks=left, active=active), ()
         if hasattr(body, "AssociatedTasks"):
             return self._flown(state, body)
         if hasattr(body, "NominalSpeed"):
