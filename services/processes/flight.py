@@ -184,7 +184,7 @@ class _Flight:
         if silent != self.stands:
             self.stands = silent
             self.children.signalled("icarous_", signal.SIGSTOP if silent else signal.SIGCONT)
-        return self.failing.step(now_ms)
+        return self.failing.step(now_ms, self.flown)
 
     def _start(self, name: str, *arguments: str) -> None:
         pid = self.children.start(name, *arguments)
