@@ -12,6 +12,7 @@ from uxas_tools import process
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
+from cratous.services.pipeline.tasks import AWAY
 from cratous.services.uxas import own_task
 
 GUIDE = "docs/guides/own-task.md"
@@ -118,3 +119,17 @@ def test_a_task_that_is_removed_while_it_is_flown_is_never_complete() -> None:
         state, out = ours.handle(state, Envelope(0, 0, "sim", topic, body), 0)
         said += out
     assert [body.TaskID for body in of(said, "TaskComplete")] == [8]
+
+
+def test_no_task_ends_while_icarous_has_its_vehicle() -> None:
+    ours = own_task.OwnTask("ring", {})
+    state = own_task.Held(tasks={7: lmcp.new("Task", TaskID=7)}, active={7: 1})
+    owners = {owner: lmcp.new("AuthorityChange", VehicleID=1, Owner=owner) for owner in AWAY}
+    seen = lmcp.new("AirVehicleState", ID=1, Mode="FlightDirector", Time=9_000)
+    on = seen.copy(Mode="Waypoint", AssociatedTasks=[7])
+    said: list[int] = []
+    for body in (owners["ICAROUS"], seen, owners["UxAS"], seen, on, on.copy(AssociatedTasks=[])):
+        topic = own_task.STATE if hasattr(body, "Mode") else own_task.AUTHORITY
+        state, out = ours.handle(state, Envelope(0, 0, "sim", topic, body), 0)
+        said.append(len([*out]))
+    assert said == [0, 0, 0, 0, 0, 1]
