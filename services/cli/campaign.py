@@ -172,7 +172,7 @@ def _reports(
             folder = place / "flights" / row.run.name
             link = f"flights/{row.run.name}/{HTML_NAME}"
             stored = row.result or {}
-            if whole and _is_kept(folder, stored.get("log", "")):
+            if whole and _is_kept(folder, stored.get("log", ""), row.run.decides["own"]):
                 links[row.run.name] = link
                 continue
             tell(f"report of {row.run.name}")
@@ -202,13 +202,15 @@ def _other(answer: dict[str, Any], stored: dict[str, Any]) -> str:
     return ", ".join(sorted(key for key in stored if got.get(key) != stored[key]))
 
 
-def _is_kept(folder: Path, digest: str) -> bool:
-    """Whether the report of a flight is there already."""
+def _is_kept(folder: Path, digest: str, own: list[Any]) -> bool:
+    """Whether the report of a flight is there already, held against these files of requirements of the user's own."""
     try:
         report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return False
-    return isinstance(report, dict) and report.get("log", {}).get("digest") == digest
+    if not isinstance(report, dict) or report.get("log", {}).get("digest") != digest:
+        return False
+    return bool(report.get("own", {}).get("files", []) == own)
 
 
 def _write(summary: dict[str, Any], place: Path, links: dict[str, str]) -> None:

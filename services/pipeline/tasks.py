@@ -176,7 +176,7 @@ class TaskService:
             return self._taken(state, body), ()
         if not hasattr(body, "AssociatedTasks"):
             return state, ()
-        if state.away == HANDED_BACK and state.vehicle == body.ID and _on_its_way(body):
+        if state.away == HANDED_BACK and state.vehicle == body.ID and on_its_way(body):
             state = state._replace(away=WITH_UXAS)
         return (state, ()) if state.away else self._flown(state, body)
 
@@ -391,7 +391,7 @@ class TaskService:
         self._when_ended()
 
 
-def _on_its_way(body: Any) -> bool:
+def on_its_way(body: Any) -> bool:
     """Whether a state is of a vehicle that flies waypoints; one that does not say its mode does."""
     return not hasattr(body, "Mode") or bool(body.Mode.name == "Waypoint")
 

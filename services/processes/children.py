@@ -16,7 +16,7 @@ from types import TracebackType
 import cratous
 from cratous.bridge.port import is_due
 from cratous.bridge.text_protocol.handshake import SECRET_VARIABLE
-from cratous.services.processes.leash import ENDS_WITH
+from cratous.services.processes.leash import AT_ONCE, ENDS_WITH
 from cratous.services.results.undisturbed import undisturbed
 from cratous.spec.errors import CratousError
 
@@ -81,8 +81,10 @@ class Children:
         with undisturbed():  # asked to end twice, it leaves no process behind
             self.end()
 
-    def start(self, name: str, *arguments: str) -> int:
-        """Start `cratous` with arguments; returns the pid."""
+    def start(self, name: str, *arguments: str, may_stand: bool = False) -> int:
+        """Start `cratous` with arguments; returns the pid. may_stand: it may be stopped when this process is killed."""
+        environment = dict(self._environment)
+        environment[ENDS_WITH] += AT_ONCE * may_stand
         with (self._logs / f"{name}.txt").open("wb") as said:
             child = subprocess.Popen(
                 [sys.executable, "-m", "cratous", *arguments],
@@ -90,7 +92,7 @@ class Children:
                 stdin=subprocess.DEVNULL,
                 stdout=said,
                 stderr=subprocess.STDOUT,
-                env=self._environment,
+                env=environment,
                 # Ctrl-C reaches this command alone, which then ends them in order
                 start_new_session=True,
             )

@@ -132,9 +132,12 @@ class FailingBridge:
         """Where UxAS listens."""
         self._far = (HOST, port)
 
-    def step(self, now_ms: int) -> int:
-        """What has come goes through; how many bytes that was. now_ms: time of the flight."""
-        broken = self._faults.is_cut(now_ms)
+    def step(self, now_ms: int, flies: bool = True) -> int:
+        """What has come goes through; how many bytes that was. now_ms: time of the flight; flies: it runs.
+
+        Before it runs no connection is cut: the clock waits for all to be there.
+        """
+        broken = flies and self._faults.is_cut(now_ms)
         for vid, listener in self._listeners.items():
             with suppress(BlockingIOError):
                 near, _ = listener.accept()

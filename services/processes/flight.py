@@ -154,7 +154,7 @@ class _Flight:
             self._start(
                 f"icarous_{vehicle}", "icarous", "--vehicle", str(vehicle), "--mission",
                 str(how.path.resolve()), "--mission-hash", how.digest, "--connect", where,
-                "--wait", f"{STARTS_S:g}", *unproved,
+                "--wait", f"{STARTS_S:g}", *unproved, may_stand=self.failing is not None,
             )  # fmt: skip
         self._wait("UxAS's plan", self._planned)
         self._wait("the commands of UxAS at the simulator", self._all_commanded)
@@ -184,10 +184,10 @@ class _Flight:
         if silent != self.stands:
             self.stands = silent
             self.children.signalled("icarous_", signal.SIGSTOP if silent else signal.SIGCONT)
-        return self.failing.step(now_ms)
+        return self.failing.step(now_ms, self.flown)
 
-    def _start(self, name: str, *arguments: str) -> None:
-        pid = self.children.start(name, *arguments)
+    def _start(self, name: str, *arguments: str, may_stand: bool = False) -> None:
+        pid = self.children.start(name, *arguments, may_stand=may_stand)
         self.how.tell(f"process {name}: pid {pid}")
 
     def _start_simulator(self, scenario: Path) -> int:

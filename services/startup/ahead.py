@@ -38,8 +38,14 @@ WAIT_S = 120.0
 
 
 def begin(tasks: int) -> None:
-    """Have compiled what the plan of so many tasks needs, if that is much and is not kept yet."""
-    if tasks < MANY_TASKS or _cores() < 2 or is_kept(direct_many):
+    """Have compiled what the plan of so many tasks needs, if that is much and there is a core for it."""
+    if tasks >= MANY_TASKS and _cores() > 1:
+        begin_all()
+
+
+def begin_all() -> None:
+    """Have compiled what every larger plan needs, unless it is kept."""
+    if is_kept(direct_many):
         return
     for name in MAKERS:
         coming.expect(name, _waiter(_start([__name__, name]), WAIT_S))

@@ -156,7 +156,7 @@ def ensure_planning(say: Callable[[str], None]) -> None:
         "the planning loops are compiled, once for this version and machine: some are waited for, "
         "the rest is compiled meanwhile (`cratous warm` does it ahead)"
     )
-    ahead.begin(ahead.MANY_TASKS)
+    ahead.begin_all()  # on one core too: what answers is not to stand still for it
     for name in ahead.MAKERS:
         coming.ready(name)
     ahead.beside(["cratous", "warm", "--planning", "--quiet"], BESIDE)

@@ -15,6 +15,7 @@ from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
 from cratous.services.following.asked import within
 from cratous.services.pipeline.status import status
+from cratous.services.pipeline.tasks import AUTHORITY, AWAY, HANDED_BACK, on_its_way
 
 TASK, CONFIGURATION = "afrl.cmasi.Task", "afrl.cmasi.EntityConfiguration"
 STATE, REMOVE = "afrl.cmasi.EntityState", "afrl.cmasi.RemoveTasks"
@@ -47,13 +48,15 @@ class Flight(NamedTuple):
 
 class Held(NamedTuple):
     """tasks and usual speeds [m/s] by id; offers: by request and task, the vehicle and flight of each option; asked: by
-    the number of a route request; active: vehicles by task."""
+    the number of a route request; active: vehicles by task; away: of the vehicles that ICAROUS has, or has handed back
+    and that do not fly waypoints yet, which of the two."""
 
     tasks: Mapping[int, Any] = MappingProxyType({})
     speeds: Mapping[int, float] = MappingProxyType({})
     offers: Mapping[tuple[int, int], tuple[tuple[int, Flight], ...]] = MappingProxyType({})
     asked: Mapping[int, Any] = MappingProxyType({})
     active: Mapping[int, int] = MappingProxyType({})
+    away: Mapping[int, int] = MappingProxyType({})
 
 
 Step = tuple[Held, Iterable[Any]]
@@ -63,7 +66,9 @@ class OwnTask:
     """One kind of tasks: every cmasi Task with the Label `label`, flown by what `flights` says."""
 
     label = ""
-    subscribes: tuple[str, ...] = (TASK, CONFIGURATION, STATE, REMOVE, UNIQUE, CHOICE, ROUTES)
+    subscribes: tuple[str, ...] = (
+        TASK, CONFIGURATION, STATE, REMOVE, UNIQUE, CHOICE, ROUTES, AUTHORITY,
+    )  # fmt: skip
 
     def __init__(self, name: str, values: Mapping[str, Any]) -> None:
         """values: the attributes of the service."""
@@ -87,7 +92,11 @@ class OwnTask:
         if topic == REMOVE:
             gone = {*body.TaskList}
             left = {number: task for number, task in state.tasks.items() if number not in gone}
-            return state._replace(tasks=left), ()
+            active = {number: of for number, of in state.active.items() if number not in gone}
+            return state._replace(tasks=left, active=active), ()
+        if topic == AUTHORITY:
+            away = {**state.away, body.VehicleID: AWAY[body.Owner.name]}
+            return state._replace(away=away), ()
         if hasattr(body, "AssociatedTasks"):
             return self._flown(state, body)
         if hasattr(body, "NominalSpeed"):
@@ -161,7 +170,13 @@ class OwnTask:
             return state, [_failed(request, asked.TaskID, error)]
 
     def _flown(self, state: Held, body: Any) -> Step:
-        """Active from the first state of a vehicle that tells a task, complete with the first that tells it no more."""
+        """Active from the first state of a vehicle that tells a task, complete with the first that tells it no more; what
+        it tells from when ICAROUS takes it until it flies waypoints again ends no task."""
+        if state.away.get(body.ID) == HANDED_BACK and on_its_way(body):
+            left = {number: at for number, at in state.away.items() if number != body.ID}
+            state = state._replace(away=left)
+        if body.ID in state.away:
+            return state, ()
         out, active = list[Any](), dict(state.active)
         for number in set(body.AssociatedTasks) & state.tasks.keys() - active.keys():
             active[number] = body.ID

@@ -134,9 +134,12 @@ class Process:
         """Turn until `until_s` seconds are over, KillService -1 comes, or `stopping` is set.
 
         The start is complete when all entities that services wait for have connected; time counts from then on.
-        spare: what is done piece by piece when nothing else is there to do; not in virtual time, which has no such time.
+        spare: what is done piece by piece when nothing else is there to do, before the first request; not in virtual time,
+        which has no such time.
         """
-        self._spare = None if self._virtual else spare
+        if spare is not None and not self._virtual:
+            self._spare = spare
+            self.bus.tap(self._asked)
         while self._awaits() and not (self.stopping or self.manager.ended):
             self.turn()
         startup(self.bus)
@@ -221,6 +224,11 @@ class Process:
         with contextlib.suppress(InterruptedError):
             return bool(self._poller.poll(wait_ms))
         return True  # a signal has come
+
+    def _asked(self, envelope: Envelope) -> None:
+        """Nothing is done ahead any more once something is asked for: from then on it would only be in the way."""
+        if envelope.topic.endswith("AutomationRequest"):
+            self._spare = None
 
     def _use_spare_time(self) -> None:
         """Do one piece of what can be done at any time."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ from cratous.services.campaign.runs import Run, runs_of
 from cratous.services.campaign.summary import build
 from cratous.services.campaign.tables import csv_text
 from cratous.services.cli import main
+from cratous.services.cli.campaign import _is_kept
 from cratous.services.cli.campaign_flight import fly_run
 from cratous.services.requirements.own_files import own_file
 from cratous.spec.errors import BadInput
@@ -67,6 +69,20 @@ def test_the_text_of_a_file_names_the_run_and_its_name_is_in_the_command(tmp_pat
     _, two = of(tmp_path, rest)
     assert len({one.id, two.id, plain.id}) == 3
     assert [file["text"] for file in two.decides["own"]] == [TEXT % 260]
+
+
+def test_a_report_by_another_text_of_a_file_is_not_taken_for_that_of_the_run(
+    tmp_path: Path,
+) -> None:
+    """The flight, so its log, is the same; what it is held against is not."""
+    data = own_file(own(tmp_path, 250), "own.req").data()
+    report = {"log": {"digest": "d"}, "own": {"files": [data], "requirements": []}}
+    (tmp_path / "report.json").write_text(json.dumps(report))
+    changed = own_file(own(tmp_path, 260), "own.req").data()
+    kept = [_is_kept(tmp_path, "d", files) for files in ([data], [changed], [])]
+    assert kept == [True, False, False]
+    (tmp_path / "report.json").write_text(json.dumps({"log": {"digest": "d"}}))
+    assert _is_kept(tmp_path, "d", [])
 
 
 def test_files_at_the_command_line_are_asked_for_besides(tmp_path: Path) -> None:

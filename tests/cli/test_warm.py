@@ -51,13 +51,13 @@ def test_planning_compiles_nothing_once_it_is_warm() -> None:
 def test_what_is_warm_is_not_warmed_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     did: list[Any] = []
     monkeypatch.setattr(warm, "private_cache", lambda: tmp_path)
-    monkeypatch.setattr(warm.ahead, "begin", did.append)
+    monkeypatch.setattr(warm.ahead, "begin_all", lambda: did.append("begun"))
     monkeypatch.setattr(warm.coming, "ready", did.append)
     monkeypatch.setattr(warm.ahead, "beside", lambda *call: did.append(call))
     said: list[str] = []
     warm.ensure_planning(said.append)
     later = (["cratous", "warm", "--planning", "--quiet"], warm.BESIDE)
-    assert did == [warm.ahead.MANY_TASKS, "routes", "assignment", later]
+    assert did == ["begun", "routes", "assignment", later]
     assert ["compiled, once" in text for text in said] == [True]
     warm.ensure_planning(said.append)  # the other process has left no mark: it goes on
     assert did[4:] == did[:4]

@@ -21,7 +21,7 @@ from cratous.core.routing.bulk import direct_many
 from cratous.core.routing.visibility import Roadmap, routes
 from cratous.services.planning import coming
 from cratous.services.planning.assign import simple_instance, solve
-from cratous.services.startup import ahead
+from cratous.services.startup import ahead, warm
 from cratous.spec.assignment.search import ORDER, AssignmentProblem, Choice
 from cratous.spec.mission import Zone, ZoneKind
 
@@ -64,7 +64,19 @@ def test_little_work_and_what_is_kept_start_nothing(
     ahead.begin(ahead.MANY_TASKS - 1)
     monkeypatch.setattr(ahead, "is_kept", lambda _: True)
     ahead.begin(50)
+    ahead.begin_all()
     assert begun == []
+
+
+def test_on_one_core_who_answers_waits_before_and_who_plans_compiles(
+    begun: list[Started], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(ahead.os, "cpu_count", lambda: 1)
+    monkeypatch.setattr(warm, "_mark", lambda: tmp_path / "none")
+    ahead.begin(50)
+    assert begun == []
+    warm.ensure_planning(lambda _: None)
+    assert [process.waits for process in begun] == [1, 1, 0], "all but the rest, which is beside it"
 
 
 def test_who_needs_machine_code_waits_for_it_once(begun: list[Started]) -> None:

@@ -18,6 +18,8 @@ HELLO_LINE = b"HELLO,id1.0,\n"
 class Wire:
     """UxAS and the ICAROUS of vehicle 1, with the bridge between them, after the handshake."""
 
+    flies = True
+
     def __init__(self, bridge: FailingBridge, server: socket.socket, now_ms: int = 0) -> None:
         self.bridge, self.server, self.now_ms = bridge, server, now_ms
         self.near, self.far = self.opened()
@@ -26,7 +28,7 @@ class Wire:
         """A new connection from end to end, or one that is refused: its far end is then not there."""
         near = socket.create_connection(("127.0.0.1", self.bridge.ports[1]))
         near.settimeout(5)
-        self.bridge.step(self.now_ms)
+        self.bridge.step(self.now_ms, self.flies)
         try:
             far, _ = self.server.accept()
         except TimeoutError:
@@ -45,7 +47,7 @@ class Wire:
         """Steps of the bridge until something is so."""
         limit_s = time.monotonic() + 10
         while True:
-            self.bridge.step(self.now_ms)
+            self.bridge.step(self.now_ms, self.flies)
             with_limit = time.monotonic() < limit_s
             try:
                 if done():
@@ -143,6 +145,19 @@ def test_a_cut_connection_ends_and_none_is_opened_until_it_may() -> None:
         near.sendall(b"LINE\n")
         assert one.got(far, 5) == b"LINE\n"
         for end in (refused, near, far):
+            end.close()
+
+
+def test_a_cut_from_the_beginning_lets_all_come_before_the_clock_runs() -> None:
+    with wire(cut_ms=0) as one:
+        assert one.far is one.near, "in flight it is cut"
+        one.flies = False
+        near, far = one.opened()
+        assert near is not far
+        one.flies = True
+        near.settimeout(0.01)
+        one.until(lambda: near.recv(1) == b"")
+        for end in (near, far):
             end.close()
 
 

@@ -101,6 +101,33 @@ def test_one_whose_owner_is_killed_ends_as_well(tmp_path: Path) -> None:
     assert "ended at" in (tmp_path / "simulator.txt").read_text(), "in order, as by SIGTERM"
 
 
+STOPPED = """
+import os, signal, subprocess, sys
+from cratous.services.processes.leash import AT_ONCE, ENDS_WITH
+words = "from cratous.services.processes.leash import end_with_parent; end_with_parent(); print(); input()"
+child = subprocess.Popen(
+    [sys.executable, "-c", words], env={**os.environ, ENDS_WITH: f"{os.getpid()}{AT_ONCE}"},
+    stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True,
+)
+child.stdout.readline()
+child.send_signal(signal.SIGSTOP)
+os.waitid(os.P_PID, child.pid, os.WSTOPPED)
+print(child.pid, flush=True)
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_one_that_stands_still_as_its_owner_is_killed_is_not_left_behind() -> None:
+    owner = subprocess.run([sys.executable, "-c", STOPPED], stdout=subprocess.PIPE, check=False)
+    assert owner.returncode == -signal.SIGKILL
+    pid = int(owner.stdout)
+    try:
+        until(lambda: not stands(pid))
+    finally:
+        if stands(pid):
+            os.kill(pid, signal.SIGKILL)
+
+
 def test_one_whose_owner_has_ended_already_does_not_begin() -> None:
     environment = {**os.environ, ENDS_WITH: str(os.getppid())}
     words = [sys.executable, "-m", "cratous", "version"]

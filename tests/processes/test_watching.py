@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import time
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -12,9 +15,12 @@ from cratous.bridge import lmcp
 from cratous.bridge.port import Incoming
 from cratous.services.loading import load
 from cratous.services.processes import flight as flights
-from cratous.services.processes.children import ProcessEnded
+from cratous.services.processes.children import Children, ProcessEnded
+from cratous.services.processes.failing_bridge import FailingBridge
 from cratous.services.processes.flight import Stuck
 from cratous.services.simulator.server import frame_payload
+from cratous.spec.mission import FaultySimulation
+from cratous.spec.mission.bridge_faults import BridgeFaults
 
 STATE = Incoming((frame_payload(lmcp.new("AirVehicleState", ID=1)),), "the simulator")
 
@@ -120,3 +126,38 @@ def test_a_connection_that_ends_before_the_flight_is_noticed_at_once(
     port.peers = 0
     with pytest.raises(Stuck, match="recorder to uxas has ended"):
         one._turn()
+
+
+def test_icarous_stands_still_while_it_is_to_be_silent_and_goes_on_to_end(root: Path) -> None:
+    one = flight(root, ended=False)
+    faults = BridgeFaults(silent_ms=1000, speaks_again_ms=2000)
+    simulation = FaultySimulation(bridge_faults=faults)
+    one.mission = replace(one.mission, simulation=simulation)
+    others = subprocess.Popen(["sleep", "60"])
+    with subprocess.Popen(["sleep", "60"]) as child:
+        one.children = Children(root, root)
+        one.children.running = {"icarous_1": child, "uxas": others}
+        one.failing = FailingBridge(faults, [], 500)
+        one.flown = True
+        try:
+            for now_ms, stands in ((0, ""), (1000, "T"), (1500, "T"), (2000, ""), (1000, "T")):
+                one.recorder.now_ms = now_ms
+                one._fail()
+                assert _stands(child, stands) == stands, now_ms
+            one.close()
+            assert _stands(child, "") == _stands(others, "") == ""
+        finally:
+            child.kill()
+            others.kill()
+            others.wait()
+
+
+def _stands(child: subprocess.Popen[bytes], expected: str) -> str:
+    """T if a process is stopped, as soon as that is as expected, or after 10 s."""
+    until_s = time.monotonic() + 10
+    while True:
+        stat = Path(f"/proc/{child.pid}/stat").read_text()
+        found = "T" if stat.rpartition(")")[2].split()[0] == "T" else ""
+        if found == expected or time.monotonic() > until_s:
+            return found
+        time.sleep(0.001)

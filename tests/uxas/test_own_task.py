@@ -11,6 +11,8 @@ from pipeline_tools import must_fly, request, vehicle
 from uxas_tools import process
 
 from cratous.bridge import lmcp
+from cratous.services.bus import Envelope
+from cratous.services.pipeline.tasks import AWAY
 from cratous.services.uxas import own_task
 
 GUIDE = "docs/guides/own-task.md"
@@ -103,3 +105,31 @@ def test_a_wait_before_it_is_refused_with_its_length() -> None:
     response = lmcp.new("RoutePlanResponse", RouteResponses=[route])
     with pytest.raises(LookupError, match="vehicle 1 would have to wait 7 s for it"):
         own_task._plan(asked, own_task.Flight([own_task.Place(0.0, 0.0)], 1.0), response)
+
+
+def test_a_task_that_is_removed_while_it_is_flown_is_never_complete() -> None:
+    ours = own_task.OwnTask("ring", {})
+    flying = {7: lmcp.new("Task", TaskID=7), 8: lmcp.new("Task", TaskID=8)}
+    state = own_task.Held(tasks=flying, active={7: 1, 8: 1})
+    said: list[Any] = []
+    for topic, body in (
+        (own_task.REMOVE, lmcp.new("RemoveTasks", TaskList=[7])),
+        (own_task.STATE, lmcp.new("AirVehicleState", ID=1, Time=9_000)),
+    ):
+        state, out = ours.handle(state, Envelope(0, 0, "sim", topic, body), 0)
+        said += out
+    assert [body.TaskID for body in of(said, "TaskComplete")] == [8]
+
+
+def test_no_task_ends_while_icarous_has_its_vehicle() -> None:
+    ours = own_task.OwnTask("ring", {})
+    state = own_task.Held(tasks={7: lmcp.new("Task", TaskID=7)}, active={7: 1})
+    owners = {owner: lmcp.new("AuthorityChange", VehicleID=1, Owner=owner) for owner in AWAY}
+    seen = lmcp.new("AirVehicleState", ID=1, Mode="FlightDirector", Time=9_000)
+    on = seen.copy(Mode="Waypoint", AssociatedTasks=[7])
+    said: list[int] = []
+    for body in (owners["ICAROUS"], seen, owners["UxAS"], seen, on, on.copy(AssociatedTasks=[])):
+        topic = own_task.STATE if hasattr(body, "Mode") else own_task.AUTHORITY
+        state, out = ours.handle(state, Envelope(0, 0, "sim", topic, body), 0)
+        said.append(len([*out]))
+    assert said == [0, 0, 0, 0, 0, 1]

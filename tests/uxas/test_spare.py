@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from uxas_tools import process, write_cfg
 
+from cratous.bridge import lmcp
 from cratous.services.startup import spare
 
 ROOT = Path(__file__).parents[2]
@@ -45,6 +46,22 @@ def test_what_is_due_comes_before_a_piece_and_virtual_time_has_none(tmp_path: Pa
         with ours:
             ours.run(0.2, map(done.append, range(3)))
         assert not done
+
+
+def test_nothing_is_done_ahead_once_something_is_asked_for(tmp_path: Path) -> None:
+    ours, _ = process(write_cfg(tmp_path, '<Service Type="HelloWorld"/>'))
+    done: list[int] = []
+
+    def pieces() -> Iterator[None]:
+        for number in range(9):
+            done.append(number)
+            if number == 1:
+                ours.bus.publish(lmcp.new("TaskAutomationRequest"), "test")
+            yield
+
+    with ours:
+        ours.run(0.3, pieces())
+    assert done == [0, 1]
 
 
 def test_every_loop_that_planning_may_have_compiled_is_read_ahead() -> None:
