@@ -76,7 +76,7 @@ def _faults(mission: Mission, asked: WithoutLink, said: list[Alone]) -> Iterator
         if one.mode not in _after(mode, asked.choice):
             yield one.time_ms, f"{one.mode} does not follow {mode}"
         heard = 0 <= silent_ms <= asked.after_ms
-        if one.mode not in (FINAL, LANDED) and heard != (one.mode == LINKED):
+        if one.mode != LANDED and heard != (one.mode == LINKED):
             yield one.time_ms, f"{one.mode} after a silence of {silent_ms} ms"
         if mode == LINKED and silent_ms > asked.after_ms + beat_ms:
             yield one.time_ms, f"it began {silent_ms} ms after UxAS was last heard"

@@ -15,13 +15,19 @@ from cratous.spec.mission import Mission, Position
 
 @dataclass
 class Down:
-    """A vehicle on the ground. site: whose, "" beside all; since_ms: from when on; wrong: what it did there that
-    ends no flight; stands: it has not moved in its last step."""
+    """A vehicle on the ground. site: whose, "" beside all; since_ms: from when on; taken: who was there before it, as a
+    fault; wrong: what it did there that ends no flight; stands: it has not moved in its last step."""
 
     site: str
     since_ms: int
+    taken: str = ""
     wrong: str = ""
     stands: bool = False
+
+    @property
+    def good(self) -> bool:
+        """It came down on a site, stayed, and stands there."""
+        return bool(self.site) and not self.wrong and self.stands
 
     def words(self) -> str:
         """Where and since when."""
@@ -64,8 +70,8 @@ class LandingWatch:
             site = site_under(place, self._sites)
             name = "" if site is None else site.name
             there = [n for n, other in self.down.items() if name and other.site == name]
-            wrong = f"vehicle {there[0]} was there before it" if there else ""
-            self.down[number] = Down(name, after.time_ms, wrong)
+            taken = f"vehicle {there[0]} was there before it" if there else ""
+            self.down[number] = Down(name, after.time_ms, taken)
             return
         here = site_under(place, self._sites)
         if (here.name if here else "") != down.site and not down.wrong:

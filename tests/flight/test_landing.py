@@ -136,6 +136,20 @@ def test_monitor_and_judge_see_a_landing_that_is_none(landed: Flown, tmp_path: P
     assert changed("LinkLossState", lambda d: {**d, "Chosen": "Return"}) == bad
     assert changed("LinkLossState", lambda d: {**d, "Heard": d["Heard"] - 1000}) == bad
     assert changed("LinkLossState", lambda d: None) == bad
+    early = {"Time": down_ms - 1000}
+    assert changed("LinkLossState", lambda d: {**d, **early} if d["Mode"] == "Landed" else d) == bad
+    heard = {"Heard": landed.told("LinkLossState")[1].Time}
+    assert changed("LinkLossState", lambda d: {**d, **heard} if d["Mode"] == "Final" else d) == bad
+    rolls = down_ms + 500
+    assert changed("TruthState", lambda d: d if d["Time"] < rolls else None) == bad
+
+
+def test_a_takeover_does_not_end_in_the_roll(landed: Flown, tmp_path: Path) -> None:
+    rolls = landed.told("LinkLossState")[-1].Time + 500
+    log = [o for o in landed.log if not o.topic.endswith("TruthState") or o.time_ms < rolls]
+    name = "authority over vehicle 1"
+    assert landed.verdicts(log)[name].outcome is Outcome.UNKNOWN
+    assert landed.judged(tmp_path, log)[name] == "unknown"
 
 
 def test_the_judge_knows_that_it_landed(landed: Flown, tmp_path: Path) -> None:
