@@ -183,6 +183,15 @@ def test_heard_in_the_last_descent_it_lands_all_the_same(root: Path, tmp_path: P
     assert found.verdicts()["G4"].outcome is Outcome.HOLDS
 
 
+def test_of_who_comes_when_it_stands_nothing_is_said_to_be_seen(root: Path, tmp_path: Path) -> None:
+    drives = {"id": 9, "position": {"north_m": 300, "east_m": 1530, "alt_m": 1}, "velocity": {"north_m_s": 3, "east_m_s": 0}, "appears_s": 158}  # fmt: skip
+    found, name = flown(mission_file(root, tmp_path, traffic=[drives])), "well clear of 1 and 9"
+    assert found.verdicts()[name].outcome is Outcome.UNKNOWN
+    found.judged(tmp_path)
+    (row,) = [row for row in judge(tmp_path / "log.sqlite").rows if row.item == name]
+    assert (row.verdict, row.checks, row.note) == ("holds", 0, "never in the air together")
+
+
 def test_a_site_takes_one_vehicle(root: Path, tmp_path: Path) -> None:
     """The second lands elsewhere, since one stands at the first site; where it did not, monitor and judge would know."""
     kestrel = yaml.safe_load((root / "examples/landing/mission.yaml").read_text())["vehicles"][0]
