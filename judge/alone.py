@@ -31,6 +31,7 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
         faults = [*_faults(mission, asked, said), *_missed(mission, asked, log, vehicle, said)]
         if log.end_ms is not None:
             faults += _landing(mission, said, place, log.end_ms)
+        faults += _taken(mission, flown, vehicle, place)
         note = ", ".join(f"{one.mode} from {seconds(one.time_ms)}" for one in said)
         note = note or "it was never said to be without the link"
         note += f"; it {place.words()}" if place else ""
@@ -75,7 +76,7 @@ def _faults(mission: Mission, asked: WithoutLink, said: list[Alone]) -> Iterator
         if one.mode not in _after(mode, asked.choice):
             yield one.time_ms, f"{one.mode} does not follow {mode}"
         heard = 0 <= silent_ms <= asked.after_ms
-        if one.mode not in (FINAL, LANDED) and heard != (one.mode == LINKED):
+        if one.mode != LANDED and heard != (one.mode == LINKED):
             yield one.time_ms, f"{one.mode} after a silence of {silent_ms} ms"
         if mode == LINKED and silent_ms > asked.after_ms + beat_ms:
             yield one.time_ms, f"it began {silent_ms} ms after UxAS was last heard"
@@ -99,6 +100,18 @@ def _missed(
         if since is not None and mode == LINKED and at_ms - max(since, told_ms) > bound_ms:
             yield at_ms, f"its connection had ended at {seconds(since)}, and it said nothing"
         since = None
+
+
+def _taken(
+    mission: Mission, flown: dict[int, Track], vehicle: int, place: Down | None
+) -> Iterator[tuple[int, str]]:
+    """Whether another vehicle was on the ground of its site before it."""
+    if place is None or place.site is None:
+        return
+    for other in mission.vehicles:
+        there = down(mission, flown.get(other)) if other != vehicle else None
+        if there and there.site == place.site and (there.at_ms, other) < (place.at_ms, vehicle):
+            yield place.at_ms, f"it {place.words()}, where vehicle {other} was before it"
 
 
 def _landing(

@@ -212,10 +212,10 @@ def _watch(one: Track, two: Track, volume: Volume, grounds: set[int]) -> Pair:
             _measure(pair, a[i], b[j], volume)
         if j + 1 == len(b) or b[j + 1].time_ms != a[i + 1].time_ms:
             continue
-        pair.checks += 1
         pair.covered_ms += a[i + 1].time_ms - a[i].time_ms
         if a[i].time_ms in grounds:
             continue
+        pair.checks += 1
         legs = a[i], a[i + 1], b[j], b[j + 1]
         _measure(pair, a[i + 1], b[j + 1], volume)
         if a[i].time_ms in one.unknown or a[i].time_ms in two.unknown:

@@ -35,6 +35,11 @@ BEARS_ON: dict[str, tuple[str, ...]] = {
     "G5": (SILENCE,),
 }
 """Which theorem on the composed system says something of which guarantee."""
+UP_TO = {
+    "G2": "its theorems speak of the cylinder of the volume alone, of what is seen, and up to the first surprise, "
+    "declaration or expiry"
+}
+"""How much of a guarantee its theorems say, where that is not all."""
 OF_A_PART: dict[str, tuple[str, ...]] = {"G1": (HAND,)}
 """Which says something of a part of it alone: of zones, while a certificate is in hand."""
 PLACED = frozenset(n for some in (BEARS_ON, OF_A_PART) for names in some.values() for n in names)

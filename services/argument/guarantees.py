@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import groupby
 from typing import Any
 
-from cratous.services.argument.assumptions import BEARS_ON, OF_A_PART, PLACED, Assumed
+from cratous.services.argument.assumptions import BEARS_ON, OF_A_PART, PLACED, UP_TO, Assumed
 from cratous.services.argument.elements import (
     OF_VERDICT,
     Argument,
@@ -118,6 +118,7 @@ class Guarantees:
             text += "; what there is speaks of a part" if parts else ""
         elif state is State.NOTHING:
             state = State.NO_THEOREM
+        text += f"; {UP_TO[of]}" if of in UP_TO else ""
         below = (*goals, *parts)
         return self._argument.add(Element(f"G-{of}-system", Kind.GOAL, text, below, context, state))
 

@@ -92,8 +92,8 @@ LISTING = (
     Assumption(
         "commands by the gate alone",
         "a vehicle gets no command but by its gate",
-        GATE,
-        ("G4",),
+        (*GATE, *CLEAR),
+        ("G2", "G4"),
         ONE_COMMANDER,
         SAMPLED,
         "commands to a vehicle outside of `GatedCommand`",
@@ -119,8 +119,8 @@ LISTING = (
     Assumption(
         "clock",
         "the clock of one end does not step back",
-        SILENCE,
-        ("G4", "G5"),
+        (*SILENCE, *HAND, *CLEAR),
+        ("G1", "G2", "G4", "G5"),
         "that silence is noticed within one heartbeat, and every bound in time",
         BY_EPOCH,
         "times of messages",

@@ -217,7 +217,7 @@ class Flight:
         self._link(Beat(now, self._everyone()))
         self._exchange()
         for vid in self.instances:
-            self._vehicle(vid, Sense(now, self._in_the_air(), self.instances))
+            self._vehicle(vid, self._surveillance(vid, now))
         self._exchange()
         self._link(Watch(now))
 
@@ -253,10 +253,12 @@ class Flight:
         seen = [(t.id, s) for t in self.mission.traffic if (s := traffic_state(t, now)) is not None]
         return tuple(sorted({**dict(self._own()), **dict(seen)}.items()))
 
-    def _in_the_air(self) -> tuple[tuple[int, AirState], ...]:
-        """The same without those on the ground."""
-        down = {vid for vid, state in self.vehicle_states.items() if state.landed}
-        return tuple(one for one in self._everyone() if one[0] not in down)
+    def _surveillance(self, vehicle_id: int, now: int) -> Sense:
+        """What a vehicle may see: those in the air, and where the others on the ground are."""
+        down = {vid: s.air.position for vid, s in self.vehicle_states.items() if s.landed}
+        seen = tuple(one for one in self._everyone() if one[0] not in down)
+        others = tuple(place for vid, place in down.items() if vid != vehicle_id)
+        return Sense(now, seen, self.instances, others)
 
     def _gates(self) -> tuple[tuple[int, Any], ...]:
         return tuple((vid, state.gate) for vid, state in self.vehicle_states.items())

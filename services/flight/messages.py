@@ -334,11 +334,12 @@ class Look(NamedTuple):
 
 class Sense(NamedTuple):
     """The vehicle's surveillance is due. aircraft: as in `Beat`; cooperating: those of our own that
-    avoid."""
+    avoid; landed: where those of our own are that are on the ground."""
 
     now_ms: int
     aircraft: tuple[tuple[int, AirState], ...]
     cooperating: tuple[int, ...]
+    landed: tuple[Position, ...] = ()
 
 
 class Choose(NamedTuple):

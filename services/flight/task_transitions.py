@@ -77,9 +77,11 @@ def settle(config: Config, state: State, out: Out) -> State:
     """Handle every passing of an end up to now, the earliest first."""
     passed, tracks = dict[int, int | None](), dict[int, int]()
     new = sorted(c.vehicle.id for c in state.chains)
+    down = dict(state.landed)
     while True:
         for vid in new:
-            if not state.chain(vid).suspended:
+            # who stands on the ground passes nothing more
+            if not state.chain(vid).suspended and vid not in down:
                 state, passed[vid] = _measure(config, state, vid)
                 tracks[vid] = state.chain(vid).version
         due = [(at, vid) for vid, at in passed.items() if at is not None]

@@ -275,8 +275,11 @@ class VehicleNode:
         motion = Motion(air.position, air.heading_rad, air.speed_m_s, air.climb_m_s)
         seen = traffic_picture(self.vehicle.id, message)
         hand = state.held.hand
-        gate, landed = state.gate, state.landed
-        sensed = Sensed(message.now_ms, motion, ability, seen, gate, hand=hand, landed=landed)
+        sensed = Sensed(message.now_ms, motion, ability, seen, state.gate, hand=hand)
+        if self.sites:
+            under = (site_under(place, self.sites) for place in message.landed)
+            taken = frozenset(site.name for site in under if site is not None)
+            sensed = sensed._replace(landed=state.landed, taken=taken)
         return OnBoard(self.vehicle.id, sensed)
 
     def _air_vehicle_state(self, state: State, look: Look) -> Any:

@@ -25,6 +25,8 @@ from cratous.spec.mission import Daa, Position, Zone
 
 LEGS = 24
 """A lap is looked at as so many legs: 1 % of its radius off."""
+TAKEN = "somebody is on its ground"
+"""Why a site is not landed at: it has room for the roll of one vehicle."""
 
 
 def refused(course: Course, sensed: Sensed, scene: Scene, daa: Daa, beat_s: float) -> str:
@@ -43,6 +45,8 @@ def _refused(
         if not all(_keeps(piece, zone, aside_m) for piece in pieces):
             yield f"zone {zone.id} is in the way"
     if course.site is not None:
+        if course.site.name in sensed.taken:
+            yield TAKEN
         yield from (
             f"it is not permitted against {other.id}"
             for other in sensed.intruders

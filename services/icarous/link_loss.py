@@ -28,7 +28,7 @@ from cratous.core.avoidance.way_ahead import near_line
 from cratous.core.routing.polylines import Track
 from cratous.services.icarous import course as courses
 from cratous.services.icarous.course import Course
-from cratous.services.icarous.course_permits import refused
+from cratous.services.icarous.course_permits import TAKEN, refused
 from cratous.services.icarous.foresight import ON_PATH_M, scene_of
 from cratous.services.icarous.landing import approaches, in_order
 from cratous.services.icarous.lost import LostLink, NoLink
@@ -159,6 +159,7 @@ def _why_not(plan: LostLink, sensed: Sensed, told: dict[str, str], site: str) ->
     """Why the sites that are tried before one are not landed at. told: why a way there is not permitted."""
     names = [one.name for one in in_order(plan, sensed.motion.position)] if plan.sites else []
     before = names[: names.index(site)] if site in names else names
+    told = {**dict.fromkeys(sensed.taken, TAKEN), **told}
     return "; ".join(f"{name}: {told.get(name, NO_WAY)}" for name in before)
 
 
@@ -169,7 +170,8 @@ def _candidates(
         yield going
     if plan.choice == LAND:
         for site in in_order(plan, sensed.motion.position):
-            yield from approaches(plan, site, sensed, state.told.zones)
+            if site.name not in sensed.taken:
+                yield from approaches(plan, site, sensed, state.told.zones)
         return
     motion, wide_m = sensed.motion, courses.radius_m(sensed)
     points = _known_way(state, sensed, wide_m) if plan.choice == FINISH else ()

@@ -37,7 +37,8 @@ class Line(NamedTuple):
 class Sensed(NamedTuple):
     """A heartbeat is due. motion, ability: of the vehicle itself; intruders: everybody else, as its
     surveillance sees them; gate: how its actuator gate stands; here: how far the vehicle may be from where it is
-    taken to be; hand: the certificate behind the gate; landed: it is on the ground."""
+    taken to be; hand: the certificate behind the gate; landed: it is on the ground; taken: the landing
+    sites on whose ground somebody else is."""
 
     now_ms: int
     motion: Motion
@@ -47,6 +48,7 @@ class Sensed(NamedTuple):
     here: Off = NONE.here
     hand: Hand = EMPTY
     landed: bool = False
+    taken: frozenset[str] = frozenset()
 
 
 # from the instance ------------------------------------------------------------------------------

@@ -6,7 +6,8 @@ reports must be what `gate_after`, `gate_takeover` or `gate_offer` makes of the 
 
 A takeover that is open when the mission ends is violated, unless the link to the vehicle was said to be down and
 still was (BridgeStatus): that is a declared failure, but whether it is why nobody handed back is not in the
-messages, so it is unknown. It ends on the ground too, at a landing site of the mission.
+messages, so it is unknown. It ends on the ground too, where the vehicle stands at a landing
+site of the mission.
 """
 
 from __future__ import annotations
@@ -142,7 +143,7 @@ class AuthorityWatch:
         for number, seen in self.vehicles.items():
             self._missing(seen, body.Time)
             place = down.get(number)
-            if seen.open_ms is not None and place is not None and place.site:
+            if seen.open_ms is not None and place is not None and place.good:
                 seen.landed = place.words()
             elif seen.open_ms is not None:
                 text = f"the takeover of {seen.open_ms / 1000:.2f} s was never handed back"

@@ -1,7 +1,7 @@
 """Who is on the ground, by where the aircraft were: at a landing site, or beside all of them.
 
-Well clear is asked of aircraft in the air: a leg whose both ends are on the ground of a site is none. Who has come to the ground
-has to stay, and to stand at the end. Decisions are those of the kernel `on_ground`.
+Well clear is asked of aircraft in the air: a leg whose both ends are on the ground is none. Who has come to the ground
+has to stay, and to stand at the end, and to have the site for itself. Decisions are those of the kernel `on_ground`.
 """
 
 from __future__ import annotations
@@ -15,13 +15,19 @@ from cratous.spec.mission import Mission, Position
 
 @dataclass
 class Down:
-    """A vehicle on the ground. site: whose, "" beside all; since_ms: from when on; wrong: what it did there that
-    ends no flight; stands: it has not moved in its last step."""
+    """A vehicle on the ground. site: whose, "" beside all; since_ms: from when on; taken: who was there before it, as a
+    fault; wrong: what it did there that ends no flight; stands: it has not moved in its last step."""
 
     site: str
     since_ms: int
+    taken: str = ""
     wrong: str = ""
     stands: bool = False
+
+    @property
+    def good(self) -> bool:
+        """It came down on a site, stayed, and stands there."""
+        return bool(self.site) and not self.wrong and self.stands
 
     def words(self) -> str:
         """Where and since when."""
@@ -62,7 +68,10 @@ class LandingWatch:
             return
         if down is None:
             site = site_under(place, self._sites)
-            self.down[number] = Down("" if site is None else site.name, after.time_ms)
+            name = "" if site is None else site.name
+            there = [n for n, other in self.down.items() if name and other.site == name]
+            taken = f"vehicle {there[0]} was there before it" if there else ""
+            self.down[number] = Down(name, after.time_ms, taken)
             return
         here = site_under(place, self._sites)
         if (here.name if here else "") != down.site and not down.wrong:

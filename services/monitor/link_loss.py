@@ -26,6 +26,7 @@ from cratous.core.authority.link_loss import (
 from cratous.core.authority.timeliness import in_time
 from cratous.core.avoidance.landing import on_ground
 from cratous.core.kernel import qualified
+from cratous.core.schedule.rows import runs_forward
 from cratous.services.monitor.landing import Down
 from cratous.services.monitor.required_rows import alone_without_link_item
 from cratous.spec.mission import FaultySimulation, Mission, Simulation
@@ -130,10 +131,12 @@ class LinkLossWatch:
             return "it said that it had landed, and was in the air" if said else ""
         if not down.site:
             return "it came to the ground beside every landing site"
-        if said and not down.stands:
+        if fault := down.taken or down.wrong:
+            return f"{down.words()}, and {fault}"
+        if said and not runs_forward(down.since_ms, told.loss.since_ms):
+            return f"it said that it had landed before it {down.words()}"
+        if not down.stands:
             return f"{down.words()}, and did not stand there at the end"
-        if down.wrong:
-            return f"{down.words()}, and {down.wrong}"
         # it says so at the heartbeat after it has come down
         if not said and not in_time(down.since_ms, now_ms, LATEST_BEATS * self._beat_ms):
             return f"{down.words()}, and did not say so"
@@ -172,7 +175,9 @@ class LinkLossWatch:
         elif not note:
             note = "it was never without the link for long enough"
         asked: list[Any] = [loss_step, in_time] if told.checks else []
-        kernels = tuple(qualified(kernel) for kernel in [*asked, *([on_ground] if down else [])])
+        kernels = tuple(
+            qualified(kernel) for kernel in [*asked, *([on_ground, runs_forward] if down else [])]
+        )
         margin = None if told.margin_ms is None else told.margin_ms / 1000
         return Verdict(
             "G5", alone_without_link_item(vehicle), outcome, Kind.OBSERVED, note,

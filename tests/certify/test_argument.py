@@ -13,7 +13,7 @@ from certify_tools import read
 from lxml import etree
 
 from cratous.core import ledger
-from cratous.services.argument.assumptions import BEARS_ON, OF_A_PART, PLACED
+from cratous.services.argument.assumptions import BEARS_ON, OF_A_PART, PLACED, UP_TO
 from cratous.services.argument.build import argument
 from cratous.services.argument.elements import Argument, Element, Kind, State
 from cratous.services.argument.form import document, faults, yaml_text
@@ -116,7 +116,9 @@ def test_no_text_says_more_than_the_theorem(report: dict[str, Any]) -> None:
         assert found.text.endswith("says all of it; what there is speaks of a part")
         assert found.supported_by == tuple(f"G-theorem-{n}" for n in OF_A_PART[of])
     for of, names in BEARS_ON.items():
-        assert elements[f"G-{of}-system"].supported_by == tuple(f"G-theorem-{n}" for n in names)
+        found = elements[f"G-{of}-system"]
+        assert found.supported_by == tuple(f"G-theorem-{n}" for n in names)
+        assert found.text.endswith(UP_TO.get(of, "under its assumptions"))
 
 
 @pytest.mark.parametrize("verdict", ["violated", "unknown", "excused"])

@@ -136,6 +136,20 @@ def test_monitor_and_judge_see_a_landing_that_is_none(landed: Flown, tmp_path: P
     assert changed("LinkLossState", lambda d: {**d, "Chosen": "Return"}) == bad
     assert changed("LinkLossState", lambda d: {**d, "Heard": d["Heard"] - 1000}) == bad
     assert changed("LinkLossState", lambda d: None) == bad
+    early = {"Time": down_ms - 1000}
+    assert changed("LinkLossState", lambda d: {**d, **early} if d["Mode"] == "Landed" else d) == bad
+    heard = {"Heard": landed.told("LinkLossState")[1].Time}
+    assert changed("LinkLossState", lambda d: {**d, **heard} if d["Mode"] == "Final" else d) == bad
+    rolls = down_ms + 500
+    assert changed("TruthState", lambda d: d if d["Time"] < rolls else None) == bad
+
+
+def test_a_takeover_does_not_end_in_the_roll(landed: Flown, tmp_path: Path) -> None:
+    rolls = landed.told("LinkLossState")[-1].Time + 500
+    log = [o for o in landed.log if not o.topic.endswith("TruthState") or o.time_ms < rolls]
+    name = "authority over vehicle 1"
+    assert landed.verdicts(log)[name].outcome is Outcome.UNKNOWN
+    assert landed.judged(tmp_path, log)[name] == "unknown"
 
 
 def test_the_judge_knows_that_it_landed(landed: Flown, tmp_path: Path) -> None:
@@ -167,6 +181,53 @@ def test_heard_in_the_last_descent_it_lands_all_the_same(root: Path, tmp_path: P
     assert found.modes() == ["Land", "Final", "Landed"]
     assert found.result.outcome == "failed"
     assert found.verdicts()["G4"].outcome is Outcome.HOLDS
+
+
+def test_of_who_comes_when_it_stands_nothing_is_said_to_be_seen(root: Path, tmp_path: Path) -> None:
+    drives = {"id": 9, "position": {"north_m": 300, "east_m": 1530, "alt_m": 1}, "velocity": {"north_m_s": 3, "east_m_s": 0}, "appears_s": 158}  # fmt: skip
+    found, name = flown(mission_file(root, tmp_path, traffic=[drives])), "well clear of 1 and 9"
+    assert found.verdicts()[name].outcome is Outcome.UNKNOWN
+    found.judged(tmp_path)
+    (row,) = [row for row in judge(tmp_path / "log.sqlite").rows if row.item == name]
+    assert (row.verdict, row.checks, row.note) == ("holds", 0, "never in the air together")
+
+
+def test_a_site_takes_one_vehicle(root: Path, tmp_path: Path) -> None:
+    """The second lands elsewhere, since one stands at the first site; where it did not, monitor and judge would know."""
+    kestrel = yaml.safe_load((root / "examples/landing/mission.yaml").read_text())["vehicles"][0]
+    near = [
+        {**kestrel, "id": k, "position": {"north_m": 300, "east_m": east_m, "alt_m": 90}}
+        for k, east_m in ((1, 600), (2, 1100))
+    ]
+    cut = {"limit_s": 400, "bridge_faults": {"cut_s": 1}}
+    found = flown(mission_file(root, tmp_path, vehicles=near, simulation=cut, zones=None))
+    reasons = [(body.VehicleID, body.Reason) for body in found.told("LinkLossState")]
+    assert reasons[-2:] == [(1, "the last descent to meadow"), (1, "landed at meadow")]
+    assert (2, "landed at field") in reasons
+    places = {b.VehicleID: b for b in found.told("TruthState")}
+    stands = {"North": places[2].North, "East": places[2].East}
+
+    def beside_it(one: Any) -> Any:
+        data = json.loads(lmcp.to_json(one.body))
+        ours = one.topic.endswith("TruthState") and data["VehicleID"] == 1
+        if not ours or data["Altitude"] > 0:
+            return one
+        return replace(one, body=lmcp.from_json(json.dumps({**data, **stands})))
+
+    there = [beside_it(one) for one in found.log]
+    row = found.verdicts(there)[ROW]
+    assert row.outcome.value == found.judged(tmp_path, there)[ROW] == "violated"
+    assert "vehicle 2 was there before it" in row.note
+
+
+def test_who_is_flown_into_the_ground_ends_there(root: Path, tmp_path: Path) -> None:
+    """UxAS flies it into a hill beside its site: it stands there, and monitor and judge say so."""
+    hill = {"name": "hill", "position": {"north_m": 200, "east_m": 0, "alt_m": 350}, "radius_m": 60}
+    found = flown(mission_file(root, tmp_path, landing_sites=[FIELD, hill], zones=None))
+    assert found.result.outcome == "failed"
+    row = found.verdicts()[ROW]
+    assert "landed at hill" in row.note
+    assert row.outcome.value == found.judged(tmp_path)[ROW] == "violated"
 
 
 RING = [
