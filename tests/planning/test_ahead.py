@@ -71,12 +71,15 @@ def test_little_work_and_what_is_kept_start_nothing(
 def test_on_one_core_who_answers_waits_before_and_who_plans_compiles(
     begun: list[Started], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(ahead.os, "cpu_count", lambda: 1)
+    beside: list[list[str]] = []
+    monkeypatch.setattr(ahead, "_cores", lambda: 1)
+    monkeypatch.setattr(ahead, "beside", lambda module, _: beside.append(module))
     monkeypatch.setattr(warm, "_mark", lambda: tmp_path / "none")
     ahead.begin(50)
     assert begun == []
     warm.ensure_planning(lambda _: None)
-    assert [process.waits for process in begun] == [1, 1, 0], "all but the rest, which is beside it"
+    assert [process.waits for process in begun] == [1, 1]
+    assert [module[1] for module in beside] == ["warm"]
 
 
 def test_who_needs_machine_code_waits_for_it_once(begun: list[Started]) -> None:
