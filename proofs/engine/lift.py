@@ -86,11 +86,6 @@ _LIFTING: list[Callable[..., Any]] = []
 _ASKED: dict[tuple[int, ...], tuple[list[z3.BoolRef], bool]] = {}
 
 
-_FOUND: list[z3.ModelRef] = []
-"""Values that satisfied what was asked of late, the newest first: they often satisfy the next as well."""
-FOUND_MAX = 4
-
-
 _NAMES: dict[int, tuple[z3.ExprRef, frozenset[str]]] = {}
 
 
@@ -128,32 +123,12 @@ def _feasible(conditions: list[z3.BoolRef]) -> bool:
     conditions = _relevant(conditions)
     key = tuple(sorted({condition.get_id() for condition in conditions}))
     if key not in _ASKED:
+        solver = z3.Solver()
+        solver.set("rlimit", PRUNE_RLIMIT)
+        solver.add(*conditions)
         # the terms are kept, so that their ids stay theirs
-        _ASKED[key] = (conditions, _possible(conditions))
+        _ASKED[key] = (conditions, bool(solver.check() != z3.unsat))
     return _ASKED[key][1]
-
-
-def _possible(conditions: list[z3.BoolRef]) -> bool:
-    """False only if the solver shows that they contradict each other; values that are known show that not."""
-    if any(all(_holds(model, one) for one in conditions) for model in _FOUND):
-        return True
-    solver = z3.Solver()
-    solver.set("rlimit", PRUNE_RLIMIT)
-    solver.add(*conditions)
-    result = solver.check()
-    if result == z3.sat:
-        model = solver.model()
-        if not any(z3.is_algebraic_value(model[d]) for d in model.decls() if d.arity() == 0):
-            _FOUND.insert(0, model)  # roots would be computed with at length
-            del _FOUND[FOUND_MAX:]
-    return bool(result != z3.unsat)
-
-
-def _holds(model: z3.ModelRef, condition: z3.BoolRef) -> bool:
-    try:
-        return bool(z3.is_true(model.eval(condition, model_completion=True)))
-    except z3.Z3Exception:  # the solver was stopped before: it is asked again
-        return False
 
 
 def _decider(
