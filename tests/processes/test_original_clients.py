@@ -59,7 +59,7 @@ def test_no_icarous_is_started_where_clients_are_waited_for(
     one._start_simulator = lambda _: 1  # type: ignore[method-assign]
     one._connect = lambda _: nobody  # type: ignore[method-assign]
     one._wait = one._control = lambda *_: None  # type: ignore[assignment,method-assign]
-    one._start = lambda name, *words: started.update({name: words})  # type: ignore[method-assign]
+    one._start = lambda name, *words, **_: started.update({name: words})  # type: ignore[method-assign]
     one.start()
     assert set(started) == ({"uxas"} if original else {"uxas", "icarous_1", "icarous_2"})
     for name, words in started.items():
