@@ -17,7 +17,10 @@ Said = dict[int, tuple[tuple[int, bool], ...]]
 """By number: when it was said to take part (True) or not any more, in the order of time [ms]."""
 CHANGES = (
     "zone", "zone_ends", "vehicle_lost", "vehicle_joins", "task_added", "task_removed", "wind",
+    "vehicle_holds", "vehicle_resumes",
 )  # fmt: skip
+ASK_NOTHING = ("wind", "vehicle_holds", "vehicle_resumes")
+"""Nothing more or less is asked for after these."""
 
 
 class Camera(NamedTuple):
@@ -184,7 +187,7 @@ def from_log(data: Node) -> Mission:
             zones.append(zone(change["zone"], at))
         elif kind == "zone_ends":
             ends.append((change["zone_id"], at))
-        elif kind != "wind":
+        elif kind not in ASK_NOTHING:
             number = change["vehicle" if kind.startswith("vehicle") else "task"].whole
             said.append((kind, number, at))
     volume = Volume(*(daa[name].real for name in Volume._fields))

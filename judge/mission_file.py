@@ -70,7 +70,7 @@ class _Reader:
                     zones.append(self.zone(change[name], at))
                 elif name == "zone_ends" and change.has(name):
                     ends.append((change[name], at))
-                elif name != "wind" and change.has(name):
+                elif name not in m.ASK_NOTHING and change.has(name):
                     said.append((name, change[name].whole, at))
         vehicles = [self.vehicle(v) for v in root["vehicles"]]
         guarded = [v.id for v in vehicles if v.protected]

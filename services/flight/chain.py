@@ -81,7 +81,8 @@ class Chain:
     join_m: arc length on `track` at which the planned path begins again after an interruption;
     base_m: arc length of the task's path that `track` stands for beyond join_m; away: the path
     of the task has been left and is not reached again yet; unlinked: its vehicle is not heard; leg: what ICAROUS did on it; told_version: the route_version that
-    ICAROUS was told, -1 for none.
+    ICAROUS was told, -1 for none; holds: where an operator has the vehicle circle: `track` leads there then, and
+    the phase is DONE; left: the chain as it was when it left its item for that, None behind another plan.
     """
 
     vehicle: Vehicle
@@ -102,6 +103,12 @@ class Chain:
     unlinked: bool = False
     away: bool = False
     leg: Leg = field(default_factory=Leg)
+    holds: Pose | None = None
+    left: Chain | None = None
+
+    def by_plan(self) -> Chain:
+        """The chain that is flown on by when its vehicle resumes: where it was left, if that is the same item still."""
+        return self if self.left is None or self.left.k != self.k else self.left
 
     @property
     def item(self) -> PlanItem | None:

@@ -26,7 +26,7 @@ from cratous.spec.algebra.meaning import tasks
 from cratous.spec.executive import FOR_CHANGE
 from cratous.spec.mission import Change, ZoneKind
 from cratous.spec.mission.asked import asked, term_of
-from cratous.spec.mission.changes import ZONE_ENDS, ZoneEnd, split, with_choices, words
+from cratous.spec.mission.changes import DIRECT, ZONE_ENDS, ZoneEnd, split, with_choices, words
 from cratous.spec.mission.plan import Plan, left_out_of
 from cratous.spec.records import replace
 
@@ -37,7 +37,7 @@ NAME = "uxas"
 def known_from_the_start(config: Config, state: State, out: Out) -> State:
     """The changes that are known when the mission begins, and the plan that was made with them."""
     state, blown = blow(config, state, out)
-    begun_with, _ = split(config.mission.changes, state.now_ms)
+    begun_with, _ = split((c for c in config.mission.changes if c.kind not in DIRECT), state.now_ms)
     if begun_with:
         what = "; ".join(words(change) for change in begun_with)
         answer = "; ".join(filter(None, ("planned with it", blown)))

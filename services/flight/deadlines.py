@@ -94,10 +94,10 @@ def _under_way(state: State, task_id: int) -> bool:
     """Whether a task is being flown."""
     return any(
         c.phase is Phase.TASK and c.item is not None and c.item.task_id == task_id
-        for c in state.chains
+        for c in (chain.by_plan() for chain in state.chains)
     )
 
 
 def _torn(state: State) -> bool:
-    """Whether another plan now would interrupt a task, or a vehicle is not flown by UxAS."""
-    return any(c.suspended or c.phase is Phase.TASK for c in state.chains)
+    """Whether another plan now would interrupt a task, or a vehicle is not flown by UxAS, or holds for an operator."""
+    return any(c.suspended or c.holds or c.phase is Phase.TASK for c in state.chains)

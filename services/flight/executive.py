@@ -18,6 +18,7 @@ from cratous.core.executive.steps import answered, flight_outcome, rejoined
 from cratous.services.flight import (
     changes,
     deadlines,
+    direct_commands,
     executive_outputs,
     interruption,
     left_out,
@@ -58,7 +59,7 @@ from cratous.spec.executive import (
     GOES_ON,
     LIMIT,
 )
-from cratous.spec.mission.changes import TASK_ADDED, VEHICLE_JOINS, WIND, ZONE_ENDS, split
+from cratous.spec.mission.changes import DIRECT, TASK_ADDED, VEHICLE_JOINS, WIND, ZONE_ENDS, split
 from cratous.spec.records import replace
 
 OUTCOMES = {GOES_ON: "", COMPLETE: "complete", FAILED_FLIGHT: "failed", LIMIT: "limit"}
@@ -137,7 +138,9 @@ class Executive:
             aircraft=tick.aircraft,
             to_come=tuple(to_come),
         )
-        if due:
+        direct = [change for change in due if change.kind in DIRECT]
+        state = direct_commands.obey(self.config, state, direct, out)
+        if due := [change for change in due if change.kind not in DIRECT]:
             state = changes.change(self.config, state, due, out)
         return self._asking(state, out) if state.asked else self._events(state, out)
 

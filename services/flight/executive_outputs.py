@@ -52,7 +52,7 @@ def route(state: State, vehicle_id: int, out: Out) -> State:
     loss = state.mission.link_loss
     if loss is not None and loss.choice is WithoutLink.FINISH:
         ahead_m = WHOLE_M
-    speed = chain.item.speed_m_s if chain.item else chain.speed_m_s
+    speed = chain.item.speed_m_s if chain.item and not chain.holds else chain.speed_m_s
     out.append(Route(vehicle_id, points_ahead(chain, opens_ms, ahead_m), speed, chain.s_m))
     return state.put(chain)
 

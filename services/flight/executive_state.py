@@ -15,7 +15,7 @@ from cratous.services.mission.frames import Projection
 from cratous.services.mission.wind import CALM, Wind, known_at
 from cratous.spec.constraint_rows import Row
 from cratous.spec.mission import Change, Mission, Zone
-from cratous.spec.mission.changes import split
+from cratous.spec.mission.changes import DIRECT, split
 from cratous.spec.mission.plan import Plan
 from cratous.spec.records import replace
 
@@ -143,8 +143,9 @@ class State:
 def first_state(mission: Mission, plan: Plan) -> State:
     """Before the mission begins."""
     known = known_at(mission, 0)
-    _, to_come = split(mission.changes, 0)
-    return State(known, mission, hard_zones(known.zones), plan, tuple(to_come))
+    begun_with, to_come = split(mission.changes, 0)
+    direct = (change for change in begun_with if change.kind in DIRECT)  # they say nothing of the mission
+    return State(known, mission, hard_zones(known.zones), plan, (*direct, *to_come))
 
 
 def _with(table: Mapping[int, V], key: int, value: V) -> tuple[tuple[int, V], ...]:

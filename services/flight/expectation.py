@@ -30,7 +30,7 @@ def expected_times(
     free: dict[int, float] = {}
     todo: list[tuple[int, int, PlanItem, bool]] = []
     for vid in sorted(chains):
-        chain = chains[vid]
+        chain = chains[vid].by_plan()
         item = chain.item
         pace = 1.0 if chain.phase is Phase.TASK else factor
         left_ms = 1000 * chain.left_m() / (item.speed_m_s * pace) if item else 0.0

@@ -7,6 +7,7 @@ from cratous.core.executive.steps import way_act
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.executive_outputs import command, route
 from cratous.services.flight.executive_state import Config, Out, State
+from cratous.services.flight.hold_ways import held_again
 from cratous.services.flight.messages import (
     Because,
     HeardAgain,
@@ -90,7 +91,7 @@ def take_back(config: Config, state: State, message: TakeBack, out: Out) -> Stat
     if chain.suspended:
         chain = replace(chain, leg=chain.leg.given_back(now_ms))
     chain = replace(chain, suspended=suspended_after(chain.suspended, message.act))
-    return _flown_back(config, state, chain, now_ms, NAME, out)
+    return flown_back(config, state, chain, now_ms, NAME, out)
 
 
 def unlinked(state: State, message: NotHeard) -> State:
@@ -111,7 +112,7 @@ def linked(config: Config, state: State, message: HeardAgain, out: Out) -> State
     chain = replace(chain, unlinked=False, leg=chain.leg._replace(taken_ms=now_ms))
     if not by_uxas:
         return state.put(chain)
-    return _flown_back(config, state, replace(chain, suspended=False), now_ms, EXECUTIVE, out)
+    return flown_back(config, state, replace(chain, suspended=False), now_ms, EXECUTIVE, out)
 
 
 def landed(state: State, message: Stands) -> State:
@@ -126,15 +127,17 @@ def landed(state: State, message: Stands) -> State:
     return replace(state, landed=told, to_come=(*state.to_come, news))
 
 
-def _flown_back(
+def flown_back(
     config: Config, state: State, chain: Chain, now_ms: int, source: str, out: Out
 ) -> State:
     """UxAS flies the vehicle of a chain again, in the epoch that it knows."""
     vid = chain.vehicle.id
     ways, air = config.ways(state.zones), state.air(vid)
-    back = ways.back(chain, air)
+    back = None if chain.holds else ways.back(chain, air)
     act = way_act(back is not None, chain.item is not None)
-    if act == FAIL_TASK and chain.item is not None:
+    if chain.holds is not None:
+        state = state.put(held_again(config, state, chain, now_ms, out))
+    elif act == FAIL_TASK and chain.item is not None:
         state = fail(config, state.put(chain), chain.item.task_id, NO_WAY, out)
     elif back is None:
         state = state.put(
@@ -145,4 +148,6 @@ def _flown_back(
         if chain.phase is Phase.TASK:
             entered = replace(entered, join_m=back.join_m, base_m=back.flown_m, away=True)
         state = state.put(entered)
-    return command(config, route(state, vid, out), vid, state.epoch(vid), out, source)
+    if vid in config.instances:
+        state = route(state, vid, out)
+    return command(config, state, vid, state.epoch(vid), out, source)

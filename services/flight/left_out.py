@@ -78,7 +78,7 @@ def _flown_by(task: int, chains: Mapping[int, Chain]) -> tuple[int, float]:
     for number, chain in sorted(chains.items()):
         left = [item.task_id for item in chain.items[max(chain.k, 0) :]]
         if task in left:
-            return number, chain.served() if left[0] == task else 0.0
+            return number, chain.by_plan().served() if left[0] == task else 0.0
     return NOBODY, 0.0
 
 

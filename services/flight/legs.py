@@ -28,7 +28,7 @@ def give_up(config: Config, state: State, out: Out) -> State:
     longest_ms = round(1000 * LONGEST_LOOKAHEADS * state.mission.daa.lookahead_s)
     for vid in config.instances:
         chain = state.find(vid)
-        if chain is None or chain.unlinked or vid in dict(state.landed):
+        if chain is None or chain.unlinked or chain.holds or vid in dict(state.landed):
             continue
         under_ms = chain.leg.flown_ms(chain.suspended, state.now_ms)
         if chain.item is None:

@@ -58,8 +58,8 @@ def points_ahead(chain: Chain, opens_ms: int, ahead_m: float) -> tuple[Position,
     points = list(chain.track.rest(chain.s_m))
     item = chain.item
     more: list[Position] = []
-    after = chain.items[chain.k + 1 :]
-    if item is None:
+    after = () if chain.holds else chain.items[chain.k + 1 :]
+    if item is None or chain.holds:
         more = list(last_lap(chain)) * 4
     elif chain.phase is not Phase.TASK:
         more = list(laps_expected(chain, opens_ms, ahead_m)) + list(item.path)

@@ -10,7 +10,9 @@ from collections.abc import Iterable
 
 from cratous.core.authority.timeliness import too_early
 from cratous.core.executive.steps import end_passed, falls_with, may_begin, way_act
+from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.routing.polylines import Track
+from cratous.core.routing.visibility import name_of
 from cratous.services.flight import chain as chains
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.commands import task_progress
@@ -63,8 +65,34 @@ def begin(config: Config, state: State, out: Out) -> State:
         if old is not None:
             chain = replace(chain, version=old.version, suspended=old.suspended, leg=old.leg)
             chain = replace(chain, unlinked=old.unlinked)
+            if old.holds is not None:
+                state, kept = held_on(state, old, chain, out)
+                if kept:
+                    continue
         state = next_item(config, state.put(chain), chain, state.now_ms, out)
     return settle(config, state, out)
+
+
+def held_on(state: State, old: Chain, chain: Chain, out: Out) -> tuple[State, bool]:
+    """Whether a vehicle that holds goes on holding by another plan: not where a zone that binds now forbids the
+    way there, nor on the ground. chain: how it would begin the plan."""
+    vid, failed = old.vehicle.id, dict(state.failed)
+    if vid in dict(state.landed):
+        return state, False
+    bad = first_bad_leg((state.air(vid).position, *old.track.rest(old.s_m)), state.zones)
+    if bad is not None:
+        why = f"its way or its circle breaks {name_of(bad[1])}: it flies by the plan"
+        out.append(
+            Say(mission_change(state.now_ms, f"vehicle {vid} holds no longer", why), NAME)
+        )
+        return state, False
+    k = chain.next_k(failed)
+    number = chain.items[k].task_id if k < len(chain.items) else None
+    on = replace(
+        old, vehicle=chain.vehicle, items=chain.items, k=k, left=None,
+        route_version=old.route_version + 1, leg=old.leg.to(number, state.now_ms),
+    )  # fmt: skip
+    return state.put(on), True
 
 
 def _items(state: State, vehicle: Vehicle) -> tuple[PlanItem, ...]:
@@ -218,9 +246,12 @@ def fail(config: Config, state: State, task_id: int, why: str, out: Out) -> Stat
         item = chain.item
         if task_id not in [i.task_id for i in chain.items]:
             continue
-        served = chain.served() if item and item.task_id == task_id else 0.0
+        served = chain.by_plan().served() if item and item.task_id == task_id else 0.0
         out.append(Say(task_progress(task_id, vid, now_ms, "Failed", served, why), NAME))
         if item is not None and item.task_id == task_id:
+            if chain.holds is not None:
+                state = state.put(replace(chain, k=chain.next_k(dict(state.failed)), left=None))
+                continue
             state = next_item(config, state, chain, now_ms, out)
     for row in state.plan.rows:
         failed = dict(state.failed)

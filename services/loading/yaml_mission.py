@@ -58,7 +58,7 @@ from cratous.spec.mission import (
     changes,
 )
 from cratous.spec.mission.bridge_faults import words
-from cratous.spec.mission.changes import WIND, ZONE_ENDS, WindChange, ZoneEnd
+from cratous.spec.mission.changes import VEHICLE_HOLDS, WIND, ZONE_ENDS, HoldCommand, WindChange, ZoneEnd
 from cratous.spec.mission.sensing import Sensing
 from cratous.spec.mission.sensing import words as sensing_words
 
@@ -252,6 +252,14 @@ def _change(data: dict[str, Any], places: Places) -> Change:
     if kind == WIND:
         return WindChange(
             at_ms, kind, north_m_s=float(value["north_m_s"]), east_m_s=float(value["east_m_s"])
+        )
+    if kind == VEHICLE_HOLDS:
+        return HoldCommand(
+            at_ms,
+            kind,
+            vehicle=int(value["vehicle"]),
+            place=places.vertex(value["place"]) if "place" in value else None,
+            alt_m=float(value["alt_m"]) if "alt_m" in value else None,
         )
     if kind.startswith("vehicle"):
         return Change(at_ms, kind, vehicle=int(value))

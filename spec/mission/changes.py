@@ -15,6 +15,8 @@ VEHICLE_LOST, VEHICLE_JOINS = "vehicle_lost", "vehicle_joins"
 TASK_ADDED, TASK_REMOVED = "task_added", "task_removed"
 ZONE, ZONE_ENDS = "zone", "zone_ends"
 WIND = "wind"
+VEHICLE_HOLDS, VEHICLE_RESUMES = DIRECT = "vehicle_holds", "vehicle_resumes"
+"""Commands to one vehicle: what is known of the mission, and its plan, stay as they are."""
 VEHICLE_LANDED = "vehicle_landed"
 """Of no mission file: what the flight itself leads to."""
 
@@ -34,6 +36,17 @@ class ZoneEnd(Change):
     zone_id: int = 0
 
 
+@dataclass(frozen=True)
+class HoldCommand(Change):
+    """The vehicle flies to a place and circles there until it resumes its plan; no place: where it is.
+
+    place: north, east [m]; alt_m: above mean sea level; None: the altitude at which it is then.
+    """
+
+    place: tuple[float, float] | None = None
+    alt_m: float | None = None
+
+
 def words(change: Change) -> str:
     """A change in words."""
     if change.kind == ZONE and change.zone is not None:
@@ -44,7 +57,14 @@ def words(change: Change) -> str:
         return f"wind to {change.north_m_s:g} m/s north, {change.east_m_s:g} m/s east"
     if isinstance(change, ZoneEnd):
         return f"zone {change.zone_id} ends"
+    if isinstance(change, HoldCommand):
+        where = "where it is"
+        if change.place is not None:
+            where = f"at north {change.place[0]:g} m, east {change.place[1]:g} m"
+        height = "" if change.alt_m is None else f", altitude {change.alt_m:g} m"
+        return f"vehicle {change.vehicle} is commanded to hold {where}{height}"
     return {
+        VEHICLE_RESUMES: f"vehicle {change.vehicle} is commanded to resume its plan",
         VEHICLE_LOST: f"vehicle {change.vehicle} is lost",
         VEHICLE_JOINS: f"vehicle {change.vehicle} joins",
         VEHICLE_LANDED: f"vehicle {change.vehicle} has landed",
@@ -73,8 +93,8 @@ def known_at(mission: Mission, now_ms: int, done: Iterable[int] = ()) -> Mission
     is removed, unless it is among those `done`. What was said last counts, and what is first said to
     join or to be requested was not there before. Relations lose the tasks that do not take part.
     """
-    if not mission.changes:
-        return mission
+    if all(change.kind in DIRECT for change in mission.changes):
+        return replace(mission, changes=()) if mission.changes else mission
     happened, _ = split(mission.changes, now_ms)
     appeared = (c.zone for c in happened if c.kind == ZONE and c.zone is not None)
     ended = {c.zone_id for c in happened if isinstance(c, ZoneEnd)}

@@ -1,0 +1,96 @@
+"""Commands of an operator to one vehicle: it holds at a place, and resumes its plan.
+
+The plan stays as it is. A vehicle that holds leaves its item, as it does for ICAROUS, and goes on with it from
+there when it resumes; others wait for it as they would. Where the vehicle is not UxAS's to command, or no way
+there keeps the zones (kernels by `first_bad_leg`), the command is refused, and said so; it flies on as it was.
+The command itself passes the vehicle's gate as every other does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from cratous.services.flight.chain import Chain, Phase
+from cratous.services.flight.executive_outputs import command
+from cratous.services.flight.executive_state import Config, Out, State
+from cratous.services.flight.hold_ways import into, pose_of
+from cratous.services.flight.interruption import EXECUTIVE, flown_back
+from cratous.services.flight.messages import Say
+from cratous.services.flight.notices import mission_change
+from cratous.services.flight.task_transitions import next_item, progress
+from cratous.services.mission.availability import absent
+from cratous.spec.mission import Change
+from cratous.spec.mission.changes import HoldCommand, words
+from cratous.spec.records import replace
+
+NAME = "uxas"
+"""The sender of what is said of the mission."""
+REFUSED = "refused: "
+
+
+def obey(config: Config, state: State, due: Sequence[Change], out: Out) -> State:
+    """Do what is commanded now, in its order; each with what came of it."""
+    for change in due:
+        done: Out = []
+        why = _not_commanded(config, state, change.vehicle)
+        if why:
+            after, answer = state, REFUSED + why
+        elif isinstance(change, HoldCommand):
+            after, answer = _hold(config, state, change, done)
+        else:
+            after, answer = _resume(config, state, change.vehicle, done)
+        out.append(Say(mission_change(state.now_ms, words(change), answer), NAME))
+        out.extend(done)
+        state = after
+    return state
+
+
+def _not_commanded(config: Config, state: State, vehicle_id: int) -> str:
+    """Why a vehicle takes no command of UxAS now; empty if it does."""
+    away = {**absent(config.mission, state.now_ms), **dict(state.landed)}
+    if vehicle_id in away:
+        return away[vehicle_id]
+    chain = state.chain(vehicle_id)
+    if chain.unlinked:
+        return "it is not heard"
+    return "ICAROUS has it" if chain.suspended else ""
+
+
+def _hold(config: Config, state: State, asked: HoldCommand, out: Out) -> tuple[State, str]:
+    """Make for the hold."""
+    chain, air = state.chain(asked.vehicle), state.air(asked.vehicle)
+    flies = replace(chain, speed_m_s=chain.vehicle.speed_m_s)
+    found = into(config.ways(state.zones), flies, air, pose_of(asked, air))
+    if found.track is None:
+        return state, REFUSED + found.why
+    if chain.phase is Phase.TASK and not chain.away:
+        note = f"left the path at {chain.path_flown_m():.0f} m"
+        out.append(progress(chain, state.now_ms, "Suspended", note, chain.served()))
+    left = chain if chain.holds is None else chain.left
+    holds = replace(flies, holds=found.pose, left=left)
+    state = state.put(holds.enter(Phase.DONE, found.track, state.now_ms))
+    answer = f"it circles through a place {found.way_m:.0f} m of flight from here, until it resumes"
+    return command(config, state, asked.vehicle, state.epoch(asked.vehicle), out), answer
+
+
+def _resume(config: Config, state: State, vehicle_id: int, out: Out) -> tuple[State, str]:
+    """Go on by the plan: with the item that was left, or what the plan has now."""
+    chain, now_ms = state.chain(vehicle_id), state.now_ms
+    if chain.holds is None:
+        return state, REFUSED + "it flies by its plan already"
+    on = chain.by_plan()
+    if on is not chain:
+        state = flown_back(config, state, _let_go(chain, on), now_ms, EXECUTIVE, out)
+        return state, "it goes on where it left"
+    free = replace(chain, holds=None, left=None, k=chain.k - 1)
+    state = next_item(config, state.put(free), free, now_ms, out)
+    state = command(config, state, vehicle_id, state.epoch(vehicle_id), out)
+    return state, "it flies on by the plan that there is now"
+
+
+def _let_go(chain: Chain, on: Chain) -> Chain:
+    """The chain as it was left, with what has become of the vehicle since."""
+    return replace(
+        on, vehicle=chain.vehicle, version=chain.version, route_version=chain.route_version,
+        told_version=chain.told_version, suspended=chain.suspended, unlinked=chain.unlinked, leg=chain.leg,
+    )  # fmt: skip

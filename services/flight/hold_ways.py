@@ -1,0 +1,91 @@
+"""Where a vehicle circles that an operator has hold: the way there and the lap, where both keep the zones."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.core.routing.dubins import polyline_length_m
+from cratous.core.routing.polylines import Track
+from cratous.services.flight import chain as chains
+from cratous.services.flight.chain import Chain, Phase
+from cratous.services.flight.dynamics import AirState, turn_radius_m
+from cratous.services.flight.executive_state import Config, Out, State
+from cratous.services.flight.inflight_routes import Ways
+from cratous.services.flight.task_transitions import circling
+from cratous.spec.mission import Position
+from cratous.spec.mission.changes import HoldCommand
+from cratous.spec.mission.plan import Pose
+
+TURNS_RAD = (0.0, math.pi / 2, -math.pi / 2, math.pi)
+"""A place is come to straight on, else so many radians off it."""
+HERE_M = 1.0
+"""A place so near is where the vehicle is."""
+
+
+class Into(NamedTuple):
+    """A way into a hold, or why there is none. pose: where its circle is come to; way_m: how far that is."""
+
+    track: Track | None
+    pose: Pose
+    why: str = ""
+    way_m: float = 0.0
+
+
+def pose_of(asked: HoldCommand, air: AirState) -> Pose:
+    """Where a hold is come to, and in which direction: straight on from where the vehicle is."""
+    here = air.position
+    alt_m = here.alt_m if asked.alt_m is None else asked.alt_m
+    if asked.place is None:
+        return Pose(here.north_m, here.east_m, alt_m, air.heading_rad)
+    north_m, east_m = asked.place
+    north, east = north_m - here.north_m, east_m - here.east_m
+    near = math.hypot(north, east) < HERE_M
+    return Pose(north_m, east_m, alt_m, air.heading_rad if near else math.atan2(east, north))
+
+
+def into(ways: Ways, chain: Chain, air: AirState, asked: Pose) -> Into:
+    """A way to a circle through a place, and the circle; none where no way or no circle keeps the zones, or the
+    vehicle does not climb or descend so much on the way."""
+    why = f"no circle there keeps the zones that bind at {asked.alt_m:.0f} m"
+    for turn in TURNS_RAD:
+        pose = asked._replace(heading_rad=asked.heading_rad + turn)
+        hold = chains.tangent_hold(pose, _radius_m(chain), ways.zones)
+        if hold is None:
+            continue
+        lap = chains.lap_points(hold, Position(*pose[:3]))
+        if math.dist(air.position, pose[:3]) < HERE_M and turn == 0.0:
+            return Into(Track(lap), pose)
+        way = ways.way_to(chain, air, pose)
+        if not way:
+            why = "no way there keeps the zones"
+            continue
+        if first_bad_leg((*way, *lap[1:]), ways.zones) is not None:
+            why = "the way there found breaks a zone that it is in now"
+            continue
+        way_m = polyline_length_m(way)
+        if abs(pose.alt_m - air.position.alt_m) > way_m * _slope(chain) + HERE_M:
+            why = f"it cannot come to {pose.alt_m:.0f} m on a way of {way_m:.0f} m"
+            continue
+        return Into(Track((*way, *lap[1:])), pose, way_m=way_m)
+    return Into(None, asked, why)
+
+
+def held_again(config: Config, state: State, chain: Chain, now_ms: int, out: Out) -> Chain:
+    """The chain of a vehicle that holds and was flown by another: on its way back to where it holds; where there
+    is none it circles where it is."""
+    assert chain.holds is not None
+    ways, air = config.ways(state.zones), state.air(chain.vehicle.id)
+    found = into(ways, chain, air, chain.holds)
+    track = found.track or circling(config, state, chain, 0.0, out)
+    return chain.enter(Phase.DONE, track, now_ms)
+
+
+def _radius_m(chain: Chain) -> float:
+    speed = max(chain.speed_m_s, chain.vehicle.min_speed_m_s)
+    return chains.ROUTE_MARGIN * turn_radius_m(speed, chain.vehicle.max_bank_rad)
+
+
+def _slope(chain: Chain) -> float:
+    return chain.vehicle.max_climb_m_s / chain.speed_m_s
