@@ -10,6 +10,7 @@ from cratous.services.certify.differences import text_difference
 from cratous.services.certify.report import pages, report_text
 from cratous.services.results.names import (
     CERTIFICATE_NAME,
+    COMMANDED_NAME,
     MANIFEST_NAME,
     NAMES,
     OF_PROCESSES,
@@ -43,9 +44,11 @@ class Files:
         self._names = [name for name in NAMES if name != MANIFEST_NAME]
         if not report["plan"]["certificate"]:
             self._names.remove(CERTIFICATE_NAME)
+        # held against the manifest alone: the log does not give them
+        stated = read_manifest(folder) or {}
+        if COMMANDED_NAME in stated:
+            self._names.append(COMMANDED_NAME)
         if "processes" in meta:
-            # held against the manifest alone: the log does not give them
-            stated = read_manifest(folder) or {}
             self._names += sorted(name for name in stated if OF_PROCESSES.fullmatch(name))
         self.unchecked = [
             no_result(entry.name)

@@ -11,7 +11,7 @@ from cratous.services.loading.fitness import warnings_of
 from cratous.services.mission.availability import absent
 from cratous.services.mission.wind import known_at
 from cratous.spec.errors import NoPlan
-from cratous.spec.mission import Mission
+from cratous.spec.mission import Change, Mission
 from cratous.spec.mission.guarantees import Outcome, Verdict, worst
 from cratous.spec.mission.plan import (
     COST_UNITS,
@@ -34,12 +34,14 @@ Tell = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Settings:
-    """How a mission is run; `command` is what reproduces it, own: requirements of the user's own."""
+    """How a mission is run; `command` is what reproduces it, `again` what does where vehicles were commanded in flight;
+    own: requirements of the user's own."""
 
     daa: bool = True
     allow_unproved: bool = False
     command: str = ""
     own: tuple[OwnFile, ...] = ()
+    again: str = ""
 
 
 class InProcesses(NamedTuple):
@@ -51,13 +53,19 @@ class InProcesses(NamedTuple):
 
 
 class Onlooker(Protocol):
-    """Sees a mission while it is run, and changes nothing of it but when it goes on."""
+    """Sees a mission while it is run, and changes nothing of it but when it goes on, and what it commands."""
 
     def joined(self, bus: Any) -> None:
         """The bus, before anything is on it."""
 
     def planned(self, checks: list[Verdict], monitor: Any) -> None:
         """The plan is checked and flies now, watched by the monitor."""
+
+    def directed(self, now_ms: int) -> tuple[Change, ...]:
+        """What vehicles are commanded to do at a step."""
+
+    def commanded(self) -> Mission | None:
+        """The mission with all that was commanded so; None where nothing was."""
 
 
 def silent(_text: str) -> None:
@@ -188,8 +196,14 @@ def fly_mission(
             bus.tap(monitor.tap)
             if onlooker is not None:
                 onlooker.planned(checks, monitor)
-            fly(mission, plan, bus, daa=settings.daa, progress=_progress(tell))
+            directed = None if onlooker is None else onlooker.directed
+            fly(
+                mission, plan, bus, daa=settings.daa, progress=_progress(tell), directed=directed
+            )  # fmt: skip
             verdicts, assumptions = monitor.verdicts(), monitor.assumptions()
+        commanded = None if onlooker is None else onlooker.commanded()
+        if commanded is not None:
+            mission, flown = as_flown(commanded, settings, flown, writer)
         flown = noted(writer, flown, standing, calls.data(), assumptions)
     tell(f"evidence: {summary(flown.proofs)}")
     rows = plan_rows(checks) + constraint_rows(verdicts, "flight")
@@ -209,6 +223,17 @@ def log_meta(mission: Mission, flown: Flown) -> dict[str, Any]:
         "mission_hash": mission_hash(mission),
         **flown.meta(),
     }
+
+
+def as_flown(
+    commanded: Mission, settings: Settings, flown: Flown, writer: LogWriter
+) -> tuple[Mission, Flown]:
+    """The mission with what was commanded in flight, and the flight of it, as the log keeps them too."""
+    mission = commanded if settings.daa else replace(commanded, instances=())
+    flown = replace(flown, command=settings.again)
+    for key, value in log_meta(mission, flown).items():
+        writer.note(key, value)
+    return mission, flown
 
 
 def tell_plan(mission: Mission, plan: Plan, checks: list[Verdict], tell: Tell) -> None:

@@ -145,9 +145,9 @@ def _editing(mission: Path, port: int, allow_unproved: bool, stack: ExitStack) -
 
 
 def _flying(mission: Path, port: int, flight: dict[str, Any], stack: ExitStack) -> GroundStation:
-    from cratous.services.ground_station.live_session import LiveSession
+    from cratous.services.ground_station.live_session import Direct, LiveSession
     from cratous.services.ground_station.server import GroundStation, LiveRecorded
-    from cratous.services.mission_editor.operator_commands import commanded
+    from cratous.services.mission_editor.operator_commands import DIRECT, commanded, directed
     from cratous.spec.files.limits import MISSION_BYTES
     from cratous.spec.files.text_file import text_of
 
@@ -159,7 +159,15 @@ def _flying(mission: Path, port: int, flight: dict[str, Any], stack: ExitStack) 
         asked = {**asked, "text": found.text, "until_ms": found.at_ms, "commanded": True}
         return asked
 
-    live = stack.enter_context(closing(LiveSession(FLIGHT, asked, amended)))
+    def checked(now_ms: int, command: Any) -> None:
+        directed(asked["text"], str(mission), asked["seed"], now_ms, command)
+
+    def flown_with(text: str) -> None:
+        nonlocal asked
+        asked = {**asked, "text": text, "commanded": True}
+
+    direct = Direct(DIRECT, checked, flown_with)
+    live = stack.enter_context(closing(LiveSession(FLIGHT, asked, amended, direct)))
     flown = LiveRecorded(live, lambda folder: _replayed(Path(folder)))
     return stack.enter_context(GroundStation(flown, port, live))
 

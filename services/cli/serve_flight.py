@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 import shlex
@@ -15,7 +16,9 @@ from cratous.services.cli.job import Settings, folder_name, run_mission
 from cratous.services.cli.json_lines import end_main_thread, told_on_stdout
 from cratous.services.cli.show import shown_path
 from cratous.services.cli.stopping import Stopped, stoppable
+from cratous.services.ground_station.direct_orders import Directed, DirectOrders
 from cratous.services.ground_station.live_flight import LiveFlight, forward
+from cratous.services.ground_station.live_session import NotObeyed
 from cratous.services.ground_station.pace import Ended
 from cratous.services.results.folder import results_folder
 from cratous.services.results.names import COMMANDED_NAME
@@ -53,7 +56,8 @@ def _fly(asked: dict[str, Any], send: Any, status: Any) -> int:
     mission = loaded(parse_document(asked["text"], asked["path"]), asked["seed"])
     target = Path(asked["out"]) / folder_name(mission)
     read, write = os.pipe()
-    live = LiveFlight(mission, send, write)
+    orders = DirectOrders(asked["text"], functools.partial(_directed, asked["path"], asked["seed"]))
+    live = LiveFlight(mission, send, write, orders)
     if "until_ms" in asked:
         live.pace.fly_to(asked["until_ms"])
     judged = forward(read, send)
@@ -66,13 +70,13 @@ def _fly(asked: dict[str, Any], send: Any, status: Any) -> int:
     try:
         status("planning")
         with results_folder(target, tell) as folder:
-            command = asked["command"]
-            if asked.get("commanded"):
-                (folder / COMMANDED_NAME).write_text(asked["text"], encoding="utf-8")
-                again = ["run", shown_path(target / COMMANDED_NAME), "--out", "again"]
-                command = shlex.join(["cratous", *again, *asked["options"]])
-            settings = Settings(asked["daa"], asked["allow_unproved"], command)
+            words = ["run", shown_path(target / COMMANDED_NAME), "--out", "again"]
+            again = shlex.join(["cratous", *words, *asked["options"]])
+            command = again if asked.get("commanded") else asked["command"]
+            settings = Settings(asked["daa"], asked["allow_unproved"], command, again=again)
             report = run_mission(mission, folder, settings, tell, live)
+            if asked.get("commanded") or orders.mission is not None:
+                (folder / COMMANDED_NAME).write_text(orders.text, encoding="utf-8")
         live.tell()
     finally:
         live.end_judge()
@@ -81,6 +85,15 @@ def _fly(asked: dict[str, Any], send: Any, status: Any) -> int:
     live.verdicts(report)  # the last word: whatever the judge wrote has been sent before it
     status("ended", text=f"{report['verdict'].upper()}: results in {target}", folder=str(target))
     return 0
+
+
+def _directed(path: str, seed: int, text: str, at_ms: int, command: Any) -> Directed:
+    from cratous.services.mission_editor.operator_commands import directed
+
+    try:
+        return directed(text, path, seed, at_ms, command)
+    except NotObeyed as refused:
+        raise BadInput(refused.why, where=path) from None
 
 
 def _commands(live: LiveFlight) -> None:

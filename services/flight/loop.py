@@ -92,10 +92,14 @@ from cratous.services.sensing import surveillance
 from cratous.services.sensing.filter import Flown
 from cratous.services.sensing.surveillance import Surveillance
 from cratous.spec.errors import NoPlan
-from cratous.spec.mission import FaultySimulation, LivePlanningMission, Mission
+from cratous.spec.mission import Change, FaultySimulation, LivePlanningMission, Mission
 from cratous.spec.mission.plan import Plan
+from cratous.spec.records import replace
 
 Segmenter = Callable[[bytes], Iterable[bytes]]
+Directed = Callable[[int], tuple[Change, ...]]
+"""Gives what an operator commands vehicles to do at a step, with its time [ms]: what a mission with these changes
+would say."""
 SIMULATION = "simulation"
 """The sender of what is true of the aircraft."""
 
@@ -108,16 +112,17 @@ def fly(
     daa: bool = True,
     segmenter: Segmenter | None = None,
     progress: Callable[[int, str], None] | None = None,
+    directed: Directed | None = None,
 ) -> FlightResult:
     """Fly a plan to its end, or to mission.simulation.limit_ms; publish everything on the bus.
 
     daa: with the ICAROUS instances that the mission has; without, nobody avoids anybody.
     segmenter: cuts the bytes on the sockets, for tests. progress(now_ms, text): called now and
-    then.
+    then. directed: see there.
     """
     instances = tuple(sorted(mission.instances)) if daa else ()
     with _bridge(mission, instances, segmenter) as bridge:
-        return Flight(mission, plan, bus, bridge, instances).run(progress)
+        return Flight(mission, plan, bus, bridge, instances).run(progress, directed)
 
 
 def _bridge(mission: Mission, instances: tuple[int, ...], segmenter: Segmenter | None) -> Bridge:
@@ -174,7 +179,9 @@ class Flight:
 
     # the loop -----------------------------------------------------------------------------
 
-    def run(self, progress: Callable[[int, str], None] | None) -> FlightResult:
+    def run(
+        self, progress: Callable[[int, str], None] | None, directed: Directed | None = None
+    ) -> FlightResult:
         """Fly to the end."""
         self.bus.now_ms, steps = 0, 0
         self._executive(Begin(0, self._own()))
@@ -182,6 +189,9 @@ class Flight:
         self._executive(SetOut())
         while True:
             self.bus.now_ms = self.now_ms
+            if directed is not None and (now := directed(self.now_ms)):
+                state = self.executive_state
+                self.executive_state = replace(state, to_come=(*state.to_come, *now))
             self._step()
             self._executive(Closing(self.now_ms, self._gates()))
             self.bus.run()

@@ -17,13 +17,14 @@ from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.services.certify.verdicts import constraint_rows, plan_rows, requirement_rows
+from cratous.services.ground_station.direct_orders import DirectOrders
 from cratous.services.ground_station.flown import FlownRecording
 from cratous.services.ground_station.held_signals import held_back
 from cratous.services.ground_station.pace import RATES, Pace
 from cratous.services.ground_station.verdicts import shown
 from cratous.services.logs.entry import Entry
 from cratous.spec.files.printable import json_text
-from cratous.spec.mission import Mission
+from cratous.spec.mission import Change, Mission
 from cratous.spec.mission.guarantees import Outcome, Verdict, worst
 
 TOLD_S = 0.1
@@ -31,6 +32,9 @@ TOLD_S = 0.1
 JUDGED_S = 1.0
 """So often, at most, the monitor is asked for the verdicts so far."""
 GROWING = ("authority", "phases", "events", "routes", "links")
+CHANGED = "cratous.MissionChange"
+DIRECT = "direct"
+"""An order with a command that the flight obeys as it is."""
 Send = Callable[[dict[str, Any]], None]
 
 
@@ -38,11 +42,14 @@ class LiveFlight:
     """Taps a bus, holds the flight to its pace and sends what is new.
 
     send: gets each update, from any thread; judged: descriptor of a pipe to which verdicts are written,
-    a line each.
+    a line each; orders: what the operator has vehicles do at once.
     """
 
-    def __init__(self, mission: Mission, send: Send, judged: int) -> None:
+    def __init__(
+        self, mission: Mission, send: Send, judged: int, orders: DirectOrders | None = None
+    ) -> None:
         self.pace = Pace()
+        self._orders, self._ordered_ms = orders, -1
         self._send, self._judged = send, judged
         self._recording = FlownRecording(mission)
         self._sent: dict[str, int] = dict.fromkeys(GROWING, 0)
@@ -73,7 +80,7 @@ class LiveFlight:
         self.tell()
 
     def command(self, asked: dict[str, Any]) -> None:
-        """Do what the operator asks for: play, pause, step or rate."""
+        """Do what the operator asks for: play, pause, step or rate; a direct command at the next step."""
         what = asked.get("do")
         if what == "play":
             self.pace.play()
@@ -83,7 +90,19 @@ class LiveFlight:
             self.pace.step()
         elif what == "rate" and asked.get("rate") in RATES:
             self.pace.set_rate(float(asked["rate"]))
+        elif what == DIRECT and self._orders is not None:
+            self._orders.give(asked.get("command"))
         self.state()
+
+    def directed(self, now_ms: int) -> tuple[Change, ...]:
+        """See `job.Onlooker`."""
+        found = () if self._orders is None else self._orders.due(now_ms, self._send)
+        self._ordered_ms = now_ms if found else self._ordered_ms
+        return found
+
+    def commanded(self) -> Mission | None:
+        """See `job.Onlooker`."""
+        return None if self._orders is None else self._orders.mission
 
     def state(self) -> None:
         """Send whether it flies, and how fast."""
@@ -99,6 +118,9 @@ class LiveFlight:
                     self._ask()
             self.pace.wait(envelope.time_ms, self._standing)
             self._now_ms = envelope.time_ms
+        if envelope.topic == CHANGED and envelope.time_ms == self._ordered_ms:
+            said = envelope.body
+            self._send({"status": {"text": f"At {said.Time / 1000:g} s {said.What}: {said.Consequence}."}})
         body = lmcp.to_json(envelope.body)
         self._recording.add(
             Entry(envelope.seq, envelope.time_ms, envelope.source, envelope.topic, body)

@@ -8,7 +8,7 @@ import secrets
 import threading
 import time
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 from cratous.core.authority.timeliness import lasted
 from cratous.services.ground_station.json_process import JsonProcess
@@ -29,6 +29,15 @@ ENDING_S = 20.0
 Amend = Callable[[int, Any], dict[str, Any]]
 
 
+class Direct(NamedTuple):
+    """Commands that the flight obeys as it is. kinds: what they are; checked(now_ms, command): raises NotObeyed or
+    BadInput where it is none; flown: hears the text of the mission with those that the flight has taken up."""
+
+    kinds: tuple[str, ...]
+    checked: Callable[[int, Any], None]
+    flown: Callable[[str], None]
+
+
 class NotObeyed(Exception):
     """A command that is not obeyed; status: of HTTP."""
 
@@ -43,9 +52,15 @@ class LiveSession:
     token: whoever has it may command, one page at a time. status: state and text for the page.
     """
 
-    def __init__(self, module: str, asked: dict[str, Any], commanded: Amend | None = None) -> None:
+    def __init__(
+        self,
+        module: str,
+        asked: dict[str, Any],
+        commanded: Amend | None = None,
+        direct: Direct | None = None,
+    ) -> None:
         """module: what flies, as `python -m` takes it; asked: its argument; commanded: gives, for a time of the
-        flight [ms] and a command, the argument of the flight with it, which has `until_ms`. Raises NotObeyed or BadInput."""
+        flight [ms] and a command, the argument of the flight with it, which has `until_ms`. Raises NotObeyed or BadInput; direct: what needs no flight anew."""
         self.token = secrets.token_urlsafe(24)
         self.status: dict[str, Any] = {"state": "loading", "rate": 1.0, "text": ""}
         self._updates: list[str] = []
@@ -53,7 +68,9 @@ class LiveSession:
         self._changed = threading.Condition()
         self._commanding = threading.Lock()
         self._operator, self._seen_s = "", 0.0
-        self._module, self._commanded = module, commanded
+        self._module, self._commanded, self._direct = module, commanded, direct
+        self._given = 0
+        """Direct commands that the flight has not taken up yet."""
         self._flight = self._now_ms = self._until_ms = 0
         self._process = self._start(asked)
 
@@ -77,13 +94,22 @@ class LiveSession:
     def _heard(self, told: dict[str, Any], line: str) -> None:
         with self._changed:
             self._now_ms = told.get("set", {}).get("end_ms", self._now_ms)
-            if "begin" in told:
+            if "directed" in told:
+                self._taken_up(told["directed"])
+            elif "begin" in told:
                 self._begin = told["begin"]
             elif "status" in told:
                 self.status = {**self.status, **told["status"]}
             else:
                 self._updates.append(line)
             self._changed.notify_all()
+
+    def _taken_up(self, told: dict[str, Any]) -> None:
+        self._given = max(0, self._given - 1)
+        if self._direct is not None:
+            self._direct.flown(told["text"])
+        if told["refused"]:
+            self.status = {**self.status, "text": f"Not done: {told['refused']}"}
 
     def _ended(self, how: str) -> None:
         with self._changed:
@@ -162,13 +188,15 @@ class LiveSession:
         """Fly anew with a command, up to where it is known."""
         if self._commanded is None:
             raise NotObeyed(409, "this flight takes no commands that change its mission")
+        if self._direct is not None and self._is_direct(command):
+            self._give(self._direct, command)
+            return
         with self._commanding:
             if self.status["state"] != "paused":
                 raise NotObeyed(409, "the flight has to be paused for a command")
-            if not lasted(0, self._now_ms, self._until_ms):
-                raise NotObeyed(
-                    409, f"the flight is flown anew up to {self._until_ms / 1000:g} s first"
-                )
+            self._refuse_on_the_way()
+            if self._given:
+                raise NotObeyed(409, "the command before has to be flown first: fly on by a step")
             asked = self._commanded(self._now_ms, command)
             with self._changed:
                 before = self._process
@@ -181,6 +209,27 @@ class LiveSession:
                 }
             before.end(ENDING_S)
             self._process = self._start(asked)
+
+    def _refuse_on_the_way(self) -> None:
+        if not lasted(0, self._now_ms, self._until_ms):
+            raise NotObeyed(
+                409, f"the flight is flown anew up to {self._until_ms / 1000:g} s first"
+            )
+
+    def _is_direct(self, command: Any) -> bool:
+        kinds = () if self._direct is None else self._direct.kinds
+        return isinstance(command, dict) and command.get("what") in kinds
+
+    def _give(self, direct: Direct, command: Any) -> None:
+        """Have the flight obey a command at its next step."""
+        with self._commanding:
+            if self.status["state"] not in ("paused", "flying"):
+                raise NotObeyed(409, "the flight has not begun")
+            self._refuse_on_the_way()
+            direct.checked(self._now_ms, command)
+            with self._changed:
+                self._given += 1
+            self._process.say({"do": "direct", "command": command})
 
     def close(self) -> None:
         """End the process if it flies; a flight that is not over leaves no results."""

@@ -1,5 +1,8 @@
 """What an operator commands in flight, as changes of the mission's text: known from the next step on.
 
+What asks for other tasks or zones is for the whole mission; what is direct is for one vehicle, and changes
+nothing of what is asked for.
+
 So a flight with commands is the flight of that text: flown again, it gives the same log. What is asked
 for is planned like any other change, and checked when the text is read.
 """
@@ -9,6 +12,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from cratous.services.ground_station.direct_orders import Directed
 from cratous.services.ground_station.live_session import NotObeyed
 from cratous.services.loading.document import parse_document
 from cratous.services.loading.yaml_mission import loaded
@@ -19,9 +23,12 @@ from cratous.spec.mission import Mission
 KEEP_OUT, GO_TO, LOITER, DROP, END_ZONE = KINDS = (
     "keep_out", "go_to", "loiter", "drop_task", "end_zone",
 )  # fmt: skip
+HOLD_AT, HOLD_HERE, RESUME = DIRECT = ("hold_at", "hold_here", "resume")
+"""Obeyed by a flight as it is, without flying it anew."""
 LABEL = "by the operator"
 MOST_CORNERS, FARTHEST_M, LONGEST_S = 38, 1e7, 86_400.0
 """So many corners, the farthest ones too, fit into what a page may send."""
+NO_VEHICLE = "expected vehicle: the id of one of the mission"
 HEAD = "# Commanded by the operator in flight; this file flown again gives the same log.\n"
 
 
@@ -58,9 +65,34 @@ def commanded(text: str, where: str, seed: int, now_ms: int, asked: Any) -> Comm
         mission, number = _with_task(mission, what, asked)
         found, said = {"task_added": number}, f"task {number} for vehicle {asked['vehicle']}"
     new = mission.added("changes", {"at_s": at_s, **found})
-    new = f"{new if new.startswith(HEAD) else HEAD + new}"
+    new = _headed(new)
     _refuse_moved(loaded(parse_document(new, where), seed), found, asked)
     return Commanded(new, at_ms, f"{said}, commanded at {at_s:g} s")
+
+
+def directed(text: str, where: str, seed: int, at_ms: int, asked: Any) -> Directed:
+    """The mission with one more direct command, which is known at an instant, a step of the flight.
+
+    asked: `what` it is, `vehicle`, and of HOLD_AT one of `places`. Raises NotObeyed and BadInput as `commanded`.
+    """
+    what = asked.get("what") if isinstance(asked, dict) else None
+    if what not in DIRECT:
+        raise NotObeyed(400, f"expected what: one of {', '.join(DIRECT)}")
+    mission = MissionText(text, where)
+    vehicle = asked.get("vehicle")
+    if type(vehicle) is not int or all(one["id"] != vehicle for one in mission.data["vehicles"]):
+        raise NotObeyed(400, NO_VEHICLE)
+    found: dict[str, Any] = {"vehicle_resumes": vehicle}
+    if what != RESUME:
+        found = {"vehicle_holds": {"vehicle": vehicle}}
+    if what == HOLD_AT:
+        (found["vehicle_holds"]["place"],) = _places(asked, 1, 1)
+    new = _headed(mission.added("changes", {"at_s": at_ms / 1000, **found}))
+    return Directed(new, loaded(parse_document(new, where), seed))
+
+
+def _headed(text: str) -> str:
+    return text if text.startswith(HEAD) else HEAD + text
 
 
 def _refuse_moved(mission: Mission, found: dict[str, Any], asked: dict[str, Any]) -> None:
@@ -86,7 +118,7 @@ def _with_task(mission: MissionText, what: str, asked: dict[str, Any]) -> tuple[
     vehicle = asked.get("vehicle")
     start = next((v for v in mission.data["vehicles"] if v["id"] == vehicle), None)
     if type(vehicle) is not int or start is None:
-        raise NotObeyed(400, "expected vehicle: the id of one of the mission")
+        raise NotObeyed(400, NO_VEHICLE)
     ((north_m, east_m),) = _places(asked, 1, 1)
     place = {"north_m": north_m, "east_m": east_m, "alt_m": start["position"]["alt_m"]}
     number = max((one["id"] for one in mission.data["tasks"]), default=0) + 1

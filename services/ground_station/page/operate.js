@@ -1,10 +1,15 @@
 // Commands of the operator that change the mission in flight: picked, drawn on the map, confirmed, and sent.
 
 const by = id => document.getElementById(id);
+// obeyed by the flight as it is, at its next step
+const DIRECT = ["hold_at", "hold_here", "resume"];
 // what is drawn for each: least and most places; null: it is picked from a list
-const DRAWN = { keep_out: [3, 38], go_to: [1, 1], loiter: [1, 1], drop_task: null, end_zone: null };
-const HINTS = { keep_out: "Click the corners of the keep-out on the map; Enter ends it, Esc gives it up.", go_to: "Click the place on the map; Esc gives it up.", loiter: "Click the place on the map; Esc gives it up." };
-const NAMES = { keep_out: "A keep-out zone", go_to: "A task to fly through a place", loiter: "A task to loiter at a place", drop_task: "A task is dropped", end_zone: "A zone ends" };
+const DRAWN = { hold_at: [1, 1], hold_here: [0, 0], resume: [0, 0], keep_out: [3, 38], go_to: [1, 1], loiter: [1, 1], drop_task: null, end_zone: null };
+const HINTS = { hold_at: "Click the place on the map; Esc gives it up.", keep_out: "Click the corners of the keep-out on the map; Enter ends it, Esc gives it up.", go_to: "Click the place on the map; Esc gives it up.", loiter: "Click the place on the map; Esc gives it up." };
+const NAMES = { hold_at: "Go to a place, and circle through it until it is to resume", hold_here: "Circle where it is, until it is to resume", resume: "Resume the plan", keep_out: "A keep-out zone", go_to: "A task to fly through a place", loiter: "A task to loiter at a place", drop_task: "A task is dropped", end_zone: "A zone ends" };
+
+const AT_ONCE = "The flight obeys at its next step, without stopping, and the plan stays. Where ICAROUS has the vehicle, or no way keeps the zones, it is refused.";
+const ANEW = "It is known from the next step on, and what is left is planned anew where it asks for that. The flight is flown anew up to now, stands there, and its results have the mission with this command.";
 
 export class Operator {
   // live: the flight; map: on which is drawn; redraw: draws it
@@ -32,10 +37,10 @@ export class Operator {
   async begin(what) {
     by("operate").value = "";
     if (!(what in DRAWN)) return;
-    if (this.live.status.state === "flying") await this.live.order({ do: "pause" });
+    if (this.live.status.state === "flying" && !DIRECT.includes(what)) await this.live.order({ do: "pause" });
     Object.assign(this, { what, places: [] });
     by("operate-hint").textContent = HINTS[what] ?? "";
-    if (!DRAWN[what]) this.confirm();
+    if (!DRAWN[what]?.[1]) this.confirm();
   }
 
   place(place) {
@@ -57,11 +62,11 @@ export class Operator {
     fill("command-vehicle", vehicles);
     const listed = what === "end_zone" ? recording.zones.filter(one => one.from_ms <= now && (one.to_ms ?? Infinity) > now) : recording.tasks;
     fill("command-id", listed.map(one => [one.id, `${one.id} ${one.label || ""}`]));
-    by("command-vehicle-box").hidden = !["go_to", "loiter"].includes(what);
+    by("command-vehicle-box").hidden = ![...DIRECT, "go_to", "loiter"].includes(what);
     by("command-seconds-box").hidden = what !== "loiter";
     by("command-id-box").hidden = DRAWN[what] !== null;
     by("command-yes").disabled = DRAWN[what] === null && !listed.length;
-    by("command-text").textContent = `${NAMES[what]}${this.places.length ? `, at ${this.places.map(([n, e]) => `north ${n} m, east ${e} m`).join("; ")}` : ""}. It is known from the next step on, and what is left is planned anew where it asks for that. The flight is flown anew up to now, stands there, and its results have the mission with this command.`;
+    by("command-text").textContent = `${NAMES[what]}${this.places.length ? `, at ${this.places.map(([n, e]) => `north ${n} m, east ${e} m`).join("; ")}` : ""}. ${DIRECT.includes(what) ? AT_ONCE : ANEW}`;
     by("confirm-command").showModal();
   }
 
@@ -72,7 +77,7 @@ export class Operator {
     if (!by("command-seconds-box").hidden) command.duration_s = Number(by("command-seconds").value);
     if (!by("command-id-box").hidden) command.id = Number(by("command-id").value);
     by("command-yes").disabled = true;
-    await this.live.settled();
+    if (!DIRECT.includes(what)) await this.live.settled();
     await this.live.order({ do: "command", command });
     this.end();
   }
