@@ -11,13 +11,14 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from fractions import Fraction
 from functools import wraps
-from math import hypot, isfinite
+from math import hypot, inf, isfinite
 from typing import NamedTuple
 
 from cratous.core.geofence.planar import edges_of, keep_in_leg_ok, keep_out_leg_ok, locate
 from cratous.core.kernel import Vec2
 from cratous.core.schedule.rows import runs_forward
 from cratous.services.loading.polygons import polygon_problem
+from cratous.services.mission.ground import floor_of
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission, Pattern, Position, TaskKind, Zone, ZoneKind, changes
 
@@ -201,6 +202,9 @@ def _points(mission: Mission) -> Iterator[tuple[str, tuple[float, ...]]]:
             yield f"zones[{k}].vertices[{j}]", vertex
     for k, traffic in enumerate(mission.traffic):
         yield f"traffic[{k}].position", traffic.position
+    for k, change in enumerate(mission.changes):
+        if isinstance(change, changes.HoldCommand) and change.place is not None:
+            yield f"changes[{k}].vehicle_holds.place", change.place
 
 
 def _places(mission: Mission) -> Iterator[Finding]:
@@ -291,8 +295,9 @@ def relation_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
 
 @_refused
 def change_problems(mission: Mission) -> Iterator[Finding]:
-    """Changes in flight of vehicles or tasks that do not exist, and a mission that begins empty."""
+    """Changes in flight of vehicles or tasks that do not exist, or too low, and a mission that begins empty."""
     vehicles, tasks = {v.id for v in mission.vehicles}, {t.id for t in mission.tasks}
+    floor_m = floor_of(mission)
     for k, change in enumerate(mission.changes):
         known = vehicles if change.vehicle else tasks
         number = change.vehicle or change.task
@@ -302,6 +307,14 @@ def change_problems(mission: Mission) -> Iterator[Finding]:
                 f"{'vehicle' if change.vehicle else 'task'} {number} does not exist",
                 "one of " + ", ".join(map(str, sorted(known))),
                 str(number),
+            )
+        alt_m = change.alt_m if isinstance(change, changes.HoldCommand) else None
+        if alt_m is not None and not keep_in_leg_ok(1, False, alt_m, alt_m, floor_m, inf):
+            yield Finding(
+                f"changes[{k}].vehicle_holds.alt_m",
+                "no manoeuvre goes so low",
+                f"above {floor_m:g} m MSL",
+                f"{alt_m:g} m MSL",
             )
     later = [c for c in mission.changes if c.kind in (changes.TASK_ADDED, changes.VEHICLE_JOINS)]
     for all_of, name in ((vehicles, "vehicle"), (tasks, "task")):

@@ -8,17 +8,26 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from chromium_tools import browsing
+from chromium_tools import Page, browsing
 from ground_station_tools import flying
 
 from cratous.services.cli import main
 from cratous.services.ground_station import live_session
+from cratous.services.ground_station.direct_orders import Directed, DirectOrders
 from cratous.services.ground_station.live_session import NotObeyed
 from cratous.services.ground_station.server import LONGEST, page_files
 from cratous.services.loading.document import parse_document
 from cratous.services.loading.yaml_mission import loaded
-from cratous.services.mission_editor.operator_commands import HEAD, MOST_CORNERS, commanded
+from cratous.services.mission_editor.operator_commands import (
+    DIRECT,
+    HEAD,
+    MOST_CORNERS,
+    commanded,
+    directed,
+)
 from cratous.spec.errors import BadInput
+from cratous.spec.mission import Change
+from cratous.spec.mission.changes import HoldCommand
 
 ROOT = Path(__file__).resolve().parents[2]
 TEXT = (ROOT / "examples" / "crossing" / "mission.yaml").read_text(encoding="utf-8")
@@ -85,6 +94,43 @@ def test_what_is_no_command_or_not_possible_is_refused(asked: Any, error: type[E
         commanded(TEXT, "m.yaml", 0, 24_000, asked)
 
 
+def test_a_direct_command_is_of_one_vehicle_and_asks_for_nothing_else() -> None:
+    at = directed(TEXT, "m.yaml", 0, 24_250, {"what": "hold_at", "vehicle": 2, "places": [[9.96, -5]]})
+    assert at.text.startswith(HEAD)
+    (hold,) = at.mission.changes
+    assert hold == HoldCommand(24_250, "vehicle_holds", vehicle=2, place=(10.0, -5.0))
+    here = directed(at.text, "m.yaml", 0, 30_000, {"what": "hold_here", "vehicle": 1})
+    again = directed(here.text, "m.yaml", 0, 31_000, {"what": "resume", "vehicle": 2})
+    assert again.text.count(HEAD) == 1
+    assert again.mission == loaded(parse_document(again.text, "m.yaml"))
+    assert again.mission.changes == (
+        hold,
+        HoldCommand(30_000, "vehicle_holds", vehicle=1),
+        Change(31_000, "vehicle_resumes", vehicle=2),
+    )
+    # a variant of the mission has the place where it was clicked
+    varied = directed(TEXT, "m.yaml", 7, 24_250, {"what": "hold_at", "vehicle": 2, "places": [[9, 9]]})
+    (change,) = varied.mission.changes
+    assert isinstance(change, HoldCommand)
+    assert change.place == (9.0, 9.0)
+
+
+@pytest.mark.parametrize(
+    ("asked", "error"),
+    [
+        (None, NotObeyed), ({"what": "go_to", "vehicle": 1, "places": [[0, 0]]}, NotObeyed),
+        ({"what": "resume"}, NotObeyed), ({"what": "resume", "vehicle": 7}, NotObeyed),
+        ({"what": "resume", "vehicle": True}, NotObeyed),
+        ({"what": "hold_at", "vehicle": 1}, NotObeyed),
+        ({"what": "hold_at", "vehicle": 1, "places": [[0, 0], [1, 1]]}, NotObeyed),
+        ({"what": "hold_at", "vehicle": 1, "places": [[0, 900_000]]}, BadInput),
+    ],
+)  # fmt: skip
+def test_what_is_no_direct_command_is_refused(asked: Any, error: type[Exception]) -> None:
+    with pytest.raises(error):
+        directed(TEXT, "m.yaml", 0, 24_000, asked)
+
+
 def test_a_page_can_send_as_many_corners_as_it_draws() -> None:
     (drawn,) = re.findall(r"keep_out: \[3, (\d+)\]", page_files()["/operate.js"].body.decode())
     assert int(drawn) == MOST_CORNERS
@@ -100,22 +146,41 @@ def test_a_variant_that_would_have_it_elsewhere_is_refused() -> None:
     assert commanded(TEXT, "m.yaml", 7, 24_000, {"what": "drop_task", "id": 1}).at_ms > 24_000
 
 
+class Flight:
+    """A process that flies, as a session hears it; said: what it was told."""
+
+    def __init__(self, _module: str, heard: Any, *_: Any) -> None:
+        self.hear = lambda told: heard(told, json.dumps(told))
+        self.said: list[Any] = []
+
+    def at(self, ms: int) -> None:
+        self.hear({"set": {"end_ms": ms}})
+
+    def stands(self) -> None:
+        self.hear({"status": {"state": "paused"}})
+
+    def say(self, asked: Any) -> None:
+        self.said.append(asked)
+
+    def end(self, _patience_s: float) -> None: ...
+
+
+@pytest.fixture
+def flights(monkeypatch: pytest.MonkeyPatch) -> list[Flight]:
+    """Those that sessions start, in their order."""
+    found: list[Flight] = []
+
+    def started(*given: Any) -> Flight:
+        found.append(Flight(*given))
+        return found[-1]
+
+    monkeypatch.setattr(live_session, "JsonProcess", started)
+    return found
+
+
 def test_no_command_is_taken_until_the_flight_is_where_the_last_one_was(
-    monkeypatch: pytest.MonkeyPatch,
+    flights: list[Flight],
 ) -> None:
-    flights: list[Any] = []
-
-    class Flight:
-        def __init__(self, _module: str, heard: Any, *_: Any) -> None:
-            self.at = lambda ms: heard({"set": {"end_ms": ms}}, "{}")
-            self.stands = lambda: heard({"status": {"state": "paused"}}, "{}")
-            flights.append(self)
-
-        def say(self, _asked: Any) -> None: ...
-
-        def end(self, _patience_s: float) -> None: ...
-
-    monkeypatch.setattr(live_session, "JsonProcess", Flight)
     given: list[int] = []
 
     def amended(now_ms: int, _command: Any) -> dict[str, Any]:
@@ -136,6 +201,121 @@ def test_no_command_is_taken_until_the_flight_is_where_the_last_one_was(
     assert given == [5000, 5100]
 
 
+def test_a_direct_command_goes_to_the_flight_that_is_and_its_text_comes_back(
+    flights: list[Flight],
+) -> None:
+    texts: list[str] = []
+    anew: list[int] = []
+
+    def checked(now_ms: int, command: Any) -> None:
+        directed(TEXT, "m.yaml", 0, now_ms, command)
+
+    def amended(now_ms: int, _command: Any) -> dict[str, Any]:
+        anew.append(now_ms)
+        return {"until_ms": now_ms + 100}
+
+    direct = live_session.Direct(DIRECT, checked, texts.append)
+    session = live_session.LiveSession("flies", {}, amended, direct)
+    (flight,) = flights
+    asked = {"do": "command", "command": {"what": "resume", "vehicle": 1}}
+    with pytest.raises(NotObeyed, match="has not begun"):
+        session.order(session.token, "a", asked)
+    flight.at(5000)
+    flight.hear({"status": {"state": "flying"}})
+    session.order(session.token, "a", asked)
+    with pytest.raises(NotObeyed, match="expected vehicle"):
+        session.order(session.token, "a", {"do": "command", "command": {"what": "hold_here"}})
+    assert flight.said == [{"do": "direct", "command": asked["command"]}]
+    # what is planned anew waits until the flight has taken it up, for it is flown anew with it
+    flight.stands()
+    other = {"do": "command", "command": {"what": "drop_task", "id": 1}}
+    with pytest.raises(NotObeyed, match="fly on by a step"):
+        session.order(session.token, "a", other)
+    flight.hear({"directed": {"text": "the mission with it", "refused": ""}})
+    assert texts == ["the mission with it"]
+    assert [one for one in session.told(0)["updates"] if "directed" in one] == []
+    session.order(session.token, "a", other)
+    assert (anew, len(flights)) == ([5000], 2)
+    flights[1].stands()
+    with pytest.raises(NotObeyed, match=r"up to 5\.1 s first"):
+        session.order(session.token, "a", asked)
+
+
+def test_orders_wait_for_the_next_step_and_one_that_cannot_be_is_told() -> None:
+    def put(text: str, at_ms: int, command: Any) -> Directed:
+        return directed(text, "m.yaml", 0, at_ms, command)
+
+    orders, told = DirectOrders(TEXT, put), list[Any]()
+    assert (orders.due(1000, told.append), orders.mission) == ((), None)
+    orders.give({"what": "hold_here", "vehicle": 1})
+    orders.give({"what": "hold_at", "vehicle": 1, "places": [[0, 900_000]]})
+    orders.give({"what": "resume", "vehicle": 1})
+    found = orders.due(1250, told.append)
+    assert [(one.kind, one.at_ms) for one in found] == [
+        ("vehicle_holds", 1250), ("vehicle_resumes", 1250),
+    ]  # fmt: skip
+    assert orders.mission is not None
+    assert orders.mission.changes == found
+    assert [bool(one["directed"]["refused"]) for one in told] == [False, True, False]
+    assert "too far" in told[1]["directed"]["refused"]
+    assert loaded(parse_document(told[2]["directed"]["text"], "m.yaml")).changes == found
+    assert orders.due(1500, told.append) == ()
+
+
+@pytest.mark.slow
+def test_a_flight_obeys_at_once_and_is_that_of_the_mission_that_it_writes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mission = tmp_path / "crossing.yaml"
+    mission.write_text(SHORT, encoding="utf-8")
+    with flying(mission, tmp_path / "live") as live, browsing(tmp_path / "profile") as page:
+        page.go(live.url)
+        page.until(f"{STATE} === 'paused' && !document.getElementById('fly').disabled")
+        number = live.told()["flight"]
+        page.click("#fly")
+        page.until(f"{STATE} === 'flying' && Number(document.getElementById('slider').max) > 1000")
+        _choose(page, "hold_at")
+        page.until("document.getElementById('operate-hint').textContent.startsWith('Click')")
+        page.click("#map")
+        page.until("document.getElementById('confirm-command').open")
+        assert "without stopping" in page.text("command-text")
+        page.value("document.getElementById('command-vehicle').value = 1")
+        page.click("#command-yes")
+        page.until("document.getElementById('live-text').textContent.includes('it circles through')")
+        page.until("document.getElementById('events').textContent.includes('commanded to hold at')")
+        assert page.text("live-state") == "flying"  # it went on all the while
+        _choose(page, "resume")
+        page.until("document.getElementById('confirm-command').open")
+        page.value("document.getElementById('command-vehicle').value = 1")
+        page.click("#command-yes")
+        page.until("document.getElementById('events').textContent.includes('to resume its plan')")
+        assert live.told()["flight"] == number  # nothing was flown anew
+        assert page.logged == []
+        live.order("a", do="take")
+        live.order("a", do="rate", rate=1000)
+        assert live.until("ended", "failed", "lost")["state"] == "ended"
+    results = tmp_path / "live" / "crossing"
+    assert main(["certify", str(results)]) in (0, 1)
+    assert "no file of the results" not in capsys.readouterr().err
+    report = json.loads((results / "report.json").read_text(encoding="utf-8"))
+    assert report["command"].endswith("mission.yaml --out again")
+    assert [one["kind"] for one in report["mission"]["changes"]] == [
+        "vehicle_holds", "vehicle_resumes",
+    ]  # fmt: skip
+    words = ["run", str(results / "mission.yaml"), "--quiet", "--out", str(tmp_path / "again")]
+    assert main(words) == report["exit_code"]
+    second = json.loads((tmp_path / "again" / "crossing" / "report.json").read_text("utf-8"))
+    assert second["log"]["digest"] == report["log"]["digest"]
+    capsys.readouterr()
+
+
+def _choose(page: Page, what: str) -> None:
+    page.value(
+        f"(s => {{ s.value = '{what}'; s.dispatchEvent(new Event('change')); }})"
+        "(document.getElementById('operate'))"
+    )
+
+
 @pytest.mark.slow
 def test_a_flight_with_a_command_is_that_of_the_mission_that_it_writes(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -148,10 +328,7 @@ def test_a_flight_with_a_command_is_that_of_the_mission_that_it_writes(
         page.click("#fly-step")
         page.until("Number(document.getElementById('slider').max) === 1000")
         before = live.told()["updates"]
-        page.value(
-            "(s => { s.value = 'go_to'; s.dispatchEvent(new Event('change')); })"
-            "(document.getElementById('operate'))"
-        )
+        _choose(page, "go_to")
         page.until("document.getElementById('operate-hint').textContent.startsWith('Click')")
         page.click("#map")
         page.until("document.getElementById('confirm-command').open")
