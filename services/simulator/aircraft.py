@@ -82,7 +82,8 @@ def step(a: Aircraft, wind_m_s: tuple[float, float], ground_m: float, dt_s: floa
     """The aircraft a step later."""
     motion, bank = move(a.motion, a.guidance.command, a.airframe, wind_m_s, ground_m, dt_s)
     held = guide.guide(a.guidance, motion, bank, dt_s)
-    return Aircraft(a.id, a.airframe, motion, bank, held, *a[5:])
+    number, airframe, _, _, _, first, command, waypoint = a
+    return Aircraft(number, airframe, motion, bank, held, first, command, waypoint)
 
 
 def receive(a: Aircraft, body: Any, told: Mapping[int, int] = guide.NOTHING) -> Aircraft:

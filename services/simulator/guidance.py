@@ -243,10 +243,10 @@ def _follow(g: Guidance, m: Motion, max_bank_rad: float) -> Guidance:
     leg = g.leg
     if leg.past is not None and leg.to is not None and leg.length_m >= radius:
         wanted = _onto_leg(leg.past, leg.to, leg.bearing_rad, lat, lon, 2 * radius)
-    climb = g.command.climb_m_s
+    _, alt_m, speed_m_s, climb = g.command
     if away != 0:
-        climb = (g.command.alt_m - m.alt_m) / away * m.airspeed_m_s
-    return g._replace(command=g.command._replace(course_rad=wanted, climb_m_s=climb))
+        climb = (alt_m - m.alt_m) / away * m.airspeed_m_s
+    return Guidance(Command(wanted, alt_m, speed_m_s, climb), *g[1:])
 
 
 def _next(g: Guidance, to: Waypoint) -> Guidance:
@@ -310,8 +310,10 @@ def _loiter(g: Guidance, m: Motion, dt_s: float) -> Guidance:
     if corner < 0:
         corner = first_corner(loiter, m.lat_rad, m.lon_rad, g.compatible)
     wanted, corner = course(loiter, corner, m.lat_rad, m.lon_rad)
-    c = g.command._replace(course_rad=wanted)
+    _, alt_m, speed_m_s, climb_m_s = g.command
     if loiter.kind == HOVER:
         away = distance_m(m.lat_rad, m.lon_rad, *loiter.points[0])
-        c = c._replace(speed_m_s=min(loiter.speed_m_s, HOVER_GAIN_S * away))
-    return g._replace(loiter_s=g.loiter_s + dt_s, corner=corner, command=c)
+        speed_m_s = min(loiter.speed_m_s, HOVER_GAIN_S * away)
+    # by place, since _replace takes as long as all the rest here
+    c = Command(wanted, alt_m, speed_m_s, climb_m_s)
+    return Guidance(c, *g[1:11], g.loiter_s + dt_s, corner, *g[13:])

@@ -64,7 +64,9 @@ class Command(NamedTuple):
 
 def _towards(value: float, wanted: float, most: float) -> float:
     change = wanted - value
-    return value + copysign(min(abs(change), most), change)
+    if change > most:
+        return value + most
+    return value - most if change < -most else value + change
 
 
 def asked_climb_m_s(difference_m: float, climb_m_s: float, compatible: bool) -> float:

@@ -51,43 +51,41 @@ def perceptions(
             north, east, below = place[0] - lat, place[1] - lon, alt - place[2]
             if abs(east) > pi:
                 east = bound_pi(east)
-            by = [number for number, seen in pictures if seen.has(north, east, below)]
+            by = []
+            for number, (a0, a1, a2), (r0, r1, r2), (d0, d1, d2), wide, high in pictures:
+                depth = north * a0 + east * a1 + below * a2
+                if (
+                    depth > 0
+                    and abs(north * r0 + east * r1 + below * r2) <= wide * depth
+                    and abs(north * d0 + east * d1 + below * d2) <= high * depth
+                ):
+                    by.append(number)
             if by and other is not one and _in_sight(one.motion, place, terrain):
                 yield _perception(one.id, by, other, time_ms)
 
 
 class _Picture(NamedTuple):
-    """What a camera has in its picture: its axes ahead, right and down by parts for latitude, longitude [rad] and
-    height [m] below; half of its width and height at depth 1."""
+    """What a camera, by its id, has in its picture: its axes ahead, right and down by parts for latitude, longitude [rad]
+    and height [m] below; half of its width and height at depth 1."""
 
+    number: int
     ahead: Place
     right: Place
     down: Place
     wide: float
     high: float
 
-    def has(self, north_rad: float, east_rad: float, below_m: float) -> bool:
-        """Whether what is so far away from the camera is in it."""
-        ahead = self.ahead
-        depth = north_rad * ahead[0] + east_rad * ahead[1] + below_m * ahead[2]
-        if depth <= 0:
-            return False
-        x, y, z = self.right
-        if abs(north_rad * x + east_rad * y + below_m * z) > self.wide * depth:
-            return False
-        x, y, z = self.down
-        return abs(north_rad * x + east_rad * y + below_m * z) <= self.high * depth
 
-
-def _pictures(one: Body) -> list[tuple[int, _Picture]]:
-    """The ids of a vehicle's cameras, and what they have in their pictures."""
+def _pictures(one: Body) -> list[_Picture]:
+    """What the cameras of a vehicle have in their pictures."""
     found = []
     around = EQUATOR_M * cos(one.motion.lat_rad)
     for g in one.mounted:
         for c in g.cameras:
             *axes, wide, high = payload.picture(g, c, one.motion)
             ahead, right, down = ((x * EQUATOR_M, y * around, z) for x, y, z in axes)
-            found.append((c.configuration.PayloadID, _Picture(ahead, right, down, wide, high)))
+            number = c.configuration.PayloadID
+            found.append(_Picture(number, ahead, right, down, wide, high))
     return found
 
 

@@ -140,8 +140,8 @@ class World:
                     self._act(key, body)
                 one = one._replace(guidance=one.guidance._replace(fired=()))
             self.aircraft[key] = one
-            mounted = self._mounted.get(key)
-            if mounted:
+            mounted = self._mounted.get(key, ())
+            if any(gimbal.action is not None for gimbal in mounted):
                 self._mounted[key] = tuple(payload.step(p, one.motion, STEP_S) for p in mounted)
         self.drivers.step(STEP_S)
 

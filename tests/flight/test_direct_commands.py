@@ -174,7 +174,7 @@ class Straight(Ways):
 
 def test_it_climbs_no_faster_than_it_can() -> None:
     vehicle = CROSSING.vehicle(1)
-    air = AirState(Position(0.0, 0.0, 300.0), 0.0, 22.0)
+    air = AirState(Position(0.0, 0.0, 300.0), 0.0, 22.0, 0.0)
     chain = Chain(vehicle, (), 0, Phase.DONE, Track((air.position,), 0.0), 22.0)
 
     def come_to(alt_m: float) -> Into:
@@ -199,7 +199,7 @@ def test_a_zone_over_where_it_holds_ends_that() -> None:
 def test_it_holds_on_by_another_plan_and_then_flies_that() -> None:
     """Another task is asked for: the one that is left has it too, and it begins its task again when it resumes."""
     crossing = load(EXAMPLES / "crossing" / "mission.yaml")
-    task = replace(crossing.task(2), id=3, eligible=(1,), points=((1200.0, -900.0, 300.0),))
+    task = replace(crossing.task(2), id=3, eligible=(1,), points=(Position(1200.0, -900.0, 300.0),))
     more = replace(crossing, tasks=(*crossing.tasks, task), relations="|(p1 p2 p3)")
     flown = Flown(with_(HOLD, Change(120_000, "task_added", task=3), RESUME, base=more))
     assert flown.result.replans == 1
@@ -266,7 +266,7 @@ def test_a_place_where_nobody_can_hold_is_told(
 ) -> None:
     file = _file(tmp_path, 1)
     file.write_text(file.read_text("utf-8").replace(old, new), encoding="utf-8")
-    with pytest.raises(BadInput, match=rf"{why}(.|\n)*vehicle_holds") as caught:
+    with pytest.raises(BadInput, match=rf"vehicle_holds.*{why}") as caught:
         load(file)
     assert "m.yaml" in str(caught.value)
 
