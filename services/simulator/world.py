@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.services.simulator import payload
+from cratous.services.simulator.above_ground import above_sea
 from cratous.services.simulator.aircraft import (
     Aircraft,
     aircraft_of,
@@ -236,6 +237,7 @@ class World:
                     item=f"AirVehicleState {body.ID}",
                     expected="its AirVehicleConfiguration before it",
                 )
+            body = self._above_sea(body)
             one = aircraft_of(body, airframe, self.aircraft.get(body.ID), where)
             if self.terrain is not None:  # a corrupt tile is refused with who brings it up
                 self.terrain.elevation(one.motion.lat_rad, one.motion.lon_rad)
@@ -247,7 +249,7 @@ class World:
             commands = (*body.MissionCommandList, *body.VehicleCommandList)
             for one in commands:  # all of them, or none
                 self._check(one, where)
-            for one in commands:
+            for one in [self._above_sea(one) for one in commands]:
                 self._command(one, where)
         elif kind == "WeatherReport":
             if not (isfinite(body.WindSpeed) and isfinite(body.WindDirection)):
@@ -265,7 +267,7 @@ class World:
                 self._paths.drop(key)
         elif kind == "EntityPerception":
             check_place(body.Location, where, f"{kind} of {body.PerceivedEntityID}")
-            if not self._perceived(body):
+            if not self._perceived(self._above_sea(body)):
                 self.unheard[kind] += 1
         else:
             self.unheard[kind] += 1
@@ -304,8 +306,18 @@ class World:
                 got=str(body.VehicleID),
             )
 
+    def _above_sea(self, body: Any) -> Any:
+        """A message with altitudes above mean sea level; AMASE takes all for that."""
+        if self.terrain is None or self.compatible:
+            return body
+        key = getattr(body, "VehicleID", 0)
+        there = key in self.aircraft or key in self.drivers.there
+        m = self._one(key).motion if there else None
+        return above_sea(body, self.terrain, (0.0, 0.0) if m is None else (m.lat_rad, m.lon_rad))
+
     def _command(self, body: Any, where: str) -> None:
         self._check(body, where)
+        body = self._above_sea(body)
         if steers(body):
             self._tracks.steered(body.VehicleID)
             self._paths.drop(body.VehicleID)

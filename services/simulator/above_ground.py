@@ -1,0 +1,51 @@
+"""Altitudes above ground of what arrives, as altitudes above mean sea level: the terrain's height is added.
+
+Each counts at its own place: a waypoint's there, a loiter's at its centre, a flight director's below the vehicle when it is
+told so, or at the waypoint that it belongs to. Between two places nothing follows the ground.
+"""
+
+from __future__ import annotations
+
+from math import isfinite, radians
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from cratous.services.simulator.terrain import Terrain
+
+Below = tuple[float, float]
+"""Latitude and longitude [rad] of the ground that counts where a message names no place of its own."""
+PLACES = ("Location", "Starepoint")
+
+
+def above_sea(body: Any, terrain: Terrain, below: Below) -> Any:
+    """A message with all its altitudes above mean sea level; itself where they are. Raises BadInput for a corrupt tile."""
+    own = _own_place(body)
+    below = below if own is None else own
+    changed: dict[str, Any] = {}
+    if _is_above_ground(body):
+        changed = {"Altitude": body.Altitude + terrain.elevation(*below), "AltitudeType": "MSL"}
+    for name in PLACES:
+        place = getattr(body, name, None)
+        if place is not None and (new := above_sea(place, terrain, below)) is not place:
+            changed[name] = new
+    for name in ("WaypointList", "VehicleActionList"):
+        parts = getattr(body, name, ())
+        new_parts = [above_sea(part, terrain, below) for part in parts]
+        if any(new is not part for new, part in zip(new_parts, parts, strict=True)):
+            changed[name] = new_parts
+    return body.copy(**changed) if changed else body
+
+
+def _own_place(body: Any) -> Below | None:
+    latitude, longitude = getattr(body, "Latitude", None), getattr(body, "Longitude", None)
+    if latitude is None or longitude is None or not isfinite(latitude + longitude):
+        return None
+    return radians(latitude), radians(longitude)
+
+
+def _is_above_ground(body: Any) -> bool:
+    """Whether an object has an altitude of its own above ground; 0 of a flight director is none."""
+    kind = getattr(body, "AltitudeType", None)
+    if kind is None or kind.name != "AGL" or not isfinite(body.Altitude):
+        return False
+    return _own_place(body) is not None or bool(body.Altitude)
