@@ -144,7 +144,9 @@ def first_state(mission: Mission, plan: Plan) -> State:
     """Before the mission begins."""
     known = known_at(mission, 0)
     begun_with, to_come = split(mission.changes, 0)
-    direct = (change for change in begun_with if change.kind in DIRECT)  # they say nothing of the mission
+    direct = (
+        change for change in begun_with if change.kind in DIRECT
+    )  # they say nothing of the mission
     return State(known, mission, hard_zones(known.zones), plan, (*direct, *to_come))
 
 

@@ -82,9 +82,7 @@ def held_on(state: State, old: Chain, chain: Chain, out: Out) -> tuple[State, bo
     bad = first_bad_leg((state.air(vid).position, *old.track.rest(old.s_m)), state.zones)
     if bad is not None:
         why = f"its way or its circle breaks {name_of(bad[1])}: it flies by the plan"
-        out.append(
-            Say(mission_change(state.now_ms, f"vehicle {vid} holds no longer", why), NAME)
-        )
+        out.append(Say(mission_change(state.now_ms, f"vehicle {vid} holds no longer", why), NAME))
         return state, False
     k = chain.next_k(failed)
     number = chain.items[k].task_id if k < len(chain.items) else None

@@ -120,7 +120,9 @@ class LiveFlight:
             self._now_ms = envelope.time_ms
         if envelope.topic == CHANGED and envelope.time_ms == self._ordered_ms:
             said = envelope.body
-            self._send({"status": {"text": f"At {said.Time / 1000:g} s {said.What}: {said.Consequence}."}})
+            self._send(
+                {"status": {"text": f"At {said.Time / 1000:g} s {said.What}: {said.Consequence}."}}
+            )
         body = lmcp.to_json(envelope.body)
         self._recording.add(
             Entry(envelope.seq, envelope.time_ms, envelope.source, envelope.topic, body)

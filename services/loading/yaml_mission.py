@@ -58,7 +58,14 @@ from cratous.spec.mission import (
     changes,
 )
 from cratous.spec.mission.bridge_faults import words
-from cratous.spec.mission.changes import VEHICLE_HOLDS, WIND, ZONE_ENDS, HoldCommand, WindChange, ZoneEnd
+from cratous.spec.mission.changes import (
+    VEHICLE_HOLDS,
+    WIND,
+    ZONE_ENDS,
+    HoldCommand,
+    WindChange,
+    ZoneEnd,
+)
 from cratous.spec.mission.sensing import Sensing
 from cratous.spec.mission.sensing import words as sensing_words
 

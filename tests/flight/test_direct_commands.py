@@ -68,7 +68,9 @@ class Flown:
         }
 
     def of(self, topic: str) -> list[tuple[int, dict[str, Any]]]:
-        return [(ms, json.loads(body)) for ms, name, body in self.said if name == f"cratous.{topic}"]
+        return [
+            (ms, json.loads(body)) for ms, name, body in self.said if name == f"cratous.{topic}"
+        ]
 
     def answers(self) -> list[tuple[int, str]]:
         return [(ms, body["Consequence"]) for ms, body in self.of("MissionChange")]
@@ -95,7 +97,13 @@ def test_it_leaves_its_task_holds_at_the_place_and_goes_on_where_it_left(held: F
     (told, _), (again, answer) = held.answers()
     assert (told, again, answer) == (90_000, 160_000, "it goes on where it left")
     phases = held.phases(1)
-    assert [phase for _, phase in phases] == ["Transit", "Active", "Suspended", "Active", "Complete"]
+    assert [phase for _, phase in phases] == [
+        "Transit",
+        "Active",
+        "Suspended",
+        "Active",
+        "Complete",
+    ]
     suspended, back = phases[2][0], phases[3][0]
     assert (suspended, back > 160_000) == (90_000, True)
     # on the circle through the place: never farther from it than the circle is wide
@@ -190,8 +198,8 @@ def test_it_climbs_no_faster_than_it_can() -> None:
 def test_a_zone_over_where_it_holds_ends_that() -> None:
     zone = Change(140_000, "zone", zone=_square(*PLACE, 300, ZoneKind.KEEP_OUT))
     flown = Flown(with_(HOLD, zone))
-    whats = [(ms, body["What"]) for ms, body in flown.of("MissionChange")]
-    assert (140_000, "vehicle 1 holds no longer") in whats
+    said = [(ms, body["What"]) for ms, body in flown.of("MissionChange")]
+    assert (140_000, "vehicle 1 holds no longer") in said
     assert flown.result.outcome == "complete"
     assert flown.outcomes["G3", "task 1 served"] is Outcome.HOLDS
 
@@ -213,7 +221,11 @@ def test_it_holds_on_by_another_plan_and_then_flies_that() -> None:
 
 def test_icarous_keeps_what_it_has_and_gives_it_back_to_the_hold() -> None:
     early = replace(HOLD, at_ms=32_750, place=(300.0, -300.0))
-    changes = (early, HoldCommand(43_250, "vehicle_holds", vehicle=2), replace(RESUME, at_ms=75_750))
+    changes = (
+        early,
+        HoldCommand(43_250, "vehicle_holds", vehicle=2),
+        replace(RESUME, at_ms=75_750),
+    )
     flown = Flown(with_(*changes), daa=True)
     answers = [answer for _, answer in flown.answers()]
     assert answers[1] == "refused: ICAROUS has it"

@@ -95,7 +95,9 @@ def test_what_is_no_command_or_not_possible_is_refused(asked: Any, error: type[E
 
 
 def test_a_direct_command_is_of_one_vehicle_and_asks_for_nothing_else() -> None:
-    at = directed(TEXT, "m.yaml", 0, 24_250, {"what": "hold_at", "vehicle": 2, "places": [[9.96, -5]]})
+    at = directed(
+        TEXT, "m.yaml", 0, 24_250, {"what": "hold_at", "vehicle": 2, "places": [[9.96, -5]]}
+    )
     assert at.text.startswith(HEAD)
     (hold,) = at.mission.changes
     assert hold == HoldCommand(24_250, "vehicle_holds", vehicle=2, place=(10.0, -5.0))
@@ -109,7 +111,9 @@ def test_a_direct_command_is_of_one_vehicle_and_asks_for_nothing_else() -> None:
         Change(31_000, "vehicle_resumes", vehicle=2),
     )
     # a variant of the mission has the place where it was clicked
-    varied = directed(TEXT, "m.yaml", 7, 24_250, {"what": "hold_at", "vehicle": 2, "places": [[9, 9]]})
+    varied = directed(
+        TEXT, "m.yaml", 7, 24_250, {"what": "hold_at", "vehicle": 2, "places": [[9, 9]]}
+    )
     (change,) = varied.mission.changes
     assert isinstance(change, HoldCommand)
     assert change.place == (9.0, 9.0)
@@ -281,7 +285,9 @@ def test_a_flight_obeys_at_once_and_is_that_of_the_mission_that_it_writes(
         assert "without stopping" in page.text("command-text")
         page.value("document.getElementById('command-vehicle').value = 1")
         page.click("#command-yes")
-        page.until("document.getElementById('live-text').textContent.includes('it circles through')")
+        page.until(
+            "document.getElementById('live-text').textContent.includes('it circles through')"
+        )
         page.until("document.getElementById('events').textContent.includes('commanded to hold at')")
         assert page.text("live-state") == "flying"  # it went on all the while
         _choose(page, "resume")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -37,9 +36,7 @@ def above(text: str, *ends: str) -> str:
     return text.replace("<Longitude>-120<", "<Longitude>-119.5<")
 
 
-def told(
-    text: str, seconds: float, terrain: Terrain | None, compatible: bool = False
-) -> list[Any]:
+def told(text: str, seconds: float, terrain: Terrain | None, compatible: bool = False) -> list[Any]:
     plan = of_text(text, "test")
     world = World(plan.events, plan.duration_s, terrain=terrain, compatible=compatible)
     found = []
@@ -95,7 +92,9 @@ def test_a_point_of_a_stare_is_on_the_ground(hill: Terrain) -> None:
 
 
 def test_what_is_above_the_sea_stays_as_it_is(hill: Terrain) -> None:
-    state = lmcp.new("AirVehicleState", Location=lmcp.new("Location3D", Latitude=45.5, Altitude=7.0))
+    state = lmcp.new(
+        "AirVehicleState", Location=lmcp.new("Location3D", Latitude=45.5, Altitude=7.0)
+    )
     assert above_sea(state, hill, (0.0, 0.0)) is state
     keeps = lmcp.new("FlightDirectorAction", Altitude=0.0, AltitudeType="AGL")
     assert above_sea(keeps, hill, (math.radians(45.5), math.radians(-119.5))) is keeps
