@@ -16,6 +16,8 @@ from hypothesis import strategies as st
 
 from cratous.services.certify import rejudge, report, result_files
 from cratous.services.cli import main
+from cratous.services.results.names import COMMANDED_NAME
+from cratous.services.results.ownership import manifest_text
 
 FEW = 2
 
@@ -259,3 +261,18 @@ def test_other_files_are_said_not_to_be_checked(
     assert json.loads(run("certify", folder, "--json")[1])["not_checked"] == [
         "notes.txt: no file of the results"
     ]
+
+
+def test_the_mission_with_commands_of_an_operator_is_held_against_the_manifest(
+    run: Run, flown: Path, judged: None, tmp_path: Path
+) -> None:
+    folder = edited(flown, tmp_path)
+    (folder / COMMANDED_NAME).write_text("name: crossing\n", encoding="utf-8")
+    names = [file.name for file in folder.iterdir() if file.name != "manifest.json"]
+    (folder / "manifest.json").write_text(manifest_text(folder, sorted(names)), encoding="utf-8")
+    code, out, err = run("certify", folder)
+    assert (code, err) == (read(flown)["exit_code"], "")
+    assert COMMANDED_NAME not in out
+    (folder / COMMANDED_NAME).write_text("name: another\n", encoding="utf-8")
+    code, out, err = run("certify", folder)
+    assert (code, out, f"{COMMANDED_NAME}: SHA-256" in err) == (1, "", True)

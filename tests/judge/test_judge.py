@@ -329,3 +329,5 @@ def test_eligibility(tmp_path: Path) -> None:
     # who was lost may join again: what was said last counts
     assert verdict(1, 5000, [], vehicle_lost=1, vehicle_joins=1) == "holds"
     assert verdict(1, 5000, [], vehicle_joins=1, vehicle_lost=1) == "violated"
+    # one that is commanded to hold takes part all the same
+    assert verdict(1, 5000, [], vehicle_holds=1, vehicle_resumes=1) == "holds"

@@ -195,6 +195,13 @@ changes: [{at_s: 7, zone: {id: 8, kind: keep_out, vertices: [[90, -5], [90, 5], 
     assert found["zone: keep_out 7, flight of vehicle 1"] == "violated"
     assert found["zone: keep_out 8, flight of vehicle 1"] == "holds"
     assert found["task 1 served"] == "holds"
+    # what one vehicle is commanded to do asks for nothing more or less
+    text = file.read_text(encoding="utf-8").replace(
+        "changes: [",
+        "changes: [{at_s: 2, vehicle_holds: {vehicle: 1}}, {at_s: 3, vehicle_resumes: 1}, ",
+    )
+    file.write_text(text, encoding="utf-8")
+    assert verdicts(judge(tmp_path / "log.sqlite", file)) == found
 
 
 def test_a_mission_that_asks_for_nothing_is_unknown(tmp_path: Path) -> None:
