@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from cratous.core.authority.link_end import track_is_told
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.executive_outputs import command
 from cratous.services.flight.executive_state import Config, Out, State
@@ -53,7 +54,7 @@ def _not_commanded(config: Config, state: State, vehicle_id: int) -> str:
     chain = state.chain(vehicle_id)
     if chain.unlinked:
         return "it is not heard"
-    return "ICAROUS has it" if chain.suspended else ""
+    return "" if track_is_told(chain.suspended, True) else "ICAROUS has it"
 
 
 def _hold(config: Config, state: State, asked: HoldCommand, out: Out) -> tuple[State, str]:
