@@ -22,6 +22,7 @@ from cratous.services.flight.inflight_routes import Ways
 from cratous.services.flight.loop import fly
 from cratous.services.loading import load
 from cratous.services.monitor import Monitor
+from cratous.services.system_model.replay import replay
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Change, Mission, Position, Zone, ZoneKind
 from cratous.spec.mission.changes import HoldCommand, known_at, words
@@ -61,6 +62,9 @@ class Flown:
         assert {check.outcome for check in checks} == {Outcome.HOLDS}
         self.monitor = Monitor(mission, plan)
         bus.tap(self.monitor.tap)
+        self.log: list[Any] = []
+        if daa:
+            bus.tap(self.log.append)
         bus.tap(lambda e: self.said.append((e.time_ms, e.topic, lmcp.to_json(e.body))))
         self.result = fly(mission, plan, bus, daa=daa, directed=directed)
         self.outcomes = {
@@ -233,6 +237,9 @@ def test_icarous_keeps_what_it_has_and_gives_it_back_to_the_hold() -> None:
     assert flown.result.takeovers >= 2
     assert flown.result.outcome == "complete"
     assert set(flown.outcomes.values()) == {Outcome.HOLDS}
+    # every command was one that UxAS might give then, in the epoch in which it had the vehicle
+    found = replay(CROSSING, True, flown.log)
+    assert found.finding is None, found.finding.text
 
 
 def test_a_command_changes_nothing_of_what_is_known_of_the_mission() -> None:
