@@ -157,7 +157,7 @@ class _Flight:
             self._start(
                 f"icarous_{vehicle}", "icarous", "--vehicle", str(vehicle), "--mission",
                 str(how.path.resolve()), "--mission-hash", how.digest, "--connect", where,
-                "--v2", "--wait", f"{STARTS_S:g}", *unproved, may_stand=self.failing is not None,
+                "--wait", f"{STARTS_S:g}", *unproved, may_stand=self.failing is not None,
                 keys=self.keys.of(vehicle),
             )  # fmt: skip
         self._wait("UxAS's plan", self._planned)

@@ -78,6 +78,8 @@ class Rig:
         clock: Clock | None = None,
     ) -> None:
         more = more or 'NumberOfUAVs="2" RoutePlannerUsed="1" RouteTimeout_s="60"'
+        if "Dialect" not in more:  # the fakes have no keys
+            more += ' Dialect="cratous"'
         text = f'<Service Type="{PLANNER}" {planner}/>'
         text += f'<Service Type="{AGGREGATOR}" UseICAROUSRoutePlanner="true"/>'
         others = [name for name in PIPELINE if name not in (PLANNER, AGGREGATOR)]
