@@ -133,7 +133,10 @@ def test_a_changed_line_is_read_alike_however_it_is_cut(
 ) -> None:
     """Cut short to nothing at last, and changed at random: nothing raises, and where the bytes are cut is all one."""
     draw = random.Random(f"{type(message).__name__} {dialect}")
-    seal, line = Seal(1, bytes(32), bytes(32)), tp.encode(message, dialect=dialect or Dialect.CRATOUS)
+    seal, line = (
+        Seal(1, bytes(32), bytes(32)),
+        tp.encode(message, dialect=dialect or Dialect.CRATOUS),
+    )
     if dialect is None:
         line = seal.wrap(line, 0)
     short = [line[:end] for end in range(len(line) + 1)]
