@@ -128,16 +128,20 @@ def test_an_instance_that_asks_again_and_again_is_planned_for_no_more(
         """Whether each of so many requests at this instant is answered by a way."""
         return [bool(answered(rig, one, wanted(3000.0, next(numbers)))) for _ in range(count)]
 
+    def come() -> None:
+        """It is now for the service, too."""
+        rig.until(lambda: rig.process.bus.now_ms == now_ms)
+
     assert asked(MOST + 2) == [True] * MOST + [False, False]
     assert rig.said.has(f"more than {MOST} WPREQ in {WITHIN_MS / 1000:g} s")
     for _ in range(WITHIN_MS // BEAT_MS):  # it is heard at each heartbeat
         assert asked(1) == [False], now_ms
         now_ms += BEAT_MS
         one.say(tp.Heartbeat(next(numbers), now_ms / 1000))
-        rig.until(lambda: rig.process.bus.now_ms == now_ms)
+        come()
     assert asked(1) == [False], "the first was planned for so long ago, and no longer"
     now_ms += 1
-    rig.until(lambda: rig.process.bus.now_ms == now_ms)
+    come()
     assert asked(MOST + 1) == [True] * MOST + [False]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import socket
 from pathlib import Path
 from types import SimpleNamespace
@@ -33,10 +34,8 @@ class Sealed:
         rig.until(self._opened)
 
     def _opened(self) -> bool:
-        try:
+        with contextlib.suppress(BlockingIOError):
             self.sock.sendall(self.handshake.feed(self.sock.recv(65536)))
-        except BlockingIOError:
-            pass
         assert not self.handshake.failed
         return self.handshake.done
 
