@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 from bridge_flight import way
-from icarous_rig import SERVICE, Rig, state
+from icarous_rig import Rig, state
 
 from cratous.bridge import lmcp
 from cratous.bridge import text_protocol as tp
@@ -19,6 +19,7 @@ from cratous.bridge.text_protocol.sealed import DAMAGED, FORGED, REPLAYED, Seal,
 from cratous.services.monitor.authority import AuthorityWatch
 from cratous.spec.mission.guarantees import Outcome
 
+SERVICE = "IcarousCommunicationService"
 KEYS = new_keys([1])
 MORE = 'NumberOfUAVs="1" VehicleIDs="1"'
 
