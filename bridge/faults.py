@@ -42,6 +42,8 @@ class FailingWay:
         if draw.random() < faults.loss:
             return
         if draw.random() < faults.truncation:
+            if len(data) < 2:  # of an empty line nothing is left
+                return
             data = data[: draw.randrange(1, len(data))]
         if draw.random() < faults.corruption:
             k = draw.randrange(len(data))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import secrets
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,6 +20,19 @@ class Keys:
     """The keys that an end has, by vehicle."""
 
     by_vehicle: Mapping[int, bytes] = field(repr=False)
+
+    def of(self, vehicle_id: int) -> Keys:
+        """The key of this vehicle alone, for its end."""
+        return Keys({vehicle_id: self.by_vehicle[vehicle_id]})
+
+    def environment(self) -> dict[str, str]:
+        """The variables from which another process takes them, see `key_of`."""
+        return {KEY_VARIABLE.format(vid): key.hex() for vid, key in self.by_vehicle.items()}
+
+
+def new_keys(vehicle_ids: Iterable[int]) -> Keys:
+    """Keys that nobody has had before, from the system's source of random bytes."""
+    return Keys({number: secrets.token_bytes(SECRET_LENGTH // 2) for number in vehicle_ids})
 
 
 def keys_of(vehicle_ids: Iterable[int], folder: Path | None) -> Keys:

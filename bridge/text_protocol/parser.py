@@ -45,7 +45,7 @@ _PRINTABLE = re.compile(rb"[\x20-\x7e]*\Z")
 @dataclass(frozen=True)
 class WireError:
     """A line that is refused: its number and the column (both from 1) where it goes wrong. kind: of a
-    COMND that is not known, the one that it names."""
+    COMND that is not known, the one that it names; tag: of a packet of v2, that of its line."""
 
     line: int
     column: int
@@ -53,6 +53,7 @@ class WireError:
     expected: str
     got: str
     kind: str = ""
+    tag: str = ""
 
     def __str__(self) -> str:
         text = f"line {self.line}, column {self.column}: {self.what}"

@@ -32,7 +32,7 @@ WINDOW = 1024
 """A packet's number may be so far above the last one's: more than that was not lost but made up."""
 MOST_UNACKNOWLEDGED = 100_000
 """So many packets may be on their way without a word that they have come."""
-MOST_LINE = MAX_LINE + 256
+MOST_LINE, MOST_TAG = MAX_LINE + 256, 6
 REPLAYED, FORGED, DAMAGED = (
     "packet number that came before or is far ahead",
     "forged packet",
@@ -90,7 +90,7 @@ class Seal:
             if isinstance(found, bytes):
                 lines.append(found + b"\n")
             else:
-                wrong.append(WireError(self._count, 1, *found))
+                wrong.append(WireError(self._count, 1, *found, tag=_tag(packet)))
         if self._pending[MOST_LINE:]:
             wrong.append(WireError(self._count + 1, 1, DAMAGED, f"{MOST_LINE} bytes", "more"))
             self._pending = b""
@@ -118,6 +118,13 @@ class Seal:
         self.mark = mark_after(self.mark, sequence, WINDOW)
         self.time_ms, self.acknowledged = time_ms, acknowledged
         return body
+
+
+def _tag(packet: bytes) -> str:
+    """The tag of the line in a packet that is refused; empty where there is none."""
+    match = _PACKET.match(packet)
+    tag = packet[match.end() :].partition(b",")[0] if match else b""
+    return tag.decode() if tag.isalpha() and len(tag) <= MOST_TAG else ""
 
 
 def _crc(head: bytes, body: bytes) -> int:

@@ -28,16 +28,19 @@ if TYPE_CHECKING:
 )  # fmt: skip
 @click.option("--connect", metavar="HOST:PORT", help="Where UxAS listens.")
 @click.option("--listen", metavar="HOST:PORT", help="Where to wait for UxAS, which connects.")
+@click.option("--plain", is_flag=True, help="Our lines without keys: nothing is authenticated.")
 @click.option(
     "--original", is_flag=True, help="UxAS's end is the original's: no HELLO, HBEAT and epochs."
 )
 @click.option(
     "--thesis", is_flag=True, help="UxAS's end speaks the thesis's dialect: five letters, no comma."
 )
-@click.option("--v2", is_flag=True, help="Speak v2, which authenticates both ends, see --keys.")
+@click.option(
+    "--v2", is_flag=True, help="v2, which authenticates both ends, see --keys. [the default]"
+)
 @click.option(
     "--keys", type=click.Path(path_type=Path), metavar="FOLDER",
-    help="Folder with vehicle_ID.key, for --v2. [environment: CRATOUS_BRIDGE_KEY_ID]",
+    help="Folder with vehicle_ID.key, for v2. [environment: CRATOUS_BRIDGE_KEY_ID]",
 )  # fmt: skip
 @click.option(
     "--plain-beyond-loopback", is_flag=True, help="Another dialect than v2 to other machines too."
@@ -69,11 +72,12 @@ def icarous(
     """Avoid traffic and zones for one vehicle, over the CRATOUS bridge.
 
     The other end is the service IcarousCommunicationService of a UxAS configuration. Own state, traffic,
-    plan and zones come over the wire and are believed; steering goes back over it. The secret of the
-    handshake is CRATOUS_BRIDGE_SECRET of the environment, if that is set. Either it connects to UxAS
+    plan and zones come over the wire and are believed; steering goes back over it. Both ends prove that they
+    have the vehicle's key, and seal each line by it, unless a dialect without keys is asked for; of those the secret
+    of the handshake is CRATOUS_BRIDGE_SECRET of the environment, if that is set. Either it connects to UxAS
     (--connect), or it waits for a UxAS whose service names its address in Connect (--listen).
 
-    Example:  cratous icarous --vehicle 1 --mission mission.yaml --connect 127.0.0.1:5557
+    Example:  cratous icarous --vehicle 1 --mission mission.yaml --connect 127.0.0.1:5557 --keys keys
 
     Exit codes: 0 it was asked to end (SIGTERM, Ctrl-C), 2 bad input, 3 UxAS was not reached, or is gone.
     """
@@ -93,16 +97,18 @@ def icarous(
         raise click.UsageError("one of --connect and --listen is needed")
     ((name, text),) = given
     listens = name == "listen"
-    plain = [name for name in ("original", "thesis") if link[name]]
+    plain = [name for name in ("plain", "original", "thesis") if link[name]]
     if len(plain) + link["v2"] > 1:
-        raise click.UsageError("one of --original, --thesis and --v2, or none: each is a dialect")
-    dialect = Dialect(plain[0]) if plain else Dialect.CRATOUS
+        raise click.UsageError(
+            "one of --plain, --original, --thesis and --v2, or none, which is --v2: each is a dialect"
+        )
+    dialect = Dialect.CRATOUS if plain in ([], ["plain"]) else Dialect(plain[0])
     if listens and dialect is Dialect.ORIGINAL:
         raise click.UsageError("the original's UxAS connects to nobody: --original needs --connect")
     where = address(f"tcp://{text}", ("tcp",), item=f"--{name}", free=listens)
-    if link["keys"] and not link["v2"]:
-        raise click.UsageError("--keys is of --v2")
-    if not (link["v2"] or where.loopback or link["plain_beyond_loopback"]):
+    if link["keys"] and plain:
+        raise click.UsageError(f"--keys is of --v2, and --{plain[0]} has none")
+    if plain and not (where.loopback or link["plain_beyond_loopback"]):
         raise BadInput(
             "no authentication",
             item=f"--{name}",
@@ -119,7 +125,7 @@ def icarous(
     try:
         standing = require(allow_unproved=allow_unproved)
         log("WARN" if standing.problems else "INFO", f"proofs: {standing.line}")
-        secret = keys_of((vehicle,), link["keys"]) if link["v2"] else secret_of_environment()
+        secret = secret_of_environment() if plain else keys_of((vehicle,), link["keys"])
         port = TextPort(
             where, server=False, listens=listens, dialect=dialect, secret=secret, report=log
         )

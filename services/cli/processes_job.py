@@ -92,7 +92,7 @@ def as_flown(mission: Mission, original: bool = False) -> Mission:
     original: ICAROUS is behind clients of the original's.
     """
     count, known = len(mission.instances), ""
-    who = f"flown in {2 + count} processes: the simulator, UxAS and {count} of ICAROUS"
+    who = f"flown in {2 + count} processes: the simulator, UxAS and {count} of ICAROUS, with a key for each vehicle"
     if original:
         who = f"flown in processes: the simulator, UxAS, and {count} clients of the original's"
         known = "which ICAROUS is behind them is not known here; "

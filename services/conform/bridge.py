@@ -8,6 +8,7 @@ What tells of the original's own behaviour (its publications, exits, its formula
 
 from __future__ import annotations
 
+import struct
 from typing import Any
 
 from cratous.bridge.text_protocol import (
@@ -35,8 +36,10 @@ WHOLE_BYTES = 65535
 """A line that the file gives shortened is so long."""
 
 
-SPHERE, ROUNDED_M = 0.01, 0.5
-"""Distances on a sphere differ from those on the ellipsoid by up to this share; of places that were rounded by this [m]."""
+SPHERE_M, AGREES = 6_371_000.0, 1e-6
+"""The radius [m] of the sphere on which distances from a leg are given, and to which share our end agrees with them."""
+ELLIPSOID = 0.006
+"""On WGS84, where our end flies, distances differ from those by up to this share: so much its radii of curvature do."""
 
 
 def judge(case: dict[str, Any]) -> Result:
@@ -99,19 +102,21 @@ def _sent(case: dict[str, Any]) -> Result:
 
 
 def _deviation(case: dict[str, Any]) -> Result:
-    """Whether the end, asked with a limit a little above and below the distance, says the right side of both."""
+    """Whether the end, asked with a limit a little above and below the distance, says the right side of both: on
+    the sphere, and on the ellipsoid. The place is of 32-bit numbers, as the original has it."""
     names = ("lat1", "lon1", "lat2", "lon2", "lat", "lon", "true_m")
     lat1, lon1, lat2, lon2, lat, lon, true_m = (number(case, name) for name in names)
-    projection = Projection(Frame(lat1, lon1))
-    places = ((lat1, lon1), (lat2, lon2), (lat, lon))
-    a, b, here = (Vec2(*projection.to_local(*place)) for place in places)
-    off_m = SPHERE * true_m + ROUNDED_M
     name = f"{lat:g} {lon:g}, {true_m:.1f} m"
-    if not near_line(here, a, b, true_m + off_m):
-        return failed(name, "taken for farther", f"expected {true_m:g} m from the leg")
-    nearer_m = max(0.0, true_m - off_m)
-    if nearer_m and near_line(here, a, b, nearer_m):
-        return failed(name, "taken for nearer", f"expected {true_m:g} m from the leg")
+    lat, lon = struct.unpack("ff", struct.pack("ff", lat, lon))
+    places = ((lat1, lon1), (lat2, lon2), (lat, lon))
+    frame = Frame(lat1, lon1)
+    for shape, share in ((Projection(frame, SPHERE_M), AGREES), (Projection(frame), ELLIPSOID)):
+        a, b, here = (Vec2(*shape.to_local(*place)) for place in places)
+        expected = f"expected {true_m:g} m from the leg, within {share:g} of it"
+        if not near_line(here, a, b, true_m * (1 + share)):
+            return failed(name, "taken for farther", expected)
+        if true_m and near_line(here, a, b, true_m * (1 - share)):
+            return failed(name, "taken for nearer", expected)
     return passed(name)
 
 

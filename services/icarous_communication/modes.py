@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import NamedTuple
 
+from cratous.bridge import lmcp
 from cratous.bridge.text_protocol import EpochTold, SetMode
 from cratous.core.authority.gate import (
     ICAROUS,
@@ -18,7 +19,7 @@ from cratous.core.authority.gate import (
 from cratous.core.authority.link_end import link_mode
 from cratous.services.flight.link_lines import MOST_SAID
 from cratous.services.flight.link_peers import UNTOUCHED, Peer
-from cratous.services.flight.messages import Down
+from cratous.services.flight.messages import Down, Say
 from cratous.services.icarous_communication.state import Out, Refuse
 from cratous.spec.authority.link_end import OVERTAKEN, REFUSED
 
@@ -78,6 +79,16 @@ def told(vehicle_id: int, line: SetMode, over: EpochTold) -> list[Out]:
     text = f"vehicle {vehicle_id}: ICAROUS is in epoch {line.epoch}, which is over"
     why = Refuse("mode of an epoch that is over", f"{text}: it is told that {over.epoch} was given")
     return [why, Down(vehicle_id, (over,))]
+
+
+def forged(name: str, peer: Peer, now_ms: int, why: str) -> Say:
+    """What a SETMOD comes to that nobody who has the vehicle's key has sent: G4 counts it. name: of the service."""
+    epoch = peer.gate.epoch
+    body = lmcp.new(
+        "ModeRefused", VehicleID=peer.vehicle_id, Time=now_ms, Owner="ICAROUS", Epoch=epoch,
+        GateEpoch=epoch, Reason=why,
+    )  # fmt: skip
+    return Say(body, name)
 
 
 def unknown(peer: Peer, fresh: bool) -> bool:

@@ -21,9 +21,12 @@ from cratous.bridge.text_protocol import (
     RouteRequest,
     SetMode,
     Skipped,
+    WireError,
 )
+from cratous.bridge.text_protocol.sealed import FORGED
 from cratous.services.bus import Bus, Envelope, Wake
 from cratous.services.flight.messages import Down, Lost, Say
+from cratous.services.icarous_communication import modes
 from cratous.services.icarous_communication.proposals import Proposals
 from cratous.services.icarous_communication.routes import GROUP, REQUEST, RouteLine, Routes
 from cratous.services.icarous_communication.seats import Refusal, Seats
@@ -225,8 +228,20 @@ class IcarousCommunicationService:
                     self._seated(key, vid)
             case Message() as line:
                 self._line(key, line)
+            case WireError(what=what, tag="SETMOD") if what == FORGED:
+                self._forged(key, what)
             case Skipped() as skipped:
                 self._tally.refuse("not known", f"{self.port.name(key)}: {skipped.text}")
+
+    def _forged(self, key: int, what: str) -> None:
+        """Somebody without the key has put a mode into the connection of a vehicle."""
+        vid, now_ms = self._seats.vehicle(key), self._bus.now_ms
+
+        def step(state: State) -> Step:
+            peer = None if vid is None else state.link.peer(vid)
+            return state, [] if peer is None else [modes.forged(self.name, peer, now_ms, what)]
+
+        self._stepped(step)
 
     def _line(self, key: int, line: Message) -> None:
         vid, now_ms = self._seats.vehicle(key), self._bus.now_ms

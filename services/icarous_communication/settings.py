@@ -23,7 +23,7 @@ ATTRIBUTES: Mapping[str, Attr] = {
     "Connect": Attr(),
     "VehicleIDs": Attr(),
     "Timeout_s": number(60.0),
-    "Dialect": choice("cratous", "cratous", "original", "thesis", "v2"),
+    "Dialect": choice("v2", "v2", "cratous", "original", "thesis"),
     "Keys": Attr(),
     "PlainBeyondLoopback": flag(False),
     "RouteTimeout_s": number(2.0, 0.1, 600.0),
@@ -103,7 +103,8 @@ def _keys(
     if v["Dialect"] == "v2":
         if ids:
             return keys_of(ids, Path(v["Keys"]) if v["Keys"] else None)
-        item, expected = "VehicleIDs", "the vehicles whose keys the dialect v2 needs"
+        item = "VehicleIDs"
+        expected = 'the vehicles whose keys v2 needs, or Dialect="cratous", "original" or "thesis"'
     elif v["Keys"]:
         item, expected = "Keys", 'none, or Dialect="v2"'
     elif all(one.loopback for one in ends) or v["PlainBeyondLoopback"]:

@@ -37,16 +37,18 @@ def scale_error(distance_m: float) -> float:
 class Projection:
     """Conversion between the mission frame and WGS-84 degrees, there and back within 0.1 mm."""
 
-    def __init__(self, frame: Frame) -> None:
-        self.frame = frame
+    def __init__(self, frame: Frame, sphere_m: float | None = None) -> None:
+        """sphere_m: the radius [m] of a sphere that takes the place of the ellipsoid."""
+        self.frame, self._sphere_m = frame, sphere_m
 
     @cached_property
     def _projection(self) -> Any:
         import pyproj
 
+        shape = {"ellps": "WGS84"} if self._sphere_m is None else {"R": self._sphere_m}
         return pyproj.Proj(
             proj="aeqd",
-            ellps="WGS84",
+            **shape,
             lat_0=self.frame.latitude_deg,
             lon_0=self.frame.longitude_deg,
         )

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import os
-import secrets
 import signal
 import socket
 import subprocess
 import sys
 import time
 from collections import deque
+from collections.abc import Mapping
 from pathlib import Path
-from types import TracebackType
+from types import MappingProxyType, TracebackType
 
 import cratous
 from cratous.bridge.port import is_due
-from cratous.bridge.text_protocol.handshake import SECRET_VARIABLE
+from cratous.bridge.text_protocol.keys import KEY_VARIABLE
 from cratous.services.processes.leash import AT_ONCE, ENDS_WITH
 from cratous.services.results.undisturbed import undisturbed
 from cratous.spec.errors import CratousError
@@ -53,20 +53,18 @@ class Children:
     """The processes of one flight; leaving the context ends all that still run. logs: what each says, as
     NAME.txt; work: their present folder."""
 
-    def __init__(self, logs: Path, work: Path, own_secret: bool = True) -> None:
-        """own_secret: of the bridge's handshake, for this flight alone; else that of the environment."""
+    def __init__(self, logs: Path, work: Path) -> None:
         self._logs, self._work = logs, work
         place = str(Path(cratous.__file__).absolute().parents[1])
         paths = [place, *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
         self._environment = {
-            **os.environ,
+            # whoever has a key of the bridge is given it, see `start`
+            **{k: v for k, v in os.environ.items() if not k.startswith(KEY_VARIABLE.format(""))},
             "PYTHONUNBUFFERED": "1",
             # the same program, whatever the present folder
             "PYTHONPATH": os.pathsep.join(path for path in paths if path),
             ENDS_WITH: str(os.getpid()),
         }
-        if own_secret:  # a stranger cannot be one of its ICAROUS instances
-            self._environment[SECRET_VARIABLE] = secrets.token_hex(32)
         self.running: dict[str, subprocess.Popen[bytes]] = {}
 
     def __enter__(self) -> Children:
@@ -81,9 +79,16 @@ class Children:
         with undisturbed():  # asked to end twice, it leaves no process behind
             self.end()
 
-    def start(self, name: str, *arguments: str, may_stand: bool = False) -> int:
-        """Start `cratous` with arguments; returns the pid. may_stand: it may be stopped when this process is killed."""
-        environment = dict(self._environment)
+    def start(
+        self,
+        name: str,
+        *arguments: str,
+        may_stand: bool = False,
+        private: Mapping[str, str] = MappingProxyType({}),
+    ) -> int:
+        """Start `cratous` with arguments; returns the pid. may_stand: it may be stopped when this process is killed;
+        private: variables of its environment that no other one has."""
+        environment = {**self._environment, **private}
         environment[ENDS_WITH] += AT_ONCE * may_stand
         with (self._logs / f"{name}.txt").open("wb") as said:
             child = subprocess.Popen(

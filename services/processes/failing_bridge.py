@@ -1,64 +1,74 @@
 """The bridge of a flight in processes over connections that fail: between each ICAROUS and UxAS, in flight time.
 
-Each ICAROUS connects here, and what it and UxAS say goes through line by line, by the same faults as in one process
-(`bridge.faults`). The handshake and the HELLO after it are left alone. A peer that does not take what it is sent in
-time ends its connection.
+Each ICAROUS connects here, and what it and UxAS say in v2 goes through packet by packet, by the same faults as in one
+process (`bridge.faults`); who forges modes has no key (`forging`). The handshake is left alone. A peer that does not take
+what it is sent in time ends its connection.
 """
 
 from __future__ import annotations
 
+import random
 import socket
 from collections.abc import Sequence
 from contextlib import suppress
 
 from cratous.bridge.faults import FailingWay
 from cratous.bridge.text_protocol import Direction
-from cratous.bridge.text_protocol.handshake import ACCEPT, HELLO, SECRET_LENGTH
 from cratous.core.authority.timeliness import lasted
+from cratous.services.processes.forging import Forger
 from cratous.spec.mission.bridge_faults import BridgeFaults
 
 HOST = "127.0.0.1"
 READ = 65536
 MOST_UNSENT = 1 << 20
 """Bytes that a peer may be behind."""
-GREETING = {Direction.DOWN: len(HELLO) + len(ACCEPT), Direction.UP: SECRET_LENGTH}
-"""So many bytes of the handshake go each way."""
+GREETING = {Direction.DOWN: 2, Direction.UP: 1}
+"""So many lines of the handshake of v2 go each way."""
 
 
 class _Half:
     """One direction of one connection: what comes from one socket, and goes to the other."""
 
-    def __init__(self, way: FailingWay, direction: Direction) -> None:
-        self.way = way
+    def __init__(self, way: FailingWay, direction: Direction, forger: Forger) -> None:
+        self.way, self._forger, self._up = way, forger, direction is Direction.UP
         self._greeting = GREETING[direction]
-        self._whole_lines = 1 if direction is Direction.UP else 0
         self._part, self.unsent = b"", b""
 
     def come(self, data: bytes, now_ms: int) -> None:
-        """Bytes from the one side: those of the handshake go on as they are, then each line by itself."""
-        head, data = data[: self._greeting], data[self._greeting :]
-        self._greeting -= len(head)
-        self.unsent += head
+        """Bytes from the one side: the lines of the handshake go on as they are, then each packet by itself."""
         *lines, self._part = (self._part + data).split(b"\n")
         for line in lines:
-            if self._whole_lines:
-                self._whole_lines -= 1
+            if self._greeting:
+                self._greeting -= 1
                 self.unsent += line + b"\n"
             else:
+                self._forger.hears(line + b"\n", self._up)
                 self.way.take(line + b"\n", now_ms)
         if len(self._part) > READ:  # no line of the protocol is so long
             self.way.take(self._part, now_ms)
             self._part = b""
 
+    def forge(self) -> None:
+        """A mode that comes now and nobody sent, if one does."""
+        line = self.way.forged()
+        if line and not self._greeting:
+            self.unsent += self._forger.packet(line)
+
 
 class _Connection:
     """An ICAROUS and the end of UxAS that was opened for it."""
 
-    def __init__(self, near: socket.socket, far: socket.socket, ways: dict[Direction, FailingWay]):
+    def __init__(
+        self,
+        near: socket.socket,
+        far: socket.socket,
+        ways: dict[Direction, FailingWay],
+        forger: Forger,
+    ) -> None:
         self.open = True
         for way in ways.values():
             way.clear()
-        down, up = (_Half(ways[one], one) for one in (Direction.DOWN, Direction.UP))
+        down, up = (_Half(ways[one], one, forger) for one in (Direction.DOWN, Direction.UP))
         self._halves = ((far, down, near), (near, up, far))
         for one in (near, far):
             one.setblocking(False)
@@ -73,7 +83,7 @@ class _Connection:
                 count += len(data)
                 half.come(data, now_ms)
             if forges and half is self._halves[1][1]:
-                half.unsent += half.way.forged()
+                half.forge()
             if half.way.breaks(now_ms):
                 self.open = False
             half.unsent += b"".join(half.way.due(now_ms))
@@ -119,7 +129,7 @@ class FailingBridge:
             vid: {one: FailingWay(faults, vid, one) for one in Direction} for vid in vehicles
         }
         self._connections: dict[int, _Connection] = {}
-        self._exchanged_ms = 0
+        self._exchanged_ms = self._opened_count = 0
         for listener in self._listeners.values():
             listener.setblocking(False)
 
@@ -164,7 +174,9 @@ class FailingBridge:
         except OSError:  # UxAS is not there yet: it is tried again
             near.close()
             return
-        self._connections[vid] = _Connection(near, far, self._ways[vid])
+        draw = random.Random(f"{self._faults.seed} {vid} forger {self._opened_count}")
+        self._opened_count += 1
+        self._connections[vid] = _Connection(near, far, self._ways[vid], Forger(vid, draw))
 
     def close(self) -> None:
         """End all connections."""

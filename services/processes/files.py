@@ -66,7 +66,7 @@ def write_configuration(
 ) -> Path:
     """The configuration of UxAS: bridges, the services of planning, a waypoint manager a vehicle, ICAROUS.
 
-    original: ICAROUS is behind clients of the original's.
+    original: ICAROUS is behind clients of the original's, which have no keys; else both ends authenticate each other.
     """
     communication = {
         "Address": f"tcp://127.0.0.1:{ports.icarous}",
@@ -77,6 +77,8 @@ def write_configuration(
     }
     if original:
         communication |= {"Dialect": "original", "Timeout_s": str(CLIENTS_S)}
+    else:  # the keys are in the environment
+        communication |= {"Dialect": "v2"}
     if isinstance(mission, LivePlanningMission):
         if original:
             raise BadInput(

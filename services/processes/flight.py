@@ -18,6 +18,7 @@ from cratous.bridge import envelope as wire
 from cratous.bridge import lmcp
 from cratous.bridge.port import Incoming, Limits, address, is_due
 from cratous.bridge.tcp_port import TcpPort
+from cratous.bridge.text_protocol.keys import Keys, new_keys
 from cratous.services.exporting.messages import Told
 from cratous.services.processes.agreement import agrees
 from cratous.services.processes.children import GRACE_S, Children, ProcessEnded, free_port
@@ -83,7 +84,7 @@ def fly(mission: Mission, plan: Plan, told: Told, recorder: Recorder, how: Flyin
     """
     with (
         TemporaryDirectory(prefix="cratous-") as work,
-        Children(how.folder, Path(work), own_secret=not how.original) as children,
+        Children(how.folder, Path(work)) as children,
     ):
         flight = _Flight(mission, plan, told, recorder, how, children)
         try:
@@ -122,6 +123,8 @@ class _Flight:
         self.stood: set[str] = set()
         self.failing: FailingBridge | None = None
         self.stands = False
+        # of this flight alone, and of each ICAROUS its own: a stranger cannot be one of them, nor one another
+        self.keys = Keys({}) if how.original else new_keys(mission.instances)
 
     # the start ------------------------------------------------------------------------------------
 
@@ -138,7 +141,7 @@ class _Flight:
         instances = sorted(mission.instances)
         cfg = write_configuration(mission, instances, ports, how.folder, how.original)
         unproved = ("--allow-unproved",) * how.allow_unproved
-        self._start(UXAS, "uxas", "-cfgPath", str(cfg.resolve()), *unproved)
+        self._start(UXAS, "uxas", "-cfgPath", str(cfg.resolve()), *unproved, keys=self.keys)
         how.tell(f"ports of 127.0.0.1: {_words(ports)}")
         self.uxas = self._connect(ports.recorder)
         # UxAS waits for its ICAROUS instances before it sends anything: nothing goes by unheard
@@ -155,6 +158,7 @@ class _Flight:
                 f"icarous_{vehicle}", "icarous", "--vehicle", str(vehicle), "--mission",
                 str(how.path.resolve()), "--mission-hash", how.digest, "--connect", where,
                 "--wait", f"{STARTS_S:g}", *unproved, may_stand=self.failing is not None,
+                keys=self.keys.of(vehicle),
             )  # fmt: skip
         self._wait("UxAS's plan", self._planned)
         self._wait("the commands of UxAS at the simulator", self._all_commanded)
@@ -186,8 +190,11 @@ class _Flight:
             self.children.signalled("icarous_", signal.SIGSTOP if silent else signal.SIGCONT)
         return self.failing.step(now_ms, self.flown)
 
-    def _start(self, name: str, *arguments: str, may_stand: bool = False) -> None:
-        pid = self.children.start(name, *arguments, may_stand=may_stand)
+    def _start(
+        self, name: str, *arguments: str, may_stand: bool = False, keys: Keys = Keys({})
+    ) -> None:
+        private = keys.environment()
+        pid = self.children.start(name, *arguments, may_stand=may_stand, private=private)
         self.how.tell(f"process {name}: pid {pid}")
 
     def _start_simulator(self, scenario: Path) -> int:

@@ -30,11 +30,21 @@ def test_a_case_with_another_verdict_or_another_form_fails() -> None:
 
 def test_a_distance_from_a_leg_is_neither_more_nor_less_than_it_is() -> None:
     leg = {"lat1": 45.3, "lon1": -121, "lat2": 45.3, "lon2": -120.9, "lat": 45.3045, "lon": -120.95}
-    assert bridge.judge({**leg, "true_m": 499.2}).status == "passed"
-    assert bridge.judge({**leg, "true_m": 480.0}).label == "taken for farther"
-    assert bridge.judge({**leg, "true_m": 520.0}).label == "taken for nearer"
+    true_m = 499.22876227907034  # of the published file
+    assert bridge.judge({**leg, "true_m": true_m}).status == "passed"
+    assert bridge.judge({**leg, "true_m": true_m * (1 - 2e-6)}).label == "taken for farther"
+    assert bridge.judge({**leg, "true_m": true_m * (1 + 2e-6)}).label == "taken for nearer"
     with pytest.raises(BadInput, match="lat2"):
         bridge.judge({"true_m": 1.0, "lat1": 0.0, "lon1": 0.0})
+
+
+def test_the_ellipsoid_that_is_flown_on_is_asked_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A quarter of a percent between the sphere and the ellipsoid is there, and no more is let pass than can be."""
+    leg = {"lat1": 45.3, "lon1": -121, "lat2": 45.3, "lon2": -120.9, "lat": 45.3045, "lon": -120.95}
+    monkeypatch.setattr(bridge, "ELLIPSOID", 1e-4)
+    case = {**leg, "true_m": 499.22876227907034}
+    assert bridge.judge(case).status == "failed"
+    assert "within 0.0001 of it" in bridge.judge(case).text
 
 
 @pytest.mark.parametrize("wrong", [{"strict": "maybe"}, {"line": 5}, {"direction": "sideways"}])

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Iterator
 
 import pytest
-from wire_messages import ATTITUDE, OWN_POSITION, TRAFFIC
+from fuzz_lines import WAYS, End, changed
+from wire_messages import ATTITUDE, OWN_POSITION, RESET, ROUTE_REQUEST, TRAFFIC
 
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.text_protocol.dialects import Dialect
-from cratous.bridge.text_protocol.layouts import ORIGINAL_LIMITS, WIDE_LIMITS
+from cratous.bridge.text_protocol.layouts import LAYOUTS, ORIGINAL_LIMITS, WIDE_LIMITS
+from cratous.bridge.text_protocol.sealed import Seal
 
 DOWN = tp.Direction.DOWN
 WRITTEN: list[tp.Message] = [
@@ -27,6 +30,25 @@ WRITTEN: list[tp.Message] = [
     tp.Hello(400),
 ]
 EACH = [*WRITTEN, tp.GoToWaypoint(7)]
+KINDS: list[tp.Message] = [
+    *EACH,
+    RESET,
+    ROUTE_REQUEST,
+    tp.StartMission(),
+    tp.FenceDone(1),
+    tp.HardReset(),
+    tp.UxasPlans(),
+    tp.IcarousPlans(),
+    tp.WayOfAnother(3, 7, 45.3, -121.0, 700.0, 2),
+    tp.VelocityOfAnother(3, 10.0, 20.0, 1.5),
+    tp.SetMode("ACTIVE", 3),
+    tp.RouteStart(4),
+    tp.RoutePoint(45.3, -121.0, 700.0, 22.0, 4),
+    tp.RouteEnd(4),
+    tp.NotKnown("DIVE_NOW"),
+]
+CHANGED = 60
+"""So many changes of each line are read."""
 NUMBERS = (
     *("0.0", "-0.0", "00.0", "0.000000", "-0.000000", "1", "007.0", "+1.0", "1e3", "1.5", "1.", ".5", "--1.0"),
     *("90.000000", "90.000001", "-90.000001", "180.000000", "180.000001", "-180.000001", "360.0"),
@@ -98,3 +120,38 @@ def test_a_line_too_long_is_none_however_it_goes_on() -> None:
     assert [type(r) for r in parser.feed(line[:-1])] == [tp.WireError]
     assert parser.feed(short) == []  # the end of the long one
     assert parser.feed(short) == [tp.WaypointReached(0)]
+
+
+def test_all_kinds_are_there() -> None:
+    assert {type(message) for message in KINDS} == {layout.message for layout in LAYOUTS}
+
+
+@pytest.mark.parametrize("message", KINDS, ids=lambda message: type(message).__name__)
+@pytest.mark.parametrize("dialect", WAYS, ids=lambda way: "v2" if way is None else way.value)
+def test_a_changed_line_is_read_alike_however_it_is_cut(
+    message: tp.Message, dialect: Dialect | None
+) -> None:
+    """Cut short to nothing at last, and changed at random: nothing raises, and where the bytes are cut is all one."""
+    draw = random.Random(f"{type(message).__name__} {dialect}")
+    seal, line = (
+        Seal(1, bytes(32), bytes(32)),
+        tp.encode(message, dialect=dialect or Dialect.CRATOUS),
+    )
+    if dialect is None:
+        line = seal.wrap(line, 0)
+    short = [line[:end] for end in range(len(line) + 1)]
+    short += [one + b"\n" for one in short]
+    refused = 0
+    for data in [*short, *(changed(line, draw) for _ in range(CHANGED))]:
+        for original in (False, True):
+            way = tp.direction_of(message)
+            whole = End(way, dialect, original).read(data)
+            at = draw.randrange(len(data) + 1)
+            assert End(way, dialect, original).read(data[:at], data[at:]) == whole, (data, at)
+            single = [data[k : k + 1] for k in range(len(data))]
+            assert End(way, dialect, original).read(*single) == whole, data
+            records, wrong = whole
+            assert all(isinstance(r, tp.Message | tp.WireError | tp.Skipped) for r in records)
+            refused += bool(wrong) or not any(isinstance(r, tp.Message) for r in records)
+    assert refused > len(short), "most of what is changed is no message"
+    assert End(way, dialect, True).read(line)[0] != [], "and the line itself is one"

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.port import Address
-from cratous.bridge.text_connection import DEAF, Opened
+from cratous.bridge.text_connection import DEAF, Bounds, Opened
 from cratous.bridge.text_port import Came, TextPort
 from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET
 from cratous.bridge.text_protocol.keys import Keys, key_of, keys_of
@@ -310,3 +310,47 @@ def test_keys_come_from_files_or_the_environment_and_are_not_shown(
         assert "hunter2" not in str(wrong.value)
     with pytest.raises(BadInput, match="CRATOUS_BRIDGE_KEY_7"):
         key_of(7, None)
+
+
+def test_a_thousand_strangers_open_nothing_and_cost_the_others_nothing(opened: list[Any]) -> None:
+    """Each says what a peer without keys would, a made-up opening of v2, or rubbish; most stay as long as they may."""
+    bounds = Bounds(connections=8)
+    one = TextPort(at(), server=True, secret=KEYS, bounds=bounds)
+    other = TextPort(at(one.bound[1]), server=False, secret=key(1))
+    opened += [one, other]
+    other.dial(1.0)
+    up = list[Came]()
+    down = list[Came]()
+    until_s = time.monotonic() + 20
+    while not (up and down):
+        assert time.monotonic() < until_s
+        up, down = up + one.step(1.0), down + other.step(1.0)
+    (mine,) = {c.key for c in up}
+    plain = DEFAULT_SECRET.encode() + tp.encode(tp.Hello(1)) + tp.encode(tp.SetMode("ACTIVE", 1))
+    made_up = b"%b,1,%b,%b\n%b" % (NAME, b"0" * 32, b"1" * 64, seals()[0].wrap(LINE, 0))
+    said = (plain + b"\n", made_up, bytes(range(256)), b"", b"\n" * 40)
+    strangers, found, most, sent = list[socket.socket](), list[Came](), 0, 0
+    for number in range(1000):
+        stranger = socket.create_connection(("127.0.0.1", one.bound[1]), timeout=5)
+        strangers.append(stranger)
+        with contextlib.suppress(ConnectionError):
+            stranger.sendall(said[number % len(said)])
+        now_s = 1.0 + number / 100
+        found += one.step(now_s)
+        most = max(most, len(one._connections))
+        if number % 50 == 0:
+            sent += other.send(down[0].key, tp.SetMode("ACTIVE", number))
+            other.step(now_s)
+    wait(one, lambda _: found.extend(one.step(11.0)) or _heard(found) == sent)
+    for stranger in strangers:
+        stranger.close()
+    assert sent == 20
+    assert most <= bounds.connections
+    lines = [came for came in found if isinstance(came.what, tp.Message)]
+    assert {came.key for came in lines} == {mine}
+    assert not [came for came in found if isinstance(came.what, Opened)]
+    assert mine in one._connections
+
+
+def _heard(found: list[Came]) -> int:
+    return sum(isinstance(came.what, tp.SetMode) for came in found)

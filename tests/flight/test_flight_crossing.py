@@ -106,6 +106,26 @@ def test_without_avoidance_well_clear_is_lost() -> None:
     assert result.takeovers == 0
 
 
+def test_a_bridge_over_which_nobody_takes_anything_changes_no_flight() -> None:
+    """Who passes long after the other is flown by the same states to the last digit, with ICAROUS and without."""
+    mission, _ = crossing(90, 22, 22)
+    one, two = mission.vehicles[0], through_origin(2, math.radians(90), 22, 220.0)
+    mission = replace(mission, vehicles=(one, two))
+    items = (item(one, 11), item(two, 12))
+    plan = Plan("apart", items, (), (1,), max(i.end_ms for i in items), "MINMAX", 1, True)
+    flights = [flown(mission, plan, daa=daa) for daa in (True, False)]
+    states = [
+        [(s.VehicleID, s.Time, s.North, s.East, s.Altitude) for s in of_type(log, "TruthState")]
+        for _, log in flights
+    ]
+    beats = [len(of_type(log, "Heartbeat")) for _, log in flights]
+    assert [result.takeovers for result, _ in flights] == [0, 0]
+    assert beats[0] > 500, "the bridge is there"
+    assert beats[1] == 0
+    assert states[0] == states[1]
+    assert flights[0][0].ends == flights[1][0].ends
+
+
 def test_only_the_one_that_gives_way_manoeuvres() -> None:
     mission, plan = crossing(90, 22, 22)
     _, log = flown(mission, plan)

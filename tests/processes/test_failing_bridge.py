@@ -7,18 +7,25 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from cratous.bridge.text_protocol.handshake import ACCEPT, DEFAULT_SECRET, HELLO
+import pytest
+
+from cratous.bridge.faults import FailingWay
+from cratous.bridge.text_protocol import Direction, Hello, SetMode, SetVelocity, encode
+from cratous.bridge.text_protocol.sealed import FORGED, REPLAYED, Seal, SealedClient, SealedServer
 from cratous.services.processes.failing_bridge import FailingBridge
 from cratous.spec.mission.bridge_faults import BridgeFaults
 
 BEAT_MS = 500
-HELLO_LINE = b"HELLO,id1.0,\n"
+KEYS = {1: bytes(range(32))}
+VELOCITY = encode(SetVelocity(1.0, 2.0, 0.0))
 
 
 class Wire:
     """UxAS and the ICAROUS of vehicle 1, with the bridge between them, after the handshake."""
 
     flies = True
+    at_uxas: Seal
+    at_icarous: Seal
 
     def __init__(self, bridge: FailingBridge, server: socket.socket, now_ms: int = 0) -> None:
         self.bridge, self.server, self.now_ms = bridge, server, now_ms
@@ -34,13 +41,14 @@ class Wire:
         except TimeoutError:
             return near, near
         far.settimeout(5)
-        far.sendall(HELLO)
-        self.until(lambda: near.recv(len(HELLO), socket.MSG_PEEK) == HELLO)
-        near.recv(len(HELLO))
-        near.sendall(DEFAULT_SECRET.encode() + HELLO_LINE)
-        assert self.got(far, len(DEFAULT_SECRET) + len(HELLO_LINE)).endswith(HELLO_LINE)
-        far.sendall(ACCEPT)
-        assert self.got(near, len(ACCEPT)) == ACCEPT
+        server, client = SealedServer(keys=KEYS), SealedClient(keys=KEYS)
+        far.sendall(server.start())
+        near.sendall(client.feed(self.line(near)))
+        far.sendall(server.feed(self.line(far)))
+        client.feed(self.line(near))
+        assert server.seal is not None
+        assert client.seal is not None
+        self.at_uxas, self.at_icarous = server.seal, client.seal
         return near, far
 
     def until(self, done: Callable[[], object]) -> None:
@@ -55,6 +63,13 @@ class Wire:
             except TimeoutError:
                 pass
             assert with_limit
+
+    def line(self, end: socket.socket) -> bytes:
+        """The next line at an end."""
+        found = b""
+        while not found.endswith(b"\n"):
+            found += self.got(end, 1)
+        return found
 
     def got(self, end: socket.socket, count: int) -> bytes:
         """So many bytes at an end."""
@@ -173,12 +188,49 @@ def test_who_does_not_read_for_too_long_is_cut_off() -> None:
         one.until(lambda: one.near.recv(1) == b"")
 
 
-def test_forged_modes_come_to_uxas_alone() -> None:
-    with wire(forged_modes=1.0) as one:
+@pytest.mark.parametrize("share", [0.5, 1.0])
+def test_forged_modes_come_to_uxas_alone_which_believes_none(share: float) -> None:
+    with wire(forged_modes=share) as one:
+        said, lines, refused = list[bytes](), b"", list[str]()
+        for now_ms in range(0, 20_001, BEAT_MS // 2):
+            for end, seal in ((one.near, one.at_icarous), (one.far, one.at_uxas)):
+                packet = seal.wrap(VELOCITY, now_ms)
+                end.sendall(packet)
+            said.append(VELOCITY)
+            one.steps(now_ms, 3)
+            more, wrong = one.at_uxas.feed(one.there(one.far))
+            lines, refused = lines + more, [*refused, *(one.what for one in wrong)]
+            down, wrong = one.at_icarous.feed(one.there(one.near))
+            assert down.replace(VELOCITY, b"") == b""
+            assert wrong == []
+        assert lines == b"".join(said)
+        assert len(refused) in (range(20, 61) if share < 1 else (80,))
+        assert set(refused) == {FORGED, REPLAYED}, "recorded packets, and the forger's own"
+
+
+def test_without_seals_the_same_forged_modes_would_be_there() -> None:
+    """What is refused above is a mode whole and well written: it is the seal that it lacks."""
+    way = FailingWay(BridgeFaults(forged_modes=1.0), 1, Direction.UP)
+    lines = {way.forged() for _ in range(200)}
+    modes = [SetMode(mode, epoch) for mode in ("ACTIVE", "PASSIVE") for epoch in range(6)]
+    assert lines == {encode(mode) for mode in modes}
+
+
+def test_whoever_connects_and_does_not_speak_v2_is_let_through_to_be_refused() -> None:
+    with wire(truncation=1.0, corruption=1.0, forged_modes=1.0) as one:
+        one.near.sendall(b"\n" * 50 + b"1,2\n" + encode(Hello(1)) + b"9" * 30 + b",1,1,1,\n")
         for now_ms in range(0, 5001, BEAT_MS // 2):
             one.steps(now_ms, 3)
-        one.steps(5000)
-        lines = one.there(one.far).splitlines()
-        assert len(lines) == 20
-        assert all(line.startswith(b"SETMOD,type_") for line in lines)
-        assert one.there(one.near) == b""
+        lines, refused = one.at_uxas.feed(one.there(one.far))
+        assert lines == b""
+        assert refused
+
+
+@pytest.mark.parametrize("data", [b"\n", b"A\n", b"AB\n"])
+def test_a_line_that_is_cut_short_is_shorter_and_an_empty_one_is_gone(data: bytes) -> None:
+    for seed in range(20):
+        way = FailingWay(BridgeFaults(seed=seed, truncation=1.0), 1, Direction.UP)
+        way.take(data, 0)
+        left = way.due(0)
+        assert left == [one for one in left if data.startswith(one) and 0 < len(one) < len(data)]
+        assert len(left) == (len(data) > 1)

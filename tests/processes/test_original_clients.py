@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from cratous.bridge.text_protocol import Dialect
-from cratous.bridge.text_protocol.handshake import SECRET_VARIABLE
+from cratous.bridge.text_protocol.keys import KEY_VARIABLE, Keys, key_of, new_keys
 from cratous.services.cli import main
 from cratous.services.cli.processes_job import as_flown
 from cratous.services.icarous_communication.settings import ATTRIBUTES, settings_of
@@ -30,8 +30,10 @@ def crossing(root: Path) -> Mission:
 
 @pytest.mark.parametrize("original", [True, False])
 def test_uxas_s_end_speaks_with_who_is_there(
-    crossing: Mission, tmp_path: Path, original: bool
+    crossing: Mission, tmp_path: Path, original: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    for name, text in new_keys(crossing.instances).environment().items():
+        monkeypatch.setenv(name, text)
     ports = Ports(1001, 1002, ORIGINAL_PORT)
     cfg = write_configuration(crossing, crossing.instances, ports, tmp_path, original)
     (entry,) = (e for e in read(cfg).entries if e.type == "IcarousCommunicationService")
@@ -39,6 +41,7 @@ def test_uxas_s_end_speaks_with_who_is_there(
     settings = settings_of(entry, values)
     assert (settings.instances, settings.ids, settings.where.port) == (2, (1, 2), 5557)
     assert settings.dialect is (Dialect.ORIGINAL if original else Dialect.CRATOUS)
+    assert (settings.keys is None) is original
     assert (settings.wait_s == CLIENTS_S) is original
 
 
@@ -46,7 +49,7 @@ def test_uxas_s_end_speaks_with_who_is_there(
 def test_no_icarous_is_started_where_clients_are_waited_for(
     crossing: Mission, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, original: bool
 ) -> None:
-    told, started = list[str](), dict[str, tuple[str, ...]]()
+    told, started, had = list[str](), dict[str, tuple[str, ...]](), dict[str, Keys]()
     plan: Any = SimpleNamespace(items=[])
     how: Any = SimpleNamespace(
         tell=told.append, folder=tmp_path, path=tmp_path, digest="0" * 64, rate=1.0,
@@ -59,25 +62,47 @@ def test_no_icarous_is_started_where_clients_are_waited_for(
     one._start_simulator = lambda _: 1  # type: ignore[method-assign]
     one._connect = lambda _: nobody  # type: ignore[method-assign]
     one._wait = one._control = lambda *_: None  # type: ignore[assignment,method-assign]
-    one._start = lambda name, *words, **_: started.update({name: words})  # type: ignore[method-assign]
+
+    def start(name: str, *words: str, keys: Keys = Keys({}), **_: object) -> None:
+        started[name], had[name] = words, keys
+
+    one._start = start  # type: ignore[method-assign]
     one.start()
     assert set(started) == ({"uxas"} if original else {"uxas", "icarous_1", "icarous_2"})
     for name, words in started.items():
         # a mission that was changed since is not flown
         assert (("--mission-hash", how.digest) in pairwise(words)) is (name != "uxas")
+        assert not {"--plain", "--original", "--thesis"} & set(words)
+    # each ICAROUS has its own key, UxAS that of each; the clients' protocol has none
+    of_uxas = had["uxas"].by_vehicle
+    assert sorted(of_uxas) == ([] if original else [1, 2])
+    assert len(set(of_uxas.values())) == len(of_uxas)
+    for vehicle, key in of_uxas.items():
+        assert had[f"icarous_{vehicle}"].by_vehicle == {vehicle: key}
     asks = [text for text in told if text.startswith("start the original's clients")]
     assert len(asks) == original
     assert not original or asks[0].endswith("for vehicle 1, then 2: UxAS waits for 2")
     assert (one.ports.icarous == ORIGINAL_PORT) is original
 
 
-def test_the_secret_is_then_the_one_of_the_environment(
+def test_a_process_has_the_keys_that_it_is_given_and_no_others(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv(SECRET_VARIABLE, "ab" * 32)
-    for own in (True, False):
-        children = Children(tmp_path, tmp_path, own_secret=own)
-        assert (children._environment[SECRET_VARIABLE] == "ab" * 32) is not own
+    keys, others = new_keys([1, 2]), new_keys([1, 2, 3])
+    for name, text in others.environment().items():
+        monkeypatch.setenv(name, text)
+    with Children(tmp_path, tmp_path) as children:
+        found = {}
+        for number, given in ((2, keys.of(2)), (0, Keys({}))):
+            pid = children.start(f"one_{number}", "version", private=given.environment())
+            text = Path(f"/proc/{pid}/environ").read_text()
+            fields = (field.partition("=") for field in text.split("\0"))
+            found[number] = {name: value for name, _, value in fields if "BRIDGE_KEY" in name}
+            assert keys.by_vehicle[2].hex() not in Path(f"/proc/{pid}/cmdline").read_text()
+    assert found == {2: {KEY_VARIABLE.format(2): keys.by_vehicle[2].hex()}, 0: {}}
+    monkeypatch.setenv(KEY_VARIABLE.format(2), found[2][KEY_VARIABLE.format(2)])
+    assert key_of(2, None) == keys.by_vehicle[2]
+    assert keys.by_vehicle[2].hex() not in f"{keys!r} {keys.of(2)!r}"
 
 
 def test_the_report_does_not_say_which_icarous_flew(crossing: Mission) -> None:

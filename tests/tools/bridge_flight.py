@@ -62,7 +62,10 @@ CFG = """<UxAS FormatVersion="1.0" EntityID="100" EntityType="Aircraft">
 
 
 def configuration(folder: Path, more: str, connect: int | None = None) -> tuple[Path, int, int]:
-    """A cfg.xml in a folder, and the ports of simulator and ICAROUS. connect: there ICAROUS listens."""
+    """A cfg.xml in a folder, and the ports of simulator and ICAROUS. more: of the service, which has no keys where no
+    dialect is said; connect: there ICAROUS listens."""
+    if "Dialect" not in more:
+        more += ' Dialect="cratous"'
     sim, ics = free_port(), connect or free_port()
     path, where = folder / "cfg.xml", "Address" if connect is None else "Connect"
     path.write_text(CFG.format(sim=sim, ics=ics, more=more, where=where))
@@ -89,7 +92,10 @@ def command(folder: Path, *arguments: str) -> Iterator[subprocess.Popen[str]]:
 
 
 def icarous(folder: Path, port: int, *more: str, vehicle: int = 1, end: str = "--connect") -> Any:
-    """`cratous icarous` for a vehicle of `mission_file`. end: --connect or --listen."""
+    """`cratous icarous` for a vehicle of `mission_file`, without keys where no dialect is said. end: --connect or
+    --listen."""
+    if not {"--v2", "--thesis", "--original"} & set(more):
+        more += ("--plain",)
     mission = mission_file(folder, vehicle)
     return command(
         folder, "icarous", "--vehicle", str(vehicle), "--mission", str(mission),

@@ -65,6 +65,8 @@ class Rig:
     """A process with the service alone, all that it publishes, and fakes."""
 
     def __init__(self, folder: Path, attributes: str, opened: list[Any]) -> None:
+        if "Dialect" not in attributes:  # the fakes have no keys
+            attributes += ' Dialect="cratous"'
         text = f'<Service Type="{SERVICE}" Address="tcp://127.0.0.1:0" {attributes}/>'
         self.process, self.said = process(write_cfg(folder, text))
         opened.append(self.process)

@@ -15,6 +15,7 @@ from cratous.bridge import text_protocol as tp
 from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.services.flight.dynamics import Limits
 from cratous.services.mission.frames import Projection
+from cratous.services.uxas.frame import Clock
 from cratous.spec.mission import Frame, Position, Zone, ZoneKind
 
 SERVICE, PLANNER = "IcarousCommunicationService", "RoutePlannerVisibilityService"
@@ -74,14 +75,17 @@ class Rig:
         more: str = "",
         planner: str = "",
         whole: bool = False,
+        clock: Clock | None = None,
     ) -> None:
         more = more or 'NumberOfUAVs="2" RoutePlannerUsed="1" RouteTimeout_s="60"'
+        if "Dialect" not in more:  # the fakes have no keys
+            more += ' Dialect="cratous"'
         text = f'<Service Type="{PLANNER}" {planner}/>'
         text += f'<Service Type="{AGGREGATOR}" UseICAROUSRoutePlanner="true"/>'
         others = [name for name in PIPELINE if name not in (PLANNER, AGGREGATOR)]
         text += "".join(f'<Service Type="{name}"/>' for name in others) if whole else ""
         text += f'<Service Type="{SERVICE}" Address="tcp://127.0.0.1:0" {more}/>'
-        self.process, self.said = process(write_cfg(folder, text))
+        self.process, self.said = process(write_cfg(folder, text), clock=clock)
         opened.append(self.process)
         self.sent: list[Any] = []
         self.process.bus.tap(self.sent.append)

@@ -12,11 +12,13 @@ from route_rig import PLANE, Rig, obeys, place, vehicle
 
 from cratous.bridge import lmcp
 from cratous.bridge import text_protocol as tp
-from cratous.services.icarous_communication import proposals
+from cratous.services.icarous_communication.proposals import MOST, WITHIN_MS
+from cratous.services.uxas.frame import Clock
 from cratous.spec.errors import BadInput
 
 SERVICE = "IcarousCommunicationService"
 LIVE = 'NumberOfUAVs="1" VehicleIDs="1" UseUxasRoutePlanner="true"'
+BEAT_MS = 500
 START = PLANE.to_geodetic(0.0, 0.0)
 
 
@@ -113,18 +115,34 @@ def test_what_cannot_be_answered_is_answered_without_a_way(
 
 
 def test_an_instance_that_asks_again_and_again_is_planned_for_no_more(
-    tmp_path: Path, opened: list[Any], monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, opened: list[Any]
 ) -> None:
-    monkeypatch.setattr(proposals, "WITHIN_MS", 600_000)  # whatever the machine's speed
-    monkeypatch.setattr(proposals, "MOST", 2)
-    rig = Rig(tmp_path, opened, LIVE)
+    now_ms, numbers = 0, itertools.count(1)
+    rig = Rig(tmp_path, opened, LIVE, clock=Clock(lambda: now_ms / 1000))
     one = rig.fake(1)
     flying(rig)
     one.say(tp.SetMode("ACTIVE", 1))
     rig.until(lambda: rig.said.has("ICAROUS has it"))
-    got = [bool(answered(rig, one, wanted(3000.0, k))) for k in range(1, 5)]
-    assert got == [True, True, False, False]
-    assert rig.said.has("more than 2 WPREQ in 600 s")
+
+    def asked(count: int) -> list[bool]:
+        """Whether each of so many requests at this instant is answered by a way."""
+        return [bool(answered(rig, one, wanted(3000.0, next(numbers)))) for _ in range(count)]
+
+    def come() -> None:
+        """It is now for the service, too."""
+        rig.until(lambda: rig.process.bus.now_ms == now_ms)
+
+    assert asked(MOST + 2) == [True] * MOST + [False, False]
+    assert rig.said.has(f"more than {MOST} WPREQ in {WITHIN_MS / 1000:g} s")
+    for _ in range(WITHIN_MS // BEAT_MS):  # it is heard at each heartbeat
+        assert asked(1) == [False], now_ms
+        now_ms += BEAT_MS
+        one.say(tp.Heartbeat(next(numbers), now_ms / 1000))
+        come()
+    assert asked(1) == [False], "the first was planned for so long ago, and no longer"
+    now_ms += 1
+    come()
+    assert asked(MOST + 1) == [True] * MOST + [False]
 
 
 def test_nobody_asks_a_uxas_that_does_not_plan_live(tmp_path: Path, opened: list[Any]) -> None:

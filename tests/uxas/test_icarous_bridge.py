@@ -200,7 +200,7 @@ CONNECT = ("--connect", "{where}")
         ),
         ((*CONNECT, "--vehicle", "1", "--connect", "nowhere"), 2, "not an address"),
         (
-            (*CONNECT, "--vehicle", "1", "--wait", "0.3"),
+            (*CONNECT, "--vehicle", "1", "--wait", "0.3", "--plain"),
             3,
             "no UxAS for 0.3 s (Connection refused)",
         ),
@@ -210,8 +210,13 @@ CONNECT = ("--connect", "{where}")
             2,
             "another mission; expected " + "0" * 64,
         ),
-        (("--vehicle", "1", "--listen", "192.0.2.1:9"), 2, "no authentication"),
-        (("--vehicle", "1", "--listen", "127.0.0.1:0", "--keys", "."), 2, "--keys is of --v2"),
+        (("--vehicle", "1", "--listen", "192.0.2.1:9", "--plain"), 2, "no authentication"),
+        (
+            ("--vehicle", "1", "--listen", "127.0.0.1:0", "--thesis", "--keys", "."),
+            2,
+            "--keys is of --v2, and --thesis has none",
+        ),
+        (("--vehicle", "1", "--listen", "127.0.0.1:0"), 2, "no key of the bridge"),
         (("--vehicle", "1", "--listen", "127.0.0.1:0", "--v2"), 2, "no key of the bridge"),
         (
             ("--vehicle", "1", "--listen", "127.0.0.1:0", "--original"),
@@ -219,7 +224,7 @@ CONNECT = ("--connect", "{where}")
             "--original needs --connect",
         ),
         (
-            ("--vehicle", "1", "--listen", "127.0.0.1:0", "--wait", "0.3"),
+            ("--vehicle", "1", "--listen", "127.0.0.1:0", "--wait", "0.3", "--plain"),
             3,
             "no UxAS for 0.3 s (it has not connected)",
         ),

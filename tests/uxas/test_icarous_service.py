@@ -280,10 +280,11 @@ def test_the_original_s_client_gets_what_it_can_hold(tmp_path: Path, opened: lis
 @pytest.mark.parametrize(
     ("attributes", "item"),
     [
-        ('Address="tcp://*:0"', "Dialect"),
-        ('Connect="tcp://192.0.2.1:9"', "Dialect"),
-        ('Keys="keys"', "Keys"),
+        ('Dialect="cratous" Address="tcp://*:0"', "Dialect"),
+        ('Dialect="thesis" Connect="tcp://192.0.2.1:9"', "Dialect"),
+        ('Dialect="cratous" Keys="keys"', "Keys"),
         ('Dialect="v2"', "VehicleIDs"),
+        ("", "VehicleIDs"),
     ],
 )
 @pytest.mark.shows(SERVICE, "PlainBeyondLoopback")

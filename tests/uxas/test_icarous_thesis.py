@@ -142,10 +142,10 @@ def test_the_command_speaks_it_and_another_dialect_is_refused_on_both_ends(
             assert pilot.wait(20) == 0
 
 
-@pytest.mark.parametrize("other", ["--original", "--v2"])
+@pytest.mark.parametrize("other", ["--original", "--v2", "--plain"])
 def test_one_dialect_at_a_time(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], other: str
 ) -> None:
     words = ["--mission", str(mission_file(tmp_path)), "--vehicle", "1", "--thesis", other]
     assert main(["icarous", "--connect", "127.0.0.1:9", *words]) == 2
-    assert "one of --original, --thesis and --v2" in capsys.readouterr().err
+    assert "one of --plain, --original, --thesis and --v2" in capsys.readouterr().err

@@ -1,0 +1,44 @@
+"""Packets that somebody puts into a connection of v2 who hears it and has no key of it."""
+
+from __future__ import annotations
+
+import random
+import re
+from collections import deque
+
+from cratous.bridge.text_protocol.sealed import Seal
+
+KEPT = 256
+"""So many packets that went by are kept to be sent again."""
+
+
+_HEAD = re.compile(rb"([0-9]{1,18}),([0-9]{1,18}),[0-9]{1,18},([0-9]{1,18}),")
+
+
+class Forger:
+    """Of one connection, towards UxAS; what it does is drawn from `draw`."""
+
+    def __init__(self, vehicle_id: int, draw: random.Random) -> None:
+        self._vehicle_id, self._draw = vehicle_id, draw
+        self._key = draw.randbytes(32)
+        self._heard: deque[bytes] = deque(maxlen=KEPT)
+        self._last = (0, 0, 0)
+
+    def hears(self, packet: bytes, up: bool) -> None:
+        """A packet goes by. up: it is of ICAROUS."""
+        head = _HEAD.match(packet)
+        if head is None:
+            return
+        self._heard.append(packet)
+        if up:
+            sequence, time_ms, acknowledged = map(int, head.groups())
+            self._last = sequence, time_ms, acknowledged
+
+    def packet(self, line: bytes) -> bytes:
+        """One of either direction that went by, again; or the line as ICAROUS's next packet: numbers and checksum are
+        right, the key is another one."""
+        if self._heard and self._draw.random() < 1 / 2:
+            return self._draw.choice(self._heard)
+        sequence, time_ms, acknowledged = self._last
+        seal = Seal(self._vehicle_id, self._key, self._key, sent=sequence, mark=acknowledged)
+        return seal.wrap(line, time_ms)
