@@ -15,6 +15,7 @@ from cratous.judge.tracks import Track
 from cratous.judge.verdict import seconds
 
 NEAR_M = 0.01
+MOVES = "and did not stand there at the end"
 
 
 class Down(NamedTuple):
@@ -70,5 +71,5 @@ def down(mission: Mission, track: Track | None) -> Down | None:
             break
     last = states[-1]
     if not fault and (last.north_m_s or last.east_m_s or last.up_m_s):
-        fault = "and did not stand there at the end"
+        fault = MOVES
     return Down(states[first].time_ms, site, fault)

@@ -194,6 +194,9 @@ def _row(own: int, other: int, flown: dict[int, Track], mission: Mission) -> Row
     if not pair.checks:
         if doubt:
             return Row("G2", subject, item, UNKNOWN, doubt)
+        if pair.covered_ms:
+            note = "one of them was on the ground as long as both were logged: nothing was asked"
+            return Row("G2", subject, item, UNKNOWN, note)
         return Row("G2", subject, item, HOLDS, "never in the air together")
     row = Row("G2", subject, item, HOLDS, note, pair.nearest_ms, pair.checks)
     return doubted(row, doubt)

@@ -56,7 +56,7 @@ class Monitor:
         self.authority = AuthorityWatch(mission)
         self.bridge = BridgeWatch(mission, says_beats)
         self.hand = HandWatch.of(mission)
-        self.link_loss = LinkLossWatch(mission, self.landing.down)
+        self.link_loss = LinkLossWatch(mission, self.landing.down, self.presence)
         self._assumed = AssumptionWatch(mission)
         self._last_ms, self._over = 0, False
         self._tell, self._tell_broken = on_violation, on_broken
