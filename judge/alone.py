@@ -28,7 +28,7 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
         return
     for vehicle in sorted(mission.instances):
         subject, item = ("alone", str(vehicle)), f"what vehicle {vehicle} flies without the link"
-        said, place = log.alone.get(vehicle, []), down(mission, flown.get(vehicle))
+        said, place = log.alone.get(vehicle, []), down(mission, vehicle, flown.get(vehicle))
         faults = [*_faults(mission, asked, said), *_missed(mission, asked, log, vehicle, said)]
         if log.end_ms is not None:
             seen = not _unseen(flown.get(vehicle))
@@ -118,7 +118,7 @@ def _taken(
     if place is None or place.site is None:
         return
     for other in mission.vehicles:
-        there = down(mission, flown.get(other)) if other != vehicle else None
+        there = down(mission, other, flown.get(other)) if other != vehicle else None
         if there and there.site == place.site and (there.at_ms, other) < (place.at_ms, vehicle):
             yield place.at_ms, f"it {place.words()}, where vehicle {other} was before it"
 

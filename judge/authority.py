@@ -140,7 +140,7 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
             if said.vehicle == vehicle:
                 getattr(story, said.kind)(said)
         subject, item = ("authority", str(vehicle)), f"authority over vehicle {vehicle}"
-        doubt, place = "", down(mission, flown.get(vehicle))
+        doubt, place = "", down(mission, vehicle, flown.get(vehicle))
         if log.end_ms is not None:
             silent_ms = _down_ms(log.bridges.get(vehicle, []), log.end_ms)
             doubt = story.end(log.end_ms, silent_ms, place is not None and place.good)

@@ -8,10 +8,9 @@ from cratous.core.avoidance.resolution import Scene
 from cratous.services.flight.dynamics import first_state
 from cratous.services.flight.landing_reach import at_start
 from cratous.services.icarous.course_permits import refused
-from cratous.services.icarous.instance import LINK_LOST_MS
 from cratous.services.icarous.take_off import NO_WAY, may_stop, ways_up
 from cratous.services.loading.polygons import hard_zones
-from cratous.services.mission.take_off import TakeOff, grounded
+from cratous.services.mission.take_off import TakeOff, grounded, silence_ms
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import GroundedVehicle, Mission
 
@@ -21,10 +20,8 @@ def take_off(mission: Mission, vehicle_id: int) -> TakeOff | None:
     waiting = [one.id for one in grounded(mission)]
     if vehicle_id not in waiting:
         return None
-    loss = mission.link_loss
-    silence_ms = LINK_LOST_MS if loss is None else loss.after_ms
     alt_m = mission.vehicle(vehicle_id).position.alt_m
-    return TakeOff(alt_m, silence_ms, waiting.index(vehicle_id), len(waiting))
+    return TakeOff(alt_m, silence_ms(mission), waiting.index(vehicle_id), len(waiting))
 
 
 def require_take_offs(mission: Mission) -> None:

@@ -7,10 +7,16 @@ answered by the kernel `departure_step` at each heartbeat. One of ours rolls at 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
-from cratous.core.authority.take_off import CLIMBING, ROLLING, STANDING, UP, Departure, departure_step
+from cratous.core.authority.take_off import (
+    CLIMBING,
+    ROLLING,
+    STANDING,
+    UP,
+    Departure,
+    departure_step,
+)
 from cratous.core.authority.timeliness import in_time
 from cratous.core.avoidance.manoeuvre import Pace
 from cratous.core.avoidance.resolution import Choice

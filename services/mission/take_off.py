@@ -15,6 +15,10 @@ BEATS = 4
 """A take-off takes at most so many heartbeats more than its way."""
 
 
+SILENCE_MS = 2000
+"""For so long UxAS may be silent while a vehicle takes off, where the mission does not say [ms]: four heartbeats."""
+
+
 class TakeOff(NamedTuple):
     """alt_m: to which altitude [m MSL]; silence_ms: for how long UxAS may be silent while the vehicle is not up [ms];
     turn, many: of so many heartbeats it may begin to roll at this one."""
@@ -29,6 +33,11 @@ def grounded(mission: Mission) -> list[GroundedVehicle]:
     """The vehicles of a mission that start on the ground, by id."""
     found = [one for one in mission.vehicles if isinstance(one, GroundedVehicle)]
     return sorted(found, key=lambda one: one.id)
+
+
+def silence_ms(mission: Mission) -> int:
+    """For how long UxAS may be silent while a vehicle takes off [ms]."""
+    return SILENCE_MS if mission.link_loss is None else mission.link_loss.after_ms
 
 
 def roll_m(from_m_s: float, to_m_s: float, acceleration_m_s2: float) -> float:

@@ -23,6 +23,7 @@ from cratous.services.monitor.observation import Ending, Presence
 from cratous.services.monitor.required_rows import END, missing, promised, watched
 from cratous.services.monitor.samples import Sample, Sampler
 from cratous.services.monitor.separation import SeparationWatch
+from cratous.services.monitor.take_off import TakeOffWatch
 from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import REQUIREMENTS, Kind, Verdict, worst
 from cratous.spec.mission.plan import Plan
@@ -57,6 +58,7 @@ class Monitor:
         self.bridge = BridgeWatch(mission, says_beats)
         self.hand = HandWatch.of(mission)
         self.link_loss = LinkLossWatch(mission, self.landing.down, self.presence)
+        self.take_off = TakeOffWatch(mission, self.presence)
         self._assumed = AssumptionWatch(mission)
         self._last_ms, self._over = 0, False
         self._tell, self._tell_broken = on_violation, on_broken
@@ -81,6 +83,7 @@ class Monitor:
         elif short in ("GateState", "GatedCommand", "CommandDropped", "ModeRefused"):
             self.authority.message(short, body, envelope.time_ms)
             if short == "GateState":
+                self.take_off.gate(body)
                 self.hand.gate(body, envelope.time_ms)
         elif short == "HandState":
             self.hand.hand(body, envelope.time_ms)
@@ -92,6 +95,8 @@ class Monitor:
             self.link_loss.status(body)
         elif short == "LinkLossState":
             self.link_loss.state(body)
+        elif short == "TakeOffState":
+            self.take_off.state(body)
         elif short == "MissionEnd":
             for step in self._sampler.flush():
                 self._step(*step)
@@ -100,6 +105,7 @@ class Monitor:
             self.authority.end(body, self.landing.down)
             self.bridge.end(body)
             self.link_loss.end(body)
+            self.take_off.end(body)
             self.hand.end(body.Time)
         if self._tell is not None:
             for k, events in enumerate((self.separation.violations, self.constraints.violations)):
@@ -113,6 +119,7 @@ class Monitor:
     def _step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
         self.presence.step(before, after)
         self.constraints.step(before, after)
+        self.take_off.step(before, after)
         flown = self.landing.step(before, after)
         if all(flown):
             self.separation.step(*flown)
@@ -144,6 +151,7 @@ class Monitor:
             *self.separation.verdicts(seen, ending),
             *self.completion.verdicts(seen),
             *self.authority.verdicts(),
+            *self.take_off.verdicts(),
             *self.bridge.verdicts(),
             *self.link_loss.verdicts(),
         ]

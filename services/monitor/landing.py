@@ -1,7 +1,8 @@
 """Who is on the ground, by where the aircraft were: at a landing site, or beside all of them.
 
 Well clear is asked of aircraft in the air: a leg whose both ends are on the ground is none. Who has come to the ground
-has to stay, and to stand at the end, and to have the site for itself. Decisions are those of the kernel `on_ground`.
+has to stay, and to stand at the end, and to have the site for itself. Who starts on the ground is on it until it has
+left it. Decisions are those of the kernel `on_ground`.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from cratous.services.mission.landing import ground_m, is_down, site_under, sites_of
+from cratous.services.mission.take_off import grounded
 from cratous.services.monitor.samples import Sample
 from cratous.spec.mission import Mission, Position
 
@@ -36,22 +38,29 @@ class Down:
 
 
 class LandingWatch:
-    """The vehicles that have come to the ground, by number; nobody where there is no landing site."""
+    """The vehicles that have come to the ground, by number; nobody where there is no landing site. Those that start on it
+    are none of them."""
 
     def __init__(self, mission: Mission) -> None:
         self._sites, self._terrain_m = sites_of(mission), mission.frame.terrain_m
         self.down: dict[int, Down] = {}
+        self._not_yet = {one.id: one.ground_m for one in grounded(mission)}
 
     def step(
         self, before: dict[int, Sample], after: dict[int, Sample]
     ) -> tuple[dict[int, Sample], dict[int, Sample]]:
         """Two successive instants; those of them that fly."""
-        if not self._sites:
+        if not self._sites and not self._not_yet:
             return before, after
-        for number in before.keys() & after.keys():
-            if after[number].ours:
+        still = {n for n in self._not_yet if n in before and n in after}
+        for number in still:
+            if not is_down(after[number].position.alt_m - self._not_yet[number]):
+                del self._not_yet[number]
+        still &= self._not_yet.keys()
+        for number in before.keys() & after.keys() if self._sites else ():
+            if after[number].ours and number not in self._not_yet:
                 self._leg(number, before[number], after[number])
-        still = {
+        still |= {
             n for n in self.down if n in before and n in after and self._stays(before[n], after[n])
         }
         flown = ({n: s for n, s in one.items() if n not in still} for one in (before, after))
