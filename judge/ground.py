@@ -70,6 +70,15 @@ def first_in_the_air(mission: Mission, vehicle: int, states: Sequence[State]) ->
     return next(off, len(states))
 
 
+def stands_at_start(mission: Mission, vehicle: int, track: Track | None) -> bool:
+    """Whether a vehicle has stood where it started on the ground to the end, and all of that was logged."""
+    if track is None or track.doubt or vehicle not in mission.grounds or not track.states:
+        return False
+    last, states = track.states[-1], track.states
+    moves = last.north_m_s or last.east_m_s or last.up_m_s
+    return first_in_the_air(mission, vehicle, states) == len(states) and not moves
+
+
 def on_ground(mission: Mission, vehicle: int, track: Track) -> set[int]:
     """When the legs of one of ours begin whose both ends are on the ground [ms]."""
     states, began = track.states, first_in_the_air(mission, vehicle, track.states)

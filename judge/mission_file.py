@@ -143,7 +143,9 @@ class _Reader:
         )  # fmt: skip
         bank = math.radians(data.get("max_bank_deg", 30.0).real)
         protected = data.get("protected", True).flag
-        ground = self.ground(data["position"]) if data.get("start", "air").text == "ground" else None
+        ground = (
+            self.ground(data["position"]) if data.get("start", "air").text == "ground" else None
+        )
         return m.Vehicle(data["id"].whole, protected, data["speed_m_s"].real, bank, cameras, ground)
 
     def ground(self, data: Node) -> float:

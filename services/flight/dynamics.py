@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from cratous.services.mission.landing import is_down
 from cratous.spec.mission import GroundedVehicle, Position, Traffic, Vehicle, Velocity
 from cratous.spec.mission.plan import Pose
 
@@ -71,6 +72,13 @@ def first_state(vehicle: Vehicle) -> AirState:
     if isinstance(vehicle, GroundedVehicle):
         return AirState(vehicle.stands_at, wrap(vehicle.heading_rad), 0.0, 0.0)
     return planned_state(vehicle)
+
+
+def stands_at_start(vehicle: Vehicle, air: AirState) -> bool:
+    """Whether a vehicle that starts on the ground is there still, at a stand."""
+    if not isinstance(vehicle, GroundedVehicle):
+        return False
+    return is_down(air.position.alt_m - vehicle.ground_m) and air.speed_m_s == 0
 
 
 def planned_state(vehicle: Vehicle) -> AirState:
@@ -144,7 +152,9 @@ def rolling_up(state: AirState, speed_m_s: float, climb_m_s: float, dt_s: float)
     """The state of a vehicle that rolls faster, up to a speed, with the velocity of the coming step: straight on; and off
     the ground, at a climb above 0, once that speed is reached."""
     speed = min(state.speed_m_s + MAX_ACCELERATION_M_S2 * dt_s, speed_m_s)
-    return state._replace(speed_m_s=speed, climb_m_s=max(climb_m_s, 0.0) if speed == speed_m_s else 0.0)
+    return state._replace(
+        speed_m_s=speed, climb_m_s=max(climb_m_s, 0.0) if speed == speed_m_s else 0.0
+    )
 
 
 def traffic_state(traffic: Traffic, now_ms: int) -> AirState | None:

@@ -55,9 +55,7 @@ def departs(config: Config, state: State) -> bool:
     return rising(config, state).departure.mode != UP
 
 
-def heartbeat(
-    config: Config, state: State, sensed: Sensed
-) -> tuple[State, tuple[TakesOff, ...]]:
+def heartbeat(config: Config, state: State, sensed: Sensed) -> tuple[State, tuple[TakesOff, ...]]:
     """The mode at this heartbeat, with the way up that is flown in it, and what is new."""
     plan, before = config.take_off, rising(config, state)
     mode = before.departure.mode
@@ -156,7 +154,9 @@ def may_stop(course: Course, sensed: Sensed, zones: tuple[Zone, ...]) -> bool:
     return all(leg_keeps(here, stop, zone, 0.0) for zone in zones)
 
 
-def _found(config: Config, state: State, sensed: Sensed, plan: TakeOff) -> tuple[Course | None, str]:
+def _found(
+    config: Config, state: State, sensed: Sensed, plan: TakeOff
+) -> tuple[Course | None, str]:
     """A way up that is permitted, or why the first is not."""
     first = ""
     for course in ways_up(plan, sensed):

@@ -139,7 +139,11 @@ def finish(mission: Mission, where: Any) -> Mission:
     if grounded(mission):
         notes.append(take_off_words(mission))
     mission = replace(mission, zones=zones, changes=known)
-    places = (*place_problems(mission, where), *ground_problems(mission, where), *take_off_problems(mission, where))
+    places = (
+        *place_problems(mission, where),
+        *ground_problems(mission, where),
+        *take_off_problems(mission, where),
+    )
     refuse([*start_problems(mission, where), *places])
     said = [*mission.notes, *notes, *warnings_of(mission)]
     return replace(mission, notes=tuple(dict.fromkeys(said)))

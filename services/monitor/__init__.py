@@ -102,7 +102,7 @@ class Monitor:
                 self._step(*step)
             self._last_ms, self._over = body.Time, True
             self.completion.end(body)
-            self.authority.end(body, self.landing.down)
+            self.authority.end(body, self.landing.at_rest(self._all_seen))
             self.bridge.end(body)
             self.link_loss.end(body)
             self.take_off.end(body)
@@ -115,6 +115,10 @@ class Monitor:
         for row in self._assumed.tap(short, envelope):
             if self._tell_broken is not None:
                 self._tell_broken(row)
+
+    def _all_seen(self, number: int) -> bool:
+        """Whether an aircraft was seen from the begin to the mission's end."""
+        return not self.presence.unseen(number, (0, self._last_ms), Ending(self._last_ms, True))
 
     def _step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
         self.presence.step(before, after)

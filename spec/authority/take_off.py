@@ -38,7 +38,7 @@ def is_mode(mode: int) -> bool:
 
 def is_on_ground(mode: int) -> bool:
     """The vehicle has not left the ground."""
-    return mode == STANDING or mode == ROLLING
+    return not (mode < STANDING or mode > ROLLING)
 
 
 def may(heard: int, now: int, bound: int, permitted: bool) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 from collections.abc import Callable
 from dataclasses import replace
@@ -178,9 +179,7 @@ def test_a_roll_that_is_permitted_no_more_is_broken_off(root: Path, tmp_path: Pa
     assert (row.outcome.value, found.judged(tmp_path)[ROW]) == ("holds", "holds"), row
 
 
-def test_a_climb_that_is_permitted_no_more_is_left_to_avoidance(
-    root: Path, tmp_path: Path
-) -> None:
+def test_a_climb_that_is_permitted_no_more_is_left_to_avoidance(root: Path, tmp_path: Path) -> None:
     comes = {**HOVERS, "appears_s": 20, "position": {"north_m": 600, "east_m": 0, "alt_m": 130}}
     found = flown(mission_file(root, tmp_path, traffic=[comes]))
     assert found.modes()[-1] == ("Up", "the climb is left: it is not permitted against 9")
@@ -220,6 +219,25 @@ def test_without_the_link_nobody_leaves_the_ground(root: Path, tmp_path: Path) -
     (lost,) = found.told("LinkLossState")
     assert lost.Reason.endswith("it does not leave the ground")
     assert verdicts[WITHOUT_LINK].outcome.value == judged[WITHOUT_LINK] == "holds"
+
+
+def test_who_never_may_is_given_up_by_name_where_it_stands(root: Path, tmp_path: Path) -> None:
+    daa = {"lookahead_s": 20}
+    found = flown(mission_file(root, tmp_path, traffic=[HOVERS], daa=daa))
+    assert (found.result.outcome, found.result.end_ms < 200_000) == ("failed", True)
+    assert found.result.failed[1].startswith("blocked: ICAROUS took vehicle 1 over once")
+    verdicts, judged = found.verdicts(), found.judged(tmp_path)
+    for name in ("authority over vehicle 1", ROW):
+        assert (verdicts[name].outcome.value, judged[name]) == ("holds", "holds"), verdicts[name]
+    assert "where it started" in verdicts["authority over vehicle 1"].note
+    assert verdicts["task 1 served"].outcome.value == judged["task 1 served"] == "violated"
+    moved = [
+        replace(o, body=lmcp.from_json(lmcp.to_json(o.body).replace('"North":0', '"North":1')))
+        if o.topic.endswith("TruthState") and o.time_ms == found.log[-1].time_ms
+        else o
+        for o in found.log
+    ]
+    assert found.verdicts(moved)["authority over vehicle 1"].outcome is Outcome.VIOLATED
 
 
 START = {"id": 1, "start": "ground", "position": {"north_m": 0, "east_m": 0, "alt_m": 150}, "heading_deg": 0, "speed_m_s": 22, "min_speed_m_s": 15}  # fmt: skip
@@ -276,3 +294,14 @@ def test_what_follows_from_a_take_off_is_a_parameter(both: Flown, root: Path) ->
         56.25,
         54.5,
     )
+
+
+def test_the_diagram_in_the_guide_is_the_kernel_s(root: Path) -> None:
+    spec = importlib.util.spec_from_file_location(
+        "machine", root / "docs/tools/take_off_machine.py"
+    )
+    assert spec is not None
+    assert spec.loader is not None
+    machine = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(machine)
+    assert machine.block() in (root / "docs/guides/detect-and-avoid.md").read_text("utf-8")

@@ -25,7 +25,9 @@ def claim(c: Claim) -> None:
     lower = c.define(take_off.is_on_ground, after.mode)
     c.show(c.implies(c.any_of(climbing, up), c.negation(lower)), "and never on it again")
     c.show(c.implies(up, c.same(after, before)), "who is up stays so")
-    c.show(c.implies(after.mode == take_off.UP, c.any_of(climbing, up)), "nobody is up but by a climb")
+    c.show(
+        c.implies(after.mode == take_off.UP, c.any_of(climbing, up)), "nobody is up but by a climb"
+    )
     goes_on = c.all_of(climbing, may, c.negation(ended))
     c.show(c.implies(goes_on, c.same(after, before)), "a climb that may be flown is")
     left = c.all_of(climbing, c.negation(may))
