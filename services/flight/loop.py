@@ -186,8 +186,8 @@ class Flight:
     def run(self, progress: Callable[[int, str], None] | None) -> FlightResult:
         """Fly to the end."""
         self.bus.now_ms, steps = 0, 0
-        planned = {v.id: planned_state(v) for v in self.mission.vehicles}
-        self._executive(Begin(0, tuple((vid, planned[vid]) for vid in self.vehicles)))
+        nodes = self.vehicles.items()
+        self._executive(Begin(0, tuple((vid, planned_state(n.vehicle)) for vid, n in nodes)))
         self._link(Connected(0, self.instances))
         self._executive(SetOut())
         while True:
@@ -270,8 +270,7 @@ class Flight:
         rolling = tuple(v for v, s in states.items() if s.on_ground and s.air.speed_m_s)
         seen = tuple(one for one in self._everyone() if one[0] not in down or one[0] in rolling)
         others = tuple(place for vid, place in down.items() if vid != vehicle_id)
-        rolling = tuple(vid for vid in rolling if vid != vehicle_id)
-        return Sense(now, seen, self.instances, others, rolling)
+        return Sense(now, seen, self.instances, others, tuple(sorted({*rolling} - {vehicle_id})))
 
     def _gates(self) -> tuple[tuple[int, Any], ...]:
         return tuple((vid, state.gate) for vid, state in self.vehicle_states.items())

@@ -158,9 +158,9 @@ class TakeOffWatch:
             outcome, note = Outcome.UNKNOWN, f"{note}; the messages stop too early"
         elif unseen:
             outcome, note = Outcome.UNKNOWN, f"{note}; {unseen}"
-        kernels = (departure_step, disc_within, in_time, on_ground) if seen.checks else ()
+        asked: list[Any] = [departure_step, disc_within, in_time, on_ground] if seen.checks else []
         return Verdict(
             "G4", take_off_item(vehicle), outcome, Kind.OBSERVED, note, time_ms=at_ms,
             vehicles=(vehicle,), checks=seen.checks, method="departure_step",
-            kernels=tuple(sorted(map(qualified, kernels))),
+            kernels=tuple(sorted(map(qualified, asked))),
         )  # fmt: skip
