@@ -173,9 +173,10 @@ class VehicleNode:
         if theirs and not silent and isinstance(command, Fly):
             v = command.velocity
             wanted, climb = math.hypot(v.north_m_s, v.east_m_s), -v.down_m_s
-        fastest = max(wanted, state.limits.min_speed_m_s)
-        if wanted >= fastest:
-            moved = rolling_up(air, fastest, min(climb, state.limits.max_climb_m_s), self.dt_s)
+        lifts_m_s, steepest_m_s = state.limits.min_speed_m_s, state.limits.max_climb_m_s
+        # a command is rounded: it is to roll, or it is not
+        if wanted > lifts_m_s / 2:
+            moved = rolling_up(air, lifts_m_s, min(climb, steepest_m_s), self.dt_s)
         else:
             moved = rolling(air, BRAKING_M_S2, self.dt_s)
         return replace(state, air=moved, roll_rad=0.0), ()

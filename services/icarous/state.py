@@ -47,11 +47,12 @@ class Config(NamedTuple):
 
 class Rising(NamedTuple):
     """departure: the mode of a vehicle that takes off, as the kernels have it; course: the way up that is rolled or
-    flown, None while it stands; why: it stands, as was said last."""
+    flown, None while it stands; why: it stands, as was said last; tried_ms: when a way up was last looked for [ms]."""
 
     departure: Departure = Departure(STANDING, 0)
     course: Course | None = None
     why: str = ""
+    tried_ms: int = 0
 
 
 class Met(NamedTuple):

@@ -17,7 +17,7 @@ from cratous.core.authority.take_off import (
     Departure,
     departure_step,
 )
-from cratous.core.authority.timeliness import in_time
+from cratous.core.authority.timeliness import in_time, lasted
 from cratous.core.avoidance.manoeuvre import Pace
 from cratous.core.avoidance.resolution import Choice
 from cratous.core.geofence.clearance import leg_keeps
@@ -36,6 +36,8 @@ from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.plan import Pose
 from cratous.spec.records import replace
 
+AGAIN_MS = 2000
+"""Where no way up is permitted one is looked for again so much later [ms]."""
 NO_LINK = "UxAS is not heard"
 NO_WAY = "there is no way up"
 WORDS = {
@@ -66,8 +68,9 @@ def heartbeat(config: Config, state: State, sensed: Sensed) -> tuple[State, tupl
         course = course.flown(sensed.motion, _beat_s(config))
     if mode == STANDING:
         course = None
-        if _is_due(config, plan, sensed):
+        if _is_due(config, plan, sensed, before):
             course, why = _found(config, state, sensed, plan)
+            state = replace(state, rising=before._replace(tried_ms=now_ms))
     elif course is not None:
         why = why_not(config, state, sensed, course)
         course = None if why else course
@@ -82,7 +85,8 @@ def heartbeat(config: Config, state: State, sensed: Sensed) -> tuple[State, tupl
     kept = course if mode in (ROLLING, CLIMBING) else None
     # the roll was permitted: whether the climb still is is asked at the next heartbeat
     kept = before.course if mode == CLIMBING and kept is None else kept
-    after = replace(state, rising=Rising(stepped.departure, kept, why))
+    tried_ms = state.rising.tried_ms
+    after = replace(state, rising=Rising(stepped.departure, kept, why, tried_ms))
     text = WORDS.get(stepped.act, "")
     if stepped.act in (BREAK_OFF, LEAVE):
         text = f"{'the roll is broken off' if stepped.act == BREAK_OFF else 'the climb is left'}: {why}"
@@ -167,9 +171,10 @@ def _found(
     return None, first or NO_WAY
 
 
-def _is_due(config: Config, plan: TakeOff, sensed: Sensed) -> bool:
-    """Whether this heartbeat is one at which the vehicle may begin to roll."""
-    return sensed.now_ms // config.heartbeat_ms % plan.many == plan.turn
+def _is_due(config: Config, plan: TakeOff, sensed: Sensed, before: Rising) -> bool:
+    """Whether this heartbeat is one at which the vehicle may begin to roll, and it is time to look for a way up."""
+    turn = sensed.now_ms // config.heartbeat_ms % plan.many == plan.turn
+    return turn and (not before.why or lasted(before.tried_ms, sensed.now_ms, AGAIN_MS))
 
 
 def _beat_s(config: Config) -> float:

@@ -240,6 +240,16 @@ def test_who_never_may_is_given_up_by_name_where_it_stands(root: Path, tmp_path:
     assert found.verdicts(moved)["authority over vehicle 1"].outcome is Outcome.VIOLATED
 
 
+def test_it_rolls_in_any_direction(root: Path, tmp_path: Path) -> None:
+    """The velocity that is commanded is a hair below the least speed in some."""
+    (kestrel,) = yaml.safe_load(mission_file(root, tmp_path).read_text())["vehicles"]
+    turned = {**kestrel, "heading_deg": 42.33281461791092}
+    short = {"limit_s": 20}
+    found = flown(mission_file(root, tmp_path, vehicles=[turned], simulation=short))
+    assert [mode for mode, _ in found.modes()] == ["Rolling", "Climbing"]
+    assert found.told("TruthState")[-1].Altitude > 5
+
+
 START = {"id": 1, "start": "ground", "position": {"north_m": 0, "east_m": 0, "alt_m": 150}, "heading_deg": 0, "speed_m_s": 22, "min_speed_m_s": 15}  # fmt: skip
 AHEAD = [{"id": 7, "kind": "keep_out", "vertices": [[165, -50], [200, -50], [200, 50], [165, 50]], "ceiling_m": 5}]  # fmt: skip
 WALL = [{"id": 7, "kind": "keep_out", "vertices": [[300, -50], [320, -50], [320, 50], [300, 50]]}]
