@@ -1,15 +1,16 @@
 """G5 where the mission says what is flown without the link: did each vehicle begin it in time, and fly nothing else?
 
 By what each ICAROUS says (`LinkLossState`), by the connections that UxAS's end declares, and for a landing by where the
-vehicle was. Modes follow one another as `AFTER` has it. Where lines of the bridge were lost, damaged or late, or ICAROUS stopped
-reading, whether UxAS was heard is not in the log.
+vehicle was: of one that may land and was not logged throughout it is not known. Modes follow one another as `AFTER` has
+it. Where lines of the bridge were lost, damaged or late, or ICAROUS stopped reading, whether UxAS was heard is not in
+the log.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cratous.judge.ground import Down, down
+from cratous.judge.ground import MOVES, Down, down
 from cratous.judge.log import Alone, Log
 from cratous.judge.mission import LOITER, Mission, WithoutLink
 from cratous.judge.tracks import Track
@@ -27,10 +28,11 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
         return
     for vehicle in sorted(mission.instances):
         subject, item = ("alone", str(vehicle)), f"what vehicle {vehicle} flies without the link"
-        said, place = log.alone.get(vehicle, []), down(mission, flown.get(vehicle))
+        said, place = log.alone.get(vehicle, []), down(mission, vehicle, flown.get(vehicle))
         faults = [*_faults(mission, asked, said), *_missed(mission, asked, log, vehicle, said)]
         if log.end_ms is not None:
-            faults += _landing(mission, said, place, log.end_ms)
+            seen = not _unseen(flown.get(vehicle))
+            faults += _landing(mission, said, place, log.end_ms, seen)
         faults += _taken(mission, flown, vehicle, place)
         note = ", ".join(f"{one.mode} from {seconds(one.time_ms)}" for one in said)
         note = note or "it was never said to be without the link"
@@ -41,11 +43,18 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
         elif log.end_ms is None:
             note = f"the log stops before the mission ends; {note}"
             yield Row("G5", subject, item, UNKNOWN, note, None, len(said))
+        elif mission.sites and (doubt := _unseen(flown.get(vehicle))):
+            yield Row("G5", subject, item, UNKNOWN, f"{note}; {doubt}", None, len(said))
         elif asked.lines_fail:
             note += "; whether UxAS was heard over a bridge that was made to fail is not in the log"
             yield Row("G5", subject, item, UNKNOWN, note, None, len(said))
         else:
             yield Row("G5", subject, item, HOLDS, note, None, len(said))
+
+
+def _unseen(track: Track | None) -> str:
+    """Why it is not known where a vehicle was all the time; empty if it is."""
+    return "no position of it was logged" if track is None else track.doubt
 
 
 def _after(mode: str, chosen: str) -> set[str]:
@@ -109,20 +118,20 @@ def _taken(
     if place is None or place.site is None:
         return
     for other in mission.vehicles:
-        there = down(mission, flown.get(other)) if other != vehicle else None
+        there = down(mission, other, flown.get(other)) if other != vehicle else None
         if there and there.site == place.site and (there.at_ms, other) < (place.at_ms, vehicle):
             yield place.at_ms, f"it {place.words()}, where vehicle {other} was before it"
 
 
 def _landing(
-    mission: Mission, said: list[Alone], place: Down | None, end_ms: int
+    mission: Mission, said: list[Alone], place: Down | None, end_ms: int, seen: bool
 ) -> Iterator[tuple[int, str]]:
-    """What was said of the ground, and where the vehicle was."""
+    """What was said of the ground, and where the vehicle was. seen: all the time."""
     landed = [one.time_ms for one in said if one.mode == LANDED]
     if place is None:
         if landed:
             yield landed[0], "it said that it had landed, and was in the air"
-    elif not place.good:
+    elif not (place.good or (place.fault == MOVES and not seen)):
         yield place.at_ms, f"it {place.words()}"
     elif landed and landed[0] < place.at_ms:
         yield landed[0], f"it said that it had landed before it {place.words()}"

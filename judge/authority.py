@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cratous.judge.ground import down
+from cratous.judge.ground import down, stands_at_start
 from cratous.judge.log import Bridge, Gate, Log
 from cratous.judge.mission import Mission
 from cratous.judge.tracks import Track
@@ -102,7 +102,7 @@ class _Story:
         """The mission's end: control has been handed back. That a task failed meanwhile ends no takeover.
 
         down_ms: since when the link is declared down, None if it is not. What is not known for that is answered. landed:
-        it stands on a landing site.
+        it stands on a landing site, or on the ground where it started.
         """
         self.settle(at_ms)
         self._announced(at_ms)
@@ -140,10 +140,12 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
             if said.vehicle == vehicle:
                 getattr(story, said.kind)(said)
         subject, item = ("authority", str(vehicle)), f"authority over vehicle {vehicle}"
-        doubt, place = "", down(mission, flown.get(vehicle))
+        doubt, place = "", down(mission, vehicle, flown.get(vehicle))
         if log.end_ms is not None:
             silent_ms = _down_ms(log.bridges.get(vehicle, []), log.end_ms)
-            doubt = story.end(log.end_ms, silent_ms, place is not None and place.good)
+            rests = stands_at_start(mission, vehicle, flown.get(vehicle))
+            rests = rests or (place is not None and place.good)
+            doubt = story.end(log.end_ms, silent_ms, rests)
         note = (
             f"{story.takeovers} takeovers, {story.handbacks} handbacks, {story.commands} commands, "
             f"{story.dropped} of them dropped"

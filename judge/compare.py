@@ -35,6 +35,7 @@ ITEMS = (
     ("G3", rf"task {NUMBER} served", "served"),
     ("G3", r"end of mission", "end"),
     ("G4", rf"authority over vehicle {NUMBER}", "authority"),
+    ("G4", rf"take-off of vehicle {NUMBER}", "take-off"),
     ("G5", rf"what vehicle {NUMBER} flies without the link", "alone"),
     ("G5", rf"heartbeat to the ICAROUS instance of {NUMBER}", "to"),
     ("G5", rf"heartbeat from the ICAROUS instance of {NUMBER}", "from"),

@@ -17,6 +17,7 @@ from cratous.judge import (
     relations,
     separation,
     service,
+    take_off,
     zones,
 )
 from cratous.judge.answers import Answer, answers_to
@@ -117,6 +118,7 @@ def judged(mission: Mission, found: log.Log) -> list[Row]:
     safe = [*zones.rows(mission, flown), *separation.rows(mission, flown)]
     rows = [*safe, *relations.rows(mission, found, done, good), *service.rows(flight, served)]
     rows += authority.rows(mission, found, flown)
+    rows += take_off.rows(mission, found, flown)
     rows += alone.rows(mission, found, flown)
     rows += heartbeat.rows(mission, found, _unsafe(safe))
     doubts = list(found.doubts)

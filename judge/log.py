@@ -22,11 +22,13 @@ NEW = (*OLD, "address", "sender_group", "entity_id", "service_id", "content_type
 KINDS = (
     "TruthState", "AirVehicleState", "TaskProgress", "MissionEnd", "GateState", "GatedCommand",
     "CommandDropped", "AuthorityChange", "Heartbeat", "BridgeStatus", "PlanAccepted", "LinkLossState",
+    "TakeOffState",
 )  # fmt: skip
 FLOWN = ("North", "East", "Altitude", "VelocityNorth", "VelocityEast", "VelocityDown")
 PHASES = ("Planned", "Transit", "Waiting", "Active", "Suspended", "Complete", "Failed")
 SIDES = ("UxAS", "ICAROUS")
 MODES = ("Linked", "Finish", "Loiter", "Return", "Over", "Land", "Final", "Landed")
+LEAVES = ("Standing", "Rolling", "Climbing", "Up")
 
 
 class State(NamedTuple):
@@ -98,6 +100,14 @@ class Alone(NamedTuple):
     heard_ms: int
 
 
+class Leaves(NamedTuple):
+    """How a vehicle says that it leaves the ground, and when it last heard UxAS."""
+
+    time_ms: int
+    mode: str
+    heard_ms: int
+
+
 @dataclass
 class Log:
     """What the judge takes from a log. planned: the tasks of the last plan; doubts: why nothing in it can be said to hold; lossy: why
@@ -113,6 +123,7 @@ class Log:
     beats: dict[tuple[int, str], list[Beat]] = field(default_factory=dict)
     bridges: dict[int, list[Bridge]] = field(default_factory=dict)
     alone: dict[int, list[Alone]] = field(default_factory=dict)
+    leaving: dict[int, list[Leaves]] = field(default_factory=dict)
     ends: list[tuple[int, str]] = field(default_factory=list)
     planned: frozenset[int] = frozenset()
     doubts: list[str] = field(default_factory=list)
@@ -346,6 +357,12 @@ def _alone(log: Log, body: Node, _time_ms: int) -> None:
     log.alone.setdefault(body["VehicleID"].whole, []).append(said)
 
 
+def _leaves(log: Log, body: Node, _time_ms: int) -> None:
+    mode = body["Mode"].one_of(*LEAVES)
+    said = Leaves(body["Time"].whole, mode, body["Heard"].whole)
+    log.leaving.setdefault(body["VehicleID"].whole, []).append(said)
+
+
 _READERS = {
     "TruthState": _truth,
     "AirVehicleState": _looks,
@@ -359,6 +376,7 @@ _READERS = {
     "Heartbeat": _beat,
     "BridgeStatus": _bridge,
     "LinkLossState": _alone,
+    "TakeOffState": _leaves,
 }
 
 

@@ -40,6 +40,8 @@ class Vehicle:
     speed_m_s: float
     bank_rad: float
     cameras: tuple[Camera, ...] = ()
+    ground_m: float | None = None
+    """How high the ground is on which it starts [m MSL]; None of one that starts in the air."""
 
 
 @dataclass(frozen=True)
@@ -109,6 +111,7 @@ class WithoutLink(NamedTuple):
     lines_fail: bool
 
 
+SILENCE_MS = 2000
 LOITER = "Loiter"
 CHOICES = ("finish", "loiter", "return", "land")
 
@@ -146,6 +149,16 @@ class Mission:
     terrain_m: float = 0.0
     sites: tuple[Site, ...] = ()
     without_link: WithoutLink | None = None
+
+    @property
+    def grounds(self) -> dict[int, float]:
+        """How high the ground is under each vehicle that starts on it, by id [m MSL]."""
+        return {v.id: v.ground_m for v in self.vehicles.values() if v.ground_m is not None}
+
+    @property
+    def silence_ms(self) -> int:
+        """For how long UxAS may be silent while a vehicle rolls [ms]."""
+        return SILENCE_MS if self.without_link is None else self.without_link.after_ms
 
     @property
     def protected(self) -> list[int]:
@@ -333,6 +346,7 @@ def _vehicle(data: Node) -> Vehicle:
         data["speed_m_s"].real,
         data["max_bank_rad"].real,
         cameras,
+        data["ground_m"].real if data.has("ground_m") else None,
     )
 
 

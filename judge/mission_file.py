@@ -143,7 +143,19 @@ class _Reader:
         )  # fmt: skip
         bank = math.radians(data.get("max_bank_deg", 30.0).real)
         protected = data.get("protected", True).flag
-        return m.Vehicle(data["id"].whole, protected, data["speed_m_s"].real, bank, cameras)
+        ground = (
+            self.ground(data["position"]) if data.get("start", "air").text == "ground" else None
+        )
+        return m.Vehicle(data["id"].whole, protected, data["speed_m_s"].real, bank, cameras, ground)
+
+    def ground(self, data: Node) -> float:
+        """How high the ground is under a place: that of the first site there, else the terrain."""
+        place = self.point(data)
+        for one in self.root.get("landing_sites", []):
+            site = self.site(one)
+            if math.dist(place, (site.north_m, site.east_m)) <= site.radius_m:
+                return site.ground_m
+        return self.terrain_m
 
     def task(self, data: Node) -> m.Task:
         kind = data["kind"].one_of(*m.KINDS)

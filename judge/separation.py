@@ -18,9 +18,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import pairwise
 
-from cratous.judge.ground import grounded
+from cratous.judge.ground import on_ground
 from cratous.judge.log import State
 from cratous.judge.mission import Mission, Volume
 from cratous.judge.tracks import Track
@@ -172,13 +171,8 @@ def rows(mission: Mission, flown: dict[int, Track]) -> Iterator[Row]:
 def _row(own: int, other: int, flown: dict[int, Track], mission: Mission) -> Row:
     subject = ("pair", *map(str, sorted((own, other))))
     item = f"well clear of {own} and {other}"
-    grounds = {
-        state.time_ms
-        for number in (own, other)
-        if number in mission.vehicles and mission.sites
-        for state, after in pairwise(flown[number].states)
-        if grounded(mission, state) and grounded(mission, after)
-    }
+    ours = [number for number in (own, other) if number in mission.vehicles]
+    grounds = set[int]().union(*(on_ground(mission, n, flown[n]) for n in ours))
     pair = _watch(flown[own], flown[other], mission.volume, grounds)
     doubt = flown[own].doubt or flown[other].doubt or _unmatched(flown[own], flown[other], pair)
     note = f"nearest {pair.nearest_m:.1f} m at {seconds(pair.nearest_ms)} within ZTHR of altitude"
@@ -194,6 +188,9 @@ def _row(own: int, other: int, flown: dict[int, Track], mission: Mission) -> Row
     if not pair.checks:
         if doubt:
             return Row("G2", subject, item, UNKNOWN, doubt)
+        if pair.covered_ms:
+            note = "one of them was on the ground as long as both were logged: nothing was asked"
+            return Row("G2", subject, item, UNKNOWN, note)
         return Row("G2", subject, item, HOLDS, "never in the air together")
     row = Row("G2", subject, item, HOLDS, note, pair.nearest_ms, pair.checks)
     return doubted(row, doubt)

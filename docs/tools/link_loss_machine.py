@@ -2,37 +2,38 @@
 
     python docs/tools/link_loss_machine.py
 
-prints the block of docs/guides/detect-and-avoid.md: `loss_step` is asked for each mode and each answer to what it
-asks (is UxAS heard, is what is chosen permitted, is the vehicle at its end), and an arrow is drawn where the mode changes.
+prints the block of docs/guides/detect-and-avoid.md: `loss_step` is asked for each mode that it reaches and each answer to
+what it asks (is UxAS heard, is what is chosen permitted, is the vehicle at its end), and an arrow is drawn where the mode
+changes. The modes, and what a mission may choose of them, are those of the specification: `CRATOUS/WithoutLink` of
+spec/lmcp names them.
 """
 
 from __future__ import annotations
 
 from itertools import product
+from typing import Any
 
-from cratous.core.authority.link_loss import (
-    FINAL,
-    FINISH,
-    LAND,
-    LANDED,
-    LINKED,
-    LOITER,
-    OVER,
-    RETURN,
-    Loss,
-    loss_step,
-)
+from cratous.bridge import lmcp
+from cratous.core.authority.link_loss import Loss, loss_step
+from cratous.spec.authority.link_loss import FINAL, LANDED, LINKED, LOITER, OVER, may_be_chosen
 
-NAMES = ("Linked", "Finish", "Loiter", "Return", "Over", "Land", "Final", "Landed")
 EITHER = (False, True)
 NOW, BOUND = 10, 5
+
+
+def modes() -> dict[int, str]:
+    """The modes by number, with their names."""
+    mode: Any = lmcp.new("LinkLossState").Mode
+    return {int(one): one.name for one in type(mode)}
 
 
 def arrows() -> dict[tuple[int, int], set[str]]:
     """From which mode to which, and when."""
     found: dict[tuple[int, int], set[str]] = {}
-    for chosen in (FINISH, LOITER, RETURN, LAND):
-        for mode in {LINKED, LOITER, chosen, OVER, FINAL, LANDED}:
+    for chosen in filter(may_be_chosen, modes()):
+        reached, to_ask = {LINKED}, [LINKED]
+        while to_ask:
+            mode = to_ask.pop()
             for heard, permitted, ended in product(EITHER, EITHER, EITHER):
                 heard_ms = NOW if heard else 0
                 step = loss_step(Loss(mode, 0), chosen, heard_ms, NOW, BOUND, permitted, ended)
@@ -40,6 +41,9 @@ def arrows() -> dict[tuple[int, int], set[str]]:
                 if after != mode:
                     why = _why(after, chosen, heard)
                     found.setdefault((mode, after), set()).add(why)
+                if after not in reached:
+                    reached.add(after)
+                    to_ask.append(after)
     return found
 
 
@@ -59,9 +63,9 @@ def _why(after: int, chosen: int, heard: bool) -> str:
 
 def block() -> str:
     """The diagram, as Mermaid text."""
-    lines = ["stateDiagram-v2", "  [*] --> Linked"]
+    names, lines = modes(), ["stateDiagram-v2", "  [*] --> Linked"]
     for (mode, after), why in sorted(arrows().items()):
-        lines.append(f"  {NAMES[mode]} --> {NAMES[after]}: {' / '.join(sorted(why))}")
+        lines.append(f"  {names[mode]} --> {names[after]}: {' / '.join(sorted(why))}")
     return "\n".join(("```mermaid", *lines, "```"))
 
 

@@ -8,8 +8,9 @@ from cratous.core.authority.cycle import Cycle
 from cratous.core.authority.gate import Gate
 from cratous.core.authority.link_end import LinkEnd
 from cratous.core.authority.link_loss import Loss
+from cratous.core.authority.take_off import Departure
 from cratous.proofs.claim import Claim
-from cratous.spec.authority import link_loss
+from cratous.spec.authority import link_loss, take_off
 
 
 def any_gate(c: Claim) -> Gate:
@@ -52,3 +53,13 @@ def any_loss(c: Claim) -> tuple[Loss, tuple[Any, ...]]:
     c.premise(c.define(link_loss.is_mode, loss.mode))
     c.premise(c.all_of(c.define(link_loss.may_be_chosen, chosen), bound >= 0))
     return loss, (chosen, heard, now, bound, c.boolean("permitted"), c.boolean("ended"))
+
+
+def any_departure(c: Claim) -> tuple[Departure, tuple[Any, ...]]:
+    """Any mode of a vehicle that takes off, with whatever `departure_step` is told at a heartbeat: when UxAS was
+    heard, the time, the bound, whether the way up is permitted, whether the vehicle is off the ground, and at its end."""
+    departure = Departure(c.integer("mode_up"), c.integer("since_ms"))
+    heard, now, bound = (c.integer(n) for n in ("heard", "now", "silence"))
+    c.premise(c.all_of(c.define(take_off.is_mode, departure.mode), bound >= 0))
+    told = (c.boolean("permitted"), c.boolean("airborne"), c.boolean("ended"))
+    return departure, (heard, now, bound, *told)

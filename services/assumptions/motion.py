@@ -58,6 +58,16 @@ def is_within(off: Position, room: Room) -> bool:
     return bool(beside) and bool(exact(disc_within, Vec2(off.alt_m, 0.0), 0.0, room.high_m))
 
 
+def look(record: Record, off: Position, room: Room, seen: tuple[int, int], what: str) -> None:
+    """Hold how far something is off its prediction against its room. seen: when [ms], and whose takeover it is; what:
+    is off what prediction, in words, with "{off}" where by how much belongs."""
+    at_ms, number = seen
+    beside_m = math.hypot(off.north_m, off.east_m)
+    record.see(beside_m)
+    apart = f"{beside_m:.4g} m beside and {abs(off.alt_m):.4g} m above or below"
+    record.check(is_within(off, room), at_ms, number, what.format(off=apart))
+
+
 class Seen(NamedTuple):
     """Where an aircraft is and the velocity with which it came there: what its observers know."""
 
@@ -157,12 +167,9 @@ class IntruderWatch:
     def _hold(self, own: int, other: int, base: Seen, here: Seen) -> None:
         v, p, t_s = base.velocity, base.position, (here.time_ms - base.time_ms) / 1000
         off = off_by(here.position, after(Piece(0.0, t_s, p, v), t_s))
-        self._record.see(math.hypot(off.north_m, off.east_m))
-        text = (
-            f"aircraft {other}, which {own} avoids, is {math.hypot(off.north_m, off.east_m):.4g} m beside and "
-            f"{abs(off.alt_m):.4g} m above or below where it was predicted at {base.time_ms / 1000:.2f} s"
-        )
-        self._record.check(is_within(off, self._room), here.time_ms, own, text)
+        who = f"aircraft {other}, which {own} avoids"
+        since = f"where it was predicted at {base.time_ms / 1000:.2f} s"
+        look(self._record, off, self._room, (here.time_ms, own), f"{who}, is {{off}} {since}")
 
     def end(self, at_ms: int) -> None:
         """Takeovers that are open end here."""
@@ -261,13 +268,9 @@ class TrackingWatch:
             del self._paths[number]
             return
         off = off_by(here.position, path.at((here.time_ms - path.since_ms) / 1000))
-        beside_m = math.hypot(off.north_m, off.east_m)
-        self._record.see(beside_m)
-        text = (
-            f"vehicle {number} is {beside_m:.4g} m beside and {abs(off.alt_m):.4g} m above or below the path of its "
-            f"command of {path.since_ms / 1000:.2f} s"
-        )
-        self._record.check(is_within(off, self._room), here.time_ms, number, text)
+        since = f"the path of its command of {path.since_ms / 1000:.2f} s"
+        seen = here.time_ms, number
+        look(self._record, off, self._room, seen, f"vehicle {number} is {{off}} {since}")
 
     def _predicted(self, number: int, here: Seen, order: Order) -> Path:
         v = here.velocity

@@ -85,12 +85,17 @@ def _read(file: Path, notes: dict[Path, tuple[str, ...]]) -> tuple[Path, list[Ba
         else:
             from cratous.services.loading import load
             from cratous.services.loading.fitness import warnings_of
+            from cratous.services.mission.take_off import grounded
 
             mission = load(file)
             if mission.link_loss is not None:
                 from cratous.services.flight.landing_reach import require_reachable
 
                 require_reachable(mission)
+            if grounded(mission):
+                from cratous.services.flight.take_off import require_take_offs
+
+                require_take_offs(mission)
             notes[file] = warnings_of(mission)
     except BadInput as error:
         return file, list(getattr(error, "problems", ())) or [error]

@@ -161,6 +161,7 @@ def craft_of(path: Path, vehicle_id: int, dialect: Dialect, digest: str | None =
     from cratous.services.loading import load
     from cratous.services.mission.frames import Projection
     from cratous.services.mission.ground import floor_of
+    from cratous.services.mission.take_off import grounded
 
     mission = load(path)
     if digest is not None and mission_hash(mission) != digest:
@@ -178,6 +179,14 @@ def craft_of(path: Path, vehicle_id: int, dialect: Dialect, digest: str | None =
             item="link_loss",
             expected="no link_loss, or cratous run without --processes",
             got=mission.link_loss.choice.value,
+        )
+    if grounded(mission):
+        raise BadInput(
+            "a vehicle starts on the ground, which a program of its own does not take off",
+            where=str(path),
+            item="vehicles.start",
+            expected="vehicles that start in the air, or cratous run without --processes",
+            got=", ".join(str(one.id) for one in grounded(mission)),
         )
     found = [v for v in mission.vehicles if v.id == vehicle_id]
     if not found:

@@ -173,12 +173,14 @@ def fly_mission(
     from cratous.services.certify.verdicts import constraint_rows, plan_rows
     from cratous.services.flight.landing_reach import require_reachable
     from cratous.services.flight.loop import fly
+    from cratous.services.flight.take_off import require_take_offs
     from cratous.services.logs.log import LogWriter
     from cratous.services.results.names import LOG_NAME
 
     if not settings.daa:
         mission = replace(mission, instances=())
     require_reachable(mission)
+    require_take_offs(mission)
     bus = new_bus()
     log = folder / LOG_NAME
     proofs = inventory(standing, None)

@@ -11,7 +11,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from cratous.spec.mission import Position, Traffic, Vehicle, Velocity
+from cratous.services.mission.landing import is_down
+from cratous.spec.mission import GroundedVehicle, Position, Traffic, Vehicle, Velocity
 from cratous.spec.mission.plan import Pose
 
 GRAVITY_M_S2 = 9.80665
@@ -67,7 +68,21 @@ def limits_of(vehicle: Vehicle) -> Limits:
 
 
 def first_state(vehicle: Vehicle) -> AirState:
-    """A vehicle at mission start."""
+    """A vehicle at mission start: in the air, or at a stand on the ground."""
+    if isinstance(vehicle, GroundedVehicle):
+        return AirState(vehicle.stands_at, wrap(vehicle.heading_rad), 0.0, 0.0)
+    return planned_state(vehicle)
+
+
+def stands_at_start(vehicle: Vehicle, air: AirState) -> bool:
+    """Whether a vehicle that starts on the ground is there still, at a stand."""
+    if not isinstance(vehicle, GroundedVehicle):
+        return False
+    return is_down(air.position.alt_m - vehicle.ground_m) and air.speed_m_s == 0
+
+
+def planned_state(vehicle: Vehicle) -> AirState:
+    """Where its plan begins, and how it flies there: in the air."""
     return AirState(vehicle.position, wrap(vehicle.heading_rad), vehicle.speed_m_s, 0.0)
 
 
@@ -131,6 +146,15 @@ def touching_down(state: AirState, ground_m: float, dt_s: float) -> AirState:
 def rolling(state: AirState, braking_m_s2: float, dt_s: float) -> AirState:
     """The state of a vehicle on the ground with the velocity of the coming step: straight on, braking to a stand."""
     return state._replace(speed_m_s=max(state.speed_m_s - braking_m_s2 * dt_s, 0.0), climb_m_s=0.0)
+
+
+def rolling_up(state: AirState, speed_m_s: float, climb_m_s: float, dt_s: float) -> AirState:
+    """The state of a vehicle that rolls faster, up to a speed, with the velocity of the coming step: straight on; and off
+    the ground, at a climb above 0, once that speed is reached."""
+    speed = min(state.speed_m_s + MAX_ACCELERATION_M_S2 * dt_s, speed_m_s)
+    return state._replace(
+        speed_m_s=speed, climb_m_s=max(climb_m_s, 0.0) if speed == speed_m_s else 0.0
+    )
 
 
 def traffic_state(traffic: Traffic, now_ms: int) -> AirState | None:

@@ -25,6 +25,7 @@ from cratous.services.flight import (
     legs,
     task_transitions,
 )
+from cratous.services.flight.dynamics import stands_at_start
 from cratous.services.flight.executive_state import Asked, Config, Out, State
 from cratous.services.flight.messages import (
     Because,
@@ -224,7 +225,13 @@ class Executive:
         now_ms, limit_ms = message.now_ms, self.config.mission.simulation.limit_ms
         flying = sum(chain.item is not None for chain in state.chains)
         down = dict(state.landed)
-        away = [vid for vid, gate in message.gates if gate.owner != UXAS and vid not in down]
+        stays = {
+            chain.vehicle.id
+            for chain in state.chains
+            if chain.item is None and stands_at_start(chain.vehicle, state.air(chain.vehicle.id))
+        }
+        gates = [(vid, gate) for vid, gate in message.gates if vid not in stays]
+        away = [vid for vid, gate in gates if gate.owner != UXAS and vid not in down]
         kinds = (*BRINGS_WORK, *(MAY_FREE_WORK if state.left_out else ()))
         expected = sum(c.kind in kinds for c in state.to_come)
         # while some fly it is no matter; of a search that was flown in part the rest is left

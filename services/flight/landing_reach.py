@@ -8,8 +8,9 @@ from cratous.core.avoidance.prediction import buffered
 from cratous.core.avoidance.resolution import Scene
 from cratous.services.flight.dynamics import (
     MAX_ACCELERATION_M_S2,
-    first_state,
+    AirState,
     limits_of,
+    planned_state,
     turn_rate_rad_s,
 )
 from cratous.services.flight.vehicle import UNTOUCHED
@@ -55,7 +56,7 @@ def require_reachable(mission: Mission) -> None:
 
 def _why_not(mission: Mission, vehicle: Vehicle, plan: LostLink) -> list[str]:
     """Why no site is reached; empty if one is."""
-    sensed, daa = _at_start(mission, vehicle), mission.daa
+    sensed, daa = at_start(mission, vehicle, planned_state(vehicle)), mission.daa
     zones = hard_zones(mission.zones)
     volume = buffered(daa.well_clear, daa.buffer)
     scene = Scene((), zones, volume, daa.lookahead_s, NONE.here, daa.looks_first)
@@ -70,10 +71,11 @@ def _why_not(mission: Mission, vehicle: Vehicle, plan: LostLink) -> list[str]:
     return said
 
 
-def _at_start(mission: Mission, vehicle: Vehicle) -> Sensed:
-    air, limits = first_state(vehicle), limits_of(vehicle)
+def at_start(mission: Mission, vehicle: Vehicle, air: AirState) -> Sensed:
+    """What a vehicle in a state senses before anybody flies; on the ground it turns as it does when it leaves it."""
+    limits = limits_of(vehicle)
     ability = Ability(
-        turn_rate_rad_s(air.speed_m_s, limits.max_bank_rad),
+        turn_rate_rad_s(air.speed_m_s or limits.min_speed_m_s, limits.max_bank_rad),
         limits.min_speed_m_s,
         limits.max_speed_m_s,
         limits.max_climb_m_s,

@@ -10,9 +10,11 @@ from __future__ import annotations
 
 from cratous.core.executive.steps import leg_given_up
 from cratous.services.flight.chain import Chain
+from cratous.services.flight.dynamics import MAX_ACCELERATION_M_S2
 from cratous.services.flight.executive_outputs import route
 from cratous.services.flight.executive_state import Config, Out, State
 from cratous.services.flight.task_transitions import circling, fail
+from cratous.services.mission.take_off import take_off_ms
 from cratous.spec.records import replace
 
 MOST_TAKEOVERS = 12
@@ -31,6 +33,10 @@ def give_up(config: Config, state: State, out: Out) -> State:
         if chain is None or chain.unlinked or chain.holds or vid in dict(state.landed):
             continue
         under_ms = chain.leg.flown_ms(chain.suspended, state.now_ms)
+        # a take-off that is permitted at once is none of the time that avoidance may take
+        if state.epoch(vid) == 0:
+            beat_ms = state.mission.simulation.heartbeat_ms
+            under_ms -= take_off_ms(chain.vehicle, MAX_ACCELERATION_M_S2, beat_ms)
         if chain.item is None:
             if chain.suspended and leg_given_up(0, 0, under_ms, ANEW_MS):
                 state = _circle_here(config, state, chain, out)

@@ -22,7 +22,7 @@ from cratous.services.bus import Bus
 from cratous.services.flight import executive_state, link_end, link_peers
 from cratous.services.flight.arrivals import arrivals
 from cratous.services.flight.commands import gated, velocity_command
-from cratous.services.flight.dynamics import AirState, traffic_state
+from cratous.services.flight.dynamics import AirState, planned_state, traffic_state
 from cratous.services.flight.executive import Executive
 from cratous.services.flight.executive_state import Config
 from cratous.services.flight.holding import Ground
@@ -65,8 +65,15 @@ from cratous.services.flight.messages import (
     Watch,
     Wished,
 )
-from cratous.services.flight.notices import conflict, guidance, link_loss_state, truth
+from cratous.services.flight.notices import (
+    conflict,
+    guidance,
+    link_loss_state,
+    take_off_state,
+    truth,
+)
 from cratous.services.flight.result import FlightResult
+from cratous.services.flight.take_off import take_off
 from cratous.services.flight.vehicle import VehicleNode
 from cratous.services.flight.without_link import lost_link
 from cratous.services.icarous import state as icarous
@@ -79,6 +86,7 @@ from cratous.services.icarous.messages import (
     Offers,
     Sensed,
     Steer,
+    TakesOff,
     ToInstance,
     Uncertified,
     Up,
@@ -166,6 +174,7 @@ class Flight:
                 certifies=True,
                 records=True,
                 lost_link=lost_link(mission, vid),
+                take_off=take_off(mission, vid),
             )
             for vid in instances
         }
@@ -184,7 +193,8 @@ class Flight:
     ) -> FlightResult:
         """Fly to the end."""
         self.bus.now_ms, steps = 0, 0
-        self._executive(Begin(0, self._own()))
+        nodes = self.vehicles.items()
+        self._executive(Begin(0, tuple((vid, planned_state(n.vehicle)) for vid, n in nodes)))
         self._link(Connected(0, self.instances))
         self._executive(SetOut())
         while True:
@@ -264,11 +274,13 @@ class Flight:
         return tuple(sorted({**dict(self._own()), **dict(seen)}.items()))
 
     def _surveillance(self, vehicle_id: int, now: int) -> Sense:
-        """What a vehicle may see: those in the air, and where the others on the ground are."""
-        down = {vid: s.air.position for vid, s in self.vehicle_states.items() if s.landed}
-        seen = tuple(one for one in self._everyone() if one[0] not in down)
+        """What a vehicle may see: those in the air or rolling to it, and where the others on the ground are."""
+        states = self.vehicle_states
+        down = {vid: s.air.position for vid, s in states.items() if s.landed or s.on_ground}
+        rolling = tuple(v for v, s in states.items() if s.on_ground and s.air.speed_m_s)
+        seen = tuple(one for one in self._everyone() if one[0] not in down or one[0] in rolling)
         others = tuple(place for vid, place in down.items() if vid != vehicle_id)
-        return Sense(now, seen, self.instances, others)
+        return Sense(now, seen, self.instances, others, tuple(sorted({*rolling} - {vehicle_id})))
 
     def _gates(self) -> tuple[tuple[int, Any], ...]:
         return tuple((vid, state.gate) for vid, state in self.vehicle_states.items())
@@ -350,6 +362,8 @@ class Flight:
                     self._publish(conflict(answer), f"icarous/{vid}")
                 case WithoutLink(vid):
                     self._publish(link_loss_state(answer), f"icarous/{vid}")
+                case TakesOff(vid):
+                    self._publish(take_off_state(answer), f"icarous/{vid}")
                 case Guides(vid):
                     projection = self.icarous[vid].config.projection
                     self._publish(guidance(answer, projection), f"icarous/{vid}")

@@ -334,12 +334,13 @@ class Look(NamedTuple):
 
 class Sense(NamedTuple):
     """The vehicle's surveillance is due. aircraft: as in `Beat`; cooperating: those of our own that
-    avoid; landed: where those of our own are that are on the ground."""
+    avoid; landed: where those of our own are that are on the ground; rolling: those of them that roll to leave it."""
 
     now_ms: int
     aircraft: tuple[tuple[int, AirState], ...]
     cooperating: tuple[int, ...]
     landed: tuple[Position, ...] = ()
+    rolling: tuple[int, ...] = ()
 
 
 class Choose(NamedTuple):

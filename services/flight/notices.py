@@ -10,7 +10,7 @@ from cratous.core.authority.gate import ICAROUS, UXAS, Gate, epoch_given
 from cratous.services.flight.commands import SENDERS
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.holding import Change
-from cratous.services.icarous.messages import Foresees, Guides, WithoutLink
+from cratous.services.icarous.messages import Foresees, Guides, TakesOff, WithoutLink
 from cratous.services.logs.records import fingerprint, to_data
 from cratous.services.mission.frames import Projection, compass
 from cratous.spec.mission.plan import Plan
@@ -122,6 +122,18 @@ def link_loss_state(said: WithoutLink) -> Any:
         Time=said.now_ms,
         Mode=said.mode,
         Chosen=said.chosen,
+        Heard=said.heard_ms,
+        Reason=said.reason,
+    )
+
+
+def take_off_state(said: TakesOff) -> Any:
+    """How a vehicle leaves the ground from now on, or why it stands, as a `TakeOffState`."""
+    return lmcp.new(
+        "TakeOffState",
+        VehicleID=said.vehicle_id,
+        Time=said.now_ms,
+        Mode=said.mode,
         Heard=said.heard_ms,
         Reason=said.reason,
     )

@@ -40,6 +40,7 @@ from cratous.services.flight.dynamics import (
     first_state,
     limits_of,
     rolling,
+    rolling_up,
     steer,
     touching_down,
     turn_radius_m,
@@ -67,7 +68,7 @@ from cratous.services.flight.notices import authority_change, dropped, gate_stat
 from cratous.services.icarous.messages import Offers, Sensed
 from cratous.services.mission.frames import Projection, compass
 from cratous.services.mission.landing import BRAKING_M_S2, ground_m, is_down, site_under
-from cratous.spec.mission import Vehicle
+from cratous.spec.mission import GroundedVehicle, Vehicle
 from cratous.spec.mission.link_loss import LandingSite
 from cratous.spec.mission.plan import Hold
 from cratous.spec.records import replace
@@ -84,7 +85,7 @@ HANDED_BACK = "the way back is free: handed back"
 class State:
     """air: where it is and how it flies until the next step; command: what the autopilot flies, None for
     nothing yet; roll_rad: of the last turn; takeovers: how often ICAROUS has taken the vehicle; held: the certificate
-    in hand; landed: it is on the ground, and stays there."""
+    in hand; landed: it is on the ground, and stays there; on_ground: it has not left it yet."""
 
     air: AirState
     limits: Limits
@@ -94,6 +95,7 @@ class State:
     takeovers: int = 0
     held: InHand = NOTHING_IN_HAND
     landed: bool = False
+    on_ground: bool = False
 
 
 Step = tuple[State, tuple[FromVehicle, ...]]
@@ -115,7 +117,8 @@ class VehicleNode:
 
     def first(self) -> State:
         """At mission start."""
-        return State(first_state(self.vehicle), limits_of(self.vehicle))
+        on_ground = isinstance(self.vehicle, GroundedVehicle)
+        return State(first_state(self.vehicle), limits_of(self.vehicle), on_ground=on_ground)
 
     def handle(self, state: State, message: ToVehicle) -> Step:
         """One step: the state afterwards, and what to send, in order."""
@@ -140,8 +143,10 @@ class VehicleNode:
                 return self._moved(replace(state, air=advance(state.air, self.dt_s)))
 
     def _moved(self, state: State) -> Step:
-        """A step was flown: perhaps onto the ground."""
+        """A step was flown: perhaps off the ground, or onto it."""
         p = state.air.position
+        if isinstance(self.vehicle, GroundedVehicle) and state.on_ground:
+            return replace(state, on_ground=is_down(p.alt_m - self.vehicle.ground_m)), ()
         if state.landed or not self.sites:
             return state, ()
         ground = ground_m(p, self.sites, self.terrain_m)
@@ -159,6 +164,22 @@ class VehicleNode:
             return after, ()
         site = site_under(air.position, self.sites)
         return after, (Stands(self.vehicle.id, site.name if site is not None else ""),)
+
+    def _takes_off(self, state: State, now_ms: int) -> Step:
+        """On the ground before the flight: it rolls as ICAROUS commands, straight on, and brakes where it does not."""
+        air, command, wanted, climb = state.air, state.command, 0.0, 0.0
+        theirs = gate_accepts(state.gate, ICAROUS, state.gate.epoch)
+        silent = self.ground is not None and holding.silent(state.held, now_ms, self.ground)
+        if theirs and not silent and isinstance(command, Fly):
+            v = command.velocity
+            wanted, climb = math.hypot(v.north_m_s, v.east_m_s), -v.down_m_s
+        lifts_m_s, steepest_m_s = state.limits.min_speed_m_s, state.limits.max_climb_m_s
+        # a command is rounded: it is to roll, or it is not
+        if wanted > lifts_m_s / 2:
+            moved = rolling_up(air, lifts_m_s, min(climb, steepest_m_s), self.dt_s)
+        else:
+            moved = rolling(air, BRAKING_M_S2, self.dt_s)
+        return replace(state, air=moved, roll_rad=0.0), ()
 
     def _say(self, body: Any) -> Say:
         return Say(body, f"vehicle/{self.vehicle.id}")
@@ -232,6 +253,8 @@ class VehicleNode:
         """Choose the velocity of the coming step."""
         if state.landed:
             return self._rolls(state)
+        if state.on_ground:
+            return self._takes_off(state, now_ms)
         state, said = self._alone(state, now_ms)
         dt, air, command = self.dt_s, state.air, state.command
         if isinstance(command, Follow):
@@ -262,7 +285,8 @@ class VehicleNode:
         """What the vehicle's ICAROUS instance gets: own state, what the airframe can do at its present
         speed, everybody else, the gate."""
         air, limits = state.air, state.limits
-        flown_m_s = limits.min_speed_m_s if state.landed else air.speed_m_s
+        rolls = state.landed or state.on_ground
+        flown_m_s = limits.min_speed_m_s if rolls else air.speed_m_s
         ability = Ability(
             turn_rate_rad_s(flown_m_s, limits.max_bank_rad),
             limits.min_speed_m_s,
@@ -276,6 +300,8 @@ class VehicleNode:
         seen = traffic_picture(self.vehicle.id, message)
         hand = state.held.hand
         sensed = Sensed(message.now_ms, motion, ability, seen, state.gate, hand=hand)
+        if isinstance(self.vehicle, GroundedVehicle):
+            sensed = sensed._replace(on_ground=state.on_ground, rolling=message.rolling)
         if self.sites:
             under = (site_under(place, self.sites) for place in message.landed)
             taken = frozenset(site.name for site in under if site is not None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from cratous.core.avoidance.manoeuvre import Motion
+from cratous.core.avoidance.manoeuvre import Motion, Pace
 from cratous.core.avoidance.resolution import Choice
 from cratous.core.routing.polylines import Track
 from cratous.services.icarous.ending import TURN_MARGIN
@@ -18,7 +18,8 @@ from cratous.spec.mission.plan import Hold, Pose
 class Course(NamedTuple):
     """hold: the circle at the end; speed_m_s: flown at; track: the way to it, None where there is none; s_m: how much
     of that has been flown; offset_m: how far off it the vehicle is [m]; site: on whose ground the way ends, and not in
-    the circle, None for none: its last leg is the last descent."""
+    the circle, None for none: its last leg is the last descent; pace: at which speed its way is flown, if the vehicle has
+    to come to it first."""
 
     hold: Hold
     speed_m_s: float
@@ -26,6 +27,7 @@ class Course(NamedTuple):
     s_m: float = 0.0
     offset_m: float = 0.0
     site: LandingSite | None = None
+    pace: Pace | None = None
 
     @property
     def middle(self) -> Position:

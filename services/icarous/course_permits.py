@@ -38,7 +38,9 @@ def _refused(
     course: Course, sensed: Sensed, scene: Scene, daa: Daa, beat_s: float
 ) -> Iterator[str]:
     motion, ability = sensed.motion, sensed.ability
-    pieces = way_along(motion, course.left, math.inf).pieces
+    pieces = way_along(motion, course.left, math.inf, pace=course.pace).pieces
+    if course.pace is not None:
+        motion = motion._replace(speed_m_s=course.pace.speed_m_s)
     # between two commands the vehicle flies straight on where the way may turn
     aside_m = motion.speed_m_s * beat_s / 2
     for zone in scene.zones:
@@ -58,7 +60,8 @@ def _refused(
     if not zones_permit(course.middle, scene.zones, disc_m):
         yield "no circle there keeps the zones"
     begin_s = sum(piece.duration_s for piece in pieces)
-    laps = way_along(motion, _points(course, motion, scene), begin_s + scene.lookahead_s).pieces
+    points, until_s = _points(course, motion, scene), begin_s + scene.lookahead_s
+    laps = way_along(sensed.motion, points, until_s, pace=course.pace).pieces
     for other in sensed.intruders:
         meets = first_violation_s(laps, other, scene.volume) is not None
         if meets or not way_is_clear(pieces, other, daa):

@@ -24,9 +24,10 @@ from cratous.core.authority.cycle import (
 )
 from cratous.core.authority.gate import ICAROUS, gate_accepts
 from cratous.core.authority.link_loss import FINAL, LANDED, LINKED, loss_lets_go, loss_takes
+from cratous.core.authority.take_off import departure_lets_go, departure_takes
 from cratous.core.avoidance.manoeuvre import velocity_of
 from cratous.core.avoidance.resolution import Choice
-from cratous.services.icarous import asking, link_loss, permits
+from cratous.services.icarous import asking, link_loss, permits, take_off
 from cratous.services.icarous.ending import TURN_MARGIN
 from cratous.services.icarous.foresight import (
     points_back,
@@ -75,6 +76,7 @@ REASONS = {
     WITHDRAW: "offer withdrawn: the way back is no longer free",
 }
 NO_LINK = "link: UxAS is not heard"
+TAKES_OFF = "take-off: it is on the ground"
 UXAS_WAY = "the way back that UxAS's planner has found is free"
 
 Step = tuple[State, tuple[FromInstance, ...]]
@@ -115,8 +117,14 @@ class Instance:
         cycle = cycle_begun(state.cycle, commands, sensed.now_ms)
         flew, watches = state.cycle.mode != MONITOR, cycle.mode == MONITOR
         now, beat_s = courses(sensed.intruders), self.config.heartbeat_ms / 1000
+        # on the ground it banks as it does when it leaves it
+        able = sensed
+        if sensed.on_ground:
+            able = sensed._replace(
+                motion=sensed.motion._replace(speed_m_s=sensed.ability.min_speed_m_s)
+            )
         ways, others = with_ways(
-            state.ways, state.told, sensed, self.config.daa, beat_s, state.courses
+            state.ways, state.told, able, self.config.daa, beat_s, state.courses
         )
         state, sensed = replace(state, told=beaten(state.told)), sensed._replace(intruders=others)
         # one whose way is known is where that leads, in a turn too
@@ -131,16 +139,22 @@ class Instance:
             )
             state = permits.resumed(self.config, state, sensed, in_turn)
         state = replace(state, cycle=cycle, courses=now, ways=ways, beats=state.beats + 1)
+        state, up = take_off.heartbeat(self.config, state, sensed)
         state, lost = link_loss.heartbeat(self.config, state, sensed)
         if watches:
             state, out = self._watch(state, sensed, in_turn)
         else:
             state, out = self._fly(state, sensed, in_turn)
         beat = Heartbeat(sequence=state.beats, time_s=sensed.now_ms / 1000)
-        return state, (*lost, *out, Up(self.config.vehicle_id, beat))
+        return state, (*up, *lost, *out, Up(self.config.vehicle_id, beat))
 
     def _watch(self, state: State, sensed: Sensed, in_turn: frozenset[int]) -> Step:
-        """MONITOR: take over if a conflict is foreseen that is ours to act on, or the link is lost."""
+        """MONITOR: take over if a conflict is foreseen that is ours to act on, or the link is lost, or to take off."""
+        if take_off.departs(self.config, state):
+            departure = take_off.rising(self.config, state).departure
+            takes = departure_takes(departure, False)
+            cycled = cycle_watched(state.cycle, takes, sensed.now_ms, RELAPSE_MS)
+            return self._by_itself(state, sensed, in_turn, cycled, TAKES_OFF)
         state, conflict = self._foreseen(state, sensed, in_turn)
         state, said = self._guided(state, sensed, bool(state.threats))
         takes = loss_takes(state.no_link.loss, conflict is not None)
@@ -148,7 +162,7 @@ class Instance:
         if cycled.act == NOTHING:
             return replace(state, cycle=cycled.cycle), said
         if conflict is None or state.no_link.loss.mode != LINKED:
-            state, out = self._without_link(state, sensed, in_turn, cycled)
+            state, out = self._by_itself(state, sensed, in_turn, cycled, NO_LINK)
             return state, (*said, *out)
         vid, first_s = self.config.vehicle_id, conflict.first_s
         reason = f"{conflict.why}: loss predicted in {first_s:.1f} s"
@@ -163,15 +177,23 @@ class Instance:
         commands = self._commands(sensed, choice, cycled.act)
         return state, (*said, wish, foresees, *offer, *commands)
 
-    def _without_link(
-        self, state: State, sensed: Sensed, in_turn: frozenset[int], cycled: Cycled
+    def _by_itself(
+        self, state: State, sensed: Sensed, in_turn: frozenset[int], cycled: Cycled, why: str
     ) -> Step:
-        """Take over since UxAS is not heard."""
+        """Take over since UxAS is not heard, or to take off."""
         state = replace(state, cycle=cycled.cycle, goal=state.told.next_index)
-        state, choice = link_loss.flown(self.config, state, sensed, in_turn)
-        wish = Wish(self.config.vehicle_id, cycled.act, NO_LINK, 0)
+        state, choice = self._flown_by_itself(state, sensed, in_turn)
+        wish = Wish(self.config.vehicle_id, cycled.act, why, 0)
         offer = self._offer(state, sensed, choice)
         return state, (wish, *offer, *self._commands(sensed, choice, cycled.act))
+
+    def _flown_by_itself(
+        self, state: State, sensed: Sensed, in_turn: frozenset[int]
+    ) -> tuple[State, Choice]:
+        """What is flown off the ground, or without the link."""
+        if take_off.departs(self.config, state):
+            return take_off.flown(self.config, state, sensed)
+        return link_loss.flown(self.config, state, sensed, in_turn)
 
     def _foreseen(
         self, state: State, sensed: Sensed, in_turn: frozenset[int]
@@ -194,19 +216,23 @@ class Instance:
 
     def _fly(self, state: State, sensed: Sensed, in_turn: frozenset[int]) -> Step:
         """AVOID and HANDBACK: fly the manoeuvre, and see whether the way back is free."""
-        state, guides = self._guided(state, sensed, not sensed.landed)
+        state, guides = self._guided(state, sensed, not (sensed.landed or sensed.on_ground))
+        departure = take_off.rising(self.config, state).departure
+        departs = take_off.departs(self.config, state)
         lost = state.no_link.loss.mode != LINKED
+        alone = departs or lost
         lasting = state.search.waits(sensed.now_ms)
-        free = not lost and way_back_is_free(self.config, state, sensed, in_turn, lasting)
+        free = not alone and way_back_is_free(self.config, state, sensed, in_turn, lasting)
         proposed, asked = None, list[FromInstance]()
-        if not lost:
+        if not alone:
             state, proposed, asked = self._proposed(state, sensed, in_turn, free)
         heard_ms, before = state.told.heard_ms, state.held
         free = loss_lets_go(state.no_link.loss, free or proposed is not None)
+        free = departure_lets_go(departure, free)
         cycled = cycle_flown(state.cycle, free, heard_ms, sensed.now_ms, LINK_LOST_MS, PERSIST_MS)
         state = replace(state, cycle=cycled.cycle)
-        if lost:
-            state, choice = link_loss.flown(self.config, state, sensed, in_turn)
+        if alone:
+            state, choice = self._flown_by_itself(state, sensed, in_turn)
         else:
             state, choice = manoeuvre(self.config, state, sensed, in_turn, free)
         out: list[FromInstance] = [*guides]
@@ -216,7 +242,7 @@ class Instance:
             reason = f"{UXAS_WAY} (request {proposed})" if of_uxas else REASONS[cycled.act]
             out.append(Wish(vid, cycled.act, reason, 0))
         # along a course the heading changes at each heartbeat
-        on_course = lost and state.no_link.course is not None
+        on_course = departs or (lost and state.no_link.course is not None)
         changed = not on_course and (before is None or describe(before) != text)
         said = f"offer withdrawn; {text}" if cycled.act == WITHDRAW else text
         if changed or cycled.act == WITHDRAW:
@@ -276,6 +302,8 @@ class Instance:
         vid, scene = self.config.vehicle_id, scene_of(self.config, state, sensed)
         if state.no_link.loss.mode in (FINAL, LANDED):
             return (Uncertified(vid, 0, "the last descent to the ground ends in no hold"),)
+        if sensed.on_ground:
+            return (Uncertified(vid, 0, "it is on the ground"),)
         found = certified(sensed, scene, choice, self.config.daa)
         return (Uncertified(vid, *found) if isinstance(found, Refused) else Offers(vid, found),)
 

@@ -66,7 +66,7 @@ def approaches(
         # there the vehicle has slowed down
         lead_m = max(motion.speed_m_s**2 - ability.min_speed_m_s**2, 0.0)
         lead_m /= 2 * ability.acceleration_m_s2
-        before = _along(gate, heading, -lead_m)
+        before = along(gate, heading, -lead_m)
         wide_m, start = radius_m(sensed), Pose(*motion.position, motion.heading_rad)
         slope = EVEN * ability.max_climb_m_s / ability.min_speed_m_s
         end = Pose(*before, heading)
@@ -74,7 +74,7 @@ def approaches(
         if not way:
             continue
         for side in (1, -1):
-            whole = (*_with_laps(way, end, wide_m, slope, side), gate)
+            whole = (*with_laps(way, end, wide_m, slope, side), gate)
             if len(whole) == 1:
                 continue
             track = Track((*whole, touch), motion.heading_rad)
@@ -92,13 +92,14 @@ def _last_descent(site: LandingSite, heading: float, ability: Ability) -> tuple[
     """Where the vehicle touches down, and the gate where the descent begins."""
     speed = ability.min_speed_m_s
     middle = Position(site.north_m, site.east_m, site.ground_m)
-    touch = _along(middle, heading, -speed * speed / (4 * BRAKING_M_S2))
+    touch = along(middle, heading, -speed * speed / (4 * BRAKING_M_S2))
     down_m = max(ability.floor_m - site.ground_m, 0.0)
     far_m = down_m * speed / (STEEP * ability.max_climb_m_s)
-    return touch, _along(touch, heading, -far_m)._replace(alt_m=site.ground_m + down_m)
+    return touch, along(touch, heading, -far_m)._replace(alt_m=site.ground_m + down_m)
 
 
-def _along(place: Position, heading: float, by_m: float) -> Position:
+def along(place: Position, heading: float, by_m: float) -> Position:
+    """The place so much farther in a direction, as high."""
     north_m, east_m = (
         place.north_m + by_m * math.cos(heading),
         place.east_m + by_m * math.sin(heading),
@@ -106,7 +107,7 @@ def _along(place: Position, heading: float, by_m: float) -> Position:
     return Position(north_m, east_m, place.alt_m)
 
 
-def _with_laps(
+def with_laps(
     way: tuple[Position, ...], end: Pose, wide_m: float, slope: float, side: int
 ) -> tuple[Position, ...]:
     """The way, evenly down, with as many laps to the right (1) or left (-1) at its end as that takes; () for too many."""

@@ -43,6 +43,7 @@ from cratous.spec.records import replace
 
 WAITS = "; a circle is flown until it is"
 NO_WAY = "no way there was found"
+STAYS = "it does not leave the ground"
 ENDED = (OVER, FINAL, LANDED)
 """In these nothing else is looked for."""
 
@@ -67,7 +68,7 @@ def heartbeat(
     if course is not None:
         course = course.flown(sensed.motion, _beat_s(config))
     chosen, mode, due = plan.choice, before.loss.mode, False
-    if not linked and mode not in ENDED and chosen != LOITER:
+    if not linked and mode not in ENDED and chosen != LOITER and not sensed.on_ground:
         due = mode in (LINKED, chosen) or lasted(before.tried_ms, now_ms, AGAIN_MS)
         going = course if mode == chosen else None
         tried = _tried(config, state, sensed, plan, going) if due else tried
@@ -77,7 +78,7 @@ def heartbeat(
         before.loss, chosen, heard_ms, now_ms, plan.after_ms, tried.course is not None, ended
     )
     mode = stepped.loss.mode
-    if stepped.act == REJOIN:
+    if stepped.act == REJOIN or sensed.on_ground:
         course = None
     elif stepped.act == COMMIT:
         course = tried.course
@@ -94,6 +95,8 @@ def heartbeat(
     if stepped.act == REJOIN:
         after = replace(after, held=None, search=IDLE)
     vid, why = config.vehicle_id, _words(stepped.act, plan, tried, course, now_ms - heard_ms)
+    if sensed.on_ground and stepped.act != REJOIN:
+        why = f"nothing was heard of UxAS for {(now_ms - heard_ms) / 1000:g} s: {STAYS}"
     return after, (WithoutLink(vid, now_ms, mode, chosen, heard_ms, why),)
 
 

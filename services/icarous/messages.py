@@ -38,7 +38,8 @@ class Sensed(NamedTuple):
     """A heartbeat is due. motion, ability: of the vehicle itself; intruders: everybody else, as its
     surveillance sees them; gate: how its actuator gate stands; here: how far the vehicle may be from where it is
     taken to be; hand: the certificate behind the gate; landed: it is on the ground; taken: the landing
-    sites on whose ground somebody else is."""
+    sites on whose ground somebody else is; on_ground: it has not left the ground yet; rolling: the others of ours that
+    roll to leave it."""
 
     now_ms: int
     motion: Motion
@@ -49,6 +50,8 @@ class Sensed(NamedTuple):
     hand: Hand = EMPTY
     landed: bool = False
     taken: frozenset[str] = frozenset()
+    on_ground: bool = False
+    rolling: tuple[int, ...] = ()
 
 
 # from the instance ------------------------------------------------------------------------------
@@ -83,6 +86,17 @@ class WithoutLink(NamedTuple):
     now_ms: int
     mode: int
     chosen: int
+    heard_ms: int
+    reason: str
+
+
+class TakesOff(NamedTuple):
+    """To the record. mode: how the vehicle leaves the ground from now on, by the numbers of `core.authority.take_off`;
+    heard_ms: when UxAS was last heard."""
+
+    vehicle_id: int
+    now_ms: int
+    mode: int
     heard_ms: int
     reason: str
 
@@ -127,4 +141,4 @@ class Up(NamedTuple):
 
 
 ToInstance = Line | Sensed
-FromInstance = Wish | Foresees | Guides | WithoutLink | Offers | Uncertified | Steer | Up
+FromInstance = Wish | Foresees | Guides | WithoutLink | TakesOff | Offers | Uncertified | Steer | Up

@@ -6,17 +6,20 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from cratous.core.authority.cycle import Cycle
+from cratous.core.authority.take_off import STANDING, Departure
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.prediction import Intruder
 from cratous.core.avoidance.resolution import Choice
 from cratous.core.permit.encounter import Encounter
 from cratous.services.icarous.asking import Asking
 from cratous.services.icarous.band_history import Bands
+from cratous.services.icarous.course import Course
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.lost import LostLink, NoLink
 from cratous.services.icarous.others import Ways
 from cratous.services.icarous.traffic_monitor import Threat, Tracks
 from cratous.services.mission.frames import Projection
+from cratous.services.mission.take_off import TakeOff
 from cratous.spec.authority.cycle import MONITOR
 from cratous.spec.mission import Daa, Position
 
@@ -29,7 +32,7 @@ class Config(NamedTuple):
 
     original: UxAS's end is the original's, whose WAYPT lines carry a running count; certifies: what it commands is
     offered to the gate with a certificate; records: alerts and bands go to a record; lost_link: what it does while UxAS
-    is not heard, None where the mission does not say."""
+    is not heard, None where the mission does not say; take_off: what it takes off to, None where it starts in the air."""
 
     vehicle_id: int
     daa: Daa
@@ -39,6 +42,17 @@ class Config(NamedTuple):
     certifies: bool = False
     records: bool = False
     lost_link: LostLink | None = None
+    take_off: TakeOff | None = None
+
+
+class Rising(NamedTuple):
+    """departure: the mode of a vehicle that takes off, as the kernels have it; course: the way up that is rolled or
+    flown, None while it stands; why: it stands, as was said last; tried_ms: when a way up was last looked for [ms]."""
+
+    departure: Departure = Departure(STANDING, 0)
+    course: Course | None = None
+    why: str = ""
+    tried_ms: int = 0
 
 
 class Met(NamedTuple):
@@ -78,7 +92,7 @@ class State:
     it makes for; beats: heartbeats so far; met: the intruders because of which it has taken over; search: of the
     manoeuvre that is over soonest; ways: of the other vehicles of ours; asking: UxAS for a way back; bands: what detect
     and avoid said last, while a loss is foreseen or ICAROUS flies; no_link: what it does while UxAS is not heard;
-    pace_ms: until when UxAS, after a handback, may be bringing the vehicle to the speed that was told [ms]."""
+    rising: how far it is off the ground, where it started there; pace_ms: until when UxAS, after a handback, may be bringing the vehicle to the speed that was told [ms]."""
 
     cycle: Cycle = START
     told: Told = field(default_factory=Told)
@@ -94,6 +108,7 @@ class State:
     bands: Bands | None = None
     no_link: NoLink = field(default_factory=NoLink)
     pace_ms: int = 0
+    rising: Rising = field(default_factory=Rising)
 
     def paces(self, now_ms: int) -> bool:
         """Whether UxAS, which has just taken it back, may still bring the vehicle to the speed that was told."""

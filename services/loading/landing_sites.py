@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
+from itertools import combinations
 
-from cratous.core.avoidance.landing import roll_fits
+from cratous.core.avoidance.landing import on_ground, roll_fits
+from cratous.core.geofence.planar import keep_in_leg_ok
 from cratous.core.permit.remainder import zones_permit
 from cratous.services.loading.checks import Where
 from cratous.services.loading.document import Document
@@ -69,7 +72,10 @@ def site_problems(document: Document, sites: tuple[LandingSite, ...]) -> Iterato
 
 
 def ground_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
-    """Sites that zones forbid at the start, and those that are too small for a vehicle to roll to a stand."""
+    """Sites that zones forbid at the start, those that are too small for a vehicle to roll to a stand, those that have
+    ground in common, and ground that is as high as the mission flies."""
+    yield from _heights(mission, where)
+    yield from _overlaps(mission, where)
     beat_s = mission.simulation.heartbeat_ms / 1000
     guarded = [mission.vehicle(number) for number in mission.instances]
     for k, site in enumerate(sites_of(mission)):
@@ -97,3 +103,43 @@ def ground_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
                     expected=f"at least {least_m + off_m:.4g} m, for a landing at {speed:g} m/s",
                     got=f"{site.radius_m:g} m",
                 )
+
+
+def _heights(mission: Mission, where: Where) -> Iterator[BadInput]:
+    """Ground of a site, or terrain beside all of them, that a vehicle starts or flies its tasks at, or below."""
+    sites = sites_of(mission)
+    grounds = [
+        (f"{SECTION}[{k}].position", f"the ground of {site.name}", site.ground_m)
+        for k, site in enumerate(sites)
+    ]
+    if sites:
+        grounds.append(("frame.terrain_m", "the terrain", mission.frame.terrain_m))
+    for item, ground, ground_m in grounds:
+        for vehicle in mission.vehicles:
+            flown_m = min(vehicle.position.alt_m, vehicle.cruise_alt_m)
+            # strictly above it, as above the floor of a keep-in
+            if not keep_in_leg_ok(1, False, flown_m, flown_m, ground_m, math.inf):
+                yield BadInput(
+                    f"{ground} is as high as vehicle {vehicle.id} flies",
+                    where=where(item),
+                    item=item,
+                    expected=f"below {flown_m:g} m MSL, at which it starts or flies its tasks",
+                    got=f"{ground_m:g} m MSL",
+                )
+                break
+
+
+def _overlaps(mission: Mission, where: Where) -> Iterator[BadInput]:
+    """Pairs of sites whose discs share a place: each has room for one vehicle."""
+    for (_, one), (k, two) in combinations(enumerate(sites_of(mission)), 2):
+        north_m, east_m = two.north_m - one.north_m, two.east_m - one.east_m
+        both_m = one.radius_m + two.radius_m
+        if on_ground(north_m, east_m, both_m, 0.0, 0.0):
+            item = f"{SECTION}[{k}].position"
+            yield BadInput(
+                f"landing sites {one.name} and {two.name} overlap",
+                where=where(item),
+                item=item,
+                expected=f"middles more than {both_m:g} m apart",
+                got=f"{math.hypot(north_m, east_m):g} m",
+            )

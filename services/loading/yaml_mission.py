@@ -28,11 +28,14 @@ from cratous.services.loading.polygons import padded
 from cratous.services.loading.problems import refuse
 from cratous.services.loading.schema import schema_problems
 from cratous.services.loading.start_distances import close_starts
+from cratous.services.loading.take_off import on_their_ground, take_off_problems
+from cratous.services.loading.take_off import words as take_off_words
 from cratous.services.loading.yaml_bridge_faults import yaml_bridge_faults
 from cratous.services.loading.yaml_link_loss import place_problems, yaml_link_loss
 from cratous.services.loading.yaml_link_loss import words as link_loss_words
 from cratous.services.loading.yaml_sensing import yaml_sensing
 from cratous.services.loading.yaml_task import yaml_task
+from cratous.services.mission.take_off import grounded
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import (
     Camera,
@@ -40,6 +43,7 @@ from cratous.spec.mission import (
     Daa,
     FaultySimulation,
     Frame,
+    GroundedVehicle,
     LinkLoss,
     LinkLossDaa,
     LivePlanningMission,
@@ -109,6 +113,7 @@ def drawn(document: Document, seed: int = 0) -> Mission:
 
 def finish(mission: Mission, where: Any) -> Mission:
     """Check a mission, pad its zones and hold the starts against them."""
+    mission = on_their_ground(mission)
     later = tuple(c.zone for c in mission.changes if c.zone is not None)
     refuse(mission_problems(replace(mission, zones=(*mission.zones, *later)), where))
     refuse([*change_problems(mission, where), *zone_end_problems(mission, where)])
@@ -138,8 +143,14 @@ def finish(mission: Mission, where: Any) -> Mission:
         notes.append(sensing_words(mission.sensing))
     if mission.link_loss is not None:
         notes.append(link_loss_words(mission.link_loss))
+    if grounded(mission):
+        notes.append(take_off_words(mission))
     mission = replace(mission, zones=zones, changes=known)
-    places = (*place_problems(mission, where), *ground_problems(mission, where))
+    places = (
+        *place_problems(mission, where),
+        *ground_problems(mission, where),
+        *take_off_problems(mission, where),
+    )
     refuse([*start_problems(mission, where), *places])
     said = [*mission.notes, *notes, *warnings_of(mission)]
     return replace(mission, notes=tuple(dict.fromkeys(said)))
@@ -208,7 +219,8 @@ def _instances(document: Document, vehicles: tuple[Vehicle, ...]) -> tuple[int, 
 
 def _vehicle(data: dict[str, Any], places: Places) -> Vehicle:
     speed = float(data["speed_m_s"])
-    return Vehicle(
+    kind = GroundedVehicle if data.get("start") == "ground" else Vehicle
+    return kind(
         id=int(data["id"]),
         label=data.get("label", f"vehicle {data['id']}"),
         position=places.position(data["position"]),

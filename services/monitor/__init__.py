@@ -23,6 +23,7 @@ from cratous.services.monitor.observation import Ending, Presence
 from cratous.services.monitor.required_rows import END, missing, promised, watched
 from cratous.services.monitor.samples import Sample, Sampler
 from cratous.services.monitor.separation import SeparationWatch
+from cratous.services.monitor.take_off import TakeOffWatch
 from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import REQUIREMENTS, Kind, Verdict, worst
 from cratous.spec.mission.plan import Plan
@@ -56,7 +57,8 @@ class Monitor:
         self.authority = AuthorityWatch(mission)
         self.bridge = BridgeWatch(mission, says_beats)
         self.hand = HandWatch.of(mission)
-        self.link_loss = LinkLossWatch(mission, self.landing.down)
+        self.link_loss = LinkLossWatch(mission, self.landing.down, self.presence)
+        self.take_off = TakeOffWatch(mission, self.presence)
         self._assumed = AssumptionWatch(mission)
         self._last_ms, self._over = 0, False
         self._tell, self._tell_broken = on_violation, on_broken
@@ -81,6 +83,7 @@ class Monitor:
         elif short in ("GateState", "GatedCommand", "CommandDropped", "ModeRefused"):
             self.authority.message(short, body, envelope.time_ms)
             if short == "GateState":
+                self.take_off.gate(body)
                 self.hand.gate(body, envelope.time_ms)
         elif short == "HandState":
             self.hand.hand(body, envelope.time_ms)
@@ -92,14 +95,17 @@ class Monitor:
             self.link_loss.status(body)
         elif short == "LinkLossState":
             self.link_loss.state(body)
+        elif short == "TakeOffState":
+            self.take_off.state(body)
         elif short == "MissionEnd":
             for step in self._sampler.flush():
                 self._step(*step)
             self._last_ms, self._over = body.Time, True
             self.completion.end(body)
-            self.authority.end(body, self.landing.down)
+            self.authority.end(body, self.landing.at_rest(self._all_seen))
             self.bridge.end(body)
             self.link_loss.end(body)
+            self.take_off.end(body)
             self.hand.end(body.Time)
         if self._tell is not None:
             for k, events in enumerate((self.separation.violations, self.constraints.violations)):
@@ -110,9 +116,14 @@ class Monitor:
             if self._tell_broken is not None:
                 self._tell_broken(row)
 
+    def _all_seen(self, number: int) -> bool:
+        """Whether an aircraft was seen from the begin to the mission's end."""
+        return not self.presence.unseen(number, (0, self._last_ms), Ending(self._last_ms, True))
+
     def _step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
         self.presence.step(before, after)
         self.constraints.step(before, after)
+        self.take_off.step(before, after)
         flown = self.landing.step(before, after)
         if all(flown):
             self.separation.step(*flown)
@@ -144,6 +155,7 @@ class Monitor:
             *self.separation.verdicts(seen, ending),
             *self.completion.verdicts(seen),
             *self.authority.verdicts(),
+            *self.take_off.verdicts(),
             *self.bridge.verdicts(),
             *self.link_loss.verdicts(),
         ]

@@ -1,14 +1,17 @@
 """Who is on the ground, by where the aircraft were: at a landing site, or beside all of them.
 
 Well clear is asked of aircraft in the air: a leg whose both ends are on the ground is none. Who has come to the ground
-has to stay, and to stand at the end, and to have the site for itself. Decisions are those of the kernel `on_ground`.
+has to stay, and to stand at the end, and to have the site for itself. Who starts on the ground is on it until it has
+left it. Decisions are those of the kernel `on_ground`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from cratous.services.mission.landing import ground_m, is_down, site_under, sites_of
+from cratous.services.mission.take_off import grounded
 from cratous.services.monitor.samples import Sample
 from cratous.spec.mission import Mission, Position
 
@@ -16,13 +19,15 @@ from cratous.spec.mission import Mission, Position
 @dataclass
 class Down:
     """A vehicle on the ground. site: whose, "" beside all; since_ms: from when on; taken: who was there before it, as a
-    fault; wrong: what it did there that ends no flight; stands: it has not moved in its last step."""
+    fault; wrong: what it did there that ends no flight; stands: it has not moved in its last step; began: it started
+    there, and has not left the ground."""
 
     site: str
     since_ms: int
     taken: str = ""
     wrong: str = ""
     stands: bool = False
+    began: bool = False
 
     @property
     def good(self) -> bool:
@@ -31,31 +36,51 @@ class Down:
 
     def words(self) -> str:
         """Where and since when."""
+        if self.began:
+            return "it stands on the ground, where it started"
         where = f"at {self.site}" if self.site else "beside every landing site"
         return f"landed {where} at {self.since_ms / 1000:.2f} s"
 
 
 class LandingWatch:
-    """The vehicles that have come to the ground, by number; nobody where there is no landing site."""
+    """The vehicles that have come to the ground, by number; nobody where there is no landing site. Those that start on it
+    are none of them."""
 
     def __init__(self, mission: Mission) -> None:
         self._sites, self._terrain_m = sites_of(mission), mission.frame.terrain_m
         self.down: dict[int, Down] = {}
+        self._not_yet = {one.id: one.ground_m for one in grounded(mission)}
+        self._stood = set[int]()
 
     def step(
         self, before: dict[int, Sample], after: dict[int, Sample]
     ) -> tuple[dict[int, Sample], dict[int, Sample]]:
         """Two successive instants; those of them that fly."""
-        if not self._sites:
+        if not self._sites and not self._not_yet:
             return before, after
-        for number in before.keys() & after.keys():
-            if after[number].ours:
+        still = {n for n in self._not_yet if n in before and n in after}
+        for number in still:
+            if not is_down(after[number].position.alt_m - self._not_yet[number]):
+                del self._not_yet[number]
+        still &= self._not_yet.keys()
+        self._stood = {n for n in still if before[n].position == after[n].position}
+        for number in before.keys() & after.keys() if self._sites else ():
+            if after[number].ours and number not in self._not_yet:
                 self._leg(number, before[number], after[number])
-        still = {
+        still |= {
             n for n in self.down if n in before and n in after and self._stays(before[n], after[n])
         }
         flown = ({n: s for n, s in one.items() if n not in still} for one in (before, after))
         return next(flown), next(flown)
+
+    def at_rest(self, seen: Callable[[int], bool]) -> dict[int, Down]:
+        """Who is on the ground, with those that have not left it, of whom all was seen."""
+        stood = {
+            number: Down("its start", 0, stands=number in self._stood, began=True)
+            for number in self._not_yet
+            if seen(number)
+        }
+        return {**self.down, **stood}
 
     def _stays(self, before: Sample, after: Sample) -> bool:
         return self._is_down(before.position) and self._is_down(after.position)

@@ -4,7 +4,8 @@ By what each ICAROUS said of it (`LinkLossState`), held against the kernel `loss
 one that it told must follow, whatever was permitted or ended. It begins within a heartbeat after the silence has
 become too long; a connection that had ended for longer, and nothing said, is a violation. Where lines of a bridge were
 made to be lost or late, whether UxAS was heard in between is not logged, and so that enough was said is not known.
-Who says to have landed has to be on the ground of a landing site, to stay and to stand there, and who is there to say so.
+Who says to have landed has to be on the ground of a landing site, to stay and to stand there, and who is there to say so;
+of who may land and was not seen throughout it is not known.
 """
 
 from __future__ import annotations
@@ -27,7 +28,9 @@ from cratous.core.authority.timeliness import in_time
 from cratous.core.avoidance.landing import on_ground
 from cratous.core.kernel import qualified
 from cratous.core.schedule.rows import runs_forward
+from cratous.services.mission.landing import sites_of
 from cratous.services.monitor.landing import Down
+from cratous.services.monitor.observation import Ending, Presence, Span
 from cratous.services.monitor.required_rows import alone_without_link_item
 from cratous.spec.mission import FaultySimulation, Mission, Simulation
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
@@ -71,9 +74,10 @@ def _may_not_come(simulation: Simulation) -> bool:
 class LinkLossWatch:
     """What the vehicles with an ICAROUS instance flew without the link; nothing where the mission does not say."""
 
-    def __init__(self, mission: Mission, down: Mapping[int, Down]) -> None:
-        """down: who is on the ground, as the aircraft were."""
-        self._down = down
+    def __init__(self, mission: Mission, down: Mapping[int, Down], presence: Presence) -> None:
+        """down: who is on the ground, as the aircraft were; presence: who was seen when."""
+        self._down, self._presence, self._lands = down, presence, bool(sites_of(mission))
+        self._end_ms = 0
         self._asked, self._beat_ms = mission.link_loss, mission.simulation.heartbeat_ms
         there = mission.instances if self._asked is not None else ()
         self._told = {number: Told() for number in there}
@@ -118,7 +122,7 @@ class LinkLossWatch:
 
     def end(self, body: Any) -> None:
         """The mission ended."""
-        self._over = True
+        self._over, self._end_ms = True, body.Time
         for vehicle, told in self._told.items():
             self._missed(told, body.Time)
             if text := self._on_the_ground(vehicle, told, body.Time):
@@ -136,11 +140,18 @@ class LinkLossWatch:
         if said and not runs_forward(down.since_ms, told.loss.since_ms):
             return f"it said that it had landed before it {down.words()}"
         if not down.stands:
+            # of one that was not seen to the end it is not known
+            if self._unseen(vehicle, (down.since_ms, now_ms)):
+                return ""
             return f"{down.words()}, and did not stand there at the end"
         # it says so at the heartbeat after it has come down
         if not said and not in_time(down.since_ms, now_ms, LATEST_BEATS * self._beat_ms):
             return f"{down.words()}, and did not say so"
         return ""
+
+    def _unseen(self, vehicle: int, span: Span) -> str:
+        """What was not seen of a vehicle that may land; empty if all was."""
+        return self._presence.unseen(vehicle, span, Ending(span[1], True)) if self._lands else ""
 
     def _missed(self, told: Told, now_ms: int) -> None:
         """Whether a connection has been down for so long that something should have been said."""
@@ -172,6 +183,8 @@ class LinkLossWatch:
             outcome = Outcome.UNKNOWN
             note = f"{note}; " if note else ""
             note += "over a bridge that was made to fail: whether UxAS was heard is not logged"
+        elif unseen := self._unseen(vehicle, (0, self._end_ms)):
+            outcome, note = Outcome.UNKNOWN, f"{note}; {unseen}" if note else unseen
         elif not note:
             note = "it was never without the link for long enough"
         asked: list[Any] = [loss_step, in_time] if told.checks else []

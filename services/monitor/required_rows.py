@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterable, Iterator, Set
 from typing import NamedTuple
 
 from cratous.core.schedule.rows import runs_forward
+from cratous.services.mission.take_off import grounded
 from cratous.services.monitor.observation import Span, in_the_air
 from cratous.services.monitor.plan_check import WHOLE
 from cratous.services.monitor.relations import first_choices
@@ -94,6 +95,11 @@ def authority_item(vehicle: int) -> str:
     return f"authority over vehicle {vehicle}"
 
 
+def take_off_item(vehicle: int) -> str:
+    """The row of G4 on how a vehicle leaves the ground."""
+    return f"take-off of vehicle {vehicle}"
+
+
 def alone_without_link_item(vehicle: int) -> str:
     """The row of G5 on what a vehicle flies without the link."""
     return f"what vehicle {vehicle} flies without the link"
@@ -170,6 +176,8 @@ def promised(seen: Watched, present: Collection[str] = ()) -> Iterator[Row]:
     for vehicle in guarded:
         yield Row("G4", authority_item(vehicle), (vehicle,))
         yield from (Row("G5", beat_item(vehicle, way), (vehicle,)) for way in WAYS)
+    taking_off = [one.id for one in grounded(mission) if one.id in mission.instances]
+    yield from (Row("G4", take_off_item(vehicle), (vehicle,)) for vehicle in taking_off)
     if mission.link_loss is not None:
         for vehicle in mission.instances:
             yield Row("G5", alone_without_link_item(vehicle), (vehicle,))

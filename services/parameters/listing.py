@@ -30,6 +30,7 @@ from cratous.services.mission.ground import GROUND_MARGIN, floor_of
 from cratous.services.parameters.landing import landing_rows
 from cratous.services.parameters.parameter import DEFAULT, DERIVED, FIXED, GIVEN, Parameter
 from cratous.services.parameters.sensed import SECTION, rows_of
+from cratous.services.parameters.take_off import take_off_rows
 from cratous.spec.mission import LivePlanningMission, Mission, Vehicle
 
 UNITS = {
@@ -56,6 +57,7 @@ def parameters_of(mission: Mission, path: Path) -> tuple[Parameter, ...]:
         rows += _of_vehicle(vehicle, _at(written, ("vehicles", k)))
         if vehicle.id in mission.instances:
             rows += [*_derived(mission, vehicle), *landing_rows(mission, vehicle)]
+            rows += take_off_rows(mission, vehicle)
     return (*rows, *_fixed())
 
 

@@ -12,6 +12,7 @@ from cratous.services.loading.places import Places
 from cratous.services.loading.uxas_cfg import Sent
 from cratous.services.loading.uxas_tasks import Interests
 from cratous.services.loading.uxas_tasks import task as read_task
+from cratous.services.mission.take_off import grounded
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import FaultySimulation, Mission, TaskKind
 
@@ -58,6 +59,8 @@ def _asked(mission: Mission, original: bool) -> Iterator[tuple[str, bool, str, s
     yield "sensing", sensed, "ICAROUS is given what sensors see", "no sensing"
     lost = mission.link_loss is not None
     yield "link_loss", lost, "the mission says what is flown without the link", "no link_loss"
+    waits = bool(grounded(mission))
+    yield "vehicles.start", waits, "a vehicle starts on the ground", "vehicles in the air"
     high = mission.frame.terrain_m != 0
     yield "frame.terrain_m", high, "the ground is not at mean sea level", "0"
     other = mission.cost not in COSTS

@@ -90,6 +90,19 @@ class Vehicle:
         return self.position.alt_m if self.cruise_m is None else self.cruise_m
 
 
+@dataclass(frozen=True)
+class GroundedVehicle(Vehicle):
+    """The same where it stands on the ground at the start, under its position, and takes off first. ground_m: how high
+    the ground is there [m MSL]; its position, heading and speed are those at which its plan begins."""
+
+    ground_m: float = 0.0
+
+    @property
+    def stands_at(self) -> Position:
+        """Where it stands."""
+        return self.position._replace(alt_m=self.ground_m)
+
+
 class TaskKind(StrEnum):
     LINE_SEARCH = "line_search"
     POINT_SEARCH = "point_search"

@@ -15,8 +15,10 @@ from judge_tools import Message, write
 from cratous.bridge import lmcp
 from cratous.judge import judge
 from cratous.services.bus import Bus
+from cratous.services.flight.dynamics import traffic_state
 from cratous.services.flight.landing_reach import require_reachable
 from cratous.services.flight.loop import fly
+from cratous.services.flight.notices import truth
 from cratous.services.flight.result import FlightResult
 from cratous.services.loading import load
 from cratous.services.logs.records import to_data
@@ -25,7 +27,7 @@ from cratous.services.parameters.listing import parameters_of
 from cratous.services.pipeline.plan import make_plan
 from cratous.services.system_model.replay import replay
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import Mission
+from cratous.spec.mission import LandingLoss, LinkLossDaa, Mission
 from cratous.spec.mission.guarantees import Outcome, Verdict
 
 ROW = "what vehicle 1 flies without the link"
@@ -69,7 +71,10 @@ def mission_file(root: Path, folder: Path, **sections: Any) -> Path:
 
 
 def flown(path: Path) -> Flown:
-    mission = load(path)
+    return of(load(path))
+
+
+def of(mission: Mission) -> Flown:
     bus, log = Bus(lmcp.full_names), list[Any]()
     bus.tap(log.append)
     return Flown(mission, log, fly(mission, make_plan(mission), bus))
@@ -110,11 +115,11 @@ def test_what_it_leaves_is_served_by_nobody_and_said_so(landed: Flown) -> None:
 def test_monitor_and_judge_see_a_landing_that_is_none(landed: Flown, tmp_path: Path) -> None:
     down_ms = landed.told("LinkLossState")[-1].Time
 
-    def changed(topic: str, edit: Any) -> tuple[Outcome, str]:
+    def changed(topic: str, edit: Any, since_ms: int = down_ms - 2000) -> tuple[Outcome, str]:
         log = list[Any]()
         for one in landed.log:
             body = one.body
-            if one.topic.endswith("TruthState") and one.time_ms < down_ms - 2000:
+            if one.topic.endswith("TruthState") and one.time_ms < since_ms:
                 continue  # what is asked here is where it came down
             if one.topic.endswith(topic):
                 data = json.loads(lmcp.to_json(body))
@@ -127,8 +132,9 @@ def test_monitor_and_judge_see_a_landing_that_is_none(landed: Flown, tmp_path: P
         return found, landed.judged(tmp_path, log)[ROW]
 
     good = Outcome.HOLDS, "holds"
-    bad = Outcome.VIOLATED, "violated"
-    assert changed("LinkLossState", lambda d: d) == good
+    bad, unseen = (Outcome.VIOLATED, "violated"), (Outcome.UNKNOWN, "unknown")
+    assert changed("LinkLossState", lambda d: d, 0) == good
+    assert changed("LinkLossState", lambda d: d) == unseen
     assert changed("TruthState", lambda d: {**d, "Altitude": d["Altitude"] + 5}) == bad
     assert changed("TruthState", lambda d: {**d, "North": d["North"] + 200}) == bad
     assert changed("LinkLossState", lambda d: d if d["Mode"] != "Landed" else None) == bad
@@ -141,7 +147,12 @@ def test_monitor_and_judge_see_a_landing_that_is_none(landed: Flown, tmp_path: P
     heard = {"Heard": landed.told("LinkLossState")[1].Time}
     assert changed("LinkLossState", lambda d: {**d, **heard} if d["Mode"] == "Final" else d) == bad
     rolls = down_ms + 500
-    assert changed("TruthState", lambda d: d if d["Time"] < rolls else None) == bad
+    assert changed("TruthState", lambda d: d if d["Time"] < rolls else None) == unseen
+    gap = range(down_ms - 5000, down_ms - 4000)
+    assert changed("TruthState", lambda d: None if d["Time"] in gap else d, 0) == unseen
+    end = landed.told("TruthState")[-1]
+    moves = {"North": end.North + 0.0005, "VelocityNorth": 1.0}
+    assert changed("TruthState", lambda d: {**d, **moves} if d["Time"] == end.Time else d, 0) == bad
 
 
 def test_a_takeover_does_not_end_in_the_roll(landed: Flown, tmp_path: Path) -> None:
@@ -183,13 +194,24 @@ def test_heard_in_the_last_descent_it_lands_all_the_same(root: Path, tmp_path: P
     assert found.verdicts()["G4"].outcome is Outcome.HOLDS
 
 
-def test_of_who_comes_when_it_stands_nothing_is_said_to_be_seen(root: Path, tmp_path: Path) -> None:
+def test_of_who_comes_when_it_stands_nothing_is_said_to_be_seen(
+    landed: Flown, root: Path, tmp_path: Path
+) -> None:
+    """Somebody drives by where it stands: both say that they do not know, of the pair and of no other row."""
     drives = {"id": 9, "position": {"north_m": 300, "east_m": 1530, "alt_m": 1}, "velocity": {"north_m_s": 3, "east_m_s": 0}, "appears_s": 158}  # fmt: skip
-    found, name = flown(mission_file(root, tmp_path, traffic=[drives])), "well clear of 1 and 9"
+    mission, log = load(mission_file(root, tmp_path, traffic=[drives])), list[Any]()
+    (traffic,) = mission.traffic
+    for one in landed.log:
+        log.append(one)
+        if one.topic.endswith("TruthState") and (air := traffic_state(traffic, one.time_ms)):
+            log.append(replace(one, body=truth(9, air, one.time_ms, False)))
+    found, name = Flown(mission, log, landed.result), "well clear of 1 and 9"
     assert found.verdicts()[name].outcome is Outcome.UNKNOWN
-    found.judged(tmp_path)
+    assert found.verdicts()[ROW].outcome is Outcome.HOLDS
+    assert found.judged(tmp_path)[ROW] == "holds"
     (row,) = [row for row in judge(tmp_path / "log.sqlite").rows if row.item == name]
-    assert (row.verdict, row.checks, row.note) == ("holds", 0, "never in the air together")
+    assert (row.verdict, row.checks) == ("unknown", 0)
+    assert "on the ground" in row.note
 
 
 def test_a_site_takes_one_vehicle(root: Path, tmp_path: Path) -> None:
@@ -221,9 +243,14 @@ def test_a_site_takes_one_vehicle(root: Path, tmp_path: Path) -> None:
 
 
 def test_who_is_flown_into_the_ground_ends_there(root: Path, tmp_path: Path) -> None:
-    """UxAS flies it into a hill beside its site: it stands there, and monitor and judge say so."""
-    hill = {"name": "hill", "position": {"north_m": 200, "east_m": 0, "alt_m": 350}, "radius_m": 60}
-    found = flown(mission_file(root, tmp_path, landing_sites=[FIELD, hill], zones=None))
+    """UxAS flies it into a hill beside its site, which no file may have: monitor and judge say so."""
+    hill = {"name": "hill", "position": {"north_m": 200, "east_m": 0, "alt_m": 50}, "radius_m": 60}
+    mission = load(mission_file(root, tmp_path, landing_sites=[FIELD, hill], zones=None))
+    loss = mission.link_loss
+    assert isinstance(loss, LandingLoss)
+    higher = replace(loss, sites=(loss.sites[0], replace(loss.sites[1], ground_m=350.0)))
+    assert isinstance(mission.daa, LinkLossDaa)
+    found = of(replace(mission, daa=replace(mission.daa, link_loss=higher)))
     assert found.result.outcome == "failed"
     row = found.verdicts()[ROW]
     assert "landed at hill" in row.note
@@ -253,6 +280,9 @@ SINKS = {"id": 1, "position": {"north_m": 0, "east_m": 0, "alt_m": 300}, "headin
         ({"landing_sites": [FIELD, {**MEADOW, "name": "field"}]}, "landing_sites[1].name: two landing sites have the same name"),
         ({"zones": NEAR}, "landing_sites[0].position: nobody may land at field; expected a disc on the ground that keeps zone 8"),
         ({"landing_sites": [{**FIELD, "radius_m": 35}]}, "landing_sites[0].radius_m: vehicle 1 does not come to a stand on field; expected at least 35.62 m"),
+        ({"landing_sites": [FIELD, {**MEADOW, "position": {"north_m": 300, "east_m": 1380}}]}, "landing_sites[1].position: landing sites field and meadow overlap; expected middles more than 120 m apart; got 120 m"),
+        ({"landing_sites": [{**FIELD, "position": {"north_m": 300, "east_m": 1500, "alt_m": 300}}]}, "landing_sites[0].position: the ground of field is as high as vehicle 1 flies; expected below 300 m MSL, at which it starts or flies its tasks; got 300 m MSL"),
+        ({"frame": {"latitude_deg": 37.1, "longitude_deg": -76.4, "terrain_m": 320}, "landing_sites": [{**FIELD, "position": {"north_m": 300, "east_m": 1500, "alt_m": 10}}]}, "frame.terrain_m: the terrain is as high as vehicle 1 flies"),
         ({"zones": AROUND, "landing_sites": [FIELD]}, "landing_sites: vehicle 1 can land nowhere"),
         ({"vehicles": [SINKS]}, "field: its last descent takes longer than 1800 s"),
         ({"link_loss": LAND, "bridge": {"instances": 0}}, "nobody would act by it"),

@@ -41,6 +41,12 @@ class WithoutLink(LmcpEnum):
     Final = 6
     Landed = 7
 
+class TakeOff(LmcpEnum):
+    Standing = 0
+    Rolling = 1
+    Climbing = 2
+    Up = 3
+
 class Verdict(LmcpEnum):
     Holds = 0
     Violated = 1
@@ -508,6 +514,29 @@ class LinkLossState(LmcpObject):
         Time: int = ...,
         Mode: _cratous.WithoutLink | str = ...,
         Chosen: _cratous.WithoutLink | str = ...,
+        Heard: int = ...,
+        Reason: str = ...,
+    ) -> None: ...
+
+class TakeOffState(LmcpObject):
+    """cratous.TakeOffState: CRATOUS type 19."""
+
+    VehicleID: int
+    """int64, default 0."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    Mode: _cratous.TakeOff
+    """CRATOUS/TakeOff, default Standing."""
+    Heard: int
+    """int64 [milliseconds], default 0."""
+    Reason: str
+    """string, default ''."""
+    def __init__(
+        self,
+        *,
+        VehicleID: int = ...,
+        Time: int = ...,
+        Mode: _cratous.TakeOff | str = ...,
         Heard: int = ...,
         Reason: str = ...,
     ) -> None: ...

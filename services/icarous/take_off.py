@@ -1,0 +1,181 @@
+"""How an instance takes its vehicle off the ground: ways up, permitted from where it stands, and one mode at a time.
+
+A way up goes straight along the ground in the direction in which the vehicle stands, to where it is fast enough, then up:
+straight on, or straight on to as low as ICAROUS flies and round from there; then a circle. Which mode the vehicle is in is
+answered by the kernel `departure_step` at each heartbeat. One of ours rolls at a time: each looks at heartbeats of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cratous.core.authority.take_off import (
+    CLIMBING,
+    ROLLING,
+    STANDING,
+    UP,
+    Departure,
+    departure_step,
+)
+from cratous.core.authority.timeliness import in_time, lasted
+from cratous.core.avoidance.manoeuvre import Pace
+from cratous.core.avoidance.resolution import Choice
+from cratous.core.geofence.clearance import leg_keeps
+from cratous.core.routing.polylines import Track
+from cratous.services.icarous import course as courses
+from cratous.services.icarous.course import Course
+from cratous.services.icarous.course_permits import refused
+from cratous.services.icarous.foresight import scene_of
+from cratous.services.icarous.landing import along, with_laps
+from cratous.services.icarous.messages import Sensed, TakesOff
+from cratous.services.icarous.state import Config, Rising, State
+from cratous.services.mission.landing import BRAKING_M_S2
+from cratous.services.mission.take_off import USED, TakeOff, roll_m
+from cratous.spec.authority.take_off import BEGIN, BREAK_OFF, END, LEAVE, LIFT_OFF, NOTHING
+from cratous.spec.mission import Position, Zone
+from cratous.spec.mission.plan import Pose
+from cratous.spec.records import replace
+
+AGAIN_MS = 2000
+"""Where no way up is permitted one is looked for again so much later [ms]."""
+NO_LINK = "UxAS is not heard"
+NO_WAY = "there is no way up"
+WORDS = {
+    BEGIN: "the way up is permitted: it rolls",
+    LIFT_OFF: "off the ground",
+    END: "at the altitude of its plan",
+}
+
+
+def rising(config: Config, state: State) -> Rising:
+    """How far an instance has its vehicle off the ground; that of one that starts in the air is up."""
+    return Rising(Departure(UP, 0)) if config.take_off is None else state.rising
+
+
+def departs(config: Config, state: State) -> bool:
+    """Whether the vehicle is not up yet."""
+    return rising(config, state).departure.mode != UP
+
+
+def heartbeat(config: Config, state: State, sensed: Sensed) -> tuple[State, tuple[TakesOff, ...]]:
+    """The mode at this heartbeat, with the way up that is flown in it, and what is new."""
+    plan, before = config.take_off, rising(config, state)
+    mode = before.departure.mode
+    if plan is None or mode == UP:
+        return state, ()
+    now_ms, heard_ms, course, why = sensed.now_ms, state.told.heard_ms, before.course, before.why
+    if course is not None:
+        course = course.flown(sensed.motion, _beat_s(config))
+    if mode == STANDING:
+        course = None
+        if _is_due(config, plan, sensed, before):
+            course, why = _found(config, state, sensed, plan)
+            state = replace(state, rising=before._replace(tried_ms=now_ms))
+    elif course is not None:
+        why = why_not(config, state, sensed, course)
+        course = None if why else course
+    linked = in_time(heard_ms, now_ms, plan.silence_ms)
+    why = why if linked else NO_LINK
+    ended = mode == CLIMBING and course is not None and course.flown_to_its_end
+    stepped = departure_step(
+        before.departure, heard_ms, now_ms, plan.silence_ms,
+        course is not None, not sensed.on_ground, ended,
+    )  # fmt: skip
+    mode = stepped.departure.mode
+    kept = course if mode in (ROLLING, CLIMBING) else None
+    # the roll was permitted: whether the climb still is is asked at the next heartbeat
+    kept = before.course if mode == CLIMBING and kept is None else kept
+    tried_ms = state.rising.tried_ms
+    after = replace(state, rising=Rising(stepped.departure, kept, why, tried_ms))
+    text = WORDS.get(stepped.act, "")
+    if stepped.act in (BREAK_OFF, LEAVE):
+        text = f"{'the roll is broken off' if stepped.act == BREAK_OFF else 'the climb is left'}: {why}"
+    if stepped.act == NOTHING:
+        if mode != STANDING or why == before.why:
+            return after, ()
+        text = f"it stands: {why}"
+    return after, (TakesOff(config.vehicle_id, now_ms, mode, heard_ms, text),)
+
+
+def flown(config: Config, state: State, sensed: Sensed) -> tuple[State, Choice]:
+    """What to fly now: nothing, along the ground, or up."""
+    held, motion, beat_s = rising(config, state), sensed.motion, _beat_s(config)
+    state, mode, course = replace(state, held=None), held.departure.mode, held.course
+    choice = Choice("heading", motion.heading_rad, 0.0, 0.0, 0.0, True, None)
+    if mode == STANDING or course is None or course.track is None:
+        return state, choice
+    if mode == CLIMBING:
+        return state, courses.steered(course, sensed, beat_s)
+    ahead_m = course.speed_m_s * beat_s
+    rise_m = course.track.at(course.s_m + ahead_m).alt_m - motion.position.alt_m
+    climb = min(max(rise_m / beat_s, 0.0), sensed.ability.max_climb_m_s)
+    return state, choice._replace(speed_m_s=course.speed_m_s, climb_m_s=climb, climb_for_s=beat_s)
+
+
+def ways_up(plan: TakeOff, sensed: Sensed) -> Iterator[Course]:
+    """Ways from where the vehicle stands to the altitude of its plan, with the circle at their end to either side."""
+    motion, ability = sensed.motion, sensed.ability
+    speed, heading, here = ability.min_speed_m_s, motion.heading_rad, motion.position
+    lift = along(here, heading, roll_m(motion.speed_m_s, speed, ability.acceleration_m_s2))
+    slope = USED * ability.max_climb_m_s / speed
+    ready = sensed._replace(motion=motion._replace(speed_m_s=speed))
+    wide_m = courses.radius_m(ready)
+
+    def up_to(alt_m: float) -> Position:
+        return along(lift, heading, max(alt_m - here.alt_m, 0.0) / slope)._replace(alt_m=alt_m)
+
+    def course(points: tuple[Position, ...], side: int) -> Course:
+        track = Track((here, lift, *points), heading)
+        end = Pose(*track.points[-1], heading)
+        found = courses.courses(end, ready.motion, wide_m, track)[side]
+        return found._replace(pace=Pace(speed, ability.acceleration_m_s2))
+
+    top = up_to(plan.alt_m)
+    yield from (course((top,), side) for side in (0, 1))
+    gate = up_to(min(ability.floor_m, plan.alt_m))
+    end = Pose(gate.north_m, gate.east_m, plan.alt_m, heading)
+    for side, turn in ((0, 1), (1, -1)):
+        points = with_laps((gate,), end, wide_m, slope, turn)
+        if points[1:]:
+            yield course(points, side)
+
+
+def why_not(config: Config, state: State, sensed: Sensed, course: Course) -> str:
+    """Why a way up is not permitted from here on; "" if it is."""
+    if sensed.on_ground and sensed.rolling:
+        return f"vehicle {sensed.rolling[0]} rolls"
+    scene = scene_of(config, state, sensed)
+    if sensed.on_ground and not may_stop(course, sensed, scene.zones):
+        return "a zone is where the roll would end if it were broken off"
+    return refused(course, sensed, scene, config.daa, _beat_s(config))
+
+
+def may_stop(course: Course, sensed: Sensed, zones: tuple[Zone, ...]) -> bool:
+    """Whether the ground ahead keeps the zones up to where a roll that is broken off at its end comes to a stand."""
+    here, heading, track = sensed.motion.position, sensed.motion.heading_rad, course.track
+    left_m = 0.0 if track is None else max(track.s_m[1] - course.s_m, 0.0)
+    stop = along(here, heading, left_m + course.speed_m_s**2 / (2 * BRAKING_M_S2))
+    return all(leg_keeps(here, stop, zone, 0.0) for zone in zones)
+
+
+def _found(
+    config: Config, state: State, sensed: Sensed, plan: TakeOff
+) -> tuple[Course | None, str]:
+    """A way up that is permitted, or why the first is not."""
+    first = ""
+    for course in ways_up(plan, sensed):
+        why = why_not(config, state, sensed, course)
+        if not why:
+            return course, ""
+        first = first or why
+    return None, first or NO_WAY
+
+
+def _is_due(config: Config, plan: TakeOff, sensed: Sensed, before: Rising) -> bool:
+    """Whether this heartbeat is one at which the vehicle may begin to roll, and it is time to look for a way up."""
+    turn = sensed.now_ms // config.heartbeat_ms % plan.many == plan.turn
+    return turn and (not before.why or lasted(before.tried_ms, sensed.now_ms, AGAIN_MS))
+
+
+def _beat_s(config: Config) -> float:
+    return config.heartbeat_ms / 1000
