@@ -27,9 +27,9 @@ def many_detours(starts: np.ndarray, ends: np.ndarray, zones: Iterable[Zone]) ->
 
 def expected(mission: Mission) -> bool:
     """`many_detours` of the ways from vehicles to tasks and from task to task, by one point of each."""
-    froms = [(v.position.north_m, v.position.east_m) for v in mission.vehicles]
+    begins = [(v.position.north_m, v.position.east_m) for v in mission.vehicles]
     to = [(p.north_m, p.east_m) for task in mission.tasks for p in task.points[:1]]
-    pairs = [(a, b) for a in (*froms, *to) for b in to if a != b]
+    pairs = [(a, b) for a in (*begins, *to) for b in to if a != b]
     if not pairs:
         return False
     both = np.array(pairs, float)
