@@ -89,14 +89,15 @@ def test_planning_tells_how_far_it_is() -> None:
     ]
 
 
-def test_searches_of_designs_traces_and_scenarios_tell_what_they_do(
-    root: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_other_commands_tell_what_they_do(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As below: the work is held up until the line is there."""
     stream = io.StringIO()
     monkeypatch.setattr("sys.stderr", stream)
     scenario = root / "examples" / "cordon" / "scenario.xml"
-    waits = iter(("searching the design safe", "playing trace.json", "flying the scenario"))
+    waits = iter(
+        ("searching the design safe", "playing trace.json", "flying the scenario", "reading files: 1 of 1",
+         "reading the files")
+    )  # fmt: skip
 
     def held(*_args: object, **_more: object) -> None:
         _until(stream, next(waits))
@@ -106,8 +107,11 @@ def test_searches_of_designs_traces_and_scenarios_tell_what_they_do(
     monkeypatch.setattr(files, "read", lambda _: files.Trace("safe", "as it runs", "", ()))
     monkeypatch.setattr("cratous.services.trace_replay.play.play", held)
     monkeypatch.setattr("cratous.services.simulator.world.World.tick", held)
+    monkeypatch.setattr("cratous.services.cli.check._read", held)
+    monkeypatch.setattr("cratous.services.importing.gathering.gathered", held)
     for arguments in (
         ["search-faults", "safe"], ["replay-trace", "trace.json"], ["sim", str(scenario)],
+        ["check", "plan.algebra"], ["import", str(scenario)],
     ):  # fmt: skip
         assert main(arguments) == 2
     assert next(waits, None) is None
