@@ -19,6 +19,8 @@ from cratous.judge.verdict import GUARANTEES, HOLDS, UNKNOWN, VIOLATED, Row, wor
 from cratous.spec.errors import BadInput
 
 NAME = "report.json"
+LARGEST = 1 << 28
+"""Bytes of a report at most: what it is read into takes many times as much."""
 FORMATS = ("cratous-report/2", "cratous-report/1")
 """What is compared stands in both alike."""
 EXCUSED = "excused"
@@ -74,6 +76,8 @@ def report_of(path: Path) -> Path | None:
 def read(path: Path) -> Node:
     """The report; BadInput if it is none."""
     try:
+        if path.stat().st_size > LARGEST:
+            raise BadInput("too large", where=str(path), expected=f"at most {LARGEST} bytes")
         data = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError) as error:
         raise BadInput(f"not a report ({str(error)[:100]})", where=str(path)) from None

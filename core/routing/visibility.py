@@ -111,6 +111,30 @@ def routes(
     return found
 
 
+def lengths_around(
+    starts: np.ndarray, ends: np.ndarray, radius_m: float, roadmap: Roadmap, max_slope: float
+) -> Routed:
+    """`routes` without the polylines, and the same lengths, where many are expected to lead around zones.
+
+    `route_many` takes all of them, so that `direct_many` need not be compiled beside it.
+    """
+    n = len(starts)
+    found = Routed(
+        np.empty(n, np.int64), np.empty(n), np.empty(n, np.int64), np.empty((1, LINKS_MOST + 2, 4))
+    )
+    turning = Turning(float(radius_m), float(max_slope), float(roadmap.chord_error_m))
+    run = swift(route_many, n * AROUND_WORK)
+    for alt in np.unique(starts[:, 2]):
+        at = np.flatnonzero(starts[:, 2] == alt)
+        some = Routed(found.codes[at], found.metres[at], found.links[at], found.poses)
+        run(
+            np.ascontiguousarray(starts[at]), np.ascontiguousarray(ends[at]), turning, table(roadmap.zones),
+            Rings(*roadmap.ring_arrays, roadmap.seen(float(alt))), some,
+        )  # fmt: skip
+        found.codes[at], found.metres[at], found.links[at] = some[:3]
+    return found
+
+
 def start_point(pose: Pose) -> Position:
     """The position of a pose."""
     return Position(pose.north_m, pose.east_m, pose.alt_m)

@@ -13,7 +13,7 @@ from cratous.services.cli.job import silent as untold
 from cratous.services.cli.own_requirements import own_files, own_option
 from cratous.services.cli.progress import passing, waiting
 from cratous.services.cli.show import say, table
-from cratous.spec.errors import BadInput
+from cratous.spec.errors import BadInput, CratousError
 from cratous.spec.files.extras import told
 
 Tell = Callable[[str], None]
@@ -204,13 +204,14 @@ def _other(answer: dict[str, Any], stored: dict[str, Any]) -> str:
 
 def _is_kept(folder: Path, digest: str, own: list[Any]) -> bool:
     """Whether the report of a flight is there already, held against these files of requirements of the user's own."""
+    from cratous.services.certify.report_input import read_report
+
     try:
-        report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        report = read_report(folder)
+        found, files = report["log"]["digest"], report.get("own", {"files": []})["files"]
+    except (CratousError, LookupError, TypeError):
         return False
-    if not isinstance(report, dict) or report.get("log", {}).get("digest") != digest:
-        return False
-    return bool(report.get("own", {}).get("files", []) == own)
+    return bool(found == digest and files == own)
 
 
 def _write(summary: dict[str, Any], place: Path, links: dict[str, str]) -> None:

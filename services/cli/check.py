@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from cratous.services.cli.progress import waiting
 from cratous.services.cli.show import say
 from cratous.spec.errors import BadInput
 
@@ -36,7 +37,8 @@ def check(files: tuple[Path, ...], fretish: bool, as_json: bool) -> int:
     requirement has no sentence.
     """
     notes: dict[Path, tuple[str, ...]] = {}
-    found = [_read(file, notes) for file in files]
+    with waiting("reading", as_json) as wait:
+        found = [_read(file, notes) for file in wait.each(files, "reading files")]
     said = {str(file): _said(file) for file, bad in found if fretish and not bad}
     missing = any(not one["sentence"] for rows in said.values() for one in rows)
     code = 2 if any(problems for _, problems in found) else 3 if missing else 0

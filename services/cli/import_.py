@@ -66,13 +66,15 @@ def import_(files: tuple[Path, ...], out: Path | None, **said: Any) -> int:
     Exit codes: 0 written, 2 bad input: nothing is written.
     """
     from cratous.core.files.whole_file import write_atomically
+    from cratous.services.cli.progress import waiting
     from cratous.services.importing.composing import Asked, composed
     from cratous.services.importing.gathering import gathered
     from cratous.services.importing.mission_text import checked, mission_text
     from cratous.services.importing.parts import Reading
     from cratous.services.loading.uxas_parts import safe_name
 
-    parts = gathered(files, Reading(said["areas"] or "", said["altitude"], said["origin"]))
+    with waiting("reading the files"):
+        parts = gathered(files, Reading(said["areas"] or "", said["altitude"], said["origin"]))
     first = files[0].absolute()
     name = said["name"] or safe_name(first.name if first.is_dir() else first.stem)
     made = composed(parts, Asked(name[:64], said["speed"], said["terrain"]))

@@ -78,7 +78,7 @@ def plan(
     from cratous.services.cli.progress import waiting
     from cratous.services.startup import ahead
 
-    ahead.begin(max((len(one.tasks) for one in loaded if isinstance(one, Mission)), default=0))
+    ahead.begin(one for one in loaded if isinstance(one, Mission))
     with waiting("holding the code against its proofs", as_json):
         standing = ledger.require(allow_unproved=allow_unproved)
     job = _Job(as_json, certificate, task, standing)

@@ -27,12 +27,14 @@ def replay_trace(files: tuple[Path, ...], as_json: bool) -> None:
     Exit code: 0 the actors leave each trace to a fault, and fly the others to their end; 1 they fly one to its
     fault, or leave one that has none; 2 bad input.
     """
+    from cratous.services.cli.progress import waiting
     from cratous.services.trace_replay.files import read
     from cratous.services.trace_replay.play import play
 
     code, rows = 0, []
     for file, trace in [(file, read(file)) for file in files]:
-        played = play(trace.entries)
+        with waiting(f"playing {file}", as_json):
+            played = play(trace.entries)
         good = bool(played.why) == bool(trace.wrong)
         code = code if good else 1
         rows.append({"file": str(file), "design": trace.design, **played._asdict(), "good": good})

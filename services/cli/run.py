@@ -140,7 +140,7 @@ def run_one(
     from cratous.services.startup import ahead
 
     loaded = load(path, seed)
-    ahead.begin(len(loaded.tasks))
+    ahead.begin([loaded])
     target, places = out / folder_name(loaded), RelationPlaces(loaded)
 
     def placed(text: str) -> None:

@@ -51,6 +51,7 @@ def search_faults(
     from cratous.proofs.system_search.authority import Design
     from cratous.proofs.system_search.breadth_first import search
     from cratous.proofs.system_search.faults import FAULTS
+    from cratous.services.cli.progress import waiting
     from cratous.services.trace_replay.files import Trace, place, write
 
     known = [SAFE, *FAULTS]
@@ -63,7 +64,10 @@ def search_faults(
     for name in names or known:
         safe = name == SAFE
         begun = time.monotonic()
-        found = search(Design() if safe else FAULTS[name].design, steps, states)
+        with waiting(
+            f"searching the design {name}, {len(rows)} of {len(names or known)} done", as_json
+        ):
+            found = search(Design() if safe else FAULTS[name].design, steps, states)
         says = "the design as it runs" if safe else FAULTS[name].says
         took = {"steps": steps, "seconds": round(time.monotonic() - begun, 2)}
         texts = {"trace": [entry.text for entry in found.trace], "returned": found.returned}

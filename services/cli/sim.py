@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from cratous.services.cli.numbers import Number
+from cratous.services.cli.progress import Waiting, waiting
 
 if TYPE_CHECKING:
     from cratous.bridge.port import Address
@@ -104,7 +105,8 @@ def sim(
         return _serve(make, plan, listen, how | {"only": only or 0, "vehicles": _ports(vehicles)})
     began_s = time.monotonic()
     world = make()
-    _write(world, output)
+    with waiting("flying the scenario") as wait:
+        _write(world, output, wait)
     took_s = max(1e-9, time.monotonic() - began_s)
     _tell_unheard(world)
     played_s = world.time_s - world.start_s
@@ -156,9 +158,11 @@ def _count(world: World) -> str:
     return f"{len(world.aircraft)} aircraft{more}"
 
 
-def _warn(world: World) -> None:
+def _tell(world: World, wait: Waiting) -> None:
     for text in world.warnings():
-        click.echo(f"WARN: {text}", err=True)
+        wait.line(f"WARN: {text}")
+    flown_s, whole_s = world.time_s - world.start_s, world.ends_s - world.start_s
+    wait.at("flying the scenario, seconds", int(flown_s), int(whole_s))
 
 
 def _tell_unheard(world: World) -> None:
@@ -166,7 +170,7 @@ def _tell_unheard(world: World) -> None:
         click.echo(f"note: {count} x {kind} changes nothing in the simulator", err=True)
 
 
-def _write(world: World, output: Path | None) -> None:
+def _write(world: World, output: Path | None, wait: Waiting) -> None:
     """Play a world to its end; all that it tells goes to a file, which stands there when it is whole."""
     from cratous.bridge import sentinel
     from cratous.core.files.whole_file import cannot_write, replacing
@@ -175,7 +179,7 @@ def _write(world: World, output: Path | None) -> None:
     if output is None:
         while not world.over:
             world.tick()
-            _warn(world)
+            _tell(world, wait)
         return
     with replacing(output) as part:
         try:
@@ -183,7 +187,7 @@ def _write(world: World, output: Path | None) -> None:
                 while not world.over:
                     for body in world.tick():
                         file.write(sentinel.frame(frame_payload(body)))
-                    _warn(world)
+                    _tell(world, wait)
         except OSError as error:
             raise cannot_write(output, error) from error
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-ROUTES, ASSIGNMENT = "routes", "assignment"
+ROUTES, AROUND, ASSIGNMENT = "routes", "around", "assignment"
 MANY_WAYS = 300
 """So many ways are searched in machine code soon, and fewer are not worth waiting for."""
 _coming: dict[str, Callable[[], None]] = {}

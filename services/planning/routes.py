@@ -11,8 +11,9 @@ import numpy as np
 
 from cratous.core.assignment.problem import START
 from cratous.core.routing.bulk import FOUND
-from cratous.core.routing.visibility import Roadmap, Route, route, routes
+from cratous.core.routing.visibility import Roadmap, Route, lengths_around, route, routes
 from cratous.services.planning import coming
+from cratous.services.planning.detours import many_detours
 from cratous.services.planning.leaving import WayOut, way_out
 from cratous.services.planning.options import Flyer, flight_ms, flyer_of
 from cratous.services.planning.vias import Flown, inner, joined
@@ -139,15 +140,17 @@ class Routes:
             flat = [key for key in left if key[0].alt_m == key[2].alt_m]
             self._times.update((key, None) for key in left if key not in set(flat))
             left = flat
+        around = len(left) > coming.MANY_WAYS and self._lead_around(left)
         if len(left) > coming.MANY_WAYS:
-            coming.ready(coming.ROUTES)
+            coming.ready(coming.AROUND if around else coming.ROUTES)
         for roadmap in self._roadmaps(flyer.radius_m):
             if not left:
                 return
             outs = [self._way_out(start, flyer.radius_m) for start, _, _ in left]
             begun = [out.end if out else key[0] for out, key in zip(outs, left, strict=True)]
             starts, ends = np.array(begun, float), np.array([key[2] for key in left], float)
-            found = routes(starts, ends, flyer.radius_m, roadmap, _slope(flyer))
+            search = lengths_around if around else routes
+            found = search(starts, ends, flyer.radius_m, roadmap, _slope(flyer))
             rest = []
             for key, out, code, metres in zip(
                 left, outs, found.codes, found.metres.tolist(), strict=True
@@ -159,6 +162,11 @@ class Routes:
                     rest.append(key)
             left = rest
         self._times.update((key, None) for key in left)
+
+    def _lead_around(self, ways: Sequence[Ends]) -> bool:
+        """Whether many of these ways are expected to lead around zones."""
+        starts, ends = (np.array([key[k][:2] for key in ways], float) for k in (0, 2))
+        return many_detours(starts, ends, self.zones)
 
     def travel_ms(self, vehicle: int, before: int, to: int) -> int | None:
         """Travel time [ms], or None if no route was found."""

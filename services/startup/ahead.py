@@ -15,21 +15,31 @@ import os
 import subprocess
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import numpy as np
 
 import cratous
+from cratous.core.assignment.annealing import anneal
 from cratous.core.assignment.anytime import greedy, improve
 from cratous.core.assignment.layers import look_ahead, tables
 from cratous.core.geofence.mission_leg_arrays import table
 from cratous.core.readings.machine.compiled import is_kept, machine
-from cratous.core.routing.bulk import LINKS_MOST, Routed, Turning, direct_many
+from cratous.core.routing.bulk import (
+    LINKS_MOST,
+    Rings,
+    Routed,
+    Turning,
+    direct_many,
+    route_many,
+)
 from cratous.services.planning import coming
 from cratous.services.planning.assign import simple_instance
+from cratous.services.planning.detours import expected
 from cratous.services.processes.leash import ENDS_WITH, end_with_parent
 from cratous.spec.assignment.search import TIME
+from cratous.spec.mission import Mission
 
 MANY_TASKS = 5
 """A mission of so many tasks has ways enough that CPython does not search them."""
@@ -37,18 +47,18 @@ WAIT_S = 120.0
 """A process that compiles is not waited for any longer."""
 
 
-def begin(tasks: int) -> None:
-    """Have compiled what the plan of so many tasks needs, if that is much and there is a core for it."""
-    if tasks >= MANY_TASKS and _cores() > 1:
-        begin_all()
+def begin(missions: Iterable[Mission]) -> None:
+    """Have compiled what the plans of these missions need, if that is much and there is a core for it."""
+    large = [one for one in missions if len(one.tasks) >= MANY_TASKS]
+    if large and _cores() > 1:
+        begin_all(around=any(map(expected, large)))
 
 
-def begin_all() -> None:
-    """Have compiled what every larger plan needs, unless it is kept."""
-    if is_kept(direct_many):
-        return
-    for name in MAKERS:
-        coming.expect(name, _waiter(_start([__name__, name]), WAIT_S))
+def begin_all(around: bool = False) -> None:
+    """Have compiled what every larger plan needs, unless it is kept. around: many ways will lead around zones."""
+    for name in (coming.AROUND if around else coming.ROUTES, coming.ASSIGNMENT):
+        if not is_kept(LOOPS[name]):
+            coming.expect(name, _waiter(_start([__name__, name]), WAIT_S))
 
 
 def beside(module: list[str], stands_back: int) -> None:
@@ -97,9 +107,19 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 def make_routes() -> None:
     """Direct routes, of no poses: what is compiled depends on the types alone."""
     none = np.empty((0, 4))
+    machine(direct_many)(none, none, Turning(1.0, math.inf, 1.0), table(()), _no_routes())
+
+
+def make_around() -> None:
+    """Routes around zones, of no poses."""
+    none, rings = np.empty((0, 4)), np.empty((0, 0, 2))
+    nothing = Rings(rings, np.empty(0, np.int64), np.empty((0, 0, 0), np.int8))
+    machine(route_many)(none, none, Turning(1.0, math.inf, 1.0), table(()), nothing, _no_routes())
+
+
+def _no_routes() -> Routed:
     whole = np.empty(0, np.int64)
-    found = Routed(whole, np.empty(0), whole, np.empty((1, LINKS_MOST + 2, 4)))
-    machine(direct_many)(none, none, Turning(1.0, math.inf, 1.0), table(()), found)
+    return Routed(whole, np.empty(0), whole, np.empty((1, LINKS_MOST + 2, 4)))
 
 
 def make_assignment() -> None:
@@ -111,7 +131,17 @@ def make_assignment() -> None:
     tables(instance, look_ahead(instance), 9)
 
 
-MAKERS = {coming.ROUTES: make_routes, coming.ASSIGNMENT: make_assignment}
+MAKERS = {
+    coming.ROUTES: make_routes,
+    coming.AROUND: make_around,
+    coming.ASSIGNMENT: make_assignment,
+}
+LOOPS: dict[str, Callable[..., object]] = {
+    coming.ROUTES: direct_many,
+    coming.AROUND: route_many,
+    coming.ASSIGNMENT: anneal,
+}
+"""What is in the cache once its maker has ended well."""
 
 if __name__ == "__main__":
     end_with_parent()

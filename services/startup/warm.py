@@ -157,7 +157,7 @@ def ensure_planning(say: Callable[[str], None]) -> None:
         "the rest is compiled meanwhile (`cratous warm` does it ahead)"
     )
     ahead.begin_all()  # on one core too: what answers is not to stand still for it
-    for name in ahead.MAKERS:
+    for name in (coming.ROUTES, coming.ASSIGNMENT):
         coming.ready(name)
     ahead.beside(["cratous", "warm", "--planning", "--quiet"], BESIDE)
 

@@ -13,6 +13,7 @@ from cratous.services.campaign.outcomes import outcome_of, row_of
 from cratous.services.campaign.runs import Run, runs_of
 from cratous.services.campaign.summary import build
 from cratous.services.campaign.tables import csv_text
+from cratous.services.certify.report_input import FORMAT
 from cratous.services.cli import main
 from cratous.services.cli.campaign import _is_kept
 from cratous.services.cli.campaign_flight import fly_run
@@ -76,13 +77,25 @@ def test_a_report_by_another_text_of_a_file_is_not_taken_for_that_of_the_run(
 ) -> None:
     """The flight, so its log, is the same; what it is held against is not."""
     data = own_file(own(tmp_path, 250), "own.req").data()
-    report = {"log": {"digest": "d"}, "own": {"files": [data], "requirements": []}}
+    report = {
+        "format": FORMAT,
+        "log": {"digest": "d"},
+        "own": {"files": [data], "requirements": []},
+    }
     (tmp_path / "report.json").write_text(json.dumps(report))
     changed = own_file(own(tmp_path, 260), "own.req").data()
     kept = [_is_kept(tmp_path, "d", files) for files in ([data], [changed], [])]
     assert kept == [True, False, False]
-    (tmp_path / "report.json").write_text(json.dumps({"log": {"digest": "d"}}))
+    (tmp_path / "report.json").write_text(json.dumps({"format": FORMAT, "log": {"digest": "d"}}))
     assert _is_kept(tmp_path, "d", [])
+
+
+@pytest.mark.parametrize(
+    "log", ["[]", '"d"', "null", "{}", '{"digest": "d"}, "own": []', "[" * 9_000]
+)
+def test_a_report_that_is_none_is_flown_again(tmp_path: Path, log: str) -> None:
+    (tmp_path / "report.json").write_text(f'{{"format": "{FORMAT}", "log": {log}}}')
+    assert not _is_kept(tmp_path, "d", [])
 
 
 def test_files_at_the_command_line_are_asked_for_besides(tmp_path: Path) -> None:

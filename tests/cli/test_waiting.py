@@ -13,6 +13,7 @@ from cratous.services.cli import main, progress
 from cratous.services.cli.job import planning_told
 from cratous.services.cli.progress import Waiting, waiting
 from cratous.services.logs.log import LogWriter
+from cratous.services.trace_replay import files
 from cratous.spec.errors import BadInput
 
 
@@ -86,6 +87,34 @@ def test_planning_tells_how_far_it_is() -> None:
         "planning the ways between the tasks: 1 of 2",
         "searching for the best assignment",
     ]
+
+
+def test_other_commands_tell_what_they_do(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As below: the work is held up until the line is there."""
+    stream = io.StringIO()
+    monkeypatch.setattr("sys.stderr", stream)
+    scenario = root / "examples" / "cordon" / "scenario.xml"
+    waits = iter(
+        ("searching the design safe", "playing trace.json", "flying the scenario", "reading files: 1 of 1",
+         "reading the files")
+    )  # fmt: skip
+
+    def held(*_args: object, **_more: object) -> None:
+        _until(stream, next(waits))
+        raise BadInput("held up", expected="", got="")
+
+    monkeypatch.setattr("cratous.proofs.system_search.breadth_first.search", held)
+    monkeypatch.setattr(files, "read", lambda _: files.Trace("safe", "as it runs", "", ()))
+    monkeypatch.setattr("cratous.services.trace_replay.play.play", held)
+    monkeypatch.setattr("cratous.services.simulator.world.World.tick", held)
+    monkeypatch.setattr("cratous.services.cli.check._read", held)
+    monkeypatch.setattr("cratous.services.importing.gathering.gathered", held)
+    for arguments in (
+        ["search-faults", "safe"], ["replay-trace", "trace.json"], ["sim", str(scenario)],
+        ["check", "plan.algebra"], ["import", str(scenario)],
+    ):  # fmt: skip
+        assert main(arguments) == 2
+    assert next(waits, None) is None
 
 
 @pytest.mark.parametrize(

@@ -167,6 +167,13 @@ def test_a_report_that_does_not_fit(tmp_path: Path, capsys, report: str) -> None
     refused(capsys, str(tmp_path))
 
 
+def test_a_report_beyond_all_bounds_is_not_read(tmp_path: Path, capsys) -> None:
+    whole(tmp_path)
+    with (tmp_path / "report.json").open("wb") as file:
+        file.truncate(1 << 40)  # takes no room on the disk
+    assert "too large" in refused(capsys, str(tmp_path))["error"]
+
+
 @pytest.mark.parametrize(
     "text",
     ["", "a: [", "[]", "{name: x}", "&a [*a]", "name: !!python/object:os.system x", "- " * 500_000],

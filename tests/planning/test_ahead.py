@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import subprocess
+import tempfile
 import time
 from pathlib import Path
 from typing import Any
@@ -17,13 +19,17 @@ from cratous.core.assignment.layers import look_ahead, tables
 from cratous.core.assignment.tables import latest_tables
 from cratous.core.readings.machine.compiled import machine
 from cratous.core.readings.tiered import at_once
-from cratous.core.routing.bulk import direct_many
-from cratous.core.routing.visibility import Roadmap, routes
+from cratous.core.routing.bulk import direct_many, route_many
+from cratous.core.routing.visibility import Roadmap, lengths_around, routes
+from cratous.services.loading import load
 from cratous.services.planning import coming
 from cratous.services.planning.assign import simple_instance, solve
+from cratous.services.planning.detours import many_detours
+from cratous.services.planning.zones import roadmaps
 from cratous.services.startup import ahead, warm
+from cratous.services.startup.warm import MISSION
 from cratous.spec.assignment.search import ORDER, AssignmentProblem, Choice
-from cratous.spec.mission import Zone, ZoneKind
+from cratous.spec.mission import Mission, Zone, ZoneKind
 
 
 class Started:
@@ -47,6 +53,26 @@ class Started:
 ALL: list[Started] = []
 
 
+def mission(tasks: int, zone: Zone | None = None) -> Mission:
+    """A vehicle south of so many points, which a zone may part from it."""
+    rows = "".join(
+        f"  - {{id: {k}, kind: must_fly, points: [{{north_m: 5000, east_m: {100 * k}, alt_m: 300}}]}}\n"
+        for k in range(1, tasks + 1)
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "mission.yaml"
+        file.write_text(MISSION.partition("tasks:")[0] + f"tasks:\n{rows}", encoding="utf-8")
+        made = load(file)
+    assert isinstance(made, Mission)
+    return dataclasses.replace(made, zones=() if zone is None else (zone,))
+
+
+def wall(east_m: float) -> Zone:
+    """A zone across the way north, or beside it."""
+    corners = ((2000.0, east_m), (2000.0, east_m + 9000), (2200.0, east_m + 9000), (2200.0, east_m))
+    return Zone(1, ZoneKind.KEEP_OUT, corners, 0.0, 500.0)
+
+
 @pytest.fixture
 def begun(monkeypatch: pytest.MonkeyPatch) -> list[Started]:
     ALL.clear()
@@ -61,9 +87,9 @@ def begun(monkeypatch: pytest.MonkeyPatch) -> list[Started]:
 def test_little_work_and_what_is_kept_start_nothing(
     begun: list[Started], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ahead.begin(ahead.MANY_TASKS - 1)
+    ahead.begin([mission(ahead.MANY_TASKS - 1)])
     monkeypatch.setattr(ahead, "is_kept", lambda _: True)
-    ahead.begin(50)
+    ahead.begin([mission(50)])
     ahead.begin_all()
     assert begun == []
 
@@ -75,7 +101,7 @@ def test_on_one_core_who_answers_waits_before_and_who_plans_compiles(
     monkeypatch.setattr(ahead, "_cores", lambda: 1)
     monkeypatch.setattr(ahead, "beside", lambda module, _: beside.append(module))
     monkeypatch.setattr(warm, "_mark", lambda: tmp_path / "none")
-    ahead.begin(50)
+    ahead.begin([mission(50)])
     assert begun == []
     warm.ensure_planning(lambda _: None)
     assert [process.waits for process in begun] == [1, 1]
@@ -83,8 +109,8 @@ def test_on_one_core_who_answers_waits_before_and_who_plans_compiles(
 
 
 def test_who_needs_machine_code_waits_for_it_once(begun: list[Started]) -> None:
-    ahead.begin(ahead.MANY_TASKS)
-    assert [process.name for process in begun] == list(ahead.MAKERS)
+    ahead.begin([mission(ahead.MANY_TASKS)])
+    assert [process.name for process in begun] == [coming.ROUTES, coming.ASSIGNMENT]
     choices = tuple(Choice(t, 1, 1, (1,)) for t in (1, 2, 3, 4))
     rows = tuple(tuple(None if a == b else 1 for b in range(4)) for a in range(5))
     problem = AssignmentProblem("", (1,), (0,), choices, (rows,), "|(p1 p2 p3 p4)")
@@ -94,8 +120,47 @@ def test_who_needs_machine_code_waits_for_it_once(begun: list[Started]) -> None:
     assert [process.waits for process in begun] == [0, 1]
 
 
+def test_what_is_compiled_for_routes_goes_by_whether_many_lead_around_zones(
+    begun: list[Started],
+) -> None:
+    few = ahead.MANY_TASKS - 1
+    ahead.begin([mission(few, wall(-2000.0)), mission(ahead.MANY_TASKS, wall(3000.0))])
+    assert [process.name for process in begun] == [coming.ROUTES, coming.ASSIGNMENT]
+    begun.clear()
+    ahead.begin([mission(few), mission(ahead.MANY_TASKS, wall(-2000.0))])
+    assert [process.name for process in begun] == [coming.AROUND, coming.ASSIGNMENT]
+
+
+def test_ways_across_a_zones_box_are_many_or_not() -> None:
+    starts, ends = np.zeros((20, 2)), np.full((20, 2), (4000.0, 0.0))
+    assert not many_detours(starts, ends, ())
+    assert not many_detours(starts[:0], ends[:0], (wall(-2000.0),))
+    assert not many_detours(starts, ends, (wall(1.0),))
+    assert many_detours(starts, ends, (wall(1.0), wall(-2000.0)))
+    assert many_detours(starts, starts + 0.0, (wall(-2000.0),)) is False  # none goes anywhere
+    ends[1:] = (1000.0, 0.0)  # one of twenty gets there
+    assert not many_detours(starts, ends, (wall(-2000.0),))
+    inside = dataclasses.replace(wall(-2000.0), kind=ZoneKind.KEEP_IN)
+    assert not many_detours(starts, np.full((20, 2), (4000.0, 0.0)), (inside,))
+
+
+def test_many_that_lead_around_get_the_ways_that_direct_ones_and_the_rest_get() -> None:
+    square = ((400.0, -300.0), (400.0, 300.0), (700.0, 300.0), (700.0, -300.0))
+    zone = Zone(1, ZoneKind.KEEP_OUT, square, 0.0, 500.0)
+    starts = np.array(
+        [[0.0, e, 100.0 + 50 * (e > 0), 0.0] for e in (-900.0, -100.0, 0.0, 250.0, 900.0)]
+    )
+    ends = np.array([[1200.0, e, 120.0, 0.5] for e in (-900.0, 0.0, 80.0, 900.0, 550.0)])
+    (roadmap, *_) = roadmaps((zone,), 60.0)
+    apart = routes(starts, ends, 60.0, roadmap, 0.2)
+    whole = lengths_around(starts, ends, 60.0, roadmap, 0.2)
+    assert set(apart.links.tolist()) > {1}  # direct ones are among them, and others
+    for one, other in zip(apart[:3], whole[:3], strict=True):
+        assert one.tobytes() == other.tobytes()
+
+
 def test_a_process_that_nobody_waited_for_is_ended(begun: list[Started]) -> None:
-    ahead.begin(ahead.MANY_TASKS)
+    ahead.begin([mission(ahead.MANY_TASKS)])
     for process in begun:
         ahead._end(process)  # type: ignore[arg-type]
     assert all(process.ended for process in begun)
@@ -107,7 +172,7 @@ def test_what_is_made_meanwhile_is_seen_once_it_is_waited_for(
     """Else this process would go by what it has found in an empty cache until it ends."""
     kept: list[bool] = [False]
     monkeypatch.setattr(ahead, "is_kept", functools.cache(lambda _: kept[0]))
-    ahead.begin(ahead.MANY_TASKS)
+    ahead.begin([mission(ahead.MANY_TASKS)])
     kept[0] = True
     assert not ahead.is_kept(direct_many)
     coming.ready(coming.ROUTES)
@@ -143,14 +208,16 @@ def test_what_is_compiled_beside_needs_no_other_program_and_no_file_of_the_prese
 def test_what_is_made_ahead_is_what_a_plan_calls() -> None:
     """Machine code is made by types: a plan that came with others would compile again."""
     ahead.make_routes()
+    ahead.make_around()
     ahead.make_assignment()
-    loops = (direct_many, anneal, latest_tables)
+    loops = (direct_many, route_many, anneal, latest_tables)
     kinds = [list(machine(loop).run.signatures) for loop in loops]  # type: ignore[attr-defined]
     square = ((900.0, 900.0), (900.0, 990.0), (990.0, 990.0), (990.0, 900.0))
     zone = Zone(1, ZoneKind.KEEP_OUT, square, 0.0, 500.0)
     poses = np.array([[0.0, 0.0, 100.0, 0.0], [0.0, 500.0, 100.0, 1.0]])
     with at_once():
-        routes(poses, poses[::-1], 50.0, Roadmap((zone,)), 0.1)
+        for search in (routes, lengths_around):
+            search(poses, poses[::-1], 50.0, Roadmap((zone,)), 0.1)
         instance = simple_instance(ORDER)
         improve(instance, greedy(instance)[1] or [], 1, 1)
         tables(instance, look_ahead(instance), 20)
