@@ -21,6 +21,7 @@ from cratous.core.authority.gate import ICAROUS
 from cratous.services.bus import Bus
 from cratous.services.flight import executive_state, link_end, link_peers
 from cratous.services.flight.arrivals import arrivals
+from cratous.services.flight.asked_plan import planned
 from cratous.services.flight.commands import gated, velocity_command
 from cratous.services.flight.dynamics import AirState, planned_state, traffic_state
 from cratous.services.flight.executive import Executive
@@ -46,10 +47,8 @@ from cratous.services.flight.messages import (
     Look,
     Move,
     NotHeard,
-    NotPlanned,
     OnBoard,
     Over,
-    Planned,
     Report,
     RouteAsked,
     Say,
@@ -99,7 +98,6 @@ from cratous.services.mission.landing import sites_of
 from cratous.services.sensing import surveillance
 from cratous.services.sensing.filter import Flown
 from cratous.services.sensing.surveillance import Surveillance
-from cratous.spec.errors import NoPlan
 from cratous.spec.mission import Change, FaultySimulation, LivePlanningMission, Mission
 from cratous.spec.mission.plan import Plan
 from cratous.spec.records import replace
@@ -377,7 +375,7 @@ class Flight:
                     for line in lines:
                         self.bridge.to_icarous(vid, line)
                 case AskPlan():
-                    self._executive(_planned(answer))
+                    self._executive(planned(answer))
                 case Over(outcome):
                     self.outcome = outcome
                 case _:
@@ -387,24 +385,3 @@ class Flight:
         self.bus.publish(body, source)
         if isinstance(body, self.gated):
             self._vehicle(body.VehicleID, Commanded(self.now_ms, body))
-
-
-def _planned(asked: AskPlan) -> Planned | NotPlanned:
-    """What the planning services answer."""
-    from cratous.services.pipeline.plan import make_plan
-    from cratous.services.planning.left_out import NothingDone
-
-    try:
-        plan = make_plan(
-            asked.known,
-            starts=dict(asked.starts),
-            done=asked.done,
-            now_ms=asked.now_ms,
-            absent=dict(asked.absent),
-            undone=dict(asked.undone),
-            begun=asked.begun,
-        )
-    except NoPlan as error:
-        of = error.of if isinstance(error, NothingDone) else {}
-        return NotPlanned(str(error), tuple(sorted(of.items())))
-    return Planned(plan)

@@ -12,9 +12,10 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import NamedTuple
 
-from cratous.spec.mission.bridge_faults import BridgeFaults
 from cratous.spec.mission.link_loss import LandingSite, WithoutLink
 from cratous.spec.mission.sensing import Sensing
+from cratous.spec.mission.simulation import FaultySimulation as FaultySimulation
+from cratous.spec.mission.simulation import Simulation as Simulation
 
 
 class Position(NamedTuple):
@@ -319,22 +320,6 @@ class LinkLossDaa(OrderedDaa):
     """The same where the mission says what is flown while UxAS is not heard."""
 
     link_loss: LinkLoss = field(default_factory=lambda: LinkLoss(WithoutLink.LOITER))
-
-
-@dataclass(frozen=True)
-class Simulation:
-    """Virtual time: length of a physics step, heartbeat period, and the end of patience."""
-
-    step_ms: int = 250
-    heartbeat_ms: int = 500
-    limit_ms: int = 7_200_000
-
-
-@dataclass(frozen=True)
-class FaultySimulation(Simulation):
-    """The same with faults of the bridge."""
-
-    bridge_faults: BridgeFaults = field(default_factory=BridgeFaults)
 
 
 @dataclass(frozen=True)
