@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from cratous.core.authority.gate import Gate, gate_accepts, gate_after, gate_wished
+from cratous.core.authority.cycle import gate_wished
+from cratous.core.authority.gate import Gate, gate_accepts, gate_after
 from cratous.core.permit.hand import Hand, hand_step
 from cratous.proofs.claim import Claim
 from cratous.proofs.methods.happenings import COMMAND, HEARTBEAT, Asked
