@@ -30,10 +30,11 @@ CLEAR = "system_a_vehicle_is_clear_until_a_surprise_or_an_expiry"
 LOOKED = "system_a_way_that_is_looked_ahead_at_is_clear"
 FENCED = "system_no_zone_is_entered_until_a_surprise_or_an_expiry"
 NEAR_LEGS = "system_whoever_is_near_a_checked_leg_obeys_the_zones"
+RANK = "system_the_rank_of_a_mission_falls_at_each_heartbeat"
 BEARS_ON: dict[str, tuple[str, ...]] = {
     "G1": (FENCED, NEAR_LEGS, HAND),
     "G2": (CLEAR, LOOKED, HAND),
-    "G3": (MISSION_ENDS, TAKEOVER_LASTS),
+    "G3": (MISSION_ENDS, RANK, TAKEOVER_LASTS),
     "G4": (*AUTHORITY, TAKEOVER_ENDS, TAKEOVER_LASTS),
     "G5": (SILENCE,),
 }

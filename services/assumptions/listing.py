@@ -22,6 +22,7 @@ HAND = ("the_hand_is_clear_until_a_surprise_or_its_expiry",)
 CLEAR = ("a_vehicle_is_clear_until_a_surprise_or_an_expiry",)
 LOOKED = ("a_way_that_is_looked_ahead_at_is_clear",)
 FENCED = ("no_zone_is_entered_until_a_surprise_or_an_expiry",)
+RANK = ("the_rank_of_a_mission_falls_at_each_heartbeat",)
 NEAR_LEGS = ("whoever_is_near_a_checked_leg_obeys_the_zones",)
 ONE_COMMANDER = "exactly one commander at any time"
 REPLAYED = "the replay of the gate (G4) judges each command and each report by itself"
@@ -196,11 +197,18 @@ LISTING = (
     Assumption(
         "settled tasks",
         "another plan brings no task back that has ended or failed",
-        ("a_mission_ends",),
+        ("a_mission_ends", *RANK),
         ("G3",),
         "that less is left after each step, so that the mission ends before its limit",
         "the limit ends the mission; G3 counts what was served",
         "tasks that begin, or are on their way, after they were complete or had failed",
+    ),
+    Assumption(
+        "items given up",
+        "the executive counts each takeover on an item, at most one between two heartbeats, and asks `leg_given_up` at each",
+        RANK,
+        ("G3",),
+        why_not="which item a vehicle is on, while it is on its way, is not in the log",
     ),
     Assumption(
         "intruder in its tube",
