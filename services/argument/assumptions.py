@@ -46,9 +46,7 @@ UP_TO = {
     "declaration or expiry"
 }
 """How much of a guarantee its theorems say, where that is not all."""
-OF_A_PART: dict[str, tuple[str, ...]] = {}
-"""Which says something of a part of it alone."""
-PLACED = frozenset(n for some in (BEARS_ON, OF_A_PART) for names in some.values() for n in names)
+PLACED = frozenset(name for names in BEARS_ON.values() for name in names)
 
 
 class Assumed(NamedTuple):
