@@ -8,7 +8,6 @@ from cratous.core.authority.cycle import gate_wished
 from cratous.core.authority.gate import Gate, gate_accepts, gate_after
 from cratous.core.permit.hand import Hand, hand_step
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.happenings import COMMAND, HEARTBEAT, Asked
 from cratous.proofs.methods.hands import (
     HandEvent,
     any_hand,
@@ -16,6 +15,7 @@ from cratous.proofs.methods.hands import (
     each_hand_event,
     in_hand_after,
 )
+from cratous.proofs.methods.happenings import COMMAND, HEARTBEAT, Asked
 from cratous.proofs.methods.vehicles import counts
 from cratous.spec.system import fenced as system
 
@@ -93,9 +93,7 @@ def after_turn(c: Claim, one: Fencing, what: Turn, asked: Asked) -> Fencing:
     taken = c.all_of(commands, what.sender == 0, passes)
     wished = c.use(gate_wished, gate, what.act)
     told = c.use(gate_after, gate, what.sender, what.epoch)
-    kept = c.use(
-        hand_step, hand, event.kind, event.offer, event.permitted, what.now, asked.reserve
-    )
+    kept = c.use(hand_step, hand, event.kind, event.offer, event.permitted, what.now, asked.reserve)
     truth = in_hand_after(c, hand, known.hand, event, asked)
     return Fencing(
         c.when(beats, wished, c.when(commands, told, gate)),

@@ -77,6 +77,4 @@ def after_event(c: Claim, one: Served, event: Event, asked: Asked, limit: Any) -
     anew = event.kind == RESTART
     fresh = Line(0, 0, False, 0)
     after = Line(*[c.when(anew, new, old) for new, old in zip(fresh, step.line, strict=True)])
-    return Served(
-        counted, c.when(anew, life + 1, life), after, c.when(anew, stage, moved)
-    )
+    return Served(counted, c.when(anew, life + 1, life), after, c.when(anew, stage, moved))

@@ -43,7 +43,7 @@ UP_TO = {
     "G1": "its theorems speak of zones alone: while UxAS flies, near legs that keep them; while ICAROUS does, up to the "
     "first surprise, declaration or expiry",
     "G2": "its theorems speak of the cylinder of the volume alone, of what is seen, and up to the first surprise, "
-    "declaration or expiry"
+    "declaration or expiry",
 }
 """How much of a guarantee its theorems say, where that is not all."""
 PLACED = frozenset(name for names in BEARS_ON.values() for name in names)

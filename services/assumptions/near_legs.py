@@ -17,9 +17,9 @@ from cratous.core.authority.timeliness import in_time
 from cratous.core.geofence.distance import comes_within, edge_against
 from cratous.core.geofence.planar import keep_in_leg_ok, keep_out_leg_ok, locate
 from cratous.core.geofence.regions import layer_place
+from cratous.core.kernel import Vec2
 from cratous.core.readings.exact import exact
 from cratous.core.routing.polylines import Track
-from cratous.core.kernel import Vec2
 from cratous.services.assumptions.authority import UNTOUCHED, has_it, reported, sender_of
 from cratous.services.assumptions.observed import ANY_LATER, Message, Record
 from cratous.services.mission.frames import Projection

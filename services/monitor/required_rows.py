@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Set
 from typing import NamedTuple
 
-from cratous.core.schedule.rows import runs_forward
 from cratous.services.mission.known_zones import zones_of
 from cratous.services.monitor.observation import Span, in_the_air
 from cratous.services.monitor.plan_check import WHOLE

@@ -76,7 +76,12 @@ def tampered(change: Change) -> dict[str, dict[str, Any]]:
 def test_a_flight_in_which_all_hold() -> None:
     rows = judged(WHOLE, list(flown(WHOLE)))
     held = {name for name, row in rows.items() if row["state"] == "held"}
-    assert WATCHED - held == {"suspended", "takeovers told", "sensed within its bound", "near its legs"}
+    assert WATCHED - held == {
+        "suspended",
+        "takeovers told",
+        "sensed within its bound",
+        "near its legs",
+    }
     assert rows["near its legs"]["note"] == "no zone for a vehicle that is protected"
     assert "the exact states" in rows["sensed within its bound"]["note"]
     assert rows["suspended"]["note"] == "no task was suspended"

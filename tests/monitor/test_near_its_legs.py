@@ -13,9 +13,9 @@ from flight_tools import meeting
 from tampering import Log, at, other
 
 from cratous.bridge import lmcp
+from cratous.services.assumptions.listing import State
 from cratous.services.assumptions.near_legs import NearLegsWatch
 from cratous.services.assumptions.observed import Message, Observed
-from cratous.services.assumptions.listing import State
 from cratous.services.bus import Bus, Envelope
 from cratous.services.flight.loop import fly
 from cratous.services.pipeline.plan import make_plan
@@ -73,7 +73,8 @@ def aside(**off: float) -> Callable[[Log], None]:
 def test_far_from_every_zone_it_holds() -> None:
     found = seen(at_zone(zone(100.0)))
     assert (found.state, found.note) == (State.HELD, "")
-    assert found.extreme is not None and found.extreme < 1.0
+    assert found.extreme is not None
+    assert found.extreme < 1.0
     assert found.checks > 100
 
 
@@ -95,7 +96,8 @@ def test_off_its_leg_it_needs_a_leg_with_more_room(
     found = seen(at_zone(zone(east_m)), aside(**off))
     assert found.state is state, found.note
     if state is State.BROKEN:
-        assert found.broken is not None and found.broken.vehicle_id == 1
+        assert found.broken is not None
+        assert found.broken.vehicle_id == 1
         assert "off the leg that UxAS commanded at 0.00 s" in found.note
         said = "more than any margin" if east_m == 30.0 else "keeps zone 21 by less than 5 m"
         assert said in found.note

@@ -34,9 +34,7 @@ def claim(c: Claim) -> None:
 
     def invariant(state: list[Any]) -> Any:
         gate, hand, known = state[0]
-        certificate = c.define(
-            permit.certified, hand.expiry_ms, known.hand, known.now_ms, asked.at
-        )
+        certificate = c.define(permit.certified, hand.expiry_ms, known.hand, known.now_ms, asked.at)
         together = c.all_of(
             c.define(authority.well_formed, gate),
             c.define(system.checked, known.way),

@@ -26,4 +26,6 @@ def claim(c: Claim) -> None:
     here = c.all_of(after.items == flown.items, c.negation(done))
     one_more = c.when(taken, flown.takeovers + 1, flown.takeovers)
     c.show(c.implies(here, after.takeovers == one_more), "each is counted")
-    c.show(c.implies(c.negation(here), c.any_of(done, after.takeovers == 0)), "of another item none")
+    c.show(
+        c.implies(c.negation(here), c.any_of(done, after.takeovers == 0)), "of another item none"
+    )
