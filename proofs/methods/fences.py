@@ -49,8 +49,9 @@ def any_way(c: Claim, name: str) -> system.Way:
 def any_turn(c: Claim) -> Turn:
     """Anything that may happen."""
     now = c.whole("now")
-    said = [c.whole(name) for name in ("act", "sender", "command_epoch")]
-    return Turn(c.whole("happens"), now, *said, any_way(c, "wanted"), any_hand_event(c, now))
+    act, sender, epoch = (c.whole(name) for name in ("act", "sender", "command_epoch"))
+    way, of_hand = any_way(c, "wanted"), any_hand_event(c, now)
+    return Turn(c.whole("happens"), now, act, sender, epoch, way, of_hand)
 
 
 def each_turn(c: Claim, one: Turn, asked: Asked) -> Any:
