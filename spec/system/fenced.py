@@ -12,8 +12,8 @@ from cratous.spec.authority import gate
 
 
 class Way(NamedTuple):
-    """What UxAS commands. kept: each of its legs was checked against the zone, with a margin, and accepted; near: at the
-    instant whoever flies it is no farther than the margin from one of them; obeys: and obeys the zone then."""
+    """What UxAS commands, at the instant. kept: the leg that whoever flies it is beside was checked against the zone, with
+    a margin, and accepted; near: it is no farther from that leg than the margin; obeys: it obeys the zone."""
 
     kept: bool
     near: bool
@@ -33,7 +33,7 @@ class Fenced(NamedTuple):
 
 
 def checked(way: Way) -> bool:
-    """What a check of legs means: near them, the zone is obeyed."""
+    """What the check of a leg means: near it, the zone is obeyed."""
     return way.obeys or not (way.kept and way.near)
 
 
@@ -43,8 +43,8 @@ def flown_by_uxas(state: gate.State) -> bool:
 
 
 def is_fenced(state: gate.State, known: Fenced, knows: bool, expiry: int, at: int) -> bool:
-    """Whoever flies, the zone is obeyed at the instant, if it is not before the last event: UxAS, where its legs were
-    checked and the vehicle is near them; ICAROUS, if what is in hand knows of the zone, until it expires."""
+    """Whoever flies, the zone is obeyed at the instant, if it is not before the last event: UxAS, where its leg was
+    checked and the vehicle is near it; ICAROUS, if what is in hand knows of the zone, until it expires."""
     to_come = known.now_ms <= at
     on_legs = flown_by_uxas(state) and known.way.kept and known.way.near
     in_hand = gate.may_command(state, 1) and knows and at < expiry

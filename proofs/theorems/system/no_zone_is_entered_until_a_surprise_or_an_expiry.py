@@ -1,7 +1,7 @@
 """Whatever happens to a vehicle in any number of events (heartbeats of its ICAROUS, commands to its gate, of whoever and
 whenever they were sent, certificates that are offered and begin at once or later, news), it obeys any one zone at any
-instant after the last one: while UxAS flies it, where the legs of its last command that the gate let through were checked
-against the zone with a margin and the vehicle is no farther from them; while ICAROUS does, until the certificate in hand,
+instant after the last one: while UxAS flies it, where the leg that it is beside, of the last command that the gate let through, was
+checked against the zone with a margin and the vehicle is no farther from it; while ICAROUS does, until the certificate in hand,
 which knows of the zone, expires, as a surprise or another manoeuvre makes it do at once."""
 
 from typing import Any

@@ -4,7 +4,7 @@ accept the leg, higher and lower by the rise, and find that it does not come wit
 
 from typing import Any
 
-from cratous.core.geofence.distance import comes_within, leg_within
+from cratous.core.geofence.distance import comes_within, edge_against, leg_within
 from cratous.core.geofence.planar import keep_in_leg_ok, keep_out_leg_ok
 from cratous.core.geofence.regions import both_places, layer_place
 from cratous.core.kernel import Vec2
@@ -20,7 +20,7 @@ def claim(c: Claim) -> None:
     low, high, floor, ceiling, alt = c.reals("low high floor ceiling alt")
     c.premise(c.all_of(d >= 0, rise >= 0, t >= 0, t <= 1, floor <= ceiling, low <= high))
     c.premise(c.all_of(low - rise <= alt, alt <= high + rise))
-    c.opaque(*PARTS, leg_within, geofence.squared_distance)
+    c.opaque(*PARTS, edge_against, leg_within, geofence.squared_distance)
     m = Vec2(*c.define(geofence.along, p, q, t))
     c.premise(c.define(geofence.squared_distance, m, w) <= d * d)
 
@@ -28,6 +28,7 @@ def claim(c: Claim) -> None:
         c.lemma("geofence_a_part_of_a_leg_meets_no_more", p=p, q=q, a=a, b=b, t=t)
         edge_of_leg(c, p, m, a, b)
         edge_of_leg(c, m, w, a, b)
+        c.lemma("geofence_a_leg_clear_of_an_edge_is_so_at_each_point", p=p, q=q, a=a, b=b, d=d, t=t)
         c.lemma(
             "geofence_a_place_near_a_clear_leg_is_beside_the_edge_too",
             p=p, q=q, w=w, a=a, b=b, d=d, t=t,
