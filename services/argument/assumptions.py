@@ -28,21 +28,25 @@ SILENCE = "system_silence_is_noticed_within_one_heartbeat"
 HAND = "system_the_hand_is_clear_until_a_surprise_or_its_expiry"
 CLEAR = "system_a_vehicle_is_clear_until_a_surprise_or_an_expiry"
 LOOKED = "system_a_way_that_is_looked_ahead_at_is_clear"
+FENCED = "system_no_zone_is_entered_until_a_surprise_or_an_expiry"
+NEAR_LEGS = "system_whoever_is_near_a_checked_leg_obeys_the_zones"
+RANK = "system_the_rank_of_a_mission_falls_at_each_heartbeat"
 BEARS_ON: dict[str, tuple[str, ...]] = {
+    "G1": (FENCED, NEAR_LEGS, HAND),
     "G2": (CLEAR, LOOKED, HAND),
-    "G3": (MISSION_ENDS, TAKEOVER_LASTS),
+    "G3": (MISSION_ENDS, RANK, TAKEOVER_LASTS),
     "G4": (*AUTHORITY, TAKEOVER_ENDS, TAKEOVER_LASTS),
     "G5": (SILENCE,),
 }
 """Which theorem on the composed system says something of which guarantee."""
 UP_TO = {
+    "G1": "its theorems speak of zones alone: while UxAS flies, near legs that keep them; while ICAROUS does, up to the "
+    "first surprise, declaration or expiry",
     "G2": "its theorems speak of the cylinder of the volume alone, of what is seen, and up to the first surprise, "
-    "declaration or expiry"
+    "declaration or expiry",
 }
 """How much of a guarantee its theorems say, where that is not all."""
-OF_A_PART: dict[str, tuple[str, ...]] = {"G1": (HAND,)}
-"""Which says something of a part of it alone: of zones, while a certificate is in hand."""
-PLACED = frozenset(n for some in (BEARS_ON, OF_A_PART) for names in some.values() for n in names)
+PLACED = frozenset(name for names in BEARS_ON.values() for name in names)
 
 
 class Assumed(NamedTuple):

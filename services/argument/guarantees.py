@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import groupby
 from typing import Any
 
-from cratous.services.argument.assumptions import BEARS_ON, OF_A_PART, PLACED, UP_TO, Assumed
+from cratous.services.argument.assumptions import BEARS_ON, PLACED, UP_TO, Assumed
 from cratous.services.argument.elements import (
     OF_VERDICT,
     Argument,
@@ -99,8 +99,7 @@ class Guarantees:
 
     def _system(self, of: str) -> str:
         """The goal on what is proved of the composed system, whatever run it is."""
-        goals = tuple(self._proofs.theorem(theorem) for theorem in BEARS_ON.get(of, ()))
-        parts = tuple(self._proofs.theorem(theorem) for theorem in OF_A_PART.get(of, ()))
+        goals = tuple(self._proofs.theorem(theorem) for theorem in BEARS_ON[of])
         of_this = {name: one for name, one in self._assumed.items() if of in one.guarantees}
         broken = [one for one in of_this.values() if one.broken]
         # what stands at a theorem above need not stand here again, unless it broke
@@ -112,15 +111,10 @@ class Guarantees:
         if broken:
             state = State.NO_GROUND
             text += ", of which broke in this run: " + "; ".join(one.text for one in broken)
-        elif not goals:
-            state = State.NO_THEOREM
-            text = f"{of} beyond this run: no theorem on the composed system says all of it"
-            text += "; what there is speaks of a part" if parts else ""
         elif state is State.NOTHING:
             state = State.NO_THEOREM
         text += f"; {UP_TO[of]}" if of in UP_TO else ""
-        below = (*goals, *parts)
-        return self._argument.add(Element(f"G-{of}-system", Kind.GOAL, text, below, context, state))
+        return self._argument.add(Element(f"G-{of}-system", Kind.GOAL, text, goals, context, state))
 
 
 def _state(row: Data, chained: Data) -> tuple[State, str]:

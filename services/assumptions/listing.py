@@ -21,6 +21,9 @@ PERMIT = ("permitted_has_no_hit", "disc_within_holds_every_place")
 HAND = ("the_hand_is_clear_until_a_surprise_or_its_expiry",)
 CLEAR = ("a_vehicle_is_clear_until_a_surprise_or_an_expiry",)
 LOOKED = ("a_way_that_is_looked_ahead_at_is_clear",)
+FENCED = ("no_zone_is_entered_until_a_surprise_or_an_expiry",)
+RANK = ("the_rank_of_a_mission_falls_at_each_heartbeat",)
+NEAR_LEGS = ("whoever_is_near_a_checked_leg_obeys_the_zones",)
 ONE_COMMANDER = "exactly one commander at any time"
 REPLAYED = "the replay of the gate (G4) judges each command and each report by itself"
 SAMPLED = (
@@ -92,8 +95,8 @@ LISTING = (
     Assumption(
         "commands by the gate alone",
         "a vehicle gets no command but by its gate",
-        (*GATE, *CLEAR),
-        ("G2", "G4"),
+        (*GATE, *CLEAR, *FENCED),
+        ("G1", "G2", "G4"),
         ONE_COMMANDER,
         SAMPLED,
         "commands to a vehicle outside of `GatedCommand`",
@@ -101,8 +104,8 @@ LISTING = (
     Assumption(
         "ICAROUS at each heartbeat",
         "ICAROUS looks at the gate at each heartbeat before it does anything",
-        (*GATE, *CLEAR),
-        ("G2", "G4"),
+        (*GATE, *CLEAR, *FENCED),
+        ("G1", "G2", "G4"),
         "that ICAROUS commands while it has the vehicle",
         BY_EPOCH,
         "the longest time between its commands while it has the vehicle",
@@ -119,7 +122,7 @@ LISTING = (
     Assumption(
         "clock",
         "the clock of one end does not step back",
-        (*SILENCE, *HAND, *CLEAR),
+        (*SILENCE, *HAND, *CLEAR, *FENCED),
         ("G1", "G2", "G4", "G5"),
         "that silence is noticed within one heartbeat, and every bound in time",
         BY_EPOCH,
@@ -194,11 +197,18 @@ LISTING = (
     Assumption(
         "settled tasks",
         "another plan brings no task back that has ended or failed",
-        ("a_mission_ends",),
+        ("a_mission_ends", *RANK),
         ("G3",),
         "that less is left after each step, so that the mission ends before its limit",
         "the limit ends the mission; G3 counts what was served",
         "tasks that begin, or are on their way, after they were complete or had failed",
+    ),
+    Assumption(
+        "items given up",
+        "the executive counts each takeover on an item, at most one between two heartbeats, and asks `leg_given_up` at each",
+        RANK,
+        ("G3",),
+        why_not="which item a vehicle is on, while it is on its way, is not in the log",
     ),
     Assumption(
         "intruder in its tube",
@@ -213,7 +223,7 @@ LISTING = (
     Assumption(
         "tracking",
         "a vehicle under ICAROUS flies the path that is predicted, within half of what the buffer leaves",
-        (*PERMIT, *CLEAR),
+        (*PERMIT, *CLEAR, *FENCED),
         ("G1", "G2"),
         "that what ICAROUS flies is clear, by its predictions",
         SAMPLED,
@@ -241,10 +251,21 @@ LISTING = (
         "not in the log)",
     ),
     Assumption(
+        "near its legs",
+        "a vehicle under UxAS flies no farther from a leg that it was commanded, to the side, above or below, than a margin "
+        "by which the leg keeps every zone",
+        (*FENCED, *NEAR_LEGS),
+        ("G1",),
+        "that what UxAS flies keeps the zones at every instant, by the legs that it was commanded",
+        SAMPLED,
+        "every flight between two samples: how far both ends are from one of the legs, and whether it keeps by that margin "
+        "each zone that binds",
+    ),
+    Assumption(
         "permitted as offered",
         "what is looked at, offered or said to be permitted is what is flown then, and the kernels have found it so, up to "
         "the time that is named",
-        (*HAND, *CLEAR),
+        (*HAND, *CLEAR, *FENCED),
         ("G1", "G2"),
         why_not="what is looked at, the trajectory of a certificate and its tracks are not in the log",
     ),

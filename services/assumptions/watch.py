@@ -15,6 +15,7 @@ from cratous.services.assumptions.link import (
 from cratous.services.assumptions.listing import LISTING, Assumption, State
 from cratous.services.assumptions.mission_end import EndWatch, SettledWatch
 from cratous.services.assumptions.motion import IntruderWatch, TrackingWatch
+from cratous.services.assumptions.near_legs import NearLegsWatch
 from cratous.services.assumptions.observed import (
     Message,
     Observed,
@@ -41,6 +42,7 @@ class AssumptionWatch:
             IntruderWatch(mission),
             TrackingWatch(mission),
             AheadWatch(mission),
+            NearLegsWatch(mission),
             SensedWatch(mission),
         )
         self._records: dict[str, Record] = {}

@@ -13,6 +13,7 @@ from functools import lru_cache
 from math import lcm
 from typing import Any
 
+from cratous.core.geofence.clearance import leg_keeps
 from cratous.core.geofence.mission_legs import leg_ok
 from cratous.core.geofence.planar import keep_in_leg_ok, keep_out_leg_ok
 from cratous.core.kernel import qualified
@@ -56,6 +57,16 @@ def exact_leg_ok(p: Position, q: Position, zone: Zone) -> bool:
     parts = lcm(_parts_of(zone), *(x.as_integer_ratio()[1] for point in (p, q) for x in point))
     one, other = (Position(*(_in_parts(x, parts) for x in point)) for point in (p, q))
     return leg_ok(one, other, _whole(zone, parts))
+
+
+def exact_leg_keeps(p: Position, q: Position, zone: Zone, margin_m: float) -> bool:
+    """True iff every flight that is no farther from the leg than a margin [m, >= 0], to the side, above and below, obeys
+    the zone, as `leg_keeps` decides it; exact, as `exact_leg_ok` is."""
+    numbers = [x.as_integer_ratio()[1] for x in (margin_m, *p, *q)]
+    parts = lcm(_parts_of(zone), *numbers)
+    one, other = (Position(*(_in_parts(x, parts) for x in point)) for point in (p, q))
+    margin = _in_parts(margin_m, parts)
+    return leg_keeps(one, other, _whole(zone, parts), margin, margin)
 
 
 def deciding(zone: Zone) -> tuple[str, str]:

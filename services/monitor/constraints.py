@@ -10,16 +10,15 @@ from cratous.core.algebra.steps import Ran, in_order
 from cratous.core.kernel import qualified
 from cratous.core.schedule.choice import as_asked
 from cratous.core.schedule.rows import eligible, runs_forward
+from cratous.services.mission.known_zones import Bound, zones_of
 from cratous.services.mission.zones import deciding, distance_m, exact_leg_ok, margin_m
 from cratous.services.monitor.observation import Ending, Presence
 from cratous.services.monitor.relations import branch_rows, by_term, is_choice
 from cratous.services.monitor.required_rows import (
     CHOICE,
-    Bound,
     Watched,
     eligible_item,
     fence_item,
-    zones_of,
 )
 from cratous.services.monitor.samples import Sample
 from cratous.spec.constraint_rows import AFTER_END, AFTER_START, Row

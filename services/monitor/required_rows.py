@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Set
 from typing import NamedTuple
 
-from cratous.core.schedule.rows import runs_forward
+from cratous.services.mission.known_zones import zones_of
 from cratous.services.mission.take_off import grounded
 from cratous.services.monitor.observation import Span, in_the_air
 from cratous.services.monitor.plan_check import WHOLE
 from cratous.services.monitor.relations import first_choices
 from cratous.spec.mission import Mission, Zone
 from cratous.spec.mission.asked import asked
-from cratous.spec.mission.changes import ZoneEnd, asked_by
+from cratous.spec.mission.changes import asked_by
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 
 CHOICE = "flight: no task of another choice of the relations"
@@ -30,19 +30,6 @@ class Row(NamedTuple):
     requirement: str
     item: str
     vehicles: tuple[int, ...] = ()
-
-
-class Bound(NamedTuple):
-    """A zone, and since when and until when it binds [ms]; None: to the end."""
-
-    zone: Zone
-    since_ms: int
-    until_ms: int | None = None
-
-    def binds(self, begin_ms: int) -> bool:
-        """Whether a leg that begins at this instant is held to the zone: as a whole, if the zone ends in it."""
-        over = self.until_ms is not None and runs_forward(self.until_ms, begin_ms)
-        return runs_forward(self.since_ms, begin_ms) and not over
 
 
 PLAN_ROWS = (Row("G1", WHOLE), Row("G1", "plan: all order and timing rows at once"))
@@ -108,20 +95,6 @@ def alone_without_link_item(vehicle: int) -> str:
 def beat_item(vehicle: int, way: str) -> str:
     """The row on the heartbeats of a vehicle in one direction, `Down` or `Up`."""
     return f"heartbeat {WAYS[way]} the ICAROUS instance of {vehicle}"
-
-
-def zones_of(mission: Mission, end_ms: int) -> list[Bound]:
-    """The zones that are known before an instant, those too that have ended, each with its time.
-
-    What becomes known between two instants of the simulation is known at the later one: a zone that appears
-    binds from then on, one that ends binds until then.
-    """
-    step_ms = mission.simulation.step_ms
-    times = [(c, -(-c.at_ms // step_ms) * step_ms) for c in mission.changes]
-    ends = {c.zone_id: at for c, at in times if isinstance(c, ZoneEnd)}
-    late = [(c.zone, at) for c, at in times if c.zone and not runs_forward(end_ms, at)]
-    known = [*((zone, 0) for zone in mission.zones), *late]
-    return [Bound(zone, since_ms, ends.get(zone.id)) for zone, since_ms in known]
 
 
 def pairs_of(mission: Mission, end_ms: int) -> dict[tuple[int, int], Span]:

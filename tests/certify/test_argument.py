@@ -13,7 +13,7 @@ from certify_tools import read
 from lxml import etree
 
 from cratous.core import ledger
-from cratous.services.argument.assumptions import BEARS_ON, OF_A_PART, PLACED, UP_TO
+from cratous.services.argument.assumptions import BEARS_ON, PLACED, UP_TO
 from cratous.services.argument.build import argument
 from cratous.services.argument.elements import Argument, Element, Kind, State
 from cratous.services.argument.form import document, faults, yaml_text
@@ -110,11 +110,6 @@ def test_no_text_says_more_than_the_theorem(report: dict[str, Any]) -> None:
             one.text == report["proofs"]["theorems"][one.id.removeprefix("G-theorem-")]["sentence"]
         )
         assert f"Sn-{one.id.removeprefix('G-theorem-')}" in one.supported_by
-    for of in OF_A_PART:
-        found = elements[f"G-{of}-system"]
-        assert found.state is State.NO_THEOREM
-        assert found.text.endswith("says all of it; what there is speaks of a part")
-        assert found.supported_by == tuple(f"G-theorem-{n}" for n in OF_A_PART[of])
     for of, names in BEARS_ON.items():
         found = elements[f"G-{of}-system"]
         assert found.supported_by == tuple(f"G-theorem-{n}" for n in names)
@@ -319,8 +314,7 @@ def test_a_report_without_assumptions_is_refused(report: dict[str, Any]) -> None
 
 def test_every_theorem_on_the_system_is_placed(root: Path) -> None:
     records = {name for name in ledger.read()["theorems"] if name.startswith("system_")}
-    some = (*BEARS_ON.values(), *OF_A_PART.values())
-    assert records == {name for names in some for name in names} == PLACED
+    assert records == {name for names in BEARS_ON.values() for name in names} == PLACED
 
 
 def test_the_trusted_base_is_that_of_its_page(root: Path) -> None:

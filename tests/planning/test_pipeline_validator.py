@@ -81,6 +81,26 @@ def test_time_runs_out_and_the_next_begins_and_a_late_response_is_not_passed_on(
     assert len(alone.got("AutomationResponse")) == 2
 
 
+def test_started_anew_it_answers_no_request_of_before_and_takes_no_answer_to_one_for_its_own(
+    alone: Rig,
+) -> None:
+    alone.tell(request(5), request(5))
+    service = alone.bus._services[NAME]
+    alone.bus.remove(NAME)
+    alone.bus.add(service)
+    alone.tell(*vehicle(1), must_fly(5), lmcp.new("TaskInitialized", TaskID=5), request(5))
+    first, again = (unique.RequestID for unique in alone.got("UniqueAutomationRequest"))
+    assert first != again
+    respond(alone, first)
+    assert not alone.got("AutomationResponse")
+    respond(alone, again)
+    respond(alone, again)
+    (answer,) = alone.got("AutomationResponse")
+    assert answer.MissionCommandList[0].CommandID == again
+    alone.wait(5000)
+    assert len(alone.got("AutomationResponse")) == 1
+
+
 def test_an_error_status_ends_the_request_that_it_names_and_no_other(alone: Rig) -> None:
     alone.tell(request(5), request(5))
 

@@ -1,0 +1,186 @@
+"""The assumption that a vehicle under UxAS stays near the legs that it was commanded, nearer than they are to a zone.
+
+What is flown between two samples is straight. It is held against one leg: how far both of its ends are from it, to the
+side and in altitude, says with which margin the leg has to keep every zone that binds. Decided by the kernels
+`edge_against` and those of `leg_keeps`.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from cratous.core.authority.gate import UXAS, gate_accepts
+from cratous.core.authority.timeliness import in_time
+from cratous.core.geofence.distance import comes_within, edge_against
+from cratous.core.geofence.planar import keep_in_leg_ok, keep_out_leg_ok, locate
+from cratous.core.geofence.regions import layer_place
+from cratous.core.kernel import Vec2
+from cratous.core.readings.exact import exact
+from cratous.core.routing.polylines import Track
+from cratous.services.assumptions.authority import UNTOUCHED, has_it, reported, sender_of
+from cratous.services.assumptions.observed import ANY_LATER, Message, Record
+from cratous.services.mission.frames import Projection
+from cratous.services.mission.known_zones import zones_of
+from cratous.services.mission.zones import exact_leg_keeps
+from cratous.spec.mission import Mission, Position, Zone
+
+MARGINS_M = (1.0, 2.0, 5.0, 10.0, 20.0)
+"""The least of these that is enough is the margin; the last is what routes keep from zones where there is room [m]."""
+KERNELS = (
+    comes_within, edge_against, gate_accepts, in_time, keep_in_leg_ok, keep_out_leg_ok, layer_place, locate,
+)  # fmt: skip
+Leg = tuple[Position, Position]
+
+
+class Path(NamedTuple):
+    """What UxAS commanded last, and when; s_m: how far it has been flown [m]."""
+
+    since_ms: int
+    track: Track
+    s_m: float = 0.0
+
+    def legs(self, first_m: float, last_m: float) -> list[Leg]:
+        """Those between two places of the path, and one more on either side."""
+        points = self.track.points
+        if len(points) == 1:
+            return [(points[0], points[0])]
+        first, last = (bisect_right(self.track.s_m, s_m) - 1 for s_m in (first_m, last_m))
+        low, high = min(max(0, first - 1), len(points) - 2), min(len(points) - 2, last + 1)
+        return [(points[k], points[k + 1]) for k in range(low, high + 1)]
+
+
+class NearLegsWatch:
+    """Every vehicle of ours, from each command of UxAS on, while UxAS flies it."""
+
+    def __init__(self, mission: Mission) -> None:
+        self._mission, self._projection = mission, Projection(mission.frame)
+        self._gates = {v.id: UNTOUCHED for v in mission.vehicles if v.protected}
+        self._paths: dict[int, Path] = {}
+        self._before: dict[int, tuple[int, Position]] = {}
+        self._kept: dict[tuple[Leg, Zone, float], bool] = {}
+        zones = mission.zones or any(change.zone for change in mission.changes)
+        none = "" if zones and self._gates else "no zone for a vehicle that is protected"
+        waits = "no flight on a path that UxAS commanded was seen"
+        self._record = Record("m", MARGINS_M[-1], KERNELS, none, waits=waits)
+
+    def message(self, message: Message) -> None:
+        """A state of the gate, a command, or where an aircraft is."""
+        kind, now_ms, _, body = message
+        if self._record.unseen or kind not in ("GateState", "GatedCommand", "TruthState"):
+            return
+        number = body.VehicleID
+        if number not in self._gates:
+            return
+        if kind == "GateState":
+            self._gates[number] = reported(body)
+            if has_it(self._gates[number]):
+                self._paths.pop(number, None)
+        elif kind == "GatedCommand":
+            self._command(number, now_ms, body)
+        else:
+            self._sample(number, now_ms, Position(body.North, body.East, body.Altitude))
+
+    def _command(self, number: int, now_ms: int, body: Any) -> None:
+        """Of what the gate lets through the last is flown."""
+        sender = sender_of(body)
+        if not gate_accepts(self._gates[number], sender, body.Epoch):
+            return
+        self._paths.pop(number, None)
+        if sender != UXAS:
+            return
+        points = getattr(body.Command, "WaypointList", None)
+        if not points:
+            self._gap(f"vehicle {number} was commanded something else than a path by UxAS")
+            return
+        norths, easts = self._projection.to_local_many(
+            [p.Latitude for p in points], [p.Longitude for p in points]
+        )
+        places = zip(norths, easts, (p.Altitude for p in points), strict=True)
+        track = Track(tuple(Position(float(n), float(e), float(alt)) for n, e, alt in places))
+        self._paths[number] = Path(now_ms, track)
+
+    def _gap(self, text: str) -> None:
+        if not self._record.gaps:
+            self._record.gaps.append(text)
+
+    def _sample(self, number: int, now_ms: int, here: Position) -> None:
+        before, self._before[number] = self._before.get(number), (now_ms, here)
+        path = self._paths.get(number)
+        if path is None or before is None or not in_time(path.since_ms, before[0], ANY_LATER):
+            return
+        if not in_time(before[0], now_ms, self._mission.simulation.step_ms):
+            self._gap(f"vehicle {number} was not seen from {before[0] / 1000:.2f} s")
+        self._hold(number, path, before, here)
+
+    def _hold(self, number: int, path: Path, before: tuple[int, Position], here: Position) -> None:
+        """What was flown since the last sample, against the nearest leg that keeps the zones."""
+        track, window = path.track, 2 * math.dist(before[1], here) + MARGINS_M[-1]
+        first, last = (track.nearest(p, path.s_m, window).s_m for p in (before[1], here))
+        if not all(map(math.isfinite, (first, last))):
+            first = last = path.s_m
+        self._paths[number] = path._replace(s_m=max(path.s_m, min(last, track.length_m)))
+        ends = (before[1], here)
+        legs = path.legs(min(first, last), max(first, last))
+        zones = [b.zone for b in zones_of(self._mission, before[0] + 1) if b.binds(before[0])]
+        found = sorted(((_off_m(ends, leg), leg) for leg in legs), key=lambda one: one[0])
+        off_m, why = found[0][0], ""
+        for _, leg in found:
+            margin = next((m for m in MARGINS_M if _is_near(ends, leg, m)), None)
+            if margin is None:
+                continue
+            bad = [zone.id for zone in zones if not self._keeps(leg, zone, margin)]
+            if not bad:
+                break
+            why = why or f"which keeps zone {bad[0]} by less than {margin:g} m"
+        else:
+            text = f"vehicle {number} is {off_m:.4g} m off the leg that UxAS commanded at {path.since_ms / 1000:.2f} s"
+            said = why or "more than any margin of a leg"
+            self._record.check(False, before[0], number, f"{text}, {said}")
+        self._record.see(off_m)
+
+    def _keeps(self, leg: Leg, zone: Zone, margin_m: float) -> bool:
+        """Whether a leg keeps a zone by a margin; asked once."""
+        key = (leg, zone, margin_m)
+        if key not in self._kept:
+            self._kept[key] = exact_leg_keeps(*leg, zone, margin_m)
+        return self._kept[key]
+
+    def end(self, at_ms: int) -> None:
+        """Nothing is open."""
+
+    def records(self) -> dict[str, Record]:
+        """See `Watch`."""
+        return {"near its legs": self._record}
+
+
+def _off_m(ends: Leg, leg: Leg) -> float:
+    """About how far the ends of what was flown are from a leg, to the side or in altitude [m]; to choose by, and to show."""
+    low, high = sorted((leg[0].alt_m, leg[1].alt_m))
+    return max(max(_aside_m(p, leg), low - p.alt_m, p.alt_m - high) for p in ends)
+
+
+def _aside_m(p: Position, leg: Leg) -> float:
+    a, b = leg
+    north, east = b.north_m - a.north_m, b.east_m - a.east_m
+    square = north * north + east * east
+    along = (p.north_m - a.north_m) * north + (p.east_m - a.east_m) * east
+    share = min(max(along / square, 0.0), 1.0) if square else 0.0
+    return math.hypot(p.north_m - a.north_m - share * north, p.east_m - a.east_m - share * east)
+
+
+def _is_near(ends: Leg, leg: Leg, margin_m: float) -> bool:
+    """Whether both ends of what was flown are no farther from the leg than the margin; exact on the given numbers."""
+    if not all(math.isfinite(x) for p in ends for x in p):
+        return False
+    a, b = (Vec2(p.north_m, p.east_m) for p in leg)
+    margin = Fraction(margin_m)
+    low, high = sorted(Fraction(p.alt_m) for p in leg)
+    for p in ends:
+        if exact(edge_against, Vec2(p.north_m, p.east_m), a, b, margin_m) > 0:
+            return False
+        if layer_place(Fraction(p.alt_m), low - margin, high + margin) < 0:  # type: ignore[arg-type]
+            return False
+    return True

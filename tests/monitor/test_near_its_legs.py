@@ -1,0 +1,137 @@
+"""The assumption that a vehicle under UxAS stays nearer to its legs than they are to a zone."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import pytest
+from flight_tools import meeting
+from tampering import Log, at, other
+
+from cratous.bridge import lmcp
+from cratous.services.assumptions.listing import State
+from cratous.services.assumptions.near_legs import NearLegsWatch
+from cratous.services.assumptions.observed import Message, Observed
+from cratous.services.bus import Bus, Envelope
+from cratous.services.flight.loop import fly
+from cratous.services.pipeline.plan import make_plan
+from cratous.spec.mission import Mission, Zone, ZoneKind
+
+FAR = ((2000.0, 500.0), (4000.0, 500.0), (4000.0, 900.0), (2000.0, 900.0))
+
+
+def zone(east_m: float, kind: ZoneKind = ZoneKind.KEEP_OUT) -> Zone:
+    """Two kilometres along the way north, from a distance east of it on."""
+    corners = tuple((north, east - 500.0 + east_m) for north, east in FAR)
+    return Zone(21, kind, corners, 0.0, 1000.0)
+
+
+ALONE = replace(meeting(), traffic=())
+"""North along the axis, at 300 m."""
+
+
+@cache
+def flown() -> tuple[Envelope, ...]:
+    bus, log = Bus(lmcp.full_names), list[Any]()
+    bus.tap(log.append)
+    fly(ALONE, make_plan(ALONE), bus)
+    return tuple(log)
+
+
+def seen(mission: Mission, change: Callable[[Log], None] = lambda log: None) -> Observed:
+    log = [copy.copy(one) for one in flown()]
+    change(log)
+    watch = NearLegsWatch(mission)
+    for one in log:
+        kind = one.topic.rpartition(".")[2]
+        watch.message(Message(kind, one.time_ms, one.source, one.body))
+    return watch.records()["near its legs"].observed(log[-1].time_ms, True)
+
+
+def at_zone(*zones: Zone) -> Mission:
+    return replace(ALONE, zones=zones)
+
+
+def aside(**off: float) -> Callable[[Log], None]:
+    """The vehicle is elsewhere at one sample beside the zone."""
+
+    def change(log: Log) -> None:
+        k = next(
+            k for k, one in enumerate(log)
+            if one.topic.endswith("TruthState") and one.body.North > 2500.0
+        )  # fmt: skip
+        body = log[k].body
+        log[k] = other(log[k], **{key: getattr(body, key) + by for key, by in off.items()})
+
+    return change
+
+
+def test_far_from_every_zone_it_holds() -> None:
+    found = seen(at_zone(zone(100.0)))
+    assert (found.state, found.note) == (State.HELD, "")
+    assert found.extreme is not None
+    assert found.extreme < 1.0
+    assert found.checks > 100
+
+
+@pytest.mark.parametrize(
+    ("east_m", "off", "state"),
+    [
+        (6.0, {"East": -4.0}, State.HELD),  # 4 m off: the leg has to keep a margin of 5 m
+        (4.5, {"East": -4.0}, State.BROKEN),
+        (4.5, {"East": -1.5}, State.HELD),  # of 2 m
+        (4.5, {"Altitude": 3.0}, State.BROKEN),
+        (4.5, {"Altitude": 1.9}, State.HELD),
+        (30.0, {"East": -19.0}, State.HELD),
+        (30.0, {"East": -21.0}, State.BROKEN),  # more than any margin
+    ],
+)
+def test_off_its_leg_it_needs_a_leg_with_more_room(
+    east_m: float, off: dict[str, float], state: State
+) -> None:
+    found = seen(at_zone(zone(east_m)), aside(**off))
+    assert found.state is state, found.note
+    if state is State.BROKEN:
+        assert found.broken is not None
+        assert found.broken.vehicle_id == 1
+        assert "off the leg that UxAS commanded at 0.00 s" in found.note
+        said = "more than any margin" if east_m == 30.0 else "keeps zone 21 by less than 5 m"
+        assert said in found.note
+
+
+def test_a_leg_through_a_zone_or_out_of_one_keeps_it_by_no_margin() -> None:
+    assert seen(at_zone(zone(-200.0))).state is State.BROKEN
+    assert seen(at_zone(zone(-200.0, ZoneKind.KEEP_IN))).state is State.BROKEN
+
+
+def test_a_zone_that_is_above_is_kept() -> None:
+    above = replace(zone(-200.0), floor_m=310.0)
+    assert seen(at_zone(above)).state is State.HELD
+    assert seen(at_zone(replace(above, floor_m=300.5))).state is State.BROKEN
+
+
+def test_what_is_not_seen_is_not_said_to_be_near() -> None:
+    def change(log: Log) -> None:
+        k = next(
+            k for k, one in enumerate(log)
+            if one.topic.endswith("TruthState") and one.body.North > 2500.0
+        )  # fmt: skip
+        del log[k]
+
+    found = seen(at_zone(zone(100.0)), change)
+    assert (found.state, "vehicle 1 was not seen" in found.note) == (State.NOT_OBSERVED, True)
+
+
+def test_another_kind_of_command_is_told() -> None:
+    def change(log: Log) -> None:
+        k = at(log, "GatedCommand", VehicleID=1)
+        circle = lmcp.new("VehicleActionCommand", VehicleID=1)
+        log[k] = replace(log[k], body=log[k].body.copy(Command=circle))
+
+    found = seen(at_zone(zone(100.0)), change)
+    assert found.state is State.NOT_OBSERVED
+    assert "something else than a path" in found.note or "no flight on a path" in found.note
