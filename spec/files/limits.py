@@ -167,8 +167,8 @@ def _not_deep(found: Any, where: str) -> None:
         layer = [
             part
             for whole in layer
-            for part in (whole.values() if isinstance(whole, dict) else whole)
-            if isinstance(part, (list, dict))
+            for part in (whole.values() if type(whole) is dict else whole)
+            if type(part) is list or type(part) is dict
         ]
         if not layer:
             return
