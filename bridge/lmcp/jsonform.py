@@ -135,7 +135,7 @@ def _object(data: Any, depth: int) -> LmcpObject:
         raise BadInput("nested too deeply", expected=f"at most {_MAX_DEPTH} levels")
     cls, names, read = _readers.get(data["$type"]) or _reader(data["$type"])
     if tuple(data) == names:  # all fields in the order of the wire, as they are written
-        return read(cls.__new__(cls), data.values(), depth)  # type: ignore[no-any-return]
+        return read(cls.__new__(cls), data.values(), depth)
     kinds = _kinds(cls)
     values = {}
     for name, value in data.items():
@@ -151,7 +151,7 @@ def _object(data: Any, depth: int) -> LmcpObject:
             values[name] = _value(kind, value, depth)
         except BadInput as err:
             raise within(err, f"{cls.__name__}.{name}") from None
-    return cls(**values)  # type: ignore[no-any-return]
+    return cls(**values)
 
 
 Reader = tuple[Any, tuple[str, ...], Callable[..., Any]]

@@ -197,8 +197,7 @@ def _reports(
                     f"{row.run.name} flown again gives another result: {_other(answer, stored)}; "
                     "the stored results of this version are not to be trusted"
                 )
-            if whole:
-                links[row.run.name] = link
+            links[row.run.name] = link if whole else f"flights/{row.run.name}.yaml"
             folder.parent.mkdir(parents=True, exist_ok=True)
             mission = folder.parent / f"{row.run.name}.yaml"
             write_atomically(mission, row.run.decides["mission"])
@@ -223,6 +222,18 @@ def _is_kept(folder: Path, digest: str, own: list[Any]) -> bool:
     return bool(report.get("own", {}).get("files", []) == own)
 
 
+def _maps(place: Path, links: dict[str, str]) -> dict[str, bytes]:
+    """The maps of the flights whose reports are kept."""
+    from cratous.services.results.names import MAP_NAME
+
+    found = {}
+    for name, link in links.items():
+        file = (place / link).with_name(MAP_NAME)
+        if file.is_file():
+            found[name] = file.read_bytes()
+    return found
+
+
 def _write(summary: dict[str, Any], place: Path, links: dict[str, str]) -> None:
     from cratous.core.files.whole_file import write_atomically
     from cratous.services.campaign.pages import page
@@ -230,7 +241,7 @@ def _write(summary: dict[str, Any], place: Path, links: dict[str, str]) -> None:
     from cratous.services.campaign.tables import csv_text, junit_text
 
     texts = {
-        "campaign.html": page(summary, links), "runs.csv": csv_text(summary),
+        "campaign.html": page(summary, links, _maps(place, links)), "runs.csv": csv_text(summary),
         "junit.xml": junit_text(summary), "campaign.json": text_of(summary),
     }  # fmt: skip
     for name, text in texts.items():
