@@ -9,12 +9,16 @@ from __future__ import annotations
 
 import json
 import math
-from functools import cache
+from collections.abc import Callable
+from functools import cache, partial
+from keyword import iskeyword
 from typing import Any
 
+from cratous.bridge.lmcp.model import ANY, INTEGER_RANGES, when_removed
 from cratous.bridge.lmcp.objects import (
     LmcpEnum,
     LmcpObject,
+    enums,
     real,
     types,
     unknown_field,
@@ -129,7 +133,9 @@ def _object(data: Any, depth: int) -> LmcpObject:
         raise BadInput("not an LMCP object", expected='{"$type": ...}', got=repr(data)[:60])
     if depth > _MAX_DEPTH:
         raise BadInput("nested too deeply", expected=f"at most {_MAX_DEPTH} levels")
-    cls: Any = types[data["$type"]]
+    cls, names, read = _readers.get(data["$type"]) or _reader(data["$type"])
+    if tuple(data) == names:  # all fields in the order of the wire, as they are written
+        return read(cls.__new__(cls), data.values(), depth)
     kinds = _kinds(cls)
     values = {}
     for name, value in data.items():
@@ -146,6 +152,76 @@ def _object(data: Any, depth: int) -> LmcpObject:
         except BadInput as err:
             raise within(err, f"{cls.__name__}.{name}") from None
     return cls(**values)
+
+
+Reader = tuple[Any, tuple[str, ...], Callable[..., Any]]
+_readers: dict[str, Reader] = {}
+when_removed(lambda _series: _readers.clear())
+
+
+def _reader(type_name: str) -> Reader:
+    """A class, the names of an object that is whole, and what fills a new one with their values: a function of its class,
+    so that of most values nothing but their type is looked at."""
+    cls: Any = types[type_name]
+    scope: dict[str, Any] = {"given": partial(_given, cls), "listed": partial(_listed, cls)}
+    named = "".join(f", v{i}" for i in range(len(cls.fields)))
+    lines = [f"def read(obj, values, depth):\n    (_{named or ','}) = values"]
+    for i, field in enumerate(cls.fields):
+        if field.kind == "enum":
+            scope[f"members{i}"] = dict(enums[field.type].__members__)
+        fits, value = _fits(field, i)
+        is_list = field.array is not None and field.kind in ("struct", "any")
+        other = f"{'listed' if is_list else 'given'}({i}, v{i}, depth)"
+        kept = f"{value} if {fits} else {other}" if fits else other
+        plain = field.name.isidentifier() and not iskeyword(field.name)  # a model may be anybody's
+        lines.append(
+            f"    obj.{field.name} = {kept}"
+            if plain
+            else f"    setattr(obj, {field.name!r}, {kept})"
+        )
+    exec("\n".join([*lines, "    return obj"]), scope)
+    found = _readers[type_name] = (cls, ("$type", *cls.names), scope["read"])
+    return found
+
+
+def _fits(field: Any, i: int) -> tuple[str, str]:
+    """A condition on a value, and what it is then kept as; empty if there is none."""
+    kind, name = field.kind, f"v{i}"
+    if field.array is not None or kind in ("struct", "any", "char"):
+        return "", name
+    if kind == "enum":
+        return f"type({name}) is str and {name} in members{i}", f"members{i}[{name}]"
+    if kind in INTEGER_RANGES:
+        low, high = INTEGER_RANGES[kind]
+        return f"type({name}) is int and {low} <= {name} <= {high}", name
+    if kind == "real32":
+        return f"type({name}) is float and -3e38 < {name} < 3e38", name
+    return f"type({name}) is {({'real64': 'float', 'bool': 'bool', 'string': 'str'})[kind]}", name
+
+
+def _given(cls: Any, i: int, value: Any, depth: int) -> Any:
+    """A value of a field as it is kept; BadInput, with the field, for one that is none."""
+    field = cls.fields[i]
+    try:
+        plain = type(value) in _NUMBERS and field.kind not in _NESTED
+        return cls._checks[field.name](value if plain else _value(field.kind, value, depth))
+    except BadInput as err:
+        raise within(err, f"{cls.__name__}.{field.name}") from None
+
+
+def _listed(cls: Any, i: int, value: Any, depth: int) -> Any:
+    """The same of a list of objects."""
+    field = cls.fields[i]
+    if type(value) is not list or field.array:
+        return _given(cls, i, value, depth)
+    try:
+        made = [None if one is None else _value(field.kind, one, depth) for one in value]
+        base = LmcpObject if field.type == ANY else types[field.type]
+        if all(one is None or isinstance(one, base) for one in made):
+            return made
+        return cls._checks[field.name](made)
+    except BadInput as err:
+        raise within(err, f"{cls.__name__}.{field.name}") from None
 
 
 @cache

@@ -20,6 +20,8 @@ from cratous.spec.mission import Mission
 class AheadWatch:
     """Every aircraft, from one heartbeat to the next."""
 
+    kinds = ("TruthState",)
+
     def __init__(self, mission: Mission) -> None:
         self._room = room_of(mission.daa)
         self._period_ms = mission.simulation.heartbeat_ms
@@ -39,11 +41,12 @@ class AheadWatch:
         off = off_by(here.position, after(Piece(0.0, t_s, base.position, base.velocity), t_s))
         beside_m = math.hypot(off.north_m, off.east_m)
         self._record.see(beside_m)
-        text = (
-            f"aircraft {number} is {beside_m:.4g} m beside and {abs(off.alt_m):.4g} m above or below where it "
-            f"would be if it had flown straight on from {base.time_ms / 1000:.2f} s"
-        )
-        self._record.check(is_within(off, self._room), here.time_ms, number, text)
+        if not is_within(off, self._room):
+            text = (
+                f"aircraft {number} is {beside_m:.4g} m beside and {abs(off.alt_m):.4g} m above or below where it "
+                f"would be if it had flown straight on from {base.time_ms / 1000:.2f} s"
+            )
+            self._record.check(False, here.time_ms, number, text)
         if lasted(base.time_ms, here.time_ms, self._period_ms):
             self._base[number] = here
 

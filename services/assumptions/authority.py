@@ -35,6 +35,8 @@ def has_it(gate: Gate) -> bool:
 class CommandWatch:
     """Commands and reports of every protected vehicle."""
 
+    kinds = (*COMMANDS, "GatedCommand", "GateState", "TaskProgress")
+
     def __init__(self, mission: Mission) -> None:
         protected = [v.id for v in mission.vehicles if v.protected]
         self._gates = dict.fromkeys(protected, UNTOUCHED)
@@ -143,6 +145,8 @@ class CommandWatch:
 
 class SteeringWatch:
     """While ICAROUS has a vehicle it commands at each heartbeat: it has looked at the gate then."""
+
+    kinds = ("GateState", "GatedCommand", "Heartbeat")
 
     def __init__(self, mission: Mission) -> None:
         self._period_ms = mission.simulation.heartbeat_ms

@@ -5,7 +5,7 @@ from __future__ import annotations
 from cratous.core.authority.gate import ICAROUS, Gate, epoch_given
 from cratous.core.authority.timeliness import in_time
 from cratous.services.assumptions.authority import UNTOUCHED, reported, sender_of
-from cratous.services.assumptions.observed import ANY_LATER, Message, Record
+from cratous.services.assumptions.observed import ANY_LATER, EVERY, Message, Record
 from cratous.spec.mission import Mission
 
 OWN_TIME = ("Heartbeat", "GateState", "TruthState", "CommandDropped", "BridgeStatus")
@@ -21,6 +21,8 @@ def _s(time_ms: int) -> str:
 
 class ClockWatch:
     """Times of messages do not go back, neither that of the log nor the sender's own."""
+
+    kinds = EVERY
 
     def __init__(self) -> None:
         self._last_ms = 0
@@ -48,6 +50,8 @@ class ClockWatch:
 
 class PeriodWatch:
     """Heartbeats that UxAS sends to each ICAROUS come at most a period apart."""
+
+    kinds = ("Heartbeat", "TruthState")
 
     def __init__(self, mission: Mission) -> None:
         self._period_ms = mission.simulation.heartbeat_ms
@@ -90,6 +94,8 @@ class PeriodWatch:
 
 class DeliveryWatch:
     """Heartbeats of ICAROUS come within two periods: the k-th is sent k - 1 periods after the start."""
+
+    kinds = ("Heartbeat", "TruthState")
 
     def __init__(self, mission: Mission) -> None:
         self._period_ms = mission.simulation.heartbeat_ms
@@ -153,6 +159,8 @@ class DeliveryWatch:
 class ChangeWatch:
     """Changes of authority are told: an offer does not stay open longer than line and command take, and UxAS
     sends no command of an epoch that has been over for longer than a line takes."""
+
+    kinds = ("Heartbeat", "TruthState", "GateState", "GatedCommand")
 
     def __init__(self, mission: Mission) -> None:
         self._line_ms = PERIODS * mission.simulation.heartbeat_ms

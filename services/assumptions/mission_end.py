@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cratous.core.authority.timeliness import in_time
-from cratous.services.assumptions.observed import Message, Record
+from cratous.services.assumptions.observed import EVERY, Message, Record
 from cratous.spec.mission import Mission
 
 SETTLED = ("Complete", "Failed")
@@ -12,6 +12,8 @@ AT_WORK = ("Transit", "Waiting", "Active", "Suspended")
 
 class EndWatch:
     """No message comes later than the limit and one step."""
+
+    kinds = EVERY
 
     def __init__(self, mission: Mission) -> None:
         simulation = mission.simulation
@@ -24,8 +26,9 @@ class EndWatch:
         ok = in_time(0, now_ms, self._most_ms)
         if message.kind == "TruthState" or not ok:
             self._record.see(now_ms / 1000)
-        text = f"a {message.kind} at {now_ms / 1000:.2f} s"
-        self._record.check(ok, self._most_ms, 0, text)
+        if not ok:
+            text = f"a {message.kind} at {now_ms / 1000:.2f} s"
+            self._record.check(ok, self._most_ms, 0, text)
 
     def end(self, at_ms: int) -> None:
         """Nothing is open."""
@@ -37,6 +40,8 @@ class EndWatch:
 
 class SettledWatch:
     """A task that is complete or has failed is not flown again."""
+
+    kinds = ("TaskProgress",)
 
     def __init__(self) -> None:
         self._settled: dict[int, str] = {}

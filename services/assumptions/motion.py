@@ -16,7 +16,6 @@ from cratous.core.avoidance.manoeuvre import Ability, Motion, fly_to
 from cratous.core.avoidance.prediction import Piece, after
 from cratous.core.kernel import Vec2
 from cratous.core.permit.tubes import disc_within
-from cratous.core.readings.exact import exact
 from cratous.services.assumptions.authority import (
     NUMBERS,
     UNTOUCHED,
@@ -52,10 +51,17 @@ def room_of(daa: Daa) -> Room:
 
 def is_within(off: Position, room: Room) -> bool:
     """Whether something is off its prediction by no more; exact on the given numbers."""
-    if not all(map(math.isfinite, (*off, *room))):
+    numbers = (*off, *room)
+    if not all(map(math.isfinite, numbers)):
         return False
-    beside = exact(disc_within, Vec2(off.north_m, off.east_m), 0.0, room.wide_m)
-    return bool(beside) and bool(exact(disc_within, Vec2(off.alt_m, 0.0), 0.0, room.high_m))
+    ratios = [x.as_integer_ratio() for x in numbers]
+    unit = math.lcm(*(below for _, below in ratios))
+    # whole numbers of one unit: exact, and CPython's fastest
+    whole: list[Any] = [above * (unit // below) for above, below in ratios]
+    north, east, up, wide, high = whole
+    nothing: Any = 0
+    beside = disc_within(Vec2(north, east), nothing, wide)
+    return bool(beside) and bool(disc_within(Vec2(up, nothing), nothing, high))
 
 
 def look(record: Record, off: Position, room: Room, seen: tuple[int, int], what: str) -> None:
@@ -103,6 +109,8 @@ class Positions:
 
 class IntruderWatch:
     """The intruder of each takeover, until the vehicle is handed back."""
+
+    kinds = ("AuthorityChange", "SensedState", "TruthState")
 
     def __init__(self, mission: Mission) -> None:
         self._room = room_of(mission.daa)
@@ -208,6 +216,8 @@ class Path(NamedTuple):
 
 class TrackingWatch:
     """Every vehicle under ICAROUS, from each of its commands to the next heartbeat."""
+
+    kinds = ("GateState", "GatedCommand", "TruthState")
 
     def __init__(self, mission: Mission) -> None:
         self._room = room_of(mission.daa)

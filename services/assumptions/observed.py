@@ -12,6 +12,8 @@ from cratous.services.assumptions.listing import State
 
 ANY_LATER = 2**60
 """As a bound of `in_time`: not before, and however much later [ms]."""
+EVERY: tuple[str, ...] = ()
+"""As `Watch.kinds`: messages of every type."""
 
 
 class Break(NamedTuple):
@@ -91,7 +93,11 @@ class Message(NamedTuple):
 
 
 class Watch(Protocol):
-    """One assumption, or more that are seen in the same messages."""
+    """One assumption, or more that are seen in the same messages. kinds: the types of these, or EVERY."""
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """Nothing follows from messages of other types, so they need not come."""
 
     def message(self, message: Message) -> None:
         """The next message of the log."""

@@ -24,6 +24,8 @@ FEW = 5
 class SensedWatch:
     """Each state that was sensed, at each heartbeat."""
 
+    kinds = ("SensedState", "TruthState")
+
     def __init__(self, mission: Mission) -> None:
         self._gone = {t.id: t.vanishes_ms for t in mission.traffic if t.vanishes_ms is not None}
         self._waiting: dict[tuple[int, int], list[Message]] = {}

@@ -48,7 +48,8 @@ class AssumptionWatch:
         self._records: dict[str, Record] = {}
         for watch in self._watches:
             self._records |= watch.records()
-        self._told: set[str] = set()
+        self._whole = {name for name, one in self._records.items() if one.broken is None}
+        self._by_kind: dict[str, tuple[Watch, ...]] = {}
         self._ended = False
 
     def tap(self, kind: str, envelope: Any) -> list[dict[str, Any]]:
@@ -57,7 +58,11 @@ class AssumptionWatch:
             return []
         source = getattr(envelope, "source", "")
         message = Message(kind, envelope.time_ms, source, envelope.body)
-        for watch in self._watches:
+        watches = self._by_kind.get(kind)
+        if watches is None:
+            asked = (w for w in self._watches if not w.kinds or kind in w.kinds)
+            watches = self._by_kind[kind] = tuple(asked)
+        for watch in watches:
             watch.message(message)
         if kind == "MissionEnd":
             self._ended = True
@@ -66,12 +71,11 @@ class AssumptionWatch:
         return self._newly_broken(envelope.time_ms)
 
     def _newly_broken(self, at_ms: int) -> list[dict[str, Any]]:
-        broken = {name for name, one in self._records.items() if one.broken is not None}
-        fresh = broken - self._told
-        self._told |= fresh
-        return (
-            [row for row in self.rows(at_ms, self._ended) if row["name"] in fresh] if fresh else []
-        )
+        fresh = [name for name in self._whole if self._records[name].broken is not None]
+        if not fresh:
+            return []
+        self._whole.difference_update(fresh)
+        return [row for row in self.rows(at_ms, self._ended) if row["name"] in fresh]
 
     def rows(self, at_ms: int, over: bool) -> list[dict[str, Any]]:
         """One row for each assumption, as plain data, in the order of the listing.

@@ -1,7 +1,9 @@
-"""`campaign.html` from campaign.json alone: one file, nothing is loaded from elsewhere."""
+"""`campaign.html` from campaign.json and maps of flights: one file, nothing is loaded from elsewhere."""
 
 from __future__ import annotations
 
+from base64 import b64encode
+from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
 from math import ceil
@@ -40,8 +42,11 @@ def share(rate: dict[str, Any]) -> str:
     return text
 
 
-def page(summary: dict[str, Any], links: dict[str, str]) -> str:
-    """The page; links: report of a run, by the run's name, relative to the page."""
+def page(
+    summary: dict[str, Any], links: dict[str, str], maps: Mapping[str, bytes] | None = None
+) -> str:
+    """The page. By the name of a run, links: its report, or the mission of what has none, relative to the page; maps: an
+    SVG picture of its flight, which the page then holds."""
     runs = {run["name"]: run for run in summary["runs"]}
     text: str = _template().render(
         c=summary,
@@ -49,6 +54,7 @@ def page(summary: dict[str, Any], links: dict[str, str]) -> str:
         margins=list(_margins(summary)),
         places=list(_places(summary)),
         worst=[{**runs[name], "link": links.get(name)} for name in summary["worst"]],
+        maps={name: b64encode(svg).decode() for name, svg in (maps or {}).items()},
         least=least_margin,
     )
     return text

@@ -32,8 +32,10 @@ def seed_range(_ctx: Any, _param: Any, value: str | None) -> range | None:
 
 
 class Wanted(NamedTuple):
-    """What is to come of it: flights kept, or a search for a run that fails `find`; what is printed."""
+    """What is to come of it: flights kept, or a search for a run that fails `find` (`worst`: that of `searched_for`);
+    what is printed."""
 
+    searched_for: str | None
     reports: int
     find: str | None
     budget: int
@@ -44,6 +46,7 @@ class Wanted(NamedTuple):
 
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path))
+@click.argument("searched_for", metavar="", required=False)
 @click.option("--seeds", callback=seed_range, metavar="A-B", help="Seeds, instead of the file's.")
 @click.option("--workers", type=click.IntRange(1, 1024), default=1, help="Local processes. [1]")
 @click.option("--scheduler", metavar="ADDRESS", help="A scheduler of dask.distributed to use.")
@@ -54,7 +57,11 @@ class Wanted(NamedTuple):
     "--reports", type=click.IntRange(0, 10), default=10, help="Worst flights to keep. [10]"
 )
 @own_option("Every run has to hold these requirements of your own too.")
-@click.option("--find", metavar="ID", help="Search for a run that fails G1 to G5 or one of these.")
+@click.option(
+    "--find",
+    metavar="[worst] ID",
+    help="Search for the worst run of G1 to G5 or one of these, one that fails it.",
+)
 @click.option(
     "--budget", type=click.IntRange(1, 100_000), default=200, help="Runs of a search. [200]"
 )
@@ -77,14 +84,17 @@ def campaign(
     \b
     Examples:  cratous campaign examples/campaigns/options.yaml --workers 2
                cratous campaign examples/crossing/mission.yaml --seeds 1-1000
-               cratous campaign examples/campaigns/traffic.yaml --find G2
+               cratous campaign examples/campaigns/traffic.yaml --find worst G2
 
     Exit codes: 0 all runs hold, 1 something is violated, without a plan, or judge and monitor
     disagree, 2 bad input, 3 something is unknown, excused, impossible or lost.
     """
     from cratous.services.campaign.definition import ALL, load_campaign
 
-    reports, find, budget, as_json, parquet, quiet = Wanted(**wanted)
+    searched_for, reports, find, budget, as_json, parquet, quiet = Wanted(**wanted)
+    if searched_for is not None and find != "worst":
+        raise click.UsageError(f"Got unexpected extra argument ({searched_for})")
+    find = searched_for or find
     if parquet and find is not None:
         raise click.UsageError("--parquet is of the runs of a campaign, not of --find")
     if parquet:
@@ -187,8 +197,7 @@ def _reports(
                     f"{row.run.name} flown again gives another result: {_other(answer, stored)}; "
                     "the stored results of this version are not to be trusted"
                 )
-            if whole:
-                links[row.run.name] = link
+            links[row.run.name] = link if whole else f"flights/{row.run.name}.yaml"
             folder.parent.mkdir(parents=True, exist_ok=True)
             mission = folder.parent / f"{row.run.name}.yaml"
             write_atomically(mission, row.run.decides["mission"])
@@ -214,6 +223,18 @@ def _is_kept(folder: Path, digest: str, own: list[Any]) -> bool:
     return bool(found == digest and files == own)
 
 
+def _maps(place: Path, links: dict[str, str]) -> dict[str, bytes]:
+    """The maps of the flights whose reports are kept."""
+    from cratous.services.results.names import MAP_NAME
+
+    found = {}
+    for name, link in links.items():
+        file = (place / link).with_name(MAP_NAME)
+        if file.is_file():
+            found[name] = file.read_bytes()
+    return found
+
+
 def _write(summary: dict[str, Any], place: Path, links: dict[str, str]) -> None:
     from cratous.core.files.whole_file import write_atomically
     from cratous.services.campaign.pages import page
@@ -221,7 +242,7 @@ def _write(summary: dict[str, Any], place: Path, links: dict[str, str]) -> None:
     from cratous.services.campaign.tables import csv_text, junit_text
 
     texts = {
-        "campaign.html": page(summary, links), "runs.csv": csv_text(summary),
+        "campaign.html": page(summary, links, _maps(place, links)), "runs.csv": csv_text(summary),
         "junit.xml": junit_text(summary), "campaign.json": text_of(summary),
     }  # fmt: skip
     for name, text in texts.items():

@@ -67,11 +67,28 @@ def _case(
 
 
 def _suite(file: Path) -> Iterator[tuple[int, dict[str, Any]]]:
+    """The cases of a suite, or of those that it names, which lie beside it."""
     suite = _object(json_of(text_of(file, CONFIG_BYTES), str(file)), str(file))
+    if "tests" in suite or "suites" not in suite:
+        yield from enumerate(_cases(file, suite), 1)
+        return
+    names = suite["suites"]
+    plain = isinstance(names, list) and all(isinstance(n, str) and Path(n).name == n for n in names)
+    if not plain:
+        expected = "a list of names"
+        raise BadInput("suites have names", where=str(file), item="suites", expected=expected)
+    number = 0
+    for name in names:
+        one = file.with_name(f"{name}.json")
+        for case in _cases(one, _object(json_of(text_of(one, CONFIG_BYTES), str(one)), str(one))):
+            number += 1
+            yield number, case
+
+
+def _cases(file: Path, suite: dict[str, Any]) -> Iterator[dict[str, Any]]:
     tests = suite.get("tests")
     if not isinstance(tests, list):
         raise BadInput("a suite has tests", where=str(file), item="tests", expected="a list")
-    number = 0
     for at, given in enumerate(tests):
         where = f"{file}, tests[{at}]"
         test = _object(given, where)
@@ -85,9 +102,8 @@ def _suite(file: Path) -> Iterator[tuple[int, dict[str, Any]]]:
         )
         told = _oracle(oracle)
         for index, requirement in enumerate(_specification(spec).requirements):
-            number += 1
             name = f"{test.get('name', at)}:{requirement.name}"
-            yield number, _case(name, str(index), (spec, trace), told.get(str(index), {}))
+            yield _case(name, str(index), (spec, trace), told.get(str(index), {}))
 
 
 def _oracle(file: Path) -> dict[str, dict[int, int]]:

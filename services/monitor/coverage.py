@@ -102,18 +102,14 @@ class CoverageWatch:
             self.kernels[task] = qualified(mark_seen)
             self._areas[task].look(quad)
             return
-        low = [min(p[k] for p in quad) for k in (0, 1)]
-        high = [max(p[k] for p in quad) for k in (0, 1)]
-        edges = edges_of(quad)
-
-        def seen(point: tuple[float, float]) -> bool:
-            inside_box = all(low[k] <= point[k] <= high[k] for k in (0, 1))
-            if not inside_box:
-                return False
-            self.kernels[task] = qualified(locate)
-            return bool(locate(edges, Vec2(*point)) >= 0)
-
-        self._unseen[task] = [p for p in self._unseen[task] if not seen(p)]
+        (south, west), (north, east) = (
+            [pick(p[k] for p in quad) for k in (0, 1)] for pick in (min, max)
+        )
+        near = [p for p in self._unseen[task] if south <= p[0] <= north and west <= p[1] <= east]
+        if near:
+            edges, self.kernels[task] = edges_of(quad), qualified(locate)
+            seen = {p for p in near if locate(edges, Vec2(*p)) >= 0}
+            self._unseen[task] = [p for p in self._unseen[task] if p not in seen]
 
     def served(self, task: int) -> bool:
         """Whether enough of a search has been seen (kernel `enough_seen`)."""

@@ -42,6 +42,8 @@ class Pair:
     """Least miss distance that a step lost well clear with was headed for: by modified tau well clear
     is lost before anybody is near."""
     level: bool = False
+    measured: Sample | None = None
+    """Own, at the end of the last step at which the pair was looked at."""
 
 
 def _relative(own: Sample, other: Sample) -> tuple[Fraction, Fraction, Fraction]:
@@ -127,6 +129,7 @@ class SeparationWatch:
     def __init__(self, mission: Mission, presence: Presence) -> None:
         self._mission, self._presence = mission, presence
         self._protected = sorted(v.id for v in mission.vehicles if v.protected)
+        self._ours = frozenset(self._protected)
         volume = mission.daa.well_clear
         self._volume = volume
         self._units = WholeUnits(
@@ -143,14 +146,12 @@ class SeparationWatch:
         """Check every pair that was in the air at both ends of the step."""
         lost = set()
         whole: WholeStep | None = None
+        there = sorted(number for number in after if number in before)
         for own in self._protected:
-            for other in sorted(after):
-                mutual = other in self._protected and other < own
-                if (
-                    other == own
-                    or mutual
-                    or not all(i in before and i in after for i in (own, other))
-                ):
+            if own not in before or own not in after:
+                continue
+            for other in there:
+                if other == own or (other < own and other in self._ours):  # a pair once
                     continue
                 whole = whole or self._units.step(before, after)
                 if self._check((own, other), before, after, whole.lost(own, other)):
@@ -163,8 +164,10 @@ class SeparationWatch:
         own, other = key
         pair = self.pairs.setdefault(key, Pair())
         pair.checks += 1
-        self._measure(pair, before[own], before[other])
+        if pair.measured is not before[own]:  # else that was the end of the step before
+            self._measure(pair, before[own], before[other])
         self._measure(pair, after[own], after[other])
+        pair.measured = after[own]
         if lost:
             pair.lost_steps += 1
             s0, s1 = _relative(before[own], before[other]), _relative(after[own], after[other])

@@ -39,6 +39,8 @@ CLOCK = re.compile(
 DEFINED = re.compile(r"-?[0-9]+(\.[0-9]+)?([eE][-+]?[0-9]+)?")
 """A definition that is a number; `1/3` is for its author's tool to divide."""
 PROBABLY = re.compile(r"\bwith\s+probability\b", re.IGNORECASE)
+UNFORMED = "<b><i>"
+"""FRET puts into these what it has taken over from a sentence as it stood, without reading it."""
 BOOLS = ("boolean", "bool")
 WHOLE = ("integer", "int", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
 REALS = ("double", "single", "float", "real")
@@ -203,4 +205,7 @@ def _ways(timed: bool) -> list[tuple[str, Kind | None]]:
 def _asked(text: str, names: Names, kind: Kind | None, timed: bool) -> Formula:
     if kind is None:
         return fretish_read.asked(text, names, timed)
+    if UNFORMED in text:
+        what = "FRET itself has not read this part of the sentence, so it has no formula"
+        raise Wrong(what, text.index(UNFORMED), got=text[text.index(UNFORMED) + len(UNFORMED) :])
     return fret_formula.asked(text, names, kind)

@@ -1,7 +1,8 @@
-"""Variables of FRET's that are defined by a formula over others at the same sample: conditions, and what is calculated.
+"""Variables of FRET's that are defined by a formula over others, at the same sample or, where samples are counted, the
+one before: conditions, and what is calculated.
 
-Grammar: `fret_definition.lark`. A definition with `pre`, `->`, `if` or a function, one that comes back to itself, and one
-of another kind than its variable is not read: a requirement that needs it says why.
+Grammar: `fret_definition.lark`. A definition that comes back to itself, but for a number that looks at itself at the
+sample before, and one of another kind than its variable is not read: a requirement that needs it says why.
 """
 
 from __future__ import annotations
@@ -11,7 +12,8 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from cratous.services.requirements.arithmetic import Term
-from cratous.services.requirements.fret_nodes import term, tree_of
+from cratous.services.requirements.fret_nodes import STREAMS, term, tree_of
+from cratous.services.requirements.fret_streams import begun, named, only_before, stream
 from cratous.services.requirements.fret_terms import (
     Defined,
     Meaning,
@@ -19,8 +21,8 @@ from cratous.services.requirements.fret_terms import (
     Unread,
     Wrong,
     grammar,
-    parsed,
 )
+from cratous.services.requirements.specification import Signal
 from cratous.services.requirements.units import Quantity
 
 if TYPE_CHECKING:
@@ -36,7 +38,8 @@ def with_definitions(names: Names) -> Names:
     """The same names, with what the definitions that can be read over them say."""
     bound, size = dict(names.bound), dict[str, int]()
     left = {name: one for name, one in bound.items() if isinstance(one, Defined)}
-    inside = {name: _names_in(one.text) for name, one in left.items()}
+    trees = {name: _tree(one) for name, one in left.items()}
+    inside = {name: _names_in(name, tree) for name, tree in trees.items()}
     while left:
         known = replace(names, bound=bound)
         # what another definition says is told once that is read
@@ -46,34 +49,65 @@ def with_definitions(names: Names) -> Names:
             return replace(names, bound={**bound, **{n: Unread(said) for n in left}})
         for name, one in ready.items():
             size[name] = sum(size.get(one, 1) for one in inside[name])
-            is_long = size[name] > MOST
-            bound[name] = Unread("its definition is too long") if is_long else _meaning(one, known)
+            is_long, tree = size[name] > MOST, trees[name]
+            bound[name] = (
+                Unread("its definition is too long")
+                if is_long
+                else _unread(tree)
+                if isinstance(tree, Wrong)
+                else _meaning(name, one, tree, known)
+            )
             del left[name]
     return replace(names, bound=bound)
 
 
-def _names_in(text: str) -> list[str]:
-    try:
-        tree = parsed(_parser(), text, "definitions")
-    except Wrong:
-        return []
-    return [str(one.children[0]) for one in tree.iter_subtrees() if one.data == "truth"]
-
-
-def _meaning(one: Defined, names: Names) -> Meaning:
+def _tree(one: Defined) -> Any:
+    """The tree of a definition, or why there is none."""
     try:
         tree = tree_of(_parser(), one.text, "definitions", is_number=not one.is_bool)
+        begun(tree)
+    except Wrong as no:
+        return no
+    return tree
+
+
+def _names_in(own: str, tree: Any) -> list[str]:
+    """The variables of a definition; without itself if it looks at itself under `pre` alone."""
+    if isinstance(tree, Wrong):
+        return []
+    kinds = ("truth", "name")
+    found = [str(one.children[0]) for one in tree.iter_subtrees() if str(one.data) in kinds]
+    return [name for name in found if name != own] if only_before(tree, own) else found
+
+
+def _unread(no: Wrong) -> Unread:
+    # of one that is defined by another the reason of that is enough
+    return Unread(no.what if no.what.startswith(NOT_READ) else f"{NOT_READ}: {no.what}")
+
+
+def _meaning(name: str, one: Defined, tree: Any, names: Names) -> Meaning:
+    recursive = any(name == str(n.children[0]) for n in tree.iter_subtrees() if n.data == "name")
+    if recursive:  # at the sample before it is a number of its name
+        signals = {**names.signals, name: Signal("float")}
+        names = replace(names, signals=signals, bound={**names.bound, name: name})
+    try:
         for node in tree.iter_subtrees():  # parts before the whole
             if node.data != "start":
                 got = [getattr(child, "made", child) for child in node.children]
-                node.made = term(str(node.data), got, names, int(node.meta.start_pos))
+                kind = str(node.data)
+                node.made = (
+                    stream(node, got, names)
+                    if kind in STREAMS
+                    else term(kind, got, names, int(node.meta.start_pos))
+                )
         made: Any = tree.children[0].made
     except Wrong as no:
-        # of one that is defined by another the reason of that is enough
-        return Unread(no.what if no.what.startswith(NOT_READ) else f"{NOT_READ}: {no.what}")
+        return _unread(no)
     is_signal = isinstance(made, str) and names.signals[made].kind != "bool"
     if one.is_bool == (is_signal or isinstance(made, Quantity | Term)):
         return Unread("this variable is defined as what it is not")
+    if recursive and isinstance(made, Term):
+        made = named(name, made)
     found: Meaning = made
     return found
 

@@ -12,15 +12,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cratous.services.requirements import formula as formulas
 from cratous.services.requirements.fret_nodes import term, tree_of
-from cratous.services.requirements.fret_terms import EVER, Names, Wrong, grammar
+from cratous.services.requirements.fret_terms import EARLIER, EVER, Names, Wrong, grammar
 from cratous.spec.files.limits import integer_of
 
 if TYPE_CHECKING:
     from lark import Lark
 
 MAX_BOUND = 10**9
-EARLIER = formulas.once(formulas.TRUE, 1, EVER)
-"""There is a sample before."""
 FIRST = formulas.Not(EARLIER)
 
 

@@ -1,5 +1,6 @@
 """What FRET's formulas and its structured English say without time: what joins conditions, comparisons, and numbers that
 are calculated, each in one unit. What has no clear meaning is refused: quotients of whole numbers, most functions.
+What only definitions have, Lustre's `->`, `pre` and `if`, `fret_streams` makes.
 """
 
 from __future__ import annotations
@@ -19,8 +20,20 @@ if TYPE_CHECKING:
 LONGEST = 2000
 """Characters of what is calculated."""
 SIGNS = {"plus": "+", "minus": "-", "times": "*", "over": "/"}
-FUNCTIONS = {"absReal": 1, "absInt": 1, "preReal": 2, "preInt": 2, "preBool": 2}
+FUNCTIONS = {
+    "absReal": 1,
+    "absInt": 1,
+    "preReal": 2,
+    "preInt": 2,
+    "preBool": 2,
+    "sin": 1,
+    "cos": 1,
+    "sqrt": 1,
+}
 """Those that are read, and how many arguments they have."""
+STREAMS = {"begins": (), "choice": (0,), "before": ()}
+"""Nodes of definitions that are numbers or truth values as the place where they stand asks; which parts are always truth
+values."""
 NONE = ("", "1")
 NOT_SURE = "of a quotient of whole numbers it is not sure whether it is one"
 NUMBERS = ("number", "negative", *SIGNS)
@@ -31,21 +44,32 @@ PLAIN = {"truth": "name", "constant": "word"}
 
 def settled(tree: Any, is_number: bool = False) -> None:
     """Say of each name and constant whether it is a number or a truth value there; Wrong where the other stands."""
-    for node in tree.iter_subtrees_topdown():
+    todo = [(tree, is_number)]
+    while todo:
+        node, wanted = todo.pop()
         kind = str(node.data)
-        numeric = _is_calculating(node) or (is_number and kind == "start")
-        for child in node.children:
+        for n, child in enumerate(node.children):
             if not hasattr(child, "data"):
                 continue
-            if numeric and str(child.data) in PLAIN:
-                child.data = PLAIN[str(child.data)]
-            is_number = str(child.data) in NUMBERS or _is_calculating(child, "compare")
-            if numeric and not is_number and str(child.data) not in PLAIN.values():
-                raise Wrong("a truth value is calculated with", child.meta.start_pos, "a number")
-            if not numeric and is_number and kind not in ("between", "up_to", "duration"):
-                raise Wrong(
-                    "a number stands for a truth value", child.meta.start_pos, "a comparison"
-                )
+            numeric = _is_calculating(node)
+            if kind == "start" or kind in STREAMS:
+                numeric = wanted and n not in STREAMS.get(kind, ())
+            _settle(child, numeric, kind)
+            todo.append((child, numeric))
+
+
+def _settle(child: Any, numeric: bool, above: str) -> None:
+    """Say of a node below one of a kind that it is a number, or a truth value; Wrong where it is none."""
+    if numeric and str(child.data) in PLAIN:
+        child.data = PLAIN[str(child.data)]
+    kind = str(child.data)
+    if kind in STREAMS:
+        return
+    is_number = kind in NUMBERS or _is_calculating(child, "compare")
+    if numeric and not is_number and kind not in PLAIN.values():
+        raise Wrong("a truth value is calculated with", child.meta.start_pos, "a number")
+    if not numeric and is_number and above not in ("between", "up_to", "duration"):
+        raise Wrong("a number stands for a truth value", child.meta.start_pos, "a comparison")
 
 
 def _is_calculating(node: Any, but: str = "") -> bool:
@@ -122,6 +146,8 @@ class _Numbers:
             if isinstance(one, Quantity):
                 return Quantity(abs(one.value), one.unit, one.text.lstrip("-"))
             return self._one(ABSOLUTE, one, f"{name}({{}})")
+        if len(given) == 1:
+            return self._real(name, given[0])
         if not self.names.counted:
             raise self._wrong("samples have times, so none is the one before", "", name)
         first, one = given
@@ -132,6 +158,17 @@ class _Numbers:
         text, unit, whole = self._said(one)
         begins, said = self._side(first, unit)
         return self._term(PRE, (begins, one), f"{name}({said},{text})", unit, whole)
+
+    def _real(self, name: str, one: Any) -> Term:
+        """A sine, cosine or root, of what has no unit or is in radians."""
+        said, unit = (
+            (repr(float(one.value)), one.unit) if isinstance(one, Quantity) else self._said(one)[:2]
+        )
+        if unit not in NONE and (unit != "rad" or name == "sqrt"):
+            expected = "a number without a unit" if name == "sqrt" else "an angle in rad"
+            raise self._wrong("this has no unit that is known", expected, unit)
+        side = float(one.value) if isinstance(one, Quantity) else one
+        return self._term(name, (side,), f"{name}({said})", unit and "1", False)
 
     def _before(self, first: Any, phi: Any) -> formulas.Formula:
         """Phi at the sample before, and at the first sample a constant."""

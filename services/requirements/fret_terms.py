@@ -23,9 +23,11 @@ if TYPE_CHECKING:
     from lark import Lark
 
 NESTED = 200
-CALLS = ("^", "(", "mod")
+CALLS = ("^", "mod")
 EVER = formulas.MAX_TIME
 """The bound of what has none: no two samples are so far apart."""
+EARLIER = formulas.once(formulas.TRUE, 1, EVER)
+"""There is a sample before."""
 
 
 class Wrong(Exception):
@@ -170,7 +172,10 @@ def parsed(parser: Lark, text: str, language: str) -> Any:
         got = str(token or text[offset : offset + 1]) or "the end of it"
         what = f"this is outside of the part of {language} that is read"
         if got in CALLS:
-            what = "this function, or operator of numbers, is not read"
+            what = "this operator of numbers is not read"
+        elif got == "(" and (name := re.search(r"[A-Za-z_]\w*\s*$", text[:offset])):
+            what = "this function is not read"
+            offset, got = name.start(), name.group().strip()
         raise Wrong(what, offset, got=got) from None
 
 

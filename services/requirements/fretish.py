@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 
-from cratous.services.requirements.arithmetic import sources
+from cratous.services.requirements.arithmetic import ONE, PRE, TWO, sources, terms
 from cratous.services.requirements.formula import TRUE, Always, Bounded, Formula, Join, Not, Reaches
 from cratous.services.requirements.specification import Specification
 
@@ -25,6 +25,8 @@ WORDS = re.compile(
     re.IGNORECASE,
 )
 """FRETish's own: no signal can be called so."""
+SAID = {*ONE, *TWO, PRE}
+"""What is calculated in a sentence."""
 DEEPEST, LONGEST = 200, 10_000
 """Levels and characters of a condition or a response, so that no formula makes one without end."""
 
@@ -110,6 +112,9 @@ def _side(side: str | float, spec: Specification) -> str:
     for name in sources([side], spec.signals):
         if WORDS.fullmatch(name) or name.startswith("_"):
             raise NoForm(f"FRETish has no signal of the name {name}")
+    made = spec.signals[side].made
+    if made is not None and any(one.kind not in SAID for one in terms(made)):
+        raise NoForm("what FRET's definitions say in Lustre has no form")
     return side
 
 

@@ -23,6 +23,10 @@ CROSSING = ROOT / "examples" / "crossing" / "mission.yaml"
         ([str(CROSSING), "--seeds", "0-3"], "1-50"),
         ([str(CROSSING), "--workers", "0"], "workers"),
         ([str(CROSSING), "--find", "G9"], "G9"),
+        ([str(CROSSING), "--find", "worst", "G9"], "G9"),
+        ([str(CROSSING), "--find", "worst"], "worst"),
+        ([str(CROSSING), "--find", "G2", "G3"], "unexpected extra argument (G3)"),
+        ([str(CROSSING), "G2"], "unexpected extra argument (G2)"),
         ([str(CROSSING.parent.parent / "relations" / "mission.yaml"), "--seeds", "1-2"], "no variants"),
     ],
 )  # fmt: skip
@@ -36,12 +40,13 @@ def test_bad_input_is_named_and_nothing_is_written(
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("asked", [["G2"], ["worst", "G2"]])
 def test_a_search_without_a_space_is_refused(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    asked: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     file, out = written(tmp_path, {"plain": ""}, ""), tmp_path / "out"
     code = main(
-        ["campaign", str(file), "--find", "G2", "--allow-unproved", "--json", "-o", str(out)]
+        ["campaign", str(file), "--find", *asked, "--allow-unproved", "--json", "-o", str(out)]
     )
     assert code == 2
     assert "nothing to search" in json.loads(capsys.readouterr().out)["error"]

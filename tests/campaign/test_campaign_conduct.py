@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import base64
 import csv
 import io
+import re
 import sqlite3
 import sys
 from pathlib import Path
@@ -328,8 +330,13 @@ def test_the_page_is_whole_and_loads_nothing(tmp_path: Path) -> None:
     results = [flown({"G2": float(k)}) for k in range(-2, 20)]
     results[5]["judge"]["refused"] = "<script>alert(1)</script>"
     found = summary_of(tmp_path, list(results))
-    text = page(found, {"plain-as-written-seed1": "flights/plain-as-written-seed1/report.html"})
+    links = {"plain-as-written-seed1": "flights/plain-as-written-seed1/report.html"}
+    text = page(found, links, {"plain-as-written-seed1": b"<svg>map</svg>"})
     assert "<script" not in text
+    assert text.count("<img") == page(found, links).count("<img") + 1 == 1
+    picture = re.search(r'<img alt="Map of (.*)" src="data:image/svg\+xml;base64,(.*)">', text)
+    assert picture is not None
+    assert (picture[1], base64.b64decode(picture[2])) == (next(iter(links)), b"<svg>map</svg>")
     assert "http" not in text.replace("http://www.w3.org", "")
     assert 'href="flights/plain-as-written-seed1/report.html"' in text
     assert text.count("<circle") == 22

@@ -161,6 +161,7 @@ SUITES = {
     "ft_subset": (12, 0, 0),
     "long_trace": (8, 0, 0),
     "cav": (3, 0, 13),
+    "all": (36, 3, 24),  # those above
 }
 
 
@@ -171,6 +172,15 @@ def test_suites_of_r2u2(shared: Path, name: str):
     assert [r.text for r in report.shown] == []
     counts = (report.passed, report.edges.total(), report.skipped.total())
     assert (report.failed, counts) == (0, SUITES[name])
+
+
+@pytest.mark.parametrize(
+    "text", ['{"suites": ["../cav"]}', '{"suites": [3]}', '{"suites": "cav"}', "{}"]
+)
+def test_a_suite_of_suites_names_those_beside_it(tmp_path: Path, text: str):
+    (tmp_path / "all.json").write_text(text)
+    with pytest.raises(BadInput, match=r"suites have names|a suite has tests"):
+        run(suite("monitor"), tmp_path / "all.json", 3)
 
 
 def test_verdicts_of_r2u2(shared: Path):

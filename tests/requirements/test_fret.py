@@ -148,7 +148,10 @@ def test_a_sentence_of_an_export_is_said_with_its_ticks(timing) -> None:
     ("text", "why", "place"),
     [
         ("(G (alt ^ 2.0 > FLOOR))", "operator of numbers", "column 9"),
-        ("(G far(alt))", "this function", "column 7"),
+        ("(G far(alt))", "this function is not read; got far", "column 4"),
+        ("(G (det (alt, 1.0) > 0.0))", "this function is not read; got det", "column 5"),
+        ("(G (r r))", "outside", "column 7"),
+        ("(H <b><i>(mag ( alt ) > 1.0)</i></b>)", "FRET itself has not read", "column 4"),
         ("(G far)", "a function", "column 4"),
         ("(G busy)", "a mode that is defined", "column 4"),
         ("(G odd)", "no type", "column 4"),
