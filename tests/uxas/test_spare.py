@@ -74,4 +74,4 @@ def test_every_loop_that_planning_may_have_compiled_is_read_ahead() -> None:
 
 
 def test_the_pieces_plan_what_planning_is_asked_for() -> None:
-    assert sum(1 for _ in spare.pieces()) == len(spare._LOOPS) + len(spare._TASKS) + 1
+    assert sum(1 for _ in spare.pieces()) == len(spare._LOOPS) + len(spare.TASKS) + 1
