@@ -49,12 +49,17 @@ class Inputs:
     def take_over(self, earlier: Inputs) -> None:
         """Options that were made for an earlier request are not made anew, where all that they depend on is the same:
         task, who flies and who drives, and how, zones, terrain. Where the vehicles are does not count."""
-        made: Mapping[int, Offers] = earlier.__dict__.get("_by_task", {})
+        made: Mapping[int, Offers] = {**earlier._taken, **earlier.__dict__.get("_by_task", {})}
         if made and earlier._surroundings != self._surroundings:
             return
         for task in self.mission.tasks:
             if task.id in made and earlier.mission.task(task.id) == task:
                 self._taken.setdefault(task.id, made[task.id])
+
+    def make_options(self, task_id: int) -> None:
+        """Have the options of one task made before anybody asks for them."""
+        if task_id not in self._taken:
+            self._taken[task_id] = expand(self.mission, [self.mission.task(task_id)], self.zones)
 
     @property
     def _surroundings(self) -> tuple[object, tuple[Zone, ...], float]:

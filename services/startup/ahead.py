@@ -27,7 +27,7 @@ from cratous.core.geofence.mission_leg_arrays import table
 from cratous.core.readings.machine.compiled import is_kept, machine
 from cratous.core.routing.bulk import LINKS_MOST, Routed, Turning, direct_many
 from cratous.services.planning import coming
-from cratous.services.planning.assign import simple_instance
+from cratous.services.planning.assign_warm import simple_instance
 from cratous.services.processes.leash import ENDS_WITH, end_with_parent
 from cratous.spec.assignment.search import TIME
 

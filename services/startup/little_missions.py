@@ -25,11 +25,12 @@ vehicles:
     max_bank_deg: 30
     max_climb_m_s: 3
     cameras: [{payload_id: 1, hfov_deg: 45, pixels: 1000}]
+"""
+_ZONE = """
 zones:
   - id: 1
     kind: keep_out
     vertices: [[1000, -200], [1000, 200], [1200, 200], [1200, -200]]
-tasks:
 """
 TASKS = (
     "kind: point_search, points: [{north_m: 4500, east_m: 0}]",
@@ -41,10 +42,10 @@ TASKS = (
 """One task of each kind, without its id."""
 
 
-def plan(tasks: Sequence[str]) -> None:
-    """Plan the mission of one vehicle, one zone and these of `TASKS`."""
+def plan(tasks: Sequence[str], zone: str = _ZONE) -> None:
+    """Plan the mission of one vehicle, a zone, which may be none, and these of `TASKS`."""
     lines = (f"  - {{id: {number}, {task}}}\n" for number, task in enumerate(tasks, 1))
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "mission.yaml"
-        file.write_text(_HEAD + "".join(lines), encoding="utf-8")
+        file.write_text(f"{_HEAD}{zone}tasks:\n{''.join(lines)}", encoding="utf-8")
         make_plan(load(file))

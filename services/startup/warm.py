@@ -22,7 +22,7 @@ from cratous.core.kernel.sources import ROOT
 from cratous.core.readings.machine.compiled import compiled
 from cratous.core.readings.tiered import at_once
 from cratous.core.well_clear import horizontal_violation, violation, violation_within
-from cratous.services.planning import assign, coming
+from cratous.services.planning import assign_warm, coming
 from cratous.services.startup import ahead, little_missions
 
 ENCOUNTER = """NAME sx sy sz trk gs vs time
@@ -75,7 +75,7 @@ BESIDE = 10
 """How much what is compiled meanwhile stands back behind what answers (`nice`)."""
 Step = tuple[str, Callable[[], None]]
 PLANNING: tuple[Step, ...] = (
-    ("the searches of the assignment", assign.warm),
+    ("the searches of the assignment", assign_warm.warm),
     ("the loops of planning", warm_planning),
 )
 OTHERS: tuple[Step, ...] = (

@@ -22,7 +22,8 @@ from cratous.core.readings.tiered import at_once
 from cratous.core.routing.bulk import direct_many
 from cratous.core.routing.visibility import Roadmap, routes
 from cratous.services.planning import coming
-from cratous.services.planning.assign import simple_instance, solve
+from cratous.services.planning.assign import solve
+from cratous.services.planning.assign_warm import simple_instance
 from cratous.services.startup import ahead, warm
 from cratous.spec.assignment.search import ORDER, AssignmentProblem, Choice
 from cratous.spec.errors import Refused
