@@ -67,6 +67,16 @@ class Routes:
         other.options = options
         return other
 
+    def take_over(self, earlier: Routes) -> None:
+        """What was found among the same zones by the same vehicles, but from where they have been before."""
+        if self._times or earlier.flying != self.flying:
+            return
+        begun = set(earlier.poses)
+        self._maps.update(earlier._maps)
+        self._times.update(
+            (ends, ms) for ends, ms in earlier._times.items() if ends[0] not in begun
+        )
+
     def _ends(self, vehicle: int, before: int, to: int) -> Ends:
         start = self.poses[vehicle] if before == START else self.options[before].end
         return start, self.flyers[vehicle], self.options[to].start

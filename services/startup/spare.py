@@ -79,7 +79,7 @@ class Told:
         )
 
     def options(self, done: bool = False) -> Iterator[bool]:
-        """Those of the tasks that are known, one task at a time, if there is more than there was; else `done`."""
+        """Those of the tasks that are known, one task at a time, and ways between them, if more is known than was; `done`."""
         counts = self._counts()
         inputs = None if counts == self._made else self._source.foreseen()
         self._made = counts
@@ -88,6 +88,7 @@ class Told:
             for task in inputs.mission.tasks:
                 inputs.make_options(task.id)
                 yield True
+            yield from (True for _ in inputs.find_ways())
         yield done
 
 

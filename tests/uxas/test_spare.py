@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import itertools
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from uxas_tools import process, write_cfg
 from cratous.bridge import lmcp
 from cratous.services.pipeline.contexts import Contexts
 from cratous.services.planning import inputs
+from cratous.services.planning import routes as planned
 from cratous.services.startup import spare
 from cratous.services.uxas.message_source import MessageSource
 from cratous.services.uxas.process import Process
@@ -125,7 +127,9 @@ def test_what_has_been_told_says_what_is_read(
     assert [next(pieces) for _ in range(3)] == [True, False, False]  # its options
     assert "read" not in did
     tell(ours, line(6))
-    assert [next(pieces) for _ in range(6)] == [True, True, True, True, False, False]
+    assert [*itertools.takewhile(bool, pieces)] == [
+        True
+    ] * 6  # two tasks, ways of two vehicles, two pieces
     assert did == ["1", "read"]
 
 
@@ -148,20 +152,32 @@ def test_options_made_ahead_are_those_of_the_request_if_it_is_for_the_same(
     tell(ours, line(6), must_fly(5))
     monkeypatch.setattr(spare, "_read", lambda: iter(()))
     pieces = spare.pieces(contexts)
-    assert [next(pieces) for _ in range(4)] == [True, True, True, False]
+    assert [*itertools.takewhile(bool, pieces)] == [
+        True
+    ] * 5  # a point, two tasks, ways of two vehicles
     made: list[int] = []
-    expand = inputs.expand
+    searched: list[int] = []
+    expand, routes = inputs.expand, planned.routes
 
     def counted(mission: Any, tasks: Any, *more: Any) -> Any:
         made.extend(task.id for task in tasks)
         return expand(mission, tasks, *more)
 
+    def looked(starts: Any, *more: Any) -> Any:
+        searched.append(len(starts))
+        return routes(starts, *more)
+
     monkeypatch.setattr(inputs, "expand", counted)
+    monkeypatch.setattr(planned, "routes", looked)
     said: list[Any] = []
     ours.bus.tap(lambda envelope: said.append(envelope.body))
     tell(ours, request(6, 5, vehicles=vehicles))
     ours.run(10.0)
     assert sorted(made) == ([] if vehicles == (1, 2) else [5, 6])
+    offers = [body for body in said if type(body).__name__ == "TaskPlanOptions"]
+    options = sum(len(offer.Options) for offer in offers)
+    # from each vehicle to each option, and along each: no way between two options
+    assert (sum(searched) == (len(vehicles) + 1) * options) == (vehicles == (1, 2))
     (response,) = (body for body in said if type(body).__name__ == "AutomationResponse")
     assert response.MissionCommandList, response.Info
 
