@@ -58,7 +58,11 @@ class Inputs:
         for task in self.mission.tasks:
             if task.id in made and earlier.mission.task(task.id) == task:
                 self._taken.setdefault(task.id, made[task.id])
-        self.finder.take_over(earlier.finder)
+        options = [option for made, _ in self._taken.values() for option in made]
+        known = {pose for option in options for pose in (option.start, option.end)}
+        self.finder.take_over(
+            earlier.finder, known
+        )  # and nothing of other tasks: it would grow for ever
 
     def make_options(self, task_id: int) -> None:
         """Have the options of one task made before anybody asks for them."""

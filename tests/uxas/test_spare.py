@@ -193,3 +193,18 @@ def test_a_world_that_means_nothing_is_left_alone(planning: tuple[Process, Conte
     assert source.foreseen() is not None
     tell(ours, lmcp.new("RemoveEntities", EntityList=[1, 2]))
     assert source.foreseen() is None
+
+
+def test_of_ways_only_those_of_tasks_that_are_asked_for_again_are_kept(
+    planning: tuple[Process, Contexts],
+) -> None:
+    """Else a process that is asked for ever new tasks would remember the ways of all of them."""
+    ours, contexts = planning
+    tell(ours, line(6), must_fly(5), line(7))
+    kept: list[int] = []
+    for tasks in ((6, 5), (6, 5), (7,)):
+        tell(ours, request(*tasks, vehicles=(1, 2)))
+        ours.run(10.0 * (len(kept) + 1))
+        (*_, newest) = contexts._found.values()
+        kept.append(len(newest.inputs.finder._times))  # type: ignore[union-attr]
+    assert kept[0] == kept[1] > kept[2]
