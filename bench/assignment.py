@@ -16,9 +16,10 @@ import subprocess
 import time
 from pathlib import Path
 
-from cratous.services.planning.assign import Limits, solve, warm
+from cratous.services.planning.assign import Limits, solve
 from cratous.services.planning.assign_certificate import certified, verify
 from cratous.services.planning.assign_vectors import read
+from cratous.services.planning.assign_warm import warm
 
 
 def main() -> None:

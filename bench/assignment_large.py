@@ -13,7 +13,8 @@ import random
 import resource
 import time
 
-from cratous.services.planning.assign import Limits, solve, warm
+from cratous.services.planning.assign import Limits, solve
+from cratous.services.planning.assign_warm import warm
 from cratous.spec.assignment.search import AssignmentProblem, Choice
 
 SIDE_M, SPEED_M_S = 30_000.0, 25.0

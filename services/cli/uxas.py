@@ -100,7 +100,8 @@ def uxas(
                 signal.signal(number, lambda *_: _stop(process))
             log("INFO", f"running {cfg_path} as entity {root['EntityID']}")
             limit = run_until or root["RunDuration_s"]
-            process.run(None if limit is None else float(limit), _spare(config, without))
+            spare = _spare(config, without, process.host.shared.get("contexts"))
+            process.run(None if limit is None else float(limit), spare)
         log("INFO", "ended")
     finally:
         log.close()
@@ -139,13 +140,13 @@ def _compile_ahead(config: Any, without: tuple[str, ...], log: Any) -> None:
         ensure_planning(lambda text: log("WARN", text))
 
 
-def _spare(config: Any, without: tuple[str, ...]) -> Iterator[None] | None:
+def _spare(config: Any, without: tuple[str, ...], contexts: Any) -> Iterator[bool] | None:
     """What is done before the first request comes, so that it takes no longer than the second."""
     if not _plans(config, without):
         return None
     from cratous.services.startup.spare import pieces
 
-    return pieces()
+    return pieces(contexts)
 
 
 def _versions() -> None:

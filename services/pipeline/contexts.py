@@ -65,6 +65,7 @@ class Contexts:
         self.subscribes: tuple[str, ...] = (*source.subscribes, UNIQUE)
         self._found: dict[int, Context | CratousError] = {}
         self._told: list[int] = []
+        self._expected: Inputs | None = None
 
     @property
     def world(self) -> Known:
@@ -109,10 +110,18 @@ class Contexts:
             for found in reversed(self._found.values()):
                 if isinstance(found, Context):
                     inputs.take_over(found.inputs)
+            if self._expected is not None:
+                inputs.take_over(self._expected)
         inputs.check_starts()
         if not inputs.wanted:
             raise NoPlan(("no branch of the relations has a task",))
         return Context(request, inputs, places)
+
+    def expect(self, inputs: Inputs) -> None:
+        """A request that may come: what is made for it until then, the one that comes takes over where it fits."""
+        if self._expected is not None:
+            inputs.take_over(self._expected)
+        self._expected = inputs
 
     def put(self, request: Any, context: Context) -> None:
         """A request that is about to be published means what was found for it."""

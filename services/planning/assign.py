@@ -10,7 +10,6 @@ what `assign_certificate` can show; that is done by `certified` there, so here a
 
 from __future__ import annotations
 
-import functools
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -26,11 +25,10 @@ from cratous.core.assignment.anytime import (
     settle_bound,
     timed,
 )
-from cratous.core.assignment.by_sets import by_sets
 from cratous.core.assignment.chains import chains_below
 from cratous.core.assignment.compiled import SMALL_TASKS
 from cratous.core.assignment.instance import TASKS_MAX, Instance
-from cratous.core.assignment.layers import DEALS_TASKS, look_ahead, refute
+from cratous.core.assignment.layers import DEALS_TASKS
 from cratous.core.assignment.optimality import shows_optimal
 from cratous.core.assignment.repair import repaired
 from cratous.core.assignment.settlement import Settler
@@ -44,7 +42,8 @@ from cratous.services.planning.assign_problem import (
     settler,
 )
 from cratous.services.planning.assign_replay import replayed
-from cratous.spec.assignment.search import ORDER, TIME, AssignmentProblem, Choice, Solution, Step
+from cratous.services.planning.assign_warm import warm
+from cratous.spec.assignment.search import AssignmentProblem, Solution, Step
 
 WORK = 16_000_000
 """Tasks that are decoded in one annealing: steps times tasks."""
@@ -210,33 +209,6 @@ def _list_chains(run: _Run, proofs: list[Proof]) -> None:
             run.better(found.cost, k, found.moves)
         if found.complete and rules.unsure == doubts:
             proofs[k] = Proof("chains", max(found.cost, proofs[k].bound), found.nodes)
-
-
-@functools.cache
-def warm() -> None:
-    """Have everything compiled, so that no limit of time is spent on that."""
-    for semantics in (TIME, ORDER):
-        i = simple_instance(semantics)
-        _, moves = greedy(i)
-        assert moves is not None
-        improve(i, moves, 1, 1)
-        rebuilt(i, moves, 1, 1)
-        repaired(i, moves, 1, 1)
-        refute(i, 9, 1)
-        chains_below(i, 9, lambda moves, limit: (limit, len(moves)), 1_000)
-        if semantics == ORDER:
-            by_sets(i)
-        estimate(i, look_ahead(i))
-
-
-def simple_instance(semantics: str) -> Instance:
-    """Of four tasks in a row: fewer would be run by CPython."""
-    rows = tuple(tuple(None if a == b else 1 for b in range(4)) for a in range(5))
-    p = AssignmentProblem(
-        "", (1,), (0,), tuple(Choice(t, 1, 1, (1,)) for t in (1, 2, 3, 4)), (rows,),
-        ".(p1 p2 p3 p4)", semantics=semantics,
-    )  # fmt: skip
-    return arrays(p, parts(p)[0][0])
 
 
 def _anneal(run: _Run, made: list[Instance], firsts: list[Moves | None]) -> None:

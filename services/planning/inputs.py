@@ -5,9 +5,10 @@ Messages carry degrees and costs; here are the exact poses, polylines and found 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import islice
 
 from cratous.core.assignment.problem import Branch, Fixed
 from cratous.services.loading.ground import drives
@@ -23,6 +24,7 @@ from cratous.spec.constraint_rows import AFTER_END
 from cratous.spec.mission import Mission, Zone
 from cratous.spec.mission.plan import Pose
 
+WAYS_AT_ONCE = 4096
 Offers = tuple[tuple[Option, ...], tuple[Dropped, ...]]
 """The options of a task, and what is not offered of it."""
 
@@ -47,14 +49,37 @@ class Inputs:
     _taken: dict[int, Offers] = field(default_factory=dict, compare=False, repr=False)
 
     def take_over(self, earlier: Inputs) -> None:
-        """Options that were made for an earlier request are not made anew, where all that they depend on is the same:
-        task, who flies and who drives, and how, zones, terrain. Where the vehicles are does not count."""
-        made: Mapping[int, Offers] = earlier.__dict__.get("_by_task", {})
-        if made and earlier._surroundings != self._surroundings:
+        """Options that were made for an earlier request, and ways between them, are not made anew, where all that they
+        depend on is the same: task, who flies and who drives, and how, zones, terrain. Where the vehicles are does not
+        count."""
+        made: Mapping[int, Offers] = {**earlier._taken, **earlier.__dict__.get("_by_task", {})}
+        if not made or earlier._surroundings != self._surroundings:
             return
         for task in self.mission.tasks:
             if task.id in made and earlier.mission.task(task.id) == task:
                 self._taken.setdefault(task.id, made[task.id])
+        options = [option for made, _ in self._taken.values() for option in made]
+        known = {pose for option in options for pose in (option.start, option.end)}
+        self.finder.take_over(
+            earlier.finder, known
+        )  # and nothing of other tasks: it would grow for ever
+
+    def make_options(self, task_id: int) -> None:
+        """Have the options of one task made before anybody asks for them."""
+        if task_id not in self._taken:
+            self._taken[task_id] = expand(self.mission, [self.mission.task(task_id)], self.zones)
+
+    def find_ways(self) -> Iterator[None]:
+        """Find how long all ways between options take, some at a time, before anybody asks for them."""
+        for index, vehicle in enumerate(self.mission.vehicles):
+            mine = [k for k, option in enumerate(self.options) if vehicle.id in option.vehicles]
+            pairs = ((a, b) for a in mine for b in mine if self._differ(a, b))
+            while some := list(islice(pairs, WAYS_AT_ONCE)):
+                self.routes.prepare(index, some)
+                yield
+
+    def _differ(self, one: int, other: int) -> bool:
+        return self.options[one].task_id != self.options[other].task_id
 
     @property
     def _surroundings(self) -> tuple[object, tuple[Zone, ...], float]:

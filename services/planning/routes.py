@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from copy import copy
 from typing import Protocol
 
@@ -67,6 +67,15 @@ class Routes:
         other = copy(self)
         other.options = options
         return other
+
+    def take_over(self, earlier: Routes, known: Collection[Pose]) -> None:
+        """What was found between these poses, among the same zones by the same vehicles."""
+        if self._times or earlier.flying != self.flying:
+            return
+        self._maps.update(earlier._maps)
+        for ends, ms in earlier._times.items():
+            if ends[0] in known and ends[2] in known:
+                self._times[ends] = ms
 
     def _ends(self, vehicle: int, before: int, to: int) -> Ends:
         start = self.poses[vehicle] if before == START else self.options[before].end

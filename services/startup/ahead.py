@@ -35,7 +35,7 @@ from cratous.core.routing.bulk import (
     route_many,
 )
 from cratous.services.planning import coming
-from cratous.services.planning.assign import simple_instance
+from cratous.services.planning.assign_warm import simple_instance
 from cratous.services.planning.detours import expected
 from cratous.services.processes.leash import ENDS_WITH, end_with_parent
 from cratous.spec.assignment.search import TIME

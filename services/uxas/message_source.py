@@ -16,11 +16,12 @@ from cratous.services.loading.uxas import mission_of, surroundings_of
 from cratous.services.loading.uxas_cfg import Configuration, Sent
 from cratous.services.pipeline.outside import Outside
 from cratous.services.pipeline.places import RequestPlaces, read_pose
+from cratous.services.pipeline.tasks import TASKS
 from cratous.services.pipeline.world import MOST, World
 from cratous.services.planning import stages
 from cratous.services.planning.inputs import Inputs
 from cratous.services.uxas.frame import Host
-from cratous.spec.errors import BadInput
+from cratous.spec.errors import BadInput, CratousError
 from cratous.spec.mission import Frame
 
 IMPACT = "afrl.impact.ImpactAutomationRequest"
@@ -28,6 +29,8 @@ INITIALISED = "uxas.messages.task.TaskInitialized"
 IMPACT_ANSWER = "afrl.impact.ImpactAutomationResponse"
 _OF_ZONES = -1  # no region that comes in a message is this one
 MOST_OVERRIDDEN = 1000
+_FORESEEN = {name.rpartition(".")[2] for name in TASKS} - {"WatchTask"}
+"""Kinds of tasks of which a task alone says how it is flown."""
 
 
 class MessageSource:
@@ -93,6 +96,33 @@ class MessageSource:
         }
         poses = stages.start_poses(mission, given)
         return Inputs(mission, {vehicle.id: poses[vehicle.id] for vehicle in mission.vehicles})
+
+    def foreseen(self) -> Inputs | None:
+        """What a request would mean that names every aircraft, every task of ours and the newest region.
+
+        None where that means nothing. Its frame is that of the request to come, if things stay about where they are.
+        """
+        flown = {
+            state.ID
+            for state in self.world.of("state")
+            if type(state).__name__ == "AirVehicleState"
+        }
+        body = lmcp.new(
+            "AutomationRequest",
+            EntityList=sorted(flown & {*self.world.ids("configuration")}),
+            TaskList=[t.TaskID for t in self.world.of("task") if type(t).__name__ in _FORESEEN],
+            OperatingRegion=next(reversed(self.world.ids("region")), 0),
+        )
+        if not body.EntityList or not body.TaskList:
+            return None
+        cfg = self._configuration(Sent(body, "what may be asked for", 0))
+        try:
+            mission = mission_of(cfg, str(self._host.config), self._spoken, self._frame)
+            poses = stages.start_poses(mission)
+        except CratousError:  # whoever asks for it will be told
+            return None
+        self._frame = mission.frame
+        return Inputs(mission, poses)
 
     def surroundings(self, vehicle: int, region: int) -> RequestPlaces:
         """The frame and zones of a region for one vehicle. BadInput if something is unknown."""

@@ -16,6 +16,7 @@ from cratous.services.bus import Envelope
 from cratous.services.following.asked import within
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import AUTHORITY, AWAY, HANDED_BACK, on_its_way
+from cratous.spec.errors import BadInput
 
 TASK, CONFIGURATION = "afrl.cmasi.Task", "afrl.cmasi.EntityConfiguration"
 STATE, REMOVE = "afrl.cmasi.EntityState", "afrl.cmasi.RemoveTasks"
@@ -71,8 +72,24 @@ class OwnTask:
     )  # fmt: skip
 
     def __init__(self, name: str, values: Mapping[str, Any]) -> None:
-        """values: the attributes of the service."""
+        """values: the attributes of the service. BadInput where the class has no label or no flights."""
+        self.check_class()
         self.name, self.values = name, values
+
+    @classmethod
+    def check_class(cls) -> None:
+        """BadInput names the class if it takes any task, or cannot say how one is flown."""
+        where = f"{cls.__module__}:{cls.__qualname__}"
+        if not isinstance(cls.label, str) or not cls.label.strip():
+            raise BadInput(
+                "the task kind has no label", where=where, item="label",
+                expected="the Label of its tasks, a text that is not empty", got=repr(cls.label),
+            )  # fmt: skip
+        if cls.flights is OwnTask.flights or not callable(cls.flights):
+            raise BadInput(
+                "the task kind says no flights", where=where, item="flights",
+                expected="a method flights(self, task, speed_m_s)", got="none",
+            )  # fmt: skip
 
     def flights(self, task: Any, speed_m_s: float) -> Sequence[Flight]:
         """The ways in which a vehicle of this usual speed may fly a task; none: it cannot."""

@@ -66,7 +66,8 @@ class Process:
         self._poller: zmq.Poller | None = None
         self._handles: list[tuple[Any, int]] = []
         self._faults: Counter[tuple[str, str, str]] = Counter()
-        self._spare: Iterator[None] | None = None
+        self._spare: Iterator[bool] | None = None
+        self._idle = False
         self.stopping = False
         joined = _addresses(config, ("HubSUB", "HubPUSH"))
         hosts = _addresses(config, ("HubPUB", "HubPULL"))
@@ -130,12 +131,12 @@ class Process:
         found: list[Any] = [p for p in (self._hub, self._satellite) if p is not None]
         return found + list(self.manager.bridges.values())
 
-    def run(self, until_s: float | None = None, spare: Iterator[None] | None = None) -> None:
+    def run(self, until_s: float | None = None, spare: Iterator[bool] | None = None) -> None:
         """Turn until `until_s` seconds are over, KillService -1 comes, or `stopping` is set.
 
         The start is complete when all entities that services wait for have connected; time counts from then on.
-        spare: what is done piece by piece when nothing else is there to do, before the first request; not in virtual time,
-        which has no such time.
+        spare: what is done piece by piece when nothing else is there to do, before the first request, and says whether
+        there was any; not in virtual time, which has no such time.
         """
         if spare is not None and not self._virtual:
             self._spare = spare
@@ -212,7 +213,7 @@ class Process:
                 wait_ms = min(wait_ms, 1000 * (port.port.due_s - now_s))
         wait = max(0, int(wait_ms + 0.999))
         spare = self._spare is not None and wait > _QUIET_MS
-        if not self._heard(_QUIET_MS if spare else wait) and spare:
+        if not self._heard(_QUIET_MS if spare and not self._idle else wait) and spare:
             self._use_spare_time()
 
     def _heard(self, wait_ms: int) -> bool:
@@ -234,7 +235,7 @@ class Process:
         """Do one piece of what can be done at any time."""
         assert self._spare is not None
         try:
-            next(self._spare)
+            self._idle = not next(self._spare)
         except StopIteration:
             self._spare = None
         except Exception as error:

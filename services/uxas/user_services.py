@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from cratous.services.loading.uxas_settings import Configuration
+from cratous.services.uxas.own_task import OwnTask
 from cratous.services.uxas.registry import KINDS, Kind
 from cratous.spec.errors import BadInput
 
@@ -56,6 +57,13 @@ def _kind(name: str, folder: Path, where: str) -> Kind:
             expected="a class with subscribes, start and handle",
             got=f"{name} without {', '.join(missing)}",
         )
+
+    if isinstance(made, type) and issubclass(made, OwnTask):
+        try:
+            made.check_class()
+        except BadInput as error:
+            item, expected, got = f"{name}.{error.item}", error.expected, error.got
+            raise BadInput(error.what, where=where, item=item, expected=expected, got=got) from None
 
     def make(host: Any, item: Any, values: dict[str, Any], given: str, number: int) -> Any:
         return made(given.replace(":", "."), values)

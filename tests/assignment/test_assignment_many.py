@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from cratous.services.planning import assign
-from cratous.services.planning.assign import Limits, solve, warm
+from cratous.services.planning.assign import Limits, solve
+from cratous.services.planning.assign_warm import warm
 from cratous.spec.assignment.search import AssignmentProblem, Choice
 
 

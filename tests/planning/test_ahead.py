@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import os
 import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -23,12 +25,14 @@ from cratous.core.routing.bulk import direct_many, route_many
 from cratous.core.routing.visibility import Roadmap, lengths_around, routes
 from cratous.services.loading import load
 from cratous.services.planning import coming
-from cratous.services.planning.assign import simple_instance, solve
+from cratous.services.planning.assign import solve
+from cratous.services.planning.assign_warm import simple_instance
 from cratous.services.planning.detours import many_detours
 from cratous.services.planning.zones import roadmaps
 from cratous.services.startup import ahead, warm
 from cratous.services.startup.warm import MISSION
 from cratous.spec.assignment.search import ORDER, AssignmentProblem, Choice
+from cratous.spec.errors import Refused
 from cratous.spec.mission import Mission, Zone, ZoneKind
 
 
@@ -164,6 +168,74 @@ def test_a_process_that_nobody_waited_for_is_ended(begun: list[Started]) -> None
     for process in begun:
         ahead._end(process)  # type: ignore[arg-type]
     assert all(process.ended for process in begun)
+
+
+def test_a_process_that_is_late_is_waited_for_no_longer_and_ended(
+    begun: list[Started], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def late(_: Started, limit_s: float | None = None) -> int:
+        assert limit_s == ahead.WAIT_S
+        raise subprocess.TimeoutExpired("ahead", limit_s)
+
+    monkeypatch.setattr(Started, "wait", late)
+    ahead.begin_all()
+    for name in ahead.MAKERS:
+        coming.ready(name)  # says nothing: who needs it compiles it
+    for process in begun:
+        ahead._end(process)  # type: ignore[arg-type]
+    assert [process.ended for process in begun] == [True, True]
+
+
+def test_what_has_ended_already_is_not_set_back_and_not_ended(
+    begun: list[Started], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def gone(*_: int) -> None:
+        raise ProcessLookupError
+
+    monkeypatch.setattr(Started, "pid", 0, raising=False)
+    monkeypatch.setattr(ahead.os, "setpriority", gone)
+    ahead.beside(["module"], 5)
+    (process,) = begun
+    process.wait()
+    ahead._end(process)  # type: ignore[arg-type]
+    assert not process.ended
+
+
+def test_who_has_begun_plans_nothing_that_the_gate_refuses(
+    begun: list[Started], root: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any
+) -> None:
+    """Compiling begins before the gate has spoken; what is compiled is not used before."""
+    from cratous.core import ledger
+    from cratous.services.cli import main
+
+    def refused(**_: Any) -> None:
+        assert [process.name for process in begun] == list(ahead.MAKERS)
+        raise Refused("the code is not what was proved")
+
+    monkeypatch.setattr(ahead, "MANY_TASKS", 1)
+    monkeypatch.setattr(ledger, "require", refused)
+    code = main(["plan", str(root / "examples" / "search" / "mission.yaml"), "--json"])
+    said = capsys.readouterr()
+    assert code == Refused("").exit_code
+    assert "the code is not what was proved" in said.out + said.err
+    assert all(process.waits == 0 for process in begun)
+
+
+@pytest.mark.slow
+def test_such_a_process_leaves_machine_code_and_says_nothing(tmp_path: Path) -> None:
+    """As `begin` starts it, but waited for: the cache has then what `is_kept` looks for."""
+    ask = (
+        "from cratous.core.readings.machine.compiled import is_kept; "
+        "from cratous.core.routing.bulk import direct_many; print(is_kept(direct_many))"
+    )
+    own = {**os.environ, "CRATOUS_CACHE": str(tmp_path / "cache")}
+    lines = [["-c", ask], ["-P", "-m", ahead.__name__, coming.ROUTES], ["-c", ask]]
+    runs = [
+        subprocess.run([sys.executable, *line], env=own, capture_output=True, check=True)
+        for line in lines
+    ]
+    assert [run.stdout.strip() for run in runs] == [b"False", b"", b"True"]
+    assert runs[1].stderr == b""
 
 
 def test_what_is_made_meanwhile_is_seen_once_it_is_waited_for(

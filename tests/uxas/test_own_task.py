@@ -14,8 +14,18 @@ from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
 from cratous.services.pipeline.tasks import AWAY
 from cratous.services.uxas import own_task
+from cratous.spec.errors import BadInput
 
 GUIDE = "docs/guides/own-task.md"
+
+
+class Ring(own_task.OwnTask):
+    """The kind of the guide, that nobody can fly."""
+
+    label = "ring"
+
+    def flights(self, task: Any, speed_m_s: float) -> list[own_task.Flight]:
+        return []
 
 
 def pages(root: Path) -> dict[str, str]:
@@ -99,6 +109,36 @@ def test_what_such_a_task_answers_amiss_ends_its_request_with_the_reason(
     assert any(reason in pair.Value for pair in response.Info), response.Info
 
 
+@pytest.mark.parametrize(
+    ("given", "reason"),
+    [
+        ({}, "label: the task kind has no label; expected the Label of its tasks"),
+        ({"label": " "}, "label: the task kind has no label"),
+        ({"label": None}, "got None"),
+        ({"label": "ring", "flights": own_task.OwnTask.flights}, "flights: the task kind says no"),
+        ({"label": "ring", "flights": 7}, "flights: the task kind says no flights"),
+    ],
+)
+def test_a_kind_without_label_or_flights_is_refused_with_its_name(
+    given: dict[str, Any], reason: str
+) -> None:
+    """Without a label it would take every task that has none."""
+    kind = type("Half", (own_task.OwnTask,), {"flights": Ring.flights, **given})
+    with pytest.raises(BadInput) as refused:
+        kind("half", {})
+    assert str(refused.value).startswith(f"{__name__}:Half: ")
+    assert reason in str(refused.value)
+
+
+def test_such_a_kind_in_a_configuration_is_refused_before_anything_starts(
+    root: Path, tmp_path: Path
+) -> None:
+    with pytest.raises(
+        BadInput, match=r"cfg\.xml.*half:RingTask\.label: the task kind has no label"
+    ):
+        answered(root, tmp_path / "half", ('label = "ring"', 'label = ""'))
+
+
 def test_a_wait_before_it_is_refused_with_its_length() -> None:
     asked = lmcp.new("TaskImplementationRequest", VehicleID=1, TimeThreshold=9_000)
     route = lmcp.new("RoutePlan", RouteCost=2_000, Waypoints=[lmcp.new("Waypoint")])
@@ -108,7 +148,7 @@ def test_a_wait_before_it_is_refused_with_its_length() -> None:
 
 
 def test_a_task_that_is_removed_while_it_is_flown_is_never_complete() -> None:
-    ours = own_task.OwnTask("ring", {})
+    ours = Ring("ring", {})
     flying = {7: lmcp.new("Task", TaskID=7), 8: lmcp.new("Task", TaskID=8)}
     state = own_task.Held(tasks=flying, active={7: 1, 8: 1})
     said: list[Any] = []
@@ -122,7 +162,7 @@ def test_a_task_that_is_removed_while_it_is_flown_is_never_complete() -> None:
 
 
 def test_no_task_ends_while_icarous_has_its_vehicle() -> None:
-    ours = own_task.OwnTask("ring", {})
+    ours = Ring("ring", {})
     state = own_task.Held(tasks={7: lmcp.new("Task", TaskID=7)}, active={7: 1})
     owners = {owner: lmcp.new("AuthorityChange", VehicleID=1, Owner=owner) for owner in AWAY}
     seen = lmcp.new("AirVehicleState", ID=1, Mode="FlightDirector", Time=9_000)
