@@ -55,6 +55,8 @@ class Path(NamedTuple):
 class NearLegsWatch:
     """Every vehicle of ours, from each command of UxAS on, while UxAS flies it."""
 
+    kinds = ("GateState", "GatedCommand", "TruthState")
+
     def __init__(self, mission: Mission) -> None:
         self._mission, self._projection = mission, Projection(mission.frame)
         self._gates = {v.id: UNTOUCHED for v in mission.vehicles if v.protected}
@@ -69,7 +71,7 @@ class NearLegsWatch:
     def message(self, message: Message) -> None:
         """A state of the gate, a command, or where an aircraft is."""
         kind, now_ms, _, body = message
-        if self._record.unseen or kind not in ("GateState", "GatedCommand", "TruthState"):
+        if self._record.unseen:
             return
         number = body.VehicleID
         if number not in self._gates:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from cratous.services.loading import load
 from cratous.services.pipeline.plan import make_plan
+from cratous.spec.mission import Mission
 
 _HEAD = """
 name: little
@@ -42,10 +43,17 @@ TASKS = (
 """One task of each kind, without its id."""
 
 
-def plan(tasks: Sequence[str], zone: str = _ZONE) -> None:
-    """Plan the mission of one vehicle, a zone, which may be none, and these of `TASKS`."""
+def mission(tasks: Sequence[str], zone: str = _ZONE) -> Mission:
+    """One vehicle, a zone, which may be none, and these tasks, each as one of `TASKS`."""
     lines = (f"  - {{id: {number}, {task}}}\n" for number, task in enumerate(tasks, 1))
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "mission.yaml"
         file.write_text(f"{_HEAD}{zone}tasks:\n{''.join(lines)}", encoding="utf-8")
-        make_plan(load(file))
+        made = load(file)
+    assert isinstance(made, Mission)
+    return made
+
+
+def plan(tasks: Sequence[str], zone: str = _ZONE) -> None:
+    """Plan such a mission."""
+    make_plan(mission(tasks, zone))

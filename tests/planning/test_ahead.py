@@ -7,7 +7,6 @@ import functools
 import os
 import subprocess
 import sys
-import tempfile
 import time
 from pathlib import Path
 from typing import Any
@@ -23,14 +22,12 @@ from cratous.core.readings.machine.compiled import machine
 from cratous.core.readings.tiered import at_once
 from cratous.core.routing.bulk import direct_many, route_many
 from cratous.core.routing.visibility import Roadmap, lengths_around, routes
-from cratous.services.loading import load
 from cratous.services.planning import coming
 from cratous.services.planning.assign import solve
 from cratous.services.planning.assign_warm import simple_instance
 from cratous.services.planning.detours import many_detours
 from cratous.services.planning.zones import roadmaps
-from cratous.services.startup import ahead, warm
-from cratous.services.startup.warm import MISSION
+from cratous.services.startup import ahead, little_missions, warm
 from cratous.spec.assignment.search import ORDER, AssignmentProblem, Choice
 from cratous.spec.errors import Refused
 from cratous.spec.mission import Mission, Zone, ZoneKind
@@ -59,15 +56,8 @@ ALL: list[Started] = []
 
 def mission(tasks: int, zone: Zone | None = None) -> Mission:
     """A vehicle south of so many points, which a zone may part from it."""
-    rows = "".join(
-        f"  - {{id: {k}, kind: must_fly, points: [{{north_m: 5000, east_m: {100 * k}, alt_m: 300}}]}}\n"
-        for k in range(1, tasks + 1)
-    )
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "mission.yaml"
-        file.write_text(MISSION.partition("tasks:")[0] + f"tasks:\n{rows}", encoding="utf-8")
-        made = load(file)
-    assert isinstance(made, Mission)
+    points = [f"[{{north_m: 5000, east_m: {100 * k}, alt_m: 300}}]" for k in range(1, tasks + 1)]
+    made = little_missions.mission([f"kind: must_fly, points: {one}" for one in points], zone="")
     return dataclasses.replace(made, zones=() if zone is None else (zone,))
 
 
@@ -209,7 +199,7 @@ def test_who_has_begun_plans_nothing_that_the_gate_refuses(
     from cratous.services.cli import main
 
     def refused(**_: Any) -> None:
-        assert [process.name for process in begun] == list(ahead.MAKERS)
+        assert [process.name for process in begun] == [coming.ROUTES, coming.ASSIGNMENT]
         raise Refused("the code is not what was proved")
 
     monkeypatch.setattr(ahead, "MANY_TASKS", 1)
