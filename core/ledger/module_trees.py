@@ -40,7 +40,7 @@ class Tree:
         self._imported: dict[tuple[str, str, tuple[str, ...]], tuple[Target, ...]] = {}
         self._open: set[tuple[str, tuple[str, ...]]] = set()
         self._circles: set[tuple[str, tuple[str, ...]]] = set()
-        self._found: dict[str, Path | None] = {}
+        self._found: dict[str, str | None] = {}
         self._folders: dict[str, bool] = {}
         self.open_classes: dict[Place, bool] = {}
         self.asked: set[str] = set()
@@ -80,24 +80,24 @@ class Tree:
         return frozenset(source.split(".")[0] for source in named) - self.packages.keys()
 
     # -- modules ----------------------------------------------------------------------------------
-    def file(self, module: str) -> Path | None:
-        """The source file of a module of the tree."""
+    def file(self, module: str) -> str | None:
+        """The path of the source file of a module of the tree."""
         self.asked.add(module)
         if module not in self._found:
             self._found[module] = self._file(module)
         return self._found[module]
 
-    def _file(self, module: str) -> Path | None:
+    def _file(self, module: str) -> str | None:
         top, *parts = module.split(".")
         if top not in self.packages:
             return None
         base = os.path.join(self.packages[top], *parts)
         inside = os.path.join(base, "__init__.py")
         if not parts:
-            return Path(inside) if os.path.isfile(inside) else None
+            return inside if os.path.isfile(inside) else None
         for name in (f"{base}.py", inside):
             if os.path.isfile(name) or (self.edits and Path(name) in self.edits):
-                return Path(name)
+                return name
         return None
 
     def table(self, module: str) -> Table | None:
@@ -107,9 +107,12 @@ class Tree:
             self._tables[module] = None if file is None else self._read(file, module)
         return self._tables[module]
 
-    def _read(self, file: Path, module: str) -> Table:
-        data = self.edits[file] if file in self.edits else file.read_bytes()
-        return table(data, module, file.name == "__init__.py")
+    def _read(self, file: str, module: str) -> Table:
+        data = self.edits.get(Path(file)) if self.edits else None
+        if data is None:
+            with open(file, "rb") as source:
+                data = source.read()
+        return table(data, module, os.path.basename(file) == "__init__.py")
 
     def unit(self, place: Place) -> Unit:
         """The unit there."""

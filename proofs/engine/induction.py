@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any, NotRequired, Protocol, TypedDict
+from typing import Any, Protocol, TypedDict
 
 import z3
 
@@ -31,15 +31,18 @@ class Claim(Protocol):
     stubs: dict[Callable[..., Any], Stub]
 
 
-class DefinedBy(TypedDict):
+class _Stepwise(TypedDict):
+    model_start: Any
+    model_step: Callable[..., Any]
+
+
+class DefinedBy(_Stepwise, total=False):
     """The definition's side of a fold: its accumulator at the start and after one more item, and its result.
 
     Without a `model_finish` its accumulator is the result.
     """
 
-    model_start: Any
-    model_step: Callable[..., Any]
-    model_finish: NotRequired[Callable[..., Any] | None]
+    model_finish: Callable[..., Any] | None
 
 
 def all_given(parts: Mapping[str, Any], kind: type) -> None:
