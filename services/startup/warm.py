@@ -26,40 +26,7 @@ from cratous.services.loading import load
 from cratous.services.pipeline.plan import make_plan
 from cratous.services.planning import assign, coming
 from cratous.services.startup import ahead
-
-MISSION = """
-name: warm
-frame: {latitude_deg: 45, longitude_deg: -120}
-vehicles:
-  - id: 1
-    position: {north_m: 0, east_m: 0, alt_m: 300}
-    heading_deg: 0
-    speed_m_s: 20
-    min_speed_m_s: 15
-    max_speed_m_s: 30
-    max_bank_deg: 30
-    max_climb_m_s: 3
-    cameras: [{payload_id: 1, hfov_deg: 45, pixels: 1000}]
-tasks:
-  - id: 1
-    kind: area_search
-    rectangle: {centre: {north_m: 2000, east_m: 0}, width_m: 600, height_m: 500}
-  - id: 2
-    kind: line_search
-    points: [{north_m: 3000, east_m: 0}, {north_m: 3500, east_m: 300}, {north_m: 4000, east_m: 0}]
-  - id: 3
-    kind: point_search
-    points: [{north_m: 4500, east_m: 0}]
-  - id: 4
-    kind: must_fly
-    points: [{north_m: 5000, east_m: 0, alt_m: 300}]
-zones:
-  - id: 1
-    kind: keep_out
-    vertices: [[1000, -200], [1000, 200], [1200, 200], [1200, -200]]
-"""
-"""A way around a zone, lanes with turns, footprints along a line: every loop that planning compiles."""
-
+from cratous.services.startup.small_missions import TASKS, mission
 
 ENCOUNTER = """NAME sx sy sz trk gs vs time
 unitless [nmi] [nmi] [ft] [deg] [knot] [fpm] [s]
@@ -84,7 +51,8 @@ def warm_planning() -> None:
     """What planning a mission calls; remembered as done, for `ensure_planning`."""
     with tempfile.TemporaryDirectory() as folder, at_once():
         file = Path(folder) / "mission.yaml"
-        file.write_text(MISSION, encoding="utf-8")
+        # every loop that planning compiles: a way around the zone, lanes with turns, footprints
+        file.write_text(mission("warm", TASKS), encoding="utf-8")
         make_plan(load(file))
     _mark().parent.mkdir(exist_ok=True, mode=0o700)
     _mark().touch()
