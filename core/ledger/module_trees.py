@@ -63,7 +63,7 @@ class Tree:
             return False
         same = (
             all(self.table(name) is one for name, one in other._tables.items())
-            and all(self.file(name) == one for name, one in other._found.items())
+            and all(self._where(name) == one for name, one in other._found.items())
             and all(self._folder(name) == one for name, one in other._folders.items())
         )
         if same:
@@ -80,8 +80,12 @@ class Tree:
         return frozenset(source.split(".")[0] for source in named) - self.packages.keys()
 
     # -- modules ----------------------------------------------------------------------------------
-    def file(self, module: str) -> str | None:
-        """The path of the source file of a module of the tree."""
+    def file(self, module: str) -> Path | None:
+        """The source file of a module of the tree."""
+        found = self._where(module)
+        return None if found is None else Path(found)
+
+    def _where(self, module: str) -> str | None:
         self.asked.add(module)
         if module not in self._found:
             self._found[module] = self._file(module)
@@ -103,7 +107,7 @@ class Tree:
     def table(self, module: str) -> Table | None:
         """What a module defines; None if it is not of the tree."""
         if module not in self._tables:
-            file = self.file(module)
+            file = self._where(module)
             self._tables[module] = None if file is None else self._read(file, module)
         return self._tables[module]
 
@@ -195,7 +199,7 @@ class Tree:
         inner = f"{module}.{chain[0]}"
         found = self.meant(module, chain)
         yield from found
-        if self.file(inner) is not None or self._folder(inner):
+        if self._where(inner) is not None or self._folder(inner):
             yield from self._inside(inner, chain[1:])
         elif not found:
             yield f"nothing called {chain[0]}"
