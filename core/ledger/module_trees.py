@@ -40,7 +40,7 @@ class Tree:
         self._imported: dict[tuple[str, str, tuple[str, ...]], tuple[Target, ...]] = {}
         self._open: set[tuple[str, tuple[str, ...]]] = set()
         self._circles: set[tuple[str, tuple[str, ...]]] = set()
-        self._found: dict[str, Path | None] = {}
+        self._found: dict[str, str | None] = {}
         self._folders: dict[str, bool] = {}
         self.open_classes: dict[Place, bool] = {}
         self.asked: set[str] = set()
@@ -63,7 +63,7 @@ class Tree:
             return False
         same = (
             all(self.table(name) is one for name, one in other._tables.items())
-            and all(self.file(name) == one for name, one in other._found.items())
+            and all(self._where(name) == one for name, one in other._found.items())
             and all(self._folder(name) == one for name, one in other._folders.items())
         )
         if same:
@@ -82,34 +82,41 @@ class Tree:
     # -- modules ----------------------------------------------------------------------------------
     def file(self, module: str) -> Path | None:
         """The source file of a module of the tree."""
+        found = self._where(module)
+        return None if found is None else Path(found)
+
+    def _where(self, module: str) -> str | None:
         self.asked.add(module)
         if module not in self._found:
             self._found[module] = self._file(module)
         return self._found[module]
 
-    def _file(self, module: str) -> Path | None:
+    def _file(self, module: str) -> str | None:
         top, *parts = module.split(".")
         if top not in self.packages:
             return None
         base = os.path.join(self.packages[top], *parts)
         inside = os.path.join(base, "__init__.py")
         if not parts:
-            return Path(inside) if os.path.isfile(inside) else None
+            return inside if os.path.isfile(inside) else None
         for name in (f"{base}.py", inside):
             if os.path.isfile(name) or (self.edits and Path(name) in self.edits):
-                return Path(name)
+                return name
         return None
 
     def table(self, module: str) -> Table | None:
         """What a module defines; None if it is not of the tree."""
         if module not in self._tables:
-            file = self.file(module)
+            file = self._where(module)
             self._tables[module] = None if file is None else self._read(file, module)
         return self._tables[module]
 
-    def _read(self, file: Path, module: str) -> Table:
-        data = self.edits[file] if file in self.edits else file.read_bytes()
-        return table(data, module, file.name == "__init__.py")
+    def _read(self, file: str, module: str) -> Table:
+        data = self.edits.get(Path(file)) if self.edits else None
+        if data is None:
+            with open(file, "rb") as source:
+                data = source.read()
+        return table(data, module, os.path.basename(file) == "__init__.py")
 
     def unit(self, place: Place) -> Unit:
         """The unit there."""
@@ -192,7 +199,7 @@ class Tree:
         inner = f"{module}.{chain[0]}"
         found = self.meant(module, chain)
         yield from found
-        if self.file(inner) is not None or self._folder(inner):
+        if self._where(inner) is not None or self._folder(inner):
             yield from self._inside(inner, chain[1:])
         elif not found:
             yield f"nothing called {chain[0]}"

@@ -13,14 +13,14 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Unpack
 
 import z3
 
 from cratous.core.kernel import Fold, Vec2, entry_of, qualified
 from cratous.proofs.engine import closed, hidden_calls
 from cratous.proofs.engine.closed import TRUE, path_to
-from cratous.proofs.engine.induction import Induction, arbitrary
+from cratous.proofs.engine.induction import DefinedBy, Induction, arbitrary, side_of
 from cratous.proofs.engine.lift import CLOSED, OPAQUE, REPLACED, VISITS, Visit, join, lift
 from cratous.proofs.engine.obligation import Obligation
 from cratous.proofs.engine.symbolic import (
@@ -351,14 +351,13 @@ class Claim:
         model: Any,
         item: tuple[Any, ...],
         context: tuple[Any, ...],
-        model_start: Any,
-        model_step: Callable[..., Any],
         relation: Callable[[Any, Any], Any],
-        model_finish: Callable[..., Any] | None = None,
+        **definition: Unpack[DefinedBy],
     ) -> None:
         """The fold equals its definition for every number of items, by induction on it.
 
-        acc and model are arbitrary accumulators of kernel and definition. Base: `relation` holds
+        acc and model are arbitrary accumulators of kernel and definition, which goes from `model_start` by
+        `model_step` and gives what `model_finish` makes of it, if there is one. Base: `relation` holds
         at the start. Step: if it holds before any item it holds after it. Use: where it holds the
         results are equal; without a finish the accumulator is the result. The three are the induction over
         the number of items, provided that the accumulators are distinct free values which no premise
@@ -368,6 +367,7 @@ class Claim:
         """
         if self.prefix:
             return  # used as a lemma, a fold has no goals to offer
+        model_start, model_step, model_finish = side_of(definition)
         kernel_fold = REPLACED.get(kernel_fold, kernel_fold)
         arbitrary(self, (acc, model), (item, context))
         self._about(kernel_fold)

@@ -21,6 +21,7 @@ import z3
 
 from cratous.core.kernel.sources import ours
 from cratous.proofs.engine.lift import CLOSED, OPAQUE, REPLACED, VISITS, LiftError, lift
+from cratous.proofs.engine.solver_order import check
 from cratous.proofs.engine.symbolic import PATHS, RANGE, SymReal, as_real
 from cratous.proofs.engine.terms import Stub, fresh, known
 
@@ -153,9 +154,8 @@ def _called(function: Function) -> list[Function]:
 def _holds(given: Iterable[z3.BoolRef], goal: z3.BoolRef) -> bool:
     context = z3.Context()
     solver = z3.Solver(ctx=context)
-    solver.set("rlimit", EVERYWHERE_RLIMIT)
     solver.add(*[term.translate(context) for term in (*given, z3.Not(goal))])
-    return bool(solver.check() == z3.unsat)
+    return check(solver, context, EVERYWHERE_RLIMIT).result == "unsat"
 
 
 @dataclass

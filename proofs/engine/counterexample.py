@@ -21,6 +21,7 @@ import z3
 
 from cratous.core.kernel import Fold
 from cratous.proofs.engine.claim import Claim
+from cratous.proofs.engine.solver_order import check
 from cratous.proofs.engine.symbolic import Sym
 
 UNITS = {
@@ -191,9 +192,9 @@ def telling(
 
     def ask(extra: list[z3.BoolRef]) -> z3.ModelRef | None:
         solver = make()
-        solver.set("rlimit", TELLING_RLIMIT)
         solver.add(*terms, *extra)
-        return solver.model() if solver.check() == z3.sat else None
+        said = check(solver, solver.ctx, TELLING_RLIMIT)
+        return solver.model() if said.result == "sat" else None
 
     names = sorted((d for d in found.decls() if d.arity() == 0), key=lambda d: str(d.name()))
     reals = [d() for d in names if z3.is_real(d())]

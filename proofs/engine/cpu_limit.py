@@ -3,12 +3,16 @@
 Stating a theorem asks the solver which paths are feasible. Those questions are budgeted by effort,
 but there is work that z3 does not count, and a statement may also loop by itself. What uses too
 much is interrupted in the solver and in Python; only CPU time counts, not what else the machine
-does.
+does. What heeds no interrupt is ended by the system together with its process, where another process
+waits for that one (`may_be_killed`).
 """
 
 from __future__ import annotations
 
 import ctypes
+import math
+import os
+import resource
 import threading
 import time
 from collections.abc import Iterator
@@ -20,6 +24,11 @@ PERIOD_S = 0.25
 """Wall seconds between two looks at the CPU clock."""
 
 
+GRACE_S = 10.0
+"""CPU seconds in which an interrupt is to be heeded."""
+_MAY_BE_KILLED: set[int] = set()
+
+
 class OutOfTime(BaseException):
     """The CPU time is used up; not an `Exception`, so that nothing in the block keeps it."""
 
@@ -28,6 +37,31 @@ def _throw(thread: int, error: type[BaseException] | None) -> None:
     """Raise the error in a thread as soon as it runs Python; with None what is pending is gone."""
     pending = None if error is None else ctypes.py_object(error)
     ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), pending)
+
+
+def may_be_killed() -> None:
+    """From now on `ends_within` ends this process: another one waits for it, and knows what its end means."""
+    _MAY_BE_KILLED.add(os.getpid())
+    resource.setrlimit(resource.RLIMIT_CORE, (0, resource.getrlimit(resource.RLIMIT_CORE)[1]))
+
+
+@contextmanager
+def ends_within(seconds: float) -> Iterator[None]:
+    """The system ends this process (SIGXCPU) if the block uses so many CPU seconds (s) and GRACE_S more.
+
+    Nothing is done in a process that may not be killed.
+    """
+    if os.getpid() not in _MAY_BE_KILLED:
+        yield
+        return
+    soft, hard = resource.getrlimit(resource.RLIMIT_CPU)
+    latest = math.ceil(time.process_time() + seconds + GRACE_S)
+    known = [bound for bound in (soft, hard) if bound != resource.RLIM_INFINITY]
+    resource.setrlimit(resource.RLIMIT_CPU, (min([latest, *known]), hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_CPU, (soft, hard))
 
 
 @contextmanager
@@ -52,7 +86,8 @@ def cpu_limit(seconds: float, context: z3.Context) -> Iterator[None]:
     watcher.start()
     try:
         try:
-            yield
+            with ends_within(seconds):
+                yield
         finally:
             # if the error comes up here, the next look is yet to come
             done.set()

@@ -11,9 +11,9 @@ empty list too, so they may not use that there is an item which satisfies the pr
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any, Protocol
+from typing import Any, Protocol, TypedDict
 
 import z3
 
@@ -29,6 +29,36 @@ class Claim(Protocol):
     congruences: list[z3.BoolRef]
     granted: tuple[z3.BoolRef, ...]
     stubs: dict[Callable[..., Any], Stub]
+
+
+class _Stepwise(TypedDict):
+    model_start: Any
+    model_step: Callable[..., Any]
+
+
+class DefinedBy(_Stepwise, total=False):
+    """The definition's side of a fold: its accumulator at the start and after one more item, and its result.
+
+    Without a `model_finish` its accumulator is the result.
+    """
+
+    model_finish: Callable[..., Any] | None
+
+
+def all_given(parts: Mapping[str, Any], kind: type) -> None:
+    """Refuse what a record of named parts (a TypedDict) has not, and a record that lacks one; TypeError."""
+    needed: frozenset[str] = kind.__required_keys__  # type: ignore[attr-defined]
+    allowed: frozenset[str] = needed | kind.__optional_keys__  # type: ignore[attr-defined]
+    if missing := sorted(needed - parts.keys()):
+        raise TypeError(f"an induction needs {', '.join(missing)}")
+    if strange := sorted(parts.keys() - allowed):
+        raise TypeError(f"an induction is not given {', '.join(strange)}")
+
+
+def side_of(definition: DefinedBy) -> tuple[Any, Callable[..., Any], Callable[..., Any] | None]:
+    """Start, step and finish of the definition's side; TypeError for other parts."""
+    all_given(definition, DefinedBy)
+    return definition["model_start"], definition["model_step"], definition.get("model_finish")
 
 
 def names_in(value: Any) -> set[str]:

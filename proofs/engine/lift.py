@@ -22,6 +22,7 @@ from typing import Any
 import z3
 
 from cratous.core.kernel.sources import is_root
+from cratous.proofs.engine.cpu_limit import ends_within
 from cratous.proofs.engine.symbolic import (
     PATHS,
     LiftError,
@@ -37,6 +38,8 @@ from cratous.proofs.engine.symbolic import (
 __all__ = ["LiftError", "Lifted", "Visit", "join", "lift"]
 
 PRUNE_RLIMIT = 200_000
+PRUNE_CPU_S = 30
+"""CPU seconds after which such a question ends: many times what any takes."""
 MAX_PATHS = 4096
 OPAQUE: dict[Callable[..., Any], Callable[..., Any]] = {}
 """Functions that are not looked into at present, with what stands for them (see Claim.opaque)."""
@@ -126,8 +129,10 @@ def _feasible(conditions: list[z3.BoolRef]) -> bool:
         solver = z3.Solver()
         solver.set("rlimit", PRUNE_RLIMIT)
         solver.add(*conditions)
+        with ends_within(PRUNE_CPU_S):
+            answer = solver.check()
         # the terms are kept, so that their ids stay theirs
-        _ASKED[key] = (conditions, bool(solver.check() != z3.unsat))
+        _ASKED[key] = (conditions, bool(answer != z3.unsat))
     return _ASKED[key][1]
 
 

@@ -169,18 +169,13 @@ def _ask(
     spent, result, logic, model = 0, "unknown", "ALL", None
     for name, solver, effort in _solvers(given, context, rlimit, seen):
         solver.add(*terms)
-        before = _rlimit_count(solver)
-        result, logic = check(solver, context, effort), name
-        spent += max(0, _rlimit_count(solver) - before)
+        said = check(solver, context, effort)
+        result, logic, spent = said.result, name, spent + said.spent
         if result != "unknown":
             model = solver.model() if result == "sat" else None
             break
     answer = Answer(result, spent, round(time.process_time() - begun, 3), logic)
     return answer, model, context
-
-
-def _rlimit_count(solver: z3.Solver) -> int:
-    return next((int(value) for key, value in solver.statistics() if key == "rlimit count"), 0)
 
 
 def _decide(claim: Claim, obligation: Obligation, rlimit: int, memory: _Memory) -> Outcome:
@@ -277,6 +272,16 @@ def _satisfiable(terms: list[z3.BoolRef], rlimit: int, memory: _Memory) -> str:
     return answer.result
 
 
+def not_stated(name: str, folder: Path = FOLDER) -> BadInput:
+    """What is said of a theorem that cannot be stated within STATE_CPU_S."""
+    return BadInput(
+        "the theorem cannot be stated: its paths take too long to find",
+        where=place(find(name, folder)),
+        expected="less in one kernel: split it, and do not look into the part (c.opaque)",
+        got=f"more than {STATE_CPU_S} s of CPU",
+    )
+
+
 def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
     """The claim of a theorem file, stated, and its sentence; the kernels must be registered."""
     statement, sentence = load_claim(name, folder)
@@ -296,12 +301,7 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
             plain_numbers.hold(stated, statement, claim.visits)
             hanging = sorted(n for n in claim.asking if hangs_on_calls(n, folder))
     except OutOfTime as error:
-        raise BadInput(
-            "the theorem cannot be stated: its paths take too long to find",
-            where=where,
-            expected="less in one kernel: split it, and do not look into the part (c.opaque)",
-            got=f"more than {STATE_CPU_S} s of CPU",
-        ) from error
+        raise not_stated(name, folder) from error
     except plain_numbers.Inexact as error:
         what = f"the theorem cannot be stated: {error.where}: {error.what}"
         raise BadInput(what, where=where, expected=error.expected, got=error.got) from error

@@ -31,6 +31,8 @@ def paths(claim: Claim, possible: Possible) -> tuple[tuple[str, tuple[bool, ...]
         if visit.context or entry_of(visit.function) is None:
             continue
         name, conditions = qualified(visit.function), visit.lifted.branches
+        if len(conditions) == 1:
+            continue  # nothing is said of the only one
         # arguments may be literals: the uses with the most paths are the kernel's
         if len(conditions) > len(found.get(name, [])):
             found[name] = [False] * len(conditions)

@@ -3,16 +3,24 @@
 z3's own strategy for polynomials goes from one order of variables to the next by wall time, so its
 answer would depend on what else the machine does. Here each way has a share of the effort (rlimit).
 What z3 does not count as effort (arithmetic on numbers of a million digits) a guard ends, by CPU
-time: the next way is tried, and where none is left the answer is `unknown`.
+time: the next way is tried, and where none is left the answer is `unknown`. A question that heeds no
+interrupt ends with its process (`cpu_limit.ends_within`); whoever waits for that one has the work done
+again with each question asked in a process of its own (`ask_apart`), whose end is the answer `unknown`.
 """
 
 from __future__ import annotations
 
+import os
 import threading
 import time
 from collections.abc import Iterator
+from functools import partial
+from typing import NamedTuple
 
 import z3
+
+from cratous.proofs.engine import worker_processes
+from cratous.proofs.engine.cpu_limit import ends_within
 
 ORDERS = (3, 0, 4)
 """Orders of variables for polynomials (z3's numbers), the most promising first."""
@@ -21,6 +29,9 @@ SEEDS = (0, 1, 2)
 SHARES = (30, 6)
 GUARD_S, GUARD_RATE = 5.0, 200_000
 """CPU seconds after which a question is ended, and effort that adds one: many times the usual."""
+LOOK_S = 0.5
+"""Wall seconds between two looks at the CPU clock."""
+_ASKS_APART: set[int] = set()
 
 
 def solvers(
@@ -43,23 +54,60 @@ def solvers(
         yield "ALL", solver, rlimit if seed == SEEDS[0] else rlimit // shares[-1]
 
 
-def check(solver: z3.Solver, context: z3.Context, effort: int) -> str:
-    """`sat`, `unsat` or `unknown`, within the effort and the guard."""
+class Said(NamedTuple):
+    """`sat`, `unsat` or `unknown`, and the effort that it took (rlimit)."""
+
+    result: str
+    spent: int
+
+
+def ask_apart() -> None:
+    """From now on this process asks each question in a process of its own."""
+    _ASKS_APART.add(os.getpid())
+
+
+def most_cpu_s(effort: int) -> float:
+    """CPU seconds [s] after which a question of this effort is interrupted."""
+    return GUARD_S + effort / GUARD_RATE
+
+
+def check(solver: z3.Solver, context: z3.Context, effort: int) -> Said:
+    """What the solver says within the effort and the guard; its model, if it is sat, is the solver's."""
+    if os.getpid() in _ASKS_APART:
+        try:
+            said = worker_processes.call(partial(_check, solver, context, effort))
+        except worker_processes.Ended:
+            return Said("unknown", 0)
+        if said.result != "sat":
+            return said
+        # it ends, and a model does not come out of another process
+    return _check(solver, context, effort)
+
+
+def _check(solver: z3.Solver, context: z3.Context, effort: int) -> Said:
     solver.set("rlimit", effort)
-    latest = time.process_time() + GUARD_S + effort / GUARD_RATE
+    before = _effort_so_far(solver)
+    seconds = most_cpu_s(effort)
+    latest = time.process_time() + seconds
     done = threading.Event()
 
     def watch() -> None:
-        while not done.wait(0.5):
+        # again until it has come through: between two steps of the solver an interrupt is lost
+        while not done.wait(LOOK_S):
             if time.process_time() > latest:
                 context.interrupt()
-                return
 
     watcher = threading.Thread(target=watch, daemon=True)
     watcher.start()
     try:
-        return str(solver.check())
+        with ends_within(seconds):
+            result = str(solver.check())
     finally:
         done.set()
         # it must not interrupt the next question
         watcher.join()
+    return Said(result, max(0, _effort_so_far(solver) - before))
+
+
+def _effort_so_far(solver: z3.Solver) -> int:
+    return next((int(value) for key, value in solver.statistics() if key == "rlimit count"), 0)

@@ -8,14 +8,27 @@ the export.
 from __future__ import annotations
 
 import multiprocessing
+import signal
 from collections.abc import Callable, Iterator, Sequence
 from multiprocessing.connection import Connection, wait
 from typing import Any, TypeVar
 
+from cratous.proofs.engine.cpu_limit import may_be_killed
+
 T = TypeVar("T")
 
 
+class Ended(RuntimeError):
+    """A process ended without a result."""
+
+    def __init__(self, code: int | None) -> None:
+        self.out_of_time = code == -signal.SIGXCPU
+        why = "its CPU time was used up" if self.out_of_time else f"code {code}"
+        super().__init__(f"a process ended without a result: {why}")
+
+
 def _child(function: Callable[[], T], out: Connection) -> None:
+    may_be_killed()
     try:
         out.send((True, function()))
     except Exception as error:
@@ -38,7 +51,7 @@ def _finish(here: Connection, process: Any) -> Any:
         good, result = here.recv()
     except EOFError as error:
         process.join()
-        raise RuntimeError(f"a process ended with code {process.exitcode}") from error
+        raise Ended(process.exitcode) from error
     finally:
         here.close()
     process.join()

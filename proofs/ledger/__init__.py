@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import signal
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -29,6 +30,8 @@ from cratous.core.ledger.status import Grounds, status_of
 from cratous.proofs.engine import prover, solver_memory
 from cratous.proofs.engine.cache import Cache
 from cratous.proofs.engine.claim import Claim
+from cratous.proofs.engine.cpu_limit import may_be_killed
+from cratous.proofs.engine.solver_order import ask_apart
 from cratous.proofs.engine.subset import Finding, lint_all
 from cratous.proofs.ledger.proof_recall import Recall
 from cratous.proofs.running.all import compare_all, told
@@ -84,7 +87,13 @@ def _tell(name: str, out: Connection, done: int, of: int) -> None:
     out.send(Progress(name, done, of))
 
 
-def _work(name: str, folder: Path, cache: Cache, write: Writer | None, out: Connection) -> None:
+def _work(
+    name: str, folder: Path, cache: Cache, write: Writer | None, out: Connection, *, apart: bool
+) -> None:
+    """Prove a theorem and run it; apart: each question in a process of its own."""
+    may_be_killed()
+    if apart:
+        ask_apart()
     try:
         claim, sentence = prover.state(name, folder)
         tell = partial(_tell, name, out)
@@ -99,6 +108,17 @@ def _work(name: str, folder: Path, cache: Cache, write: Writer | None, out: Conn
         out.send(error)
     finally:
         out.close()
+
+
+def _no_answer(name: str, folder: Path, process: Any, *, again: bool) -> Exception | None:
+    """What is said of a theorem whose process ended; None if it is proved again, its questions apart."""
+    process.join()
+    if process.exitcode != -signal.SIGXCPU:
+        return RuntimeError(
+            f"the prover of {name} ended without an answer (exit code {process.exitcode})"
+        )
+    # what is proved apart cannot end so, but for its statement
+    return None if again else prover.not_stated(name, folder)
 
 
 def prove_theorems(
@@ -124,12 +144,16 @@ def prove_theorems(
     looked_into: dict[str, Functions] = {}
     running: dict[Connection, tuple[str, Any]] = {}
     queue = list(reversed(wanted))
+    apart: set[str] = set()
     while queue or running:
         while queue and len(running) < (jobs or jobs_default()):
             name = queue.pop()
             here, there = fork.Pipe(duplex=False)
             process = fork.Process(
-                target=_work, args=(name, folder, store, write, there), daemon=True
+                target=_work,
+                args=(name, folder, store, write, there),
+                kwargs={"apart": name in apart},
+                daemon=name not in apart,  # a daemon may have no processes of its own
             )
             process.start()
             there.close()
@@ -140,10 +164,7 @@ def prove_theorems(
             try:
                 message = ready.recv()
             except EOFError:
-                process.join()
-                message = RuntimeError(
-                    f"the prover of {name} ended without an answer (exit code {process.exitcode})"
-                )
+                message = _no_answer(name, folder, process, again=name not in apart)
             if isinstance(message, Progress):
                 if message.theorem is not None:
                     results[name] = message.theorem
@@ -153,6 +174,9 @@ def prove_theorems(
                     tell(message)
                 if message.theorem is None:
                     continue
+            elif message is None:  # a question did not end
+                apart.add(name)
+                queue.append(name)
             else:
                 results[name] = message
             process.join()

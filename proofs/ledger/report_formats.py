@@ -61,6 +61,8 @@ def failure_text(theorem: Theorem) -> str:
     for outcome in theorem.outcomes:
         if outcome.status != "proved":
             lines.append(f"{outcome.status}: {outcome.obligation.kind}: {outcome.obligation.text}")
+            if outcome.status == "unknown":
+                lines.append("  the solver gave no answer within its budget, which is no proof")
             lines += [f"  {line}" for line in example(outcome)]
     lines += theorem.ran.differences if theorem.ran is not None else ()
     return "\n".join(lines)

@@ -8,11 +8,11 @@ no item yet. Step: any further item that satisfies what `Items.each` states of i
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypedDict, Unpack
 
 from cratous.core.kernel import Fold, qualified
 from cratous.proofs.claim import Claim
-from cratous.proofs.engine.induction import arbitrary, names_in, no_more_premises, spread
+from cratous.proofs.engine.induction import all_given, arbitrary, names_in, no_more_premises, spread
 from cratous.proofs.engine.lift import REPLACED
 from cratous.proofs.engine.terms import free_names, statement
 from cratous.proofs.running import inductions
@@ -43,6 +43,17 @@ class Items(NamedTuple):
     more: tuple[Any, ...] = ()
 
 
+class Others(TypedDict, total=False):
+    """What goes along the items beside the kernels' folds.
+
+    models: folds of definitions, whose accumulators come after the kernels'; beside: states that come after
+    these.
+    """
+
+    models: Sequence[Run]
+    beside: Sequence[Beside]
+
+
 def along_items(
     c: Claim,
     runs: Sequence[Run],
@@ -51,23 +62,24 @@ def along_items(
     invariant: Callable[[list[Any]], Any],
     goal: Callable[[list[Any]], Any],
     text: str,
-    models: Sequence[Run] = (),
-    beside: Sequence[Beside] = (),
     known: Callable[[list[Any]], None] = lambda accumulators: None,
+    **others: Unpack[Others],
 ) -> None:
     """Show `goal(results)` of folds over the same items, of any number.
 
     invariant(accumulators): what holds after any number of items; known(accumulators): uses lemmas on one
-    more item, from the accumulators before it, and states no premises; models: folds of definitions, whose accumulators come
-    after the others'; beside: states that come after these.
+    more item, from the accumulators before it, and states no premises; others: what goes along beside the
+    kernels' folds (see `Others`).
     """
     if c.prefix:
         return  # used as a lemma, an induction has no goals to offer, as with `Claim.fold`
+    all_given(others, Others)
+    models, beside = others.get("models", ()), others.get("beside", ())
     values, each, *more = item
     if isinstance(c, OnNumbers):
         both = (*runs, *models)
         inductions.along_items(
-            c, both, item=values, invariant=invariant, goal=goal, text=text, each=each, known=known,
+            c, both, item=(values, each), invariant=invariant, goal=goal, text=text, known=known,
             beside=beside,
         )  # fmt: skip
         return

@@ -16,50 +16,41 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, Unpack
 
 import z3
 
 from cratous.proofs.claim import Claim
-from cratous.proofs.engine.induction import arbitrary, names_in, no_more_premises, spread
+from cratous.proofs.engine.induction import all_given, arbitrary, names_in, no_more_premises, spread
 from cratous.proofs.engine.terms import free_names, statement
 from cratous.proofs.running import inductions
+from cratous.proofs.running.inductions import Sides
 from cratous.proofs.running.statement import OnNumbers
-
-Pair = tuple[Any, Any]
-"""On the kernel's side, and on the definition's."""
 
 
 def every_term(
     c: Claim,
     *,
-    task: Pair,
-    none: Pair,
-    so_far: Pair,
-    operand: Pair,
-    add: tuple[Callable[[Any, Any], Any], Callable[[Any, Any], Any]],
-    whole: tuple[Callable[[Any], Any], Callable[[Any], Any]],
     related: Callable[[Any, Any], Any],
     alike: Callable[[Any, Any], Any],
     node: tuple[Any, ...],
     text: str,
+    **sides: Unpack[Sides],
 ) -> None:
     """Show that value and meaning of every term are related.
 
-    Pairs of the kernel's side and the definition's. task: of an arbitrary task; none: before the first
-    operand; so_far, operand: arbitrary values of what came before and of one operand; add(so_far,
-    operand): with that operand; whole(so_far): of the term, after its last operand. related(value,
-    meaning): of a term; alike(value, meaning): of its operands so far; node: what a node has beside
-    its operands, arbitrary values, another at each node.
+    related(value, meaning): of a term; alike(value, meaning): of its operands so far; node: what a node
+    has beside its operands, arbitrary values, another at each node; sides: how values come about, each a
+    pair of the kernel's side and the definition's (see `Sides`).
     """
     if c.prefix:
         return  # used as a lemma, an induction has no goals to offer, as with `Claim.fold`
+    all_given(sides, Sides)
     if isinstance(c, OnNumbers):
-        inductions.every_term(
-            c, task=task, none=none, so_far=so_far, operand=operand, add=add, whole=whole,
-            related=related, alike=alike, text=text,
-        )  # fmt: skip
+        inductions.every_term(c, sides, related=related, alike=alike, text=text)
         return
+    task, none, add, whole = sides["task"], sides["none"], sides["add"], sides["whole"]
+    so_far, operand = sides["so_far"], sides["operand"]
     arbitrary(c, (so_far, operand), node)
     premises = list(c.premises)
     of_task, of_node = spread(names_in(task), c), spread(names_in(node), c)

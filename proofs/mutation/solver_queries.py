@@ -49,7 +49,7 @@ def values(
     polynomials = all(_reals(term) for term in terms)
     for _, solver, effort in solvers(context, rlimit, polynomials=polynomials, shares=SHARES):
         solver.add(*own)
-        answer = check(solver, context, effort)
+        answer = check(solver, context, effort).result
         if answer == "sat":
             model = solver.model()
             found = [number(model.eval(t.translate(context), True)) for t in wanted]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from typing import Any
+from typing import Any, TypedDict
 
 from cratous.core.kernel import Fold
 from cratous.proofs.running.statement import OnNumbers, truth
@@ -75,15 +75,18 @@ def along_items(
     c: OnNumbers,
     runs: Sequence[Run],
     *,
-    item: tuple[Any, ...],
+    item: tuple[tuple[Any, ...], Any],
     invariant: Callable[[list[Any]], Any],
     goal: Callable[[list[Any]], Any],
     text: str,
-    each: Any,
     known: Callable[[list[Any]], None],
     beside: Sequence[Any] = (),
 ) -> None:
-    """`proofs.methods.runs.along_items`: one more item, or up to LONGEST of the same."""
+    """`proofs.methods.runs.along_items`: one more item, or up to LONGEST of the same.
+
+    item: its values, and what every item satisfies.
+    """
+    own, each = item
     values = [fold.start for fold, _, _ in runs] + [one.start for one in beside]
     arbitrary = [acc for _, acc, _ in runs] + [one.state for one in beside]
 
@@ -99,26 +102,39 @@ def along_items(
     c.premise(each)
     for k in range(count):
         known(values)
-        after = _stepped(c, runs, values[: len(runs)], item)
+        after = _stepped(c, runs, values[: len(runs)], own)
         values = [*after, *(one.step(values) for one in beside)]
         c.show(invariant(values), f"{text}: after {k + 1} more items")
         c.show(goal(results(values)), f"{text}: of {k + 1} more items")
 
 
+class Sides(TypedDict):
+    """How values of terms come about, on the kernel's side and on the definition's.
+
+    task: of an arbitrary task; none: before the first operand; so_far, operand: arbitrary values of what
+    came before and of one operand; add(so_far, operand): with that operand; whole(so_far): of the term,
+    after its last operand.
+    """
+
+    task: tuple[Any, Any]
+    none: tuple[Any, Any]
+    so_far: tuple[Any, Any]
+    operand: tuple[Any, Any]
+    add: tuple[Callable[[Any, Any], Any], Callable[[Any, Any], Any]]
+    whole: tuple[Callable[[Any], Any], Callable[[Any], Any]]
+
+
 def every_term(
     c: OnNumbers,
+    sides: Sides,
     *,
-    task: tuple[Any, Any],
-    none: tuple[Any, Any],
-    so_far: tuple[Any, Any],
-    operand: tuple[Any, Any],
-    add: tuple[Callable[[Any, Any], Any], Callable[[Any, Any], Any]],
-    whole: tuple[Callable[[Any], Any], Callable[[Any], Any]],
     related: Callable[[Any, Any], Any],
     alike: Callable[[Any, Any], Any],
     text: str,
 ) -> None:
     """`proofs.methods.terms.every_term`: one more operand, or a term of one task in two levels of operators."""
+    task, none, add, whole = sides["task"], sides["none"], sides["add"], sides["whole"]
+    so_far, operand = sides["so_far"], sides["operand"]
     c.show(related(*task), f"{text}: a task")
     c.show(alike(*none), f"{text}: no operand yet")
 

@@ -13,6 +13,7 @@ import z3
 
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.counterexample import Model
+from cratous.proofs.engine.solver_order import check
 from cratous.proofs.engine.terms import free_values
 
 RLIMIT = 150_000
@@ -57,9 +58,8 @@ def witnesses(claim: Claim) -> list[dict[str, Any]]:
     same = [term.translate(context) for term in base]
     for extra in _wanted(claim):
         solver = z3.Solver(ctx=context)
-        solver.set("rlimit", RLIMIT)
         solver.add(*same, *[term.translate(context) for term in extra])
-        if solver.check() != z3.sat:
+        if check(solver, context, RLIMIT).result != "sat":
             continue
         model = Model(solver.model(), context)
         names = {str(value): value for value in free_values([*base, *extra])}

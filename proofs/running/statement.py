@@ -12,9 +12,10 @@ import random
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any, get_type_hints
+from typing import Any, Unpack, get_type_hints
 
 from cratous.core.kernel import Fold, Vec2, qualified
+from cratous.proofs.engine.induction import DefinedBy, side_of
 from cratous.proofs.running.copies import Undecided, rational_root, with_root
 from cratous.proofs.running.late_values import All, Cell, Late, Open, made_true, now
 
@@ -165,13 +166,12 @@ class OnNumbers:
         model: Any,
         item: tuple[Any, ...],
         context: tuple[Any, ...],
-        model_start: Any,
-        model_step: Callable[..., Any],
         relation: Callable[[Any, Any], Any],
-        model_finish: Callable[..., Any] | None = None,
+        **definition: Unpack[DefinedBy],
     ) -> None:
         if self.prefix:
             return
+        model_start, model_step, model_finish = side_of(definition)
 
         def finished(finish: Callable[..., Any] | None, value: Any) -> Any:
             return value if finish is None else self._run(finish, (value,))

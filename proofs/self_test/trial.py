@@ -176,3 +176,4 @@ def prepare() -> None:
     z3.Solver(ctx=z3.main_ctx()).check()
     gc.collect()
     gc.freeze()  # else each process copies what its collector looks at
+    gc.disable()  # what is forked from here ends before its garbage is worth looking for

@@ -21,6 +21,7 @@ from cratous.core.kernel import REGISTRY, Fold, qualified
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.closed import TRUE
 from cratous.proofs.engine.lift import LiftError
+from cratous.proofs.engine.solver_order import check
 from cratous.proofs.engine.symbolic import SymBool, SymInt, SymMask, SymReal, _raw
 from cratous.proofs.engine.terms import free_names, free_values, fresh, known, leaves
 from cratous.proofs.engine.theorem_files import FOLDER, load_claim
@@ -280,10 +281,9 @@ def _says(claim: _Outline, number: int, function: str) -> bool:
     if not others:
         return True  # computed of known numbers, which are in the goal
     solver = z3.Solver()
-    solver.set("rlimit", SAYS_RLIMIT)
     solver.add(*premises, goal, z3.substitute(z3.Not(goal), *others))
     solver.add(*[z3.substitute(premise, *others) for premise in premises])
-    return bool(solver.check() != z3.unsat)
+    return check(solver, solver.ctx, SAYS_RLIMIT).result != "unsat"
 
 
 def _pairs(claim: _Outline, number: int) -> Iterator[tuple[str, tuple[str, str]]]:

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from cratous.bridge import lmcp
 from cratous.services.simulator import guidance as guide
 from cratous.services.simulator.guidance import DIRECTED, LOITER, WAYPOINT, Guidance
+from cratous.services.simulator.locations import location_of
 from cratous.services.simulator.motion import GRAVITY_M_S2, Command, Motion, body_rates, move
 from cratous.services.simulator.performance import Airframe
 from cratous.spec.errors import BadInput
@@ -161,13 +162,7 @@ def state(
         Groundspeed=speed,
         Course=degrees(course),
         VerticalSpeed=m.climb_m_s,
-        Location=lmcp.new(
-            "Location3D",
-            Latitude=degrees(m.lat_rad),
-            Longitude=degrees(m.lon_rad),
-            Altitude=m.alt_m,
-            AltitudeType="MSL",
-        ),
+        Location=location_of(m),
         EnergyAvailable=m.energy_percent,
         ActualEnergyRate=m.energy_percent_s,
         PayloadStateList=list(payloads),

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from cratous.bridge import lmcp
 from cratous.services.simulator import payload
 from cratous.services.simulator.earth import EQUATOR_M, Place, bound_pi, horizon_m
+from cratous.services.simulator.locations import location_of
 from cratous.services.simulator.motion import Motion
 
 if TYPE_CHECKING:
@@ -113,12 +114,6 @@ def _perception(perceiver: int, by: list[int], seen: Body, time_ms: int) -> Any:
         VelocityValid=True,
         Attitude=[degrees(m.heading_rad), degrees(m.pitch_rad), degrees(m.roll_rad)],
         AttitudeValid=True,
-        Location=lmcp.new(
-            "Location3D",
-            Latitude=degrees(m.lat_rad),
-            Longitude=degrees(m.lon_rad),
-            Altitude=m.alt_m,
-            AltitudeType="MSL",
-        ),
+        Location=location_of(m),
         TimeLastSeen=time_ms,
     )

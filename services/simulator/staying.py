@@ -2,25 +2,12 @@
 
 from __future__ import annotations
 
-from math import degrees
 from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.services.simulator.aircraft import Aircraft, circle_m
 from cratous.services.simulator.driver import Driver
-from cratous.services.simulator.motion import Motion
 from cratous.services.simulator.tracking import Track
-
-
-def here(m: Motion) -> Any:
-    """Where a vehicle is."""
-    return lmcp.new(
-        "Location3D",
-        Latitude=degrees(m.lat_rad),
-        Longitude=degrees(m.lon_rad),
-        Altitude=m.alt_m,
-        AltitudeType="MSL",
-    )
 
 
 def stay(key: int, command: int, one: Aircraft | Driver, at: Any) -> Any:

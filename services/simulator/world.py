@@ -27,11 +27,12 @@ from cratous.services.simulator.aircraft import (
 from cratous.services.simulator.commands import check_command, check_place, present
 from cratous.services.simulator.driver import STATES, Driver, Drivers
 from cratous.services.simulator.guidance import NOTHING
+from cratous.services.simulator.locations import location_of
 from cratous.services.simulator.motion import Motion
 from cratous.services.simulator.paths import Paths, check_times, path_of, steers
 from cratous.services.simulator.perception import Body, perceptions
 from cratous.services.simulator.performance import Airframe, airframe_of
-from cratous.services.simulator.staying import fall_back, here, stay
+from cratous.services.simulator.staying import fall_back, stay
 from cratous.services.simulator.tracking import Tracks
 from cratous.spec.errors import BadInput
 
@@ -345,7 +346,7 @@ class World:
                 self._obey(path.mission, path.told)
             else:
                 flies = isinstance(one, Aircraft)
-                at = here(one.motion) if flies else self.drivers.halt(key)
+                at = location_of(one.motion) if flies else self.drivers.halt(key)
                 self._obey(stay(key, body.CommandID, one, at))
 
     def _one(self, key: int) -> Aircraft | Driver:

@@ -88,9 +88,32 @@ def test_modules_stay_short(root: Path) -> None:
     """At most 400 lines, message classes that are generated apart."""
     long = {
         file.relative_to(root).as_posix()
-        for part in (*PARTS, "tests")
-        for file in (root / part).rglob("*.py")
-        if "lmcp/messages" not in file.as_posix()
-        and len(file.read_text(encoding="utf-8").splitlines()) > 400
+        for file in _written(root)
+        if len(file.read_text(encoding="utf-8").splitlines()) > 400
     }
     assert long == set()
+
+
+def _written(root: Path) -> Iterator[Path]:
+    """Every module and test, message classes that are generated apart."""
+    for part in (*PARTS, "tests"):
+        for file in (root / part).rglob("*.py"):
+            if "lmcp/messages" not in file.as_posix():
+                yield file
+
+
+def parameters(node: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
+    """Its parameters, positional and by keyword, the instance or class of a method apart."""
+    positional = [one.arg for one in (*node.args.posonlyargs, *node.args.args)]
+    return len(positional) + len(node.args.kwonlyargs) - (positional[:1] in (["self"], ["cls"]))
+
+
+def test_functions_have_few_parameters(root: Path) -> None:
+    """At most 8."""
+    many = [
+        f"{file.relative_to(root).as_posix()}:{node.lineno} {node.name}"
+        for file in _written(root)
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and parameters(node) > 8
+    ]
+    assert many == []

@@ -83,7 +83,7 @@ NOTHING = {
     "a kernel's helper more": _added("core/well_clear/now.py"),
     "a reading more": _added("core/readings/machine/compiled.py"),
     "a comment in the prover": (
-        "proofs/engine/prover.py", "def _rlimit_count(", "# what z3 counts\ndef _rlimit_count("),
+        "proofs/engine/prover.py", "def _maker(", "# by its logic\ndef _maker("),
     "a docstring in the prover": (
         "proofs/engine/prover.py", '"""The answer of the first solver that decides', '"""What the first solver said that decides'),
     "what is told of a refutation": (

@@ -184,6 +184,20 @@ def _fold_statuses(fold: Any, model_step: Any, weak: bool = False) -> dict[str, 
     return {o.obligation.kind: o.status for o in _prove(claim).outcomes}
 
 
+@pytest.mark.parametrize(
+    ("parts", "said"),
+    [
+        ({"model_start": False}, "an induction needs model_step"),
+        ({"model_start": 0, "model_step": max, "model_end": max}, "is not given model_end"),
+    ],
+)
+def test_a_fold_is_held_against_a_whole_definition(parts: dict[str, Any], said: str) -> None:
+    c = Claim()
+    kept = {"acc": c.boolean("met"), "model": c.boolean("model"), "item": (), "context": ()}
+    with pytest.raises(TypeError, match=said):
+        c.fold(named("meets_boundary").function, relation=c.same, **kept, **parts)
+
+
 def test_a_wrong_fold_is_refuted():
     locate = named("meets_boundary").function
     assert isinstance(locate, Fold)

@@ -93,7 +93,7 @@ def test_expansions_alone_and_behind_pairs_are_right(name: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "count",
-    ["sum_left_out(ar, br", pytest.param("product_left_out(ar, br", marks=pytest.mark.long)],
+    ["sum_left_out(ar, br", pytest.param("product_left_out(left, c, d", marks=pytest.mark.long)],
 )
 def test_rationals_catch_pairs_that_forget_what_they_left_out(count: str) -> None:
     columns = wide_tangent(300)

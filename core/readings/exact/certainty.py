@@ -2,7 +2,7 @@
 
 Definitions: `spec.rounding`. The float filter writes the first two kernels out for each
 comparison; the enclosed reading widens the result of each operation by the third; the pairs of
-doubles of the exact reading count what they leave out by the last two.
+doubles of the exact reading count what they leave out by the last three.
 """
 
 from cratous.core.kernel import kernel
@@ -42,11 +42,18 @@ def sum_left_out(a_left: float, b_left: float, low_rest: float, rest: float) -> 
 
 
 @kernel(implements="rounding.stands_for")
+def factors_left_out(a_left: float, b_left: float, a_size: float, b_size: float) -> float:
+    """How far a product lies at most from the product of the pairs of doubles that stand for its factors.
+
+    a_left, b_left: the same of the factors; a_size, b_size: magnitudes of their pairs. Any one unit for
+    each factor.
+    """
+    return a_left * (b_size + b_left) + b_left * a_size
+
+
+@kernel(implements="rounding.stands_for")
 def product_left_out(
-    a_left: float,
-    b_left: float,
-    a_size: float,
-    b_size: float,
+    of_factors: float,
     cross_a: float,
     cross_b: float,
     low: float,
@@ -56,10 +63,9 @@ def product_left_out(
 ) -> float:
     """How far a product lies at most from the pair of doubles that stands for it.
 
-    a_left, b_left: the same of the factors, a_size, b_size: magnitudes of their pairs; cross_a,
+    of_factors: how far the product of the pairs of its factors may be off (`factors_left_out`); cross_a,
     cross_b, low: rounded products of the parts, the last not added; cross_rest, rest: what sums
     rounded off; share: the relative error of a rounded product.
     """
-    of_factors = a_left * (b_size + b_left) + b_left * a_size
     of_products = share * (abs(cross_a) + abs(cross_b) + abs(low)) + abs(low)
     return of_factors + of_products + (abs(cross_rest) + abs(rest))

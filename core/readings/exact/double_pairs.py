@@ -4,8 +4,8 @@ Every real value of a comparison is carried as (high, low, left_out): the value 
 high + low by at most left_out, and high is their sum, rounded. Sums and products of doubles are
 split into what is rounded and the exact rest (`core.readings.exact.expansion_arithmetic`); left_out is 0 where
 nothing was dropped, and there a pair decides exact ties too. What is left out is counted by kernels
-that are proved (`core.readings.exact.certainty`: sum_left_out, product_left_out). Nothing is approximated
-silently: what a pair cannot decide goes on to residues and expansions.
+that are proved (`core.readings.exact.certainty`: sum_left_out, factors_left_out, product_left_out). Nothing is
+approximated silently: what a pair cannot decide goes on to residues and expansions.
 
 The count is itself rounded, by a relative error of less than 2^-48 for each operation; `WIDER`
 covers a million of them. It never underflows where `expansions.reach` admits the input: every
@@ -15,6 +15,7 @@ part of a value is a multiple of 2^-960, and the least share of one that is coun
 from __future__ import annotations
 
 from cratous.core.readings.exact.certainty import (
+    factors_left_out,
     product_left_out,
     sum_left_out,
     surely_above,
@@ -58,7 +59,8 @@ def product_of_pair(ah, al, ar, y):
     m, g = two_sum(e, c)
     h, l = two_sum(p, m)
     size = abs(ah) + abs(al)
-    return h, l, product_left_out(ar, 0.0, size, abs(y), c, 0.0, 0.0, 0.0, g, SHARE)
+    left = factors_left_out(ar, 0.0, size, abs(y))
+    return h, l, product_left_out(left, c, 0.0, 0.0, 0.0, g, SHARE)
 
 
 @FLAGS
@@ -71,14 +73,15 @@ def product_of_pairs(ah, al, ar, bh, bl, br):
     m, g = two_sum(e, t)
     h, l = two_sum(p, m)
     m, n = abs(ah) + abs(al), abs(bh) + abs(bl)
-    return h, l, product_left_out(ar, br, m, n, c, d, al * bl, f, g, SHARE)
+    left = factors_left_out(ar, br, m, n)
+    return h, l, product_left_out(left, c, d, al * bl, f, g, SHARE)
 '''
 
 
 def arithmetic(flags: str) -> str:
     """The functions of one sum and one product, and the kernels that count what is left out."""
     rules = SourceText(flags)
-    kernels = (sum_left_out, product_left_out, surely_above, surely_below)
+    kernels = (sum_left_out, factors_left_out, product_left_out, surely_above, surely_below)
     names = [f"{kernel.__name__} = {rules.add(kernel)}" for kernel in kernels]
     head = f"SHARE = {float(2 * UNIT)!r}"
     own = ARITHMETIC.strip().replace("@FLAGS", f"@{flags}")

@@ -1,7 +1,7 @@
 """What is counted as left out of a product of two pairs of doubles can all be missing at once, so that
 no smaller count would do."""
 
-from cratous.core.readings.exact.certainty import product_left_out
+from cratous.core.readings.exact.certainty import factors_left_out, product_left_out
 from cratous.proofs.claim import Claim
 from cratous.spec import rounding
 
@@ -24,10 +24,7 @@ def claim(c: Claim) -> None:
         c.premise(c.define(rounding.rounded, result, real, share, 0))
     real = (a_high + a_low + a_left) * (b_high + b_low + b_left)
     pair = a_high * b_high + cross_a + cross_b - crosses_rest - rest
-    left = c.use(
-        product_left_out,
-        a_left, b_left, a_high + a_low, b_high + b_low, cross_a, cross_b, lows, crosses_rest, rest,
-        share,
-    )  # fmt: skip
+    of_factors = c.use(factors_left_out, a_left, b_left, a_high + a_low, b_high + b_low)
+    left = c.use(product_left_out, of_factors, cross_a, cross_b, lows, crosses_rest, rest, share)
     enough = c.define(rounding.stands_for, pair, 0, real, least)
     c.show(c.implies(enough, left <= least))

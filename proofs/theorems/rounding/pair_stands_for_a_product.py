@@ -2,7 +2,7 @@
 what sums and products round off are dropped, stands for the product of the two real numbers within
 what is counted as left out."""
 
-from cratous.core.readings.exact.certainty import product_left_out
+from cratous.core.readings.exact.certainty import factors_left_out, product_left_out
 from cratous.proofs.claim import Claim
 from cratous.spec import rounding
 
@@ -58,10 +58,8 @@ def claim(c: Claim) -> None:
         high=high,
         low=low,
     )
-    left = c.use(
-        product_left_out,
-        a_left, b_left, a_size, b_size, cross_a, cross_b, lows, crosses_rest, rest, share,
-    )  # fmt: skip
+    of_factors = c.use(factors_left_out, a_left, b_left, a_size, b_size)
+    left = c.use(product_left_out, of_factors, cross_a, cross_b, lows, crosses_rest, rest, share)
     c.show(c.define(rounding.stands_for, high, low, a * b, left))
 
 

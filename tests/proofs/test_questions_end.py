@@ -1,0 +1,152 @@
+"""Every question ends: one that heeds no interrupt ends with its process, and its answer is `unknown`."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pytest
+import z3
+
+from cratous.proofs import ledger
+from cratous.proofs.engine import cpu_limit, lift, prover, solver_order, worker_processes
+from cratous.proofs.ledger.report_formats import failure_text
+from cratous.spec.errors import BadInput
+
+HEAD = '''"""The sign of a product."""
+
+from cratous.core.readings.exact.certainty import surely_above
+from cratous.proofs.claim import Claim
+from cratous.spec.rounding import outward_margin
+
+
+def claim(c: Claim) -> None:
+    x, y = c.reals("x y")
+    c.premise(c.all_of(x > 0, y > 0))
+'''
+SHORT = HEAD + "    c.show(c.use(surely_above, x, 0), 'it is above')\n"
+TWO = SHORT + "    c.show(c.use(surely_above, x * y, 0), 'the product is above')\n"
+PATHS = (
+    HEAD + "    c.show(c.use(surely_above, c.define(outward_margin, x, y, x), 0), 'the margin')\n"
+)
+
+
+class Deaf:
+    """A solver that goes on whatever it is told."""
+
+    def set(self, name: str, value: Any) -> None:
+        """It takes any budget."""
+
+    def add(self, *terms: z3.BoolRef) -> None:
+        """It takes any question."""
+
+    def statistics(self) -> list[tuple[str, int]]:
+        """It counts nothing."""
+        return []
+
+    def check(self) -> z3.CheckSatResult:
+        """It never answers."""
+        while True:
+            time.process_time()
+
+
+@pytest.fixture(autouse=True)
+def soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What waits for minutes waits for a second."""
+    monkeypatch.setattr(solver_order, "GUARD_S", 0.2)
+    monkeypatch.setattr(solver_order, "GUARD_RATE", 10**12)
+    monkeypatch.setattr(cpu_limit, "GRACE_S", 0.2)
+    monkeypatch.setattr(lift, "PRUNE_CPU_S", 0.2)
+
+
+def _proved(tmp_path: Path, **texts: str) -> list[prover.Theorem]:
+    for name, text in texts.items():
+        (tmp_path / f"{name}.py").write_text(text)
+    return ledger.prove_theorems(sorted(texts), folder=tmp_path, jobs=2, machine=False)
+
+
+def test_a_question_that_heeds_no_interrupt_ends_with_its_process() -> None:
+    with pytest.raises(worker_processes.Ended, match="CPU time was used up") as ended:
+        worker_processes.call(partial(solver_order.check, Deaf(), z3.Context(), 1))  # type: ignore[arg-type]
+    assert ended.value.out_of_time
+
+
+def test_one_that_is_asked_apart_is_unknown() -> None:
+    def ask() -> tuple[str, str]:
+        solver_order.ask_apart()
+        x, plain = z3.Real("x"), z3.Solver()
+        plain.add(x > 0, x < 0)
+        hung = solver_order.check(Deaf(), z3.Context(), 1)  # type: ignore[arg-type]
+        return hung.result, solver_order.check(plain, z3.main_ctx(), 10**6).result
+
+    assert worker_processes.call(ask) == ("unknown", "unsat")
+
+
+def test_a_model_is_had_of_what_was_asked_apart() -> None:
+    def ask() -> int:
+        solver_order.ask_apart()
+        x, solver = z3.Int("x"), z3.Solver()
+        solver.add(x > 6, x < 8)
+        assert solver_order.check(solver, z3.main_ctx(), 10**6).result == "sat"
+        return int(solver.model()[x].as_long())
+
+    assert worker_processes.call(ask) == 7
+
+
+def test_interrupts_come_until_one_is_heeded() -> None:
+    heard = threading.Semaphore(0)
+
+    class Slow(Deaf):
+        def check(self) -> z3.CheckSatResult:
+            for _ in range(2):
+                while not heard.acquire(blocking=False):
+                    time.process_time()
+            return z3.unknown
+
+    class Context:
+        def interrupt(self) -> None:
+            heard.release()
+
+    assert solver_order.check(Slow(), Context(), 1).result == "unknown"  # type: ignore[arg-type]
+
+
+def test_what_may_not_be_killed_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    with cpu_limit.ends_within(0):
+        begun = time.process_time()
+        while time.process_time() < begun + 2:
+            pass
+
+
+def test_the_theorem_of_such_a_question_is_not_proved_and_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its other obligations are proved, and so are the other theorems."""
+    real = prover._solvers
+
+    def ways(terms: list[Any], *rest: Any) -> Iterator[tuple[str, Any, int]]:
+        if "x*y" in str(terms).replace(" ", ""):
+            yield "ALL", Deaf(), 1
+        else:
+            yield from real(terms, *rest)
+
+    monkeypatch.setattr(prover, "_solvers", ways)
+    other, hung = _proved(tmp_path, a_sign=SHORT, of_a_product=TWO)
+    assert other.proved
+    assert not hung.proved
+    said = {o.obligation.text: o.status for o in hung.outcomes if o.obligation.kind == "goal"}
+    assert said == {"it is above": "proved", "the product is above": "unknown"}
+    assert "unknown: goal: the product is above" in failure_text(hung)
+    assert "no answer within its budget, which is no proof" in failure_text(hung)
+
+
+def test_a_theorem_whose_paths_are_not_found_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(lift.z3, "Solver", Deaf)
+    with pytest.raises(BadInput, match="its paths take too long to find") as refused:
+        _proved(tmp_path, of_a_margin=PATHS)
+    assert refused.value.where.endswith("of_a_margin.py")
