@@ -11,7 +11,7 @@ from typing import Any
 from cratous.services.campaign.definition import Campaign
 from cratous.services.campaign.engine import Attempt, Engine
 from cratous.services.campaign.outcomes import Row, outcome_of, row_of
-from cratous.services.campaign.runs import Run, runs_of
+from cratous.services.campaign.runs import Ids, Run, runs_of
 from cratous.services.campaign.store import Store
 from cratous.spec.errors import Refused
 
@@ -65,12 +65,13 @@ class Conduct:
         self._campaign, self._store = campaign, store
         self._function, self._version = function, version
         self._allow_unproved = allow_unproved
+        self._ids: Ids = {}
         self._again: deque[Attempt] = deque()
         self._tries: dict[str, int] = {}
 
     def runs(self) -> Iterator[Run]:
         """All its runs, in order."""
-        return runs_of(self._campaign, self._version, self._allow_unproved)
+        return runs_of(self._campaign, self._version, self._allow_unproved, self._ids)
 
     def task(self, run: Run, **more: Any) -> Attempt:
         """The attempt at a run, as a worker takes it."""

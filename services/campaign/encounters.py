@@ -79,13 +79,17 @@ def verdicts_of(mission: Mission, flown: Encounter) -> list[Verdict]:
 
 
 def result_of(
-    mission: Mission, flown: Encounter, judged: list[Judged], proved: bool, name: str
+    mission: Mission,
+    flown: Encounter,
+    states: States,
+    judged: list[Judged],
+    proved: bool,
+    name: str,
 ) -> dict[str, Any]:
-    """The result of the run as plain data. judged: the judge's rows; proved: by proved kernels alone; name: what
-    the mission is named by."""
+    """The result of the run as plain data. states: of `flown`; judged: the judge's rows; proved: by proved kernels
+    alone; name: what the mission is named by."""
     verdicts = verdicts_of(mission, flown)
     rows = [*map(_row, verdicts), *(_Row(*j) for j in judged if j.guarantee == "G3")]
-    states = states_of(flown)
     return {
         "kind": "flown",
         "proved": proved,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from random import Random
 from typing import Any
@@ -26,7 +26,7 @@ from cratous.spec.errors import BadInput
 class Run:
     """One run. id: a digest of all that decides its result, `decides`.
 
-    decides: mission (text of the file), seed (of the mission's own variants, 0 for none), daa,
+    deciding gives: mission (text of the file), seed (of the mission's own variants, 0 for none), daa,
     allow_unproved, judge, version, kind, own (files of requirements of the user's own, as a report keeps them). drawn: what was drawn for it, by name.
     """
 
@@ -34,8 +34,13 @@ class Run:
     mission: str
     option: str
     seed: int
-    decides: dict[str, Any]
+    deciding: Callable[[], dict[str, Any]]
     drawn: dict[str, Any]
+
+    @property
+    def decides(self) -> dict[str, Any]:
+        """What decides it, made anew each time: the text of a mission takes longer to write than to draw."""
+        return self.deciding()
 
     @property
     def name(self) -> str:
@@ -43,13 +48,19 @@ class Run:
         return f"{self.mission}-{self.option}" + (f"-seed{self.seed}" if self.seed else "")
 
 
-def runs_of(campaign: Campaign, version: str, allow_unproved: bool) -> Iterator[Run]:
-    """All runs, in the order of missions, seeds and options."""
+Ids = dict[tuple[str, str, int], str]
+"""Of runs that were named before, by mission, option and seed."""
+
+
+def runs_of(
+    campaign: Campaign, version: str, allow_unproved: bool, ids: Ids | None = None
+) -> Iterator[Run]:
+    """All runs, in the order of missions, seeds and options. ids: of what was named before, which grows."""
     for seed in campaign.seeds or (0,):
         for source in campaign.missions or (None,):
             for option in campaign.options:
                 data = Made(campaign, source, option, seed)
-                yield data.run(version, allow_unproved)
+                yield data.run(version, allow_unproved, ids)
 
 
 class Made:
@@ -107,15 +118,25 @@ class Made:
         other.data, other._text = data, ""
         return other
 
-    def run(self, version: str, allow_unproved: bool) -> Run:
+    def run(self, version: str, allow_unproved: bool, ids: Ids | None = None) -> Run:
         """The run of the mission as it is now."""
-        decides = {
-            "mission": self._text or _text(self.data), "seed": self._own_seed, "daa": self._option.daa,
-            "judge": self._judge, "allow_unproved": allow_unproved, "version": version,
-            "kind": self._kind, "own": self._own,
-        }  # fmt: skip
-        option, drawn = self._option.name, self.drawn
-        return Run(fingerprint(decides), self._name, option, self._seed, decides, drawn)
+
+        def decides() -> dict[str, Any]:
+            return {
+                "mission": self._text or _text(self.data), "seed": self._own_seed, "daa": self._option.daa,
+                "judge": self._judge, "allow_unproved": allow_unproved, "version": version,
+                "kind": self._kind, "own": self._own,
+            }  # fmt: skip
+
+        key = (self._name, self._option.name, self._seed)
+        found = None if ids is None else ids.get(key)
+        if found is not None:
+            return Run(found, *key, decides, self.drawn)
+        now = decides()
+        made = fingerprint(now)
+        if ids is not None:
+            ids[key] = made
+        return Run(made, *key, lambda: now, self.drawn)
 
 
 def _text(data: dict[str, Any]) -> str:

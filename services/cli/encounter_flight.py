@@ -36,7 +36,8 @@ def _flown(file: Path, task: dict[str, Any]) -> dict[str, Any]:
     mission = load(file, task["seed"])
     proved = not standing(task["allow_unproved"]).problems
     flown = fly_encounter(mission, daa=task["daa"])
-    found = encounter_rows(file, states_of(flown), flown.reached)
+    states = states_of(flown)
+    found = encounter_rows(file, states, flown.reached)
     rows = [Judged(row.guarantee, row.item, row.verdict, row.note) for row in found]
     name = hashlib.sha256(task["mission"].encode()).hexdigest()
-    return result_of(mission, flown, rows, proved, name)
+    return result_of(mission, flown, states, rows, proved, name)

@@ -9,7 +9,7 @@ from typing import Any
 
 from cratous.services.loading.document import Document, Key, item_name
 from cratous.spec.errors import BadInput
-from cratous.spec.files.schema_check import fits
+from cratous.spec.files.schema_check import Check, fits
 
 _KINDS = {
     "object": "a mapping",
@@ -29,10 +29,17 @@ def mission_schema() -> dict[str, Any]:
     return schema
 
 
+@cache
+def _fits_mission() -> Check:
+    """Made once: it takes longer than to check a small mission by it."""
+    return fits(mission_schema())
+
+
 def schema_problems(document: Document, schema: dict[str, Any] | None = None) -> list[BadInput]:
     """All departures from a schema (the mission's unless another is given), in the order of the file."""
     asked = schema or mission_schema()
-    if fits(asked)(document.data):
+    check = fits(asked) if schema else _fits_mission()
+    if check(document.data):
         return []
     from jsonschema import Draft202012Validator
 
