@@ -45,7 +45,7 @@ def judge_encounter(file: Path, states: States, reached: Mapping[int, int]) -> l
 def _state(data: Node) -> State:
     plain = data.data
     if type(plain) is list and len(plain) == len(State._fields) and all(map(is_plain, plain[1:])):
-        return State(next(iter(data)).whole, *plain[1:])
+        return State(Node(plain[0], data.where, 0, data).whole, *plain[1:])
     values = list(data)
     if len(values) != len(State._fields):
         raise data.wrong("time [ms], position and velocity")

@@ -130,7 +130,13 @@ def _ends(track: Track, name: int, begin: int | None, end: int | None, step_ms: 
 
 
 def _led(before: State, after: State) -> bool:
-    dt = (after.time_ms - before.time_ms) / 1000
-    reach = max(abs(x) for x in (*before[1:4], *after[1:4]))
-    off = max(abs(before[k] + before[k + 3] * dt - after[k]) for k in (1, 2, 3))
-    return off <= APART_M + 1e-12 * reach and math.isfinite(off)
+    begun, north, east, up, to_north, to_east, upwards = before
+    time, there_north, there_east, there_up, *_ = after
+    dt = (time - begun) / 1000
+    off = max(
+        abs(north + to_north * dt - there_north),
+        abs(east + to_east * dt - there_east),
+        abs(up + upwards * dt - there_up),
+    )
+    places = (north, east, up, there_north, there_east, there_up)
+    return off <= APART_M + 1e-12 * max(map(abs, places)) and math.isfinite(off)

@@ -7,9 +7,10 @@ judge alone says.
 from __future__ import annotations
 
 import hashlib
+import struct
 from collections import defaultdict
 from collections.abc import Iterable
-from itertools import pairwise
+from itertools import chain, pairwise
 from math import inf
 from typing import Any, NamedTuple
 
@@ -49,8 +50,11 @@ def states_of(flown: Encounter) -> States:
 
 def digest_of(states: States) -> str:
     """SHA-256 of all that was flown, every double to the bit."""
-    text = repr(sorted(states.items()))
-    return hashlib.sha256(text.encode()).hexdigest()
+    found = hashlib.sha256()
+    for number, told in sorted(states.items()):
+        flat = tuple(chain.from_iterable(told))
+        found.update(struct.pack(f"<2q{len(flat)}d", number, len(flat), *flat))
+    return found.hexdigest()
 
 
 def verdicts_of(mission: Mission, flown: Encounter) -> list[Verdict]:

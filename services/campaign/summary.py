@@ -54,9 +54,13 @@ def build(campaign: Campaign, rows: list[Row], version: str) -> dict[str, Any]:
 
 
 def text_of(summary: dict[str, Any]) -> str:
-    """The text of campaign.json."""
-    text = json.dumps(summary, indent=1, sort_keys=True, ensure_ascii=False, allow_nan=False)
-    return text + "\n"
+    """The text of campaign.json, with a run on each line."""
+    said = json.JSONEncoder(sort_keys=True, ensure_ascii=False, allow_nan=False)
+    runs = ",".join(f"\n  {said.encode(run)}" for run in summary["runs"])
+    whole = {**summary, "runs": []}
+    text = json.dumps(whole, indent=1, sort_keys=True, ensure_ascii=False, allow_nan=False)
+    before, mark, after = text.partition('\n "runs": [')
+    return f"{before}{mark}{runs}{after}\n"
 
 
 def worst(rows: list[Row], requirements: tuple[str, ...]) -> list[Row]:
