@@ -71,7 +71,7 @@ class NearLegsWatch:
     def message(self, message: Message) -> None:
         """A state of the gate, a command, or where an aircraft is."""
         kind, now_ms, _, body = message
-        if self._record.unseen:
+        if self._record.unseen or kind not in ("GateState", "GatedCommand", "TruthState"):
             return
         number = body.VehicleID
         if number not in self._gates:

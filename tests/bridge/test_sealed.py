@@ -310,7 +310,7 @@ def test_keys_come_from_files_or_the_environment_and_are_not_shown(
         assert "hunter2" not in str(wrong.value)
         assert "--plain" not in str(wrong.value)  # a folder of keys was asked for
     # who asked for nothing may come from before v2
-    with pytest.raises(BadInput, match='CRATOUS_BRIDGE_KEY_7.*--plain, and Dialect="cratous"'):
+    with pytest.raises(BadInput, match=r'CRATOUS_BRIDGE_KEY_7.*--plain, and Dialect="cratous"'):
         key_of(7, None)
 
 

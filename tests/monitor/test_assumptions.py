@@ -28,14 +28,14 @@ from tampering import (
 from cratous.bridge import lmcp
 from cratous.services.assumptions.link import DeliveryWatch
 from cratous.services.assumptions.listing import LISTING, State
-from cratous.services.assumptions.observed import Message
+from cratous.services.assumptions.observed import EVERY, Message
 from cratous.services.assumptions.said import sentence
 from cratous.services.assumptions.watch import AssumptionWatch
 from cratous.services.bus import Bus, Envelope
 from cratous.services.flight.loop import fly
 from cratous.services.monitor import Monitor
 from cratous.services.pipeline.plan import make_plan
-from cratous.spec.mission import FaultySimulation, Mission, Simulation
+from cratous.spec.mission import FaultySimulation, Mission, Simulation, Zone, ZoneKind
 from cratous.spec.mission.bridge_faults import BridgeFaults
 
 WATCHED = {one.name for one in LISTING if one.watch}
@@ -220,6 +220,30 @@ BREAKS: dict[str, tuple[Change, str]] = {
 
 def test_each_watch_has_a_log_in_which_its_assumption_breaks() -> None:
     assert {*BREAKS, "near its legs"} == WATCHED  # that one needs a zone: test_near_its_legs
+
+
+def rows_told(mission: Mission, log: Log, of_every_kind: bool) -> list[Any]:
+    """What is said at each message, and at the end."""
+    watching = AssumptionWatch(mission)
+    if of_every_kind:
+        for one in watching._watches:
+            vars(one)["kinds"] = EVERY
+    told = [watching.tap(m.topic.rpartition(".")[2], m) for m in log]
+    return [*told, watching.rows(log[-1].time_ms, True)]
+
+
+@pytest.mark.parametrize("name", ["", *sorted(BREAKS)])
+def test_a_watch_that_is_told_of_every_message_says_the_same(name: str) -> None:
+    """No watch reads a type that it does not list."""
+    east = ((2000.0, 0.5), (4000.0, 0.5), (4000.0, 900.0), (2000.0, 900.0))
+    mission = replace(WHOLE, zones=(Zone(21, ZoneKind.KEEP_OUT, east, 0.0, 1000.0),))
+    log = [copy.copy(one) for one in flown(WHOLE)]
+    if name:
+        BREAKS[name][0](log)
+    few, every = (rows_told(mission, log, of_all) for of_all in (False, True))
+    assert few == every
+    (near,) = [row for row in few[-1] if row["name"] == "near its legs"]
+    assert near["checks"] > 100
 
 
 @pytest.mark.parametrize("name", sorted(BREAKS))
