@@ -13,6 +13,10 @@ from cratous.spec.errors import BadInput
 
 KEY_VARIABLE = "CRATOUS_BRIDGE_KEY_{}"
 """The variable of the environment with the key of a vehicle."""
+WITHOUT = (
+    """, there or in a folder of keys; without keys: --plain, and Dialect="cratous" at UxAS's end"""
+)
+"""What else to write where nothing says that there are to be keys."""
 
 
 @dataclass(frozen=True)
@@ -30,6 +34,12 @@ class Keys:
         return {KEY_VARIABLE.format(vid): key.hex() for vid, key in self.by_vehicle.items()}
 
 
+def without_keys(environment: Mapping[str, str]) -> dict[str, str]:
+    """The environment of a process that needs no key of the bridge."""
+    stem = KEY_VARIABLE.format("")
+    return {name: value for name, value in environment.items() if not name.startswith(stem)}
+
+
 def new_keys(vehicle_ids: Iterable[int]) -> Keys:
     """Keys that nobody has had before, from the system's source of random bytes."""
     return Keys({number: secrets.token_bytes(SECRET_LENGTH // 2) for number in vehicle_ids})
@@ -45,10 +55,10 @@ def key_of(vehicle_id: int, folder: Path | None) -> bytes:
     is said. BadInput if there is none, or it is no key; it is never shown."""
     if folder is None:
         where, item = "environment", KEY_VARIABLE.format(vehicle_id)
-        text = os.environ.get(item)
+        text, plain = os.environ.get(item), WITHOUT
     else:
         path = folder / f"vehicle_{vehicle_id}.key"
-        where, item = str(path), "key"
+        where, item, plain = str(path), "key", ""
         try:
             with path.open("rb") as file:
                 text = file.read(SECRET_LENGTH + 3).decode("ascii", "replace").strip()
@@ -60,7 +70,7 @@ def key_of(vehicle_id: int, folder: Path | None) -> bytes:
             "no key of the bridge",
             where=where,
             item=item,
-            expected=f"{SECRET_LENGTH} hexadecimal characters for vehicle {vehicle_id}",
+            expected=f"{SECRET_LENGTH} hexadecimal characters for vehicle {vehicle_id}{plain}",
             got=got,
         )
     return bytes.fromhex(text)

@@ -198,6 +198,11 @@ class SealedClient(SealedHandshake):
 
     def _step(self) -> bytes:
         line = self._line()
+        begins = (self.rest if line is None else line)[:20]
+        if not self._theirs and not NAME.startswith(begins[: len(NAME)]):
+            # what a UxAS says in another dialect has no newline, and nothing comes after it
+            self.failed = f"the other end does not speak v2: it begins with {ascii(begins)[1:]}"
+            return b""
         if line is None:
             return b""
         ((vehicle_id, key),) = self.keys.items()

@@ -84,10 +84,12 @@ class Flier:
         if self._process is not None and self._process.poll() is None:
             return ""
         self.end()
+        from cratous.bridge.text_protocol.keys import without_keys
+
         self._said.truncate(0)
         self._process = subprocess.Popen(
             self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._said,
-            start_new_session=True, env={**os.environ, **ONE_THREAD},
+            start_new_session=True, env={**without_keys(os.environ), **ONE_THREAD},
         )  # fmt: skip
         hello = self._line(START)
         if not isinstance(hello, dict):

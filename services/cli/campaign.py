@@ -94,6 +94,8 @@ def campaign(
     searched_for, reports, find, budget, as_json, parquet, quiet = Wanted(**wanted)
     if searched_for is not None and find != "worst":
         raise click.UsageError(f"Got unexpected extra argument ({searched_for})")
+    if searched_for is not None and Path(searched_for).suffix in (".yaml", ".yml"):
+        file, searched_for = Path(searched_for), str(file)  # --find worst ID FILE
     find = searched_for or find
     if parquet and find is not None:
         raise click.UsageError("--parquet is of the runs of a campaign, not of --find")

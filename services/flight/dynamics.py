@@ -11,12 +11,11 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from cratous.services.mission.landing import is_down
+from cratous.services.mission.landing import MAX_ACCELERATION_M_S2, is_down
 from cratous.spec.mission import GroundedVehicle, Position, Traffic, Vehicle, Velocity
 from cratous.spec.mission.plan import Pose
 
 GRAVITY_M_S2 = 9.80665
-MAX_ACCELERATION_M_S2 = 1.0
 
 
 class Limits(NamedTuple):

@@ -7,7 +7,6 @@ from cratous.core.avoidance.manoeuvre import Ability, Motion
 from cratous.core.avoidance.prediction import buffered
 from cratous.core.avoidance.resolution import Scene
 from cratous.services.flight.dynamics import (
-    MAX_ACCELERATION_M_S2,
     AirState,
     limits_of,
     planned_state,
@@ -27,7 +26,7 @@ from cratous.services.icarous.lost import LostLink
 from cratous.services.icarous.messages import Sensed
 from cratous.services.loading.polygons import hard_zones
 from cratous.services.mission.ground import floor_of
-from cratous.services.mission.landing import sites_of
+from cratous.services.mission.landing import MAX_ACCELERATION_M_S2, sites_of
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission, Vehicle
 

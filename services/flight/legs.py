@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from cratous.core.executive.steps import leg_given_up
 from cratous.services.flight.chain import Chain
-from cratous.services.flight.dynamics import MAX_ACCELERATION_M_S2
 from cratous.services.flight.executive_outputs import route
 from cratous.services.flight.executive_state import Config, Out, State
 from cratous.services.flight.task_transitions import circling, fail
+from cratous.services.mission.landing import MAX_ACCELERATION_M_S2
 from cratous.services.mission.take_off import take_off_ms
 from cratous.spec.records import replace
 

@@ -33,7 +33,6 @@ from cratous.services.flight.autopilot import (
 )
 from cratous.services.flight.commands import SENDERS, decode
 from cratous.services.flight.dynamics import (
-    MAX_ACCELERATION_M_S2,
     AirState,
     Limits,
     advance,
@@ -67,7 +66,13 @@ from cratous.services.flight.messages import (
 from cratous.services.flight.notices import authority_change, dropped, gate_state, hand_state
 from cratous.services.icarous.messages import Offers, Sensed
 from cratous.services.mission.frames import Projection, compass
-from cratous.services.mission.landing import BRAKING_M_S2, ground_m, is_down, site_under
+from cratous.services.mission.landing import (
+    BRAKING_M_S2,
+    MAX_ACCELERATION_M_S2,
+    ground_m,
+    is_down,
+    site_under,
+)
 from cratous.spec.mission import GroundedVehicle, Vehicle
 from cratous.spec.mission.link_loss import LandingSite
 from cratous.spec.mission.plan import Hold

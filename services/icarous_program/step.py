@@ -34,7 +34,7 @@ from cratous.core.authority.cycle import gate_wished
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import PIECE_S, Ability, Motion
 from cratous.core.avoidance.prediction import Intruder
-from cratous.services.flight.dynamics import MAX_ACCELERATION_M_S2, Limits, turn_rate_rad_s
+from cratous.services.flight.dynamics import Limits, turn_rate_rad_s
 from cratous.services.flight.link_lines import MOST_TOLD
 from cratous.services.icarous import state as icarous
 from cratous.services.icarous.asking import Asking
@@ -50,6 +50,7 @@ from cratous.services.icarous_program.recovery import (
     take,
 )
 from cratous.services.icarous_program.routes import Planner
+from cratous.services.mission.landing import MAX_ACCELERATION_M_S2
 from cratous.spec.authority.cycle import OFFER, TAKE_OVER, WITHDRAW
 from cratous.spec.mission import Position, Velocity
 

@@ -10,7 +10,12 @@ from cratous.core.authority.timeliness import in_time
 from cratous.core.avoidance.landing import on_ground
 from cratous.core.geofence.planar import keep_in_leg_ok
 from cratous.services.loading.checks import Where
-from cratous.services.mission.landing import BRAKING_M_S2, ground_m, sites_of
+from cratous.services.mission.landing import (
+    BRAKING_M_S2,
+    MAX_ACCELERATION_M_S2,
+    ground_m,
+    sites_of,
+)
 from cratous.services.mission.take_off import LONGEST_MS, grounded, roll_m, take_off_ms
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import GroundedVehicle, Mission
@@ -34,8 +39,6 @@ def on_their_ground(mission: Mission) -> Mission:
 def take_off_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
     """Vehicles on the ground that nobody takes off, that are there already, that would roll beyond level ground or that
     climb for too long; and those of missions with sensors."""
-    from cratous.services.flight.dynamics import MAX_ACCELERATION_M_S2
-
     for vehicle in grounded(mission):
         item = f"vehicles[{mission.vehicles.index(vehicle)}].start"
         speed, alt_m = vehicle.min_speed_m_s, vehicle.position.alt_m

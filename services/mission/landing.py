@@ -10,6 +10,8 @@ from cratous.spec.mission.link_loss import LandingSite
 
 BRAKING_M_S2 = 2.0
 """On the ground a vehicle slows down so much."""
+MAX_ACCELERATION_M_S2 = 1.0
+"""On the ground and in the air it becomes faster, and in the air slower, by so much at most."""
 SLACK_M = 0.01
 """So near to the ground a vehicle is on it [m]."""
 TOUCHES_OFF_BEATS = 1.0

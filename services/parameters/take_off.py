@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cratous.services.flight.dynamics import MAX_ACCELERATION_M_S2
-from cratous.services.mission.landing import BRAKING_M_S2
+from cratous.services.mission.landing import BRAKING_M_S2, MAX_ACCELERATION_M_S2
 from cratous.services.mission.take_off import USED, roll_m, silence_ms, take_off_ms
 from cratous.services.parameters.parameter import DERIVED, Parameter
 from cratous.spec.mission import GroundedVehicle, Mission, Vehicle

@@ -15,7 +15,7 @@ from types import MappingProxyType, TracebackType
 
 import cratous
 from cratous.bridge.port import is_due
-from cratous.bridge.text_protocol.keys import KEY_VARIABLE
+from cratous.bridge.text_protocol.keys import without_keys
 from cratous.services.processes.leash import AT_ONCE, ENDS_WITH
 from cratous.services.results.undisturbed import undisturbed
 from cratous.spec.errors import CratousError
@@ -58,8 +58,7 @@ class Children:
         place = str(Path(cratous.__file__).absolute().parents[1])
         paths = [place, *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
         self._environment = {
-            # whoever has a key of the bridge is given it, see `start`
-            **{k: v for k, v in os.environ.items() if not k.startswith(KEY_VARIABLE.format(""))},
+            **without_keys(os.environ),  # whoever has a key of the bridge is given it, see `start`
             "PYTHONUNBUFFERED": "1",
             # the same program, whatever the present folder
             "PYTHONPATH": os.pathsep.join(path for path in paths if path),

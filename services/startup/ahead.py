@@ -77,12 +77,16 @@ def _cores() -> int:
 
 def _start(module: list[str]) -> subprocess.Popen[bytes]:
     """A module of ours with its arguments, as a process that does not outlive this one."""
+    from cratous.bridge.text_protocol.keys import without_keys
+
     place = str(Path(cratous.__file__).absolute().parents[1])
     paths = [*filter(None, [os.environ.get("PYTHONPATH")]), place]
     process = subprocess.Popen(
         # no module of the present folder comes first
         [sys.executable, "-P", "-m", *module],
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(paths), ENDS_WITH: str(os.getpid())},
+        env={
+            **without_keys(os.environ), "PYTHONPATH": os.pathsep.join(paths), ENDS_WITH: str(os.getpid()),
+        },
         stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
     )  # fmt: skip
     atexit.register(_end, process)

@@ -40,14 +40,15 @@ def test_bad_input_is_named_and_nothing_is_written(
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("asked", [["G2"], ["worst", "G2"]])
+@pytest.mark.parametrize(
+    "asked", ["FILE --find G2", "FILE --find worst G2", "--find worst G2 FILE", "--find G2 FILE"]
+)
 def test_a_search_without_a_space_is_refused(
-    asked: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    asked: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     file, out = written(tmp_path, {"plain": ""}, ""), tmp_path / "out"
-    code = main(
-        ["campaign", str(file), "--find", *asked, "--allow-unproved", "--json", "-o", str(out)]
-    )
+    words = [str(file) if word == "FILE" else word for word in asked.split()]
+    code = main(["campaign", *words, "--allow-unproved", "--json", "-o", str(out)])
     assert code == 2
     assert "nothing to search" in json.loads(capsys.readouterr().out)["error"]
     assert not out.exists()

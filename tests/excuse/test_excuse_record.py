@@ -19,7 +19,7 @@ from cratous.services.certify.html import losses
 from cratous.services.certify.rejudge import certify_again
 from cratous.services.certify.verdicts import constraint_rows, requirement_rows
 from cratous.services.cli import main as run_command
-from cratous.services.flight.dynamics import MAX_ACCELERATION_M_S2
+from cratous.services.mission.landing import MAX_ACCELERATION_M_S2
 from cratous.services.monitor import Monitor
 from cratous.spec.daa.parameters import Parameters
 from cratous.spec.daa.presets import preset

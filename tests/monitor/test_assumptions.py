@@ -11,8 +11,6 @@ from typing import Any
 
 import pytest
 from flight_tools import meeting
-from hypothesis import given
-from hypothesis import strategies as st
 from tampering import (
     Log,
     alter,
@@ -26,16 +24,14 @@ from tampering import (
 )
 
 from cratous.bridge import lmcp
-from cratous.services.assumptions.link import DeliveryWatch
-from cratous.services.assumptions.listing import LISTING, State
-from cratous.services.assumptions.observed import Message
+from cratous.services.assumptions.listing import LISTING
 from cratous.services.assumptions.said import sentence
 from cratous.services.assumptions.watch import AssumptionWatch
 from cratous.services.bus import Bus, Envelope
 from cratous.services.flight.loop import fly
 from cratous.services.monitor import Monitor
 from cratous.services.pipeline.plan import make_plan
-from cratous.spec.mission import FaultySimulation, Mission, Simulation
+from cratous.spec.mission import FaultySimulation, Mission, Simulation, Zone, ZoneKind
 from cratous.spec.mission.bridge_faults import BridgeFaults
 
 WATCHED = {one.name for one in LISTING if one.watch}
@@ -222,6 +218,29 @@ def test_each_watch_has_a_log_in_which_its_assumption_breaks() -> None:
     assert {*BREAKS, "near its legs"} == WATCHED  # that one needs a zone: test_near_its_legs
 
 
+def rows_told(mission: Mission, log: Log, of_every_kind: bool) -> list[Any]:
+    """What is said at each message, and at the end."""
+    watching = AssumptionWatch(mission)
+    if of_every_kind:
+        watching._by_kind = {m.topic.rpartition(".")[2]: watching._watches for m in log}
+    told = [watching.tap(m.topic.rpartition(".")[2], m) for m in log]
+    return [*told, watching.rows(log[-1].time_ms, True)]
+
+
+@pytest.mark.parametrize("name", ["", *sorted(BREAKS)])
+def test_a_watch_that_is_told_of_every_message_says_the_same(name: str) -> None:
+    """No watch reads a type that it does not list."""
+    east = ((2000.0, 0.5), (4000.0, 0.5), (4000.0, 900.0), (2000.0, 900.0))
+    mission = replace(WHOLE, zones=(Zone(21, ZoneKind.KEEP_OUT, east, 0.0, 1000.0),))
+    log = [copy.copy(one) for one in flown(WHOLE)]
+    if name:
+        BREAKS[name][0](log)
+    few, every = (rows_told(mission, log, of_all) for of_all in (False, True))
+    assert few == every
+    (near,) = [row for row in few[-1] if row["name"] == "near its legs"]
+    assert near["checks"] > 100
+
+
 @pytest.mark.parametrize("name", sorted(BREAKS))
 def test_what_is_broken_is_said_with_when_and_what_is_lost(name: str) -> None:
     change, text = BREAKS[name]
@@ -376,31 +395,3 @@ def test_a_break_is_told_once_at_the_moment_it_is_seen() -> None:
     ((name, at_ms),) = told
     assert name == "delivery from ICAROUS"
     assert 11_000 < at_ms <= 11_500
-
-
-@given(
-    st.lists(
-        st.one_of(st.none(), st.integers(0, 6).map(lambda k: 250 * k)), min_size=1, max_size=12
-    ),
-    st.integers(0, 30),
-)
-def test_delivery_is_what_its_sentence_says(delays: list[int | None], end: int) -> None:
-    """A heartbeat is late if there is one that had two periods until the end, and did not come in them."""
-    mission, end_ms = WHOLE, 250 * end
-    watch = DeliveryWatch(mission)
-    came = [
-        (500 * k + delay, k + 1)
-        for k, delay in enumerate(delays)
-        if delay is not None and 500 * k + delay <= end_ms
-    ]
-    for now_ms, number in sorted(came):
-        body = lmcp.new("Heartbeat", VehicleID=1, Time=now_ms, Direction="Up", Sequence=number)
-        watch.message(Message("Heartbeat", now_ms, "uxas/ics", body))
-    watch.end(end_ms)
-    (record,) = watch.records().values()
-    sent = [*delays, *[None] * 40]
-    late = any(
-        500 * k + 1000 < end_ms and (delay is None or delay > 1000) for k, delay in enumerate(sent)
-    )
-    broken = record.observed(end_ms, True).state is State.BROKEN
-    assert broken == late

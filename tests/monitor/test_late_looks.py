@@ -5,9 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from flight_tools import meeting
+from hypothesis import given
+from hypothesis import strategies as st
 
 from cratous.bridge import lmcp
 from cratous.services.assumptions.link import DeliveryWatch, PeriodWatch
+from cratous.services.assumptions.listing import State
 from cratous.services.assumptions.observed import Message
 from cratous.services.assumptions.watch import AssumptionWatch
 
@@ -49,3 +52,31 @@ def test_from_messages_of_other_types_nothing_follows() -> None:
                 others += 1
         assert repr(vars(one)) == before
     assert others > 50
+
+
+@given(
+    st.lists(
+        st.one_of(st.none(), st.integers(0, 6).map(lambda k: 250 * k)), min_size=1, max_size=12
+    ),
+    st.integers(0, 30),
+)
+def test_delivery_is_what_its_sentence_says(delays: list[int | None], end: int) -> None:
+    """A heartbeat is late if there is one that had two periods until the end, and did not come in them."""
+    end_ms = 250 * end
+    watch = DeliveryWatch(MISSION)
+    came = [
+        (500 * k + delay, k + 1)
+        for k, delay in enumerate(delays)
+        if delay is not None and 500 * k + delay <= end_ms
+    ]
+    for now_ms, number in sorted(came):
+        body = lmcp.new("Heartbeat", VehicleID=1, Time=now_ms, Direction="Up", Sequence=number)
+        watch.message(Message("Heartbeat", now_ms, "uxas/ics", body))
+    watch.end(end_ms)
+    (record,) = watch.records().values()
+    sent = [*delays, *[None] * 40]
+    late = any(
+        500 * k + 1000 < end_ms and (delay is None or delay > 1000) for k, delay in enumerate(sent)
+    )
+    broken = record.observed(end_ms, True).state is State.BROKEN
+    assert broken == late

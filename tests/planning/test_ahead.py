@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from cratous.bridge.text_protocol.keys import KEY_VARIABLE
 from cratous.core.assignment.annealing import anneal
 from cratous.core.assignment.anytime import greedy, improve
 from cratous.core.assignment.layers import look_ahead, tables
@@ -36,8 +37,8 @@ from cratous.spec.mission import Mission, Zone, ZoneKind
 class Started:
     """Stands for processes that compile: what was started, and how often it was waited for."""
 
-    def __init__(self, arguments: list[str], **_: Any) -> None:
-        self.name, self.waits, self.ended = arguments[-1], 0, False
+    def __init__(self, arguments: list[str], env: dict[str, str], **_: Any) -> None:
+        self.name, self.waits, self.ended, self.env = arguments[-1], 0, False, env
         ALL.append(self)
 
     def wait(self, _limit_s: float | None = 0.0) -> int:
@@ -239,6 +240,18 @@ def test_what_is_made_meanwhile_is_seen_once_it_is_waited_for(
     assert not ahead.is_kept(direct_many)
     coming.ready(coming.ROUTES)
     assert ahead.is_kept(direct_many)
+
+
+def test_what_compiles_beside_has_no_key_of_the_bridge(
+    begun: list[Started], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """UxAS has those of all vehicles."""
+    monkeypatch.setenv(KEY_VARIABLE.format(1), "5b" * 32)
+    ahead.begin([mission(ahead.MANY_TASKS)])
+    assert begun
+    for process in begun:
+        assert process.env["PATH"] == os.environ["PATH"]
+        assert "5b" * 32 not in process.env.values()
 
 
 def test_what_is_compiled_beside_needs_no_other_program_and_no_file_of_the_present_folder(
