@@ -241,6 +241,31 @@ def test_who_never_may_is_given_up_by_name_where_it_stands(root: Path, tmp_path:
     assert found.verdicts(moved)["authority over vehicle 1"].outcome is Outcome.VIOLATED
 
 
+@pytest.mark.parametrize("lost", [False, True])
+def test_what_uxas_has_for_it_meanwhile_begins_up_there(
+    root: Path, tmp_path: Path, lost: bool
+) -> None:
+    """Nothing is left for it while it stands, or climbs: it circles where its plan began, not down there."""
+    data = yaml.safe_load((root / "examples/takeoff/mission.yaml").read_text())
+    ground, air = data["vehicles"]
+    del air["start"]
+    far = {**data["tasks"][1], "points": [{"north_m": 5200, "east_m": 1500, "alt_m": 250}]}
+    changes: list[dict[str, Any]] = [{"at_s": 0, "vehicle_holds": {"vehicle": 1}}]
+    if lost:
+        changes.append({"at_s": 5, "vehicle_lost": 1})
+    path = mission_file(
+        root, tmp_path, vehicles=[ground, air], tasks=[*data["tasks"][:lost], far],
+        traffic=[{**HOVERS, "vanishes_s": 100}], daa={"lookahead_s": 20}, changes=changes,
+    )  # fmt: skip
+    found = flown(path)
+    said = [o.body.Consequence for o in found.log if o.topic.endswith("MissionChange")]
+    assert said[0] == "refused: it has not taken off"
+    back = [b.Time for b in found.told("AuthorityChange") if b.Owner.name == "UxAS"]
+    assert back[0] < found.result.end_ms - 60_000
+    low = min(b.Altitude for b in found.told("TruthState") if b.Time >= back[0])
+    assert low > 149
+
+
 def test_it_rolls_in_any_direction(root: Path, tmp_path: Path) -> None:
     """The velocity that is commanded is a hair below the least speed in some."""
     (kestrel,) = yaml.safe_load(mission_file(root, tmp_path).read_text())["vehicles"]
