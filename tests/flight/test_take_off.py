@@ -266,6 +266,21 @@ def test_what_uxas_has_for_it_meanwhile_begins_up_there(
     assert low > 149
 
 
+def test_a_way_up_for_another_wind_is_not_flown(root: Path, tmp_path: Path) -> None:
+    """Wind makes it faster over the ground: what was permitted for the roll and the climb is left."""
+    wind = {"at_s": 4, "wind": {"north_m_s": -6, "east_m_s": 5}}
+    again = {"at_s": 30, "wind": {**wind["wind"]}}  # type: ignore[dict-item]
+    lulls = {"at_s": 6, "wind": {"north_m_s": 0, "east_m_s": 0}}
+    found = flown(mission_file(root, tmp_path, changes=[wind, lulls, again]))
+    why = "in the wind of now it flies at another speed"
+    broken, left = f"the roll is broken off: {why}", f"the climb is left: {why}"
+    said = found.modes()
+    assert [text for _, text in said if why in text] == [broken, broken, left]
+    assert [mode for mode, _ in said][-2:] == ["Climbing", "Up"]
+    row = found.verdicts()[ROW]
+    assert (row.outcome.value, found.judged(tmp_path)[ROW]) == ("holds", "holds"), row
+
+
 def test_it_rolls_in_any_direction(root: Path, tmp_path: Path) -> None:
     """The velocity that is commanded is a hair below the least speed in some."""
     (kestrel,) = yaml.safe_load(mission_file(root, tmp_path).read_text())["vehicles"]
