@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Container, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -37,11 +37,12 @@ from cratous.services.results.names import (
     ASSUMPTIONS,
     BLAME,
     CERTIFICATE_NAME,
+    COMMANDED_NAME,
     FORMER,
     LOG_NAME,
     REPORT_NAME,
 )
-from cratous.spec.errors import BadInput
+from cratous.spec.errors import BadInput, CratousError
 from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import Verdict
 from cratous.spec.mission.plan import Plan
@@ -123,10 +124,12 @@ def certify_again(folder: Path, *, rewrite: bool = False, own: Sequence[OwnFile]
     if not former:  # the schema is of this format alone
         whole = {**written, **{key: report[key] for key in left if key not in written}}
         found += [f"{REPORT_NAME}, by its schema: {line}" for line in departures(whole)]
-    _, plan = subject(log)
+    mission, plan = subject(log)
     meta = read_meta(log)
     files = Files(folder, report, meta, same=not found)
     found += _certificate(plan, folder) + files.wrong
+    if files.commanded:
+        found += _commanded(mission, folder / COMMANDED_NAME)
     unchecked = [f"{key}: {why}" for key, why in sorted(silent.items())] + files.unchecked
     if own and not found and (rewrite or not files.differing):
         kept, _ = files_in(report, meta)
@@ -137,6 +140,21 @@ def certify_again(folder: Path, *, rewrite: bool = False, own: Sequence[OwnFile]
     if rewrite and files.differing and not found:
         return Judgement(report, [], unchecked, files.rewrite())
     return Judgement(report, found + files.differing, unchecked)
+
+
+def _commanded(mission: Mission, file: Path) -> list[str]:
+    """What shows that the mission with the commands of an operator is another than the one in the log."""
+    from cratous.services.loading import load
+
+    try:
+        stated = load(file, mission.seed)
+    except CratousError as error:
+        return [f"{COMMANDED_NAME}: {error}"]
+    if not mission.instances:  # flown without avoidance, as the command of the report says
+        stated = replace(stated, instances=())
+    if mission_hash(replace(stated, notes=())) == mission_hash(replace(mission, notes=())):
+        return []
+    return [f"{COMMANDED_NAME}: it is not the mission that was flown"]
 
 
 def _compared(report: dict[str, Any], left: Container[str], former: bool) -> dict[str, Any]:

@@ -30,7 +30,8 @@ def no_result(name: str) -> str:
 class Files:
     """What is in the folder beside the log.
 
-    wrong: what cannot be made anew; differing: what can, from the report; unchecked: the rest.
+    wrong: what cannot be made anew; differing: what can, from the report; unchecked: the rest; commanded: the mission with
+    the commands of an operator is among the results.
     """
 
     def __init__(
@@ -44,11 +45,12 @@ class Files:
         self._names = [name for name in NAMES if name != MANIFEST_NAME]
         if not report["plan"]["certificate"]:
             self._names.remove(CERTIFICATE_NAME)
-        # held against the manifest alone: the log does not give them
         stated = read_manifest(folder) or {}
-        if COMMANDED_NAME in stated:
+        self.commanded = COMMANDED_NAME in stated
+        if self.commanded:
             self._names.append(COMMANDED_NAME)
         if "processes" in meta:
+            # held against the manifest alone: the log does not give them
             self._names += sorted(name for name in stated if OF_PROCESSES.fullmatch(name))
         self.unchecked = [
             no_result(entry.name)

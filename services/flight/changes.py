@@ -77,9 +77,8 @@ def change(config: Config, state: State, due: Sequence[Change], out: Out) -> Sta
     what = "; ".join(words(c) for c in due)
     settled = dict(state.ends).keys() | dict(state.failed).keys()
     undone = {c: undone_by(c, state.plan, settled) for c in due if c.kind == ZONE_ENDS}
-    touched = touched_by(
-        due, zones, state.by_vehicle(), dict(state.ends), dict(state.aircraft), undone
-    )
+    aircraft = {vid: state.from_where(vid) for vid, _ in state.aircraft}
+    touched = touched_by(due, zones, state.by_vehicle(), dict(state.ends), aircraft, undone)
     missed = orders_missed(known, due, dict(state.starts), dict(state.ends)) if touched else ""
     why = "; ".join(text for text in (blown, touched, missed) if text)
     if not why:
@@ -100,7 +99,7 @@ def ask(config: Config, state: State) -> AskPlan:
     return AskPlan(
         state.now_ms,
         state.known,
-        tuple((vid, air.pose) for vid, air in state.aircraft if vid in here),
+        tuple((vid, state.from_where(vid).pose) for vid, _ in state.aircraft if vid in here),
         tuple((task, starts[task], ends[task]) for task in sorted(ends)),
         tuple(_absent(config, state).items()),
         state.failed,
@@ -152,7 +151,7 @@ def _leaving(config: Config, state: State, after: State) -> str:
     for chain in state.chains:
         if chain.suspended:
             continue
-        inside, out = ways.out_of(chain, state.air(chain.vehicle.id))
+        inside, out = ways.out_of(chain, state.from_where(chain.vehicle.id))
         if out is not None:
             kept = [f"leaves {name_of(z)}" for z in inside if z.kind is ZoneKind.KEEP_OUT]
             kept += [f"enters {name_of(z)}" for z in inside if z.kind is ZoneKind.KEEP_IN]

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 
 from cratous.core.authority.link_end import track_is_told
 from cratous.services.flight.chain import Chain, Phase
+from cratous.services.flight.dynamics import on_its_ground
 from cratous.services.flight.executive_outputs import command
 from cratous.services.flight.executive_state import Config, Out, State
 from cratous.services.flight.hold_ways import into, pose_of
@@ -52,6 +53,8 @@ def _not_commanded(config: Config, state: State, vehicle_id: int) -> str:
     if vehicle_id in away:
         return away[vehicle_id]
     chain = state.chain(vehicle_id)
+    if on_its_ground(chain.vehicle, state.air(vehicle_id)):
+        return "it has not taken off"
     if chain.unlinked:
         return "it is not heard"
     return "" if track_is_told(chain.suspended, True) else "ICAROUS has it"

@@ -73,11 +73,20 @@ def first_state(vehicle: Vehicle) -> AirState:
     return planned_state(vehicle)
 
 
+def on_its_ground(vehicle: Vehicle, air: AirState) -> bool:
+    """Whether a vehicle that starts on the ground is as low as there."""
+    return isinstance(vehicle, GroundedVehicle) and is_down(air.position.alt_m - vehicle.ground_m)
+
+
 def stands_at_start(vehicle: Vehicle, air: AirState) -> bool:
     """Whether a vehicle that starts on the ground is there still, at a stand."""
-    if not isinstance(vehicle, GroundedVehicle):
-        return False
-    return is_down(air.position.alt_m - vehicle.ground_m) and air.speed_m_s == 0
+    return on_its_ground(vehicle, air) and air.speed_m_s == 0
+
+
+def taken_off(vehicle: Vehicle, air: AirState) -> AirState:
+    """A vehicle that is taking off as it is expected to be then: where it is, as high and fast as its plan begins."""
+    position = air.position._replace(alt_m=max(air.position.alt_m, vehicle.position.alt_m))
+    return AirState(position, air.heading_rad, vehicle.speed_m_s, 0.0)
 
 
 def planned_state(vehicle: Vehicle) -> AirState:

@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 from typing import NamedTuple, TypeVar
 
 from cratous.services.flight.chain import Chain
-from cratous.services.flight.dynamics import AirState
+from cratous.services.flight.dynamics import AirState, on_its_ground, taken_off
 from cratous.services.flight.inflight_routes import Ways
 from cratous.services.flight.messages import FromExecutive
 from cratous.services.loading.polygons import hard_zones
 from cratous.services.mission.frames import Projection
 from cratous.services.mission.wind import CALM, Wind, known_at
 from cratous.spec.constraint_rows import Row
-from cratous.spec.mission import Change, Mission, Zone
+from cratous.spec.mission import Change, GroundedVehicle, Mission, Zone
 from cratous.spec.mission.changes import DIRECT, split
 from cratous.spec.mission.plan import Plan
 from cratous.spec.records import replace
@@ -104,6 +104,15 @@ class State:
     def air(self, vehicle_id: int) -> AirState:
         """Where a vehicle is."""
         return dict(self.aircraft)[vehicle_id]
+
+    def from_where(self, vehicle_id: int) -> AirState:
+        """From where a vehicle is planned to fly on: of one that has not taken off yet, from up there."""
+        air, vehicle = self.air(vehicle_id), self.mission.vehicle(vehicle_id)
+        if not isinstance(vehicle, GroundedVehicle) or self.epoch(vehicle_id):
+            return air
+        chain = self.find(vehicle_id)
+        climbs = chain is not None and chain.suspended
+        return taken_off(vehicle, air) if climbs or on_its_ground(vehicle, air) else air
 
     def epoch(self, vehicle_id: int) -> int:
         """The epoch that commands to a vehicle name: the one in which UxAS has it, as far as it has heard."""

@@ -20,7 +20,7 @@ from cratous.services.flight import chain as chains
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.dynamics import AirState, turn_radius_m
 from cratous.services.flight.rejoining import Router
-from cratous.services.flight.remaining_path import join_in_transit, leaving_m
+from cratous.services.flight.remaining_path import join_in_transit, last_lap, leaving_m
 from cratous.services.planning.leaving import WayOut, entered, way_out
 from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.plan import PlanItem, Pose
@@ -105,8 +105,11 @@ class Ways:
         way = self.way_to(chain, state, target)
         if not way:
             return None
-        track = Track((*way, *rest.points[1:]), target.heading_rad)
-        return Back(track, max(0.0, track.length_m - rest.length_m), flown_m)
+        points = (*way, *rest.points[1:])
+        join_m = max(0.0, Track(points, target.heading_rad).length_m - rest.length_m)
+        if chain.item is None:  # the laps after that are of a whole one at the end
+            points += last_lap(chain)[1:]
+        return Back(Track(points, target.heading_rad), join_m, flown_m)
 
     def last(self, chain: Chain, state: AirState, layer_m: float) -> Last:
         """Circle at the end of the chain, where the vehicle is there, else where it is; raised by

@@ -58,7 +58,7 @@ def begin(config: Config, state: State, out: Out) -> State:
     out.extend(Say(body, NAME) for body in said)
     state = replace(state, left_out=tuple(left.items()))
     for vehicle in state.mission.vehicles:
-        air, items = state.air(vehicle.id), _items(state, vehicle)
+        air, items = state.from_where(vehicle.id), _items(state, vehicle)
         track = Track((air.position,), air.heading_rad)
         chain = Chain(vehicle, items, -1, Phase.DONE, track, air.speed_m_s)
         old = state.find(vehicle.id)
@@ -193,7 +193,7 @@ def next_item(config: Config, state: State, chain: Chain, at_ms: int, out: Out) 
     """On the way to the next item of a chain that has not failed; circling where there is none. An item
     to which no way keeps the zones fails."""
     chain = replace(chain, k=chain.next_k(dict(state.failed)))
-    item, air = chain.item, state.air(chain.vehicle.id)
+    item, air = chain.item, state.from_where(chain.vehicle.id)
     chain = replace(chain, leg=chain.leg.to(item.task_id if item else None, at_ms))
     state = state.put(chain)
     if item is None:
@@ -228,7 +228,7 @@ def _loiter(config: Config, state: State, chain: Chain, at_ms: int, out: Out) ->
 def circling(config: Config, state: State, chain: Chain, layer_m: float, out: Out) -> Track:
     """A vehicle's track with nothing left to fly, raised by a layer. If that breaks a zone, it is said."""
     vid = chain.vehicle.id
-    last = config.ways(state.zones).last(chain, state.air(vid), layer_m)
+    last = config.ways(state.zones).last(chain, state.from_where(vid), layer_m)
     if not (last.kept and last.way_kept):
         what = f"vehicle {vid} has nothing left to fly"
         told = NO_WAY_OUT if last.kept else NO_CIRCLE

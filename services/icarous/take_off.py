@@ -43,7 +43,7 @@ NO_WAY = "there is no way up"
 WORDS = {
     BEGIN: "the way up is permitted: it rolls",
     LIFT_OFF: "off the ground",
-    END: "at the altitude of its plan",
+    END: "at the end of its way up",
 }
 
 
@@ -144,10 +144,18 @@ def why_not(config: Config, state: State, sensed: Sensed, course: Course) -> str
     """Why a way up is not permitted from here on; "" if it is."""
     if sensed.on_ground and sensed.rolling:
         return f"vehicle {sensed.rolling[0]} rolls"
+    if not _at_its_speed(course, sensed):
+        return "in the wind of now it flies at another speed"
     scene = scene_of(config, state, sensed)
     if sensed.on_ground and not may_stop(course, sensed, scene.zones):
         return "a zone is where the roll would end if it were broken off"
     return refused(course, sensed, scene, config.daa, _beat_s(config))
+
+
+def _at_its_speed(course: Course, sensed: Sensed) -> bool:
+    """Whether a way up is flown at the speed that it was made for: wind changes the lowest over the ground."""
+    lowest = sensed.ability.min_speed_m_s
+    return lowest == course.speed_m_s or (not sensed.on_ground and lowest < course.speed_m_s)
 
 
 def may_stop(course: Course, sensed: Sensed, zones: tuple[Zone, ...]) -> bool:

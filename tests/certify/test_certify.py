@@ -263,16 +263,26 @@ def test_other_files_are_said_not_to_be_checked(
     ]
 
 
-def test_the_mission_with_commands_of_an_operator_is_held_against_the_manifest(
-    run: Run, flown: Path, judged: None, tmp_path: Path
+def test_the_mission_with_commands_of_an_operator_is_the_one_that_was_flown(
+    run: Run, flown: Path, judged: None, root: Path, tmp_path: Path
 ) -> None:
     folder = edited(flown, tmp_path)
-    (folder / COMMANDED_NAME).write_text("name: crossing\n", encoding="utf-8")
-    names = [file.name for file in folder.iterdir() if file.name != "manifest.json"]
-    (folder / "manifest.json").write_text(manifest_text(folder, sorted(names)), encoding="utf-8")
-    code, out, err = run("certify", folder)
+    file, text = folder / COMMANDED_NAME, (root / "examples/crossing/mission.yaml").read_text()
+
+    def certified(said: str, *, stated: bool = True) -> tuple[int, str, str]:
+        file.write_text(said, encoding="utf-8")
+        names = [file.name for file in folder.iterdir() if file.name != "manifest.json"]
+        if stated:
+            whole = manifest_text(folder, sorted(names))
+            (folder / "manifest.json").write_text(whole, encoding="utf-8")
+        return run("certify", folder)
+
+    code, out, err = certified(text)
     assert (code, err) == (read(flown)["exit_code"], "")
     assert COMMANDED_NAME not in out
-    (folder / COMMANDED_NAME).write_text("name: another\n", encoding="utf-8")
-    code, out, err = run("certify", folder)
-    assert (code, out, f"{COMMANDED_NAME}: SHA-256" in err) == (1, "", True)
+    code, out, err = certified(text.replace("speed_m_s: 22", "speed_m_s: 21"))
+    assert (code, f"{COMMANDED_NAME}: it is not the mission" in err) == (1, True), err
+    code, out, err = certified("name: crossing\n")
+    assert (code, f"{COMMANDED_NAME}: " in err) == (1, True), err
+    code, out, err = certified(text + "\n", stated=False)
+    assert (code, f"{COMMANDED_NAME}: SHA-256" in err) == (1, True), err

@@ -241,6 +241,46 @@ def test_who_never_may_is_given_up_by_name_where_it_stands(root: Path, tmp_path:
     assert found.verdicts(moved)["authority over vehicle 1"].outcome is Outcome.VIOLATED
 
 
+@pytest.mark.parametrize("lost", [False, True])
+def test_what_uxas_has_for_it_meanwhile_begins_up_there(
+    root: Path, tmp_path: Path, lost: bool
+) -> None:
+    """Nothing is left for it while it stands, or climbs: it circles where its plan began, not down there."""
+    data = yaml.safe_load((root / "examples/takeoff/mission.yaml").read_text())
+    ground, air = data["vehicles"]
+    del air["start"]
+    far = {**data["tasks"][1], "points": [{"north_m": 5200, "east_m": 1500, "alt_m": 250}]}
+    changes: list[dict[str, Any]] = [{"at_s": 0, "vehicle_holds": {"vehicle": 1}}]
+    if lost:
+        changes.append({"at_s": 5, "vehicle_lost": 1})
+    path = mission_file(
+        root, tmp_path, vehicles=[ground, air], tasks=[*data["tasks"][:lost], far],
+        traffic=[{**HOVERS, "vanishes_s": 100}], daa={"lookahead_s": 20}, changes=changes,
+    )  # fmt: skip
+    found = flown(path)
+    said = [o.body.Consequence for o in found.log if o.topic.endswith("MissionChange")]
+    assert said[0] == "refused: it has not taken off"
+    back = [b.Time for b in found.told("AuthorityChange") if b.Owner.name == "UxAS"]
+    assert back[0] < found.result.end_ms - 60_000
+    low = min(b.Altitude for b in found.told("TruthState") if b.Time >= back[0])
+    assert low > 149
+
+
+def test_a_way_up_for_another_wind_is_not_flown(root: Path, tmp_path: Path) -> None:
+    """Wind makes it faster over the ground: what was permitted for the roll and the climb is left."""
+    wind = {"at_s": 4, "wind": {"north_m_s": -6, "east_m_s": 5}}
+    again = {"at_s": 30, "wind": {**wind["wind"]}}  # type: ignore[dict-item]
+    lulls = {"at_s": 6, "wind": {"north_m_s": 0, "east_m_s": 0}}
+    found = flown(mission_file(root, tmp_path, changes=[wind, lulls, again]))
+    why = "in the wind of now it flies at another speed"
+    broken, left = f"the roll is broken off: {why}", f"the climb is left: {why}"
+    said = found.modes()
+    assert [text for _, text in said if why in text] == [broken, broken, left]
+    assert [mode for mode, _ in said][-2:] == ["Climbing", "Up"]
+    row = found.verdicts()[ROW]
+    assert (row.outcome.value, found.judged(tmp_path)[ROW]) == ("holds", "holds"), row
+
+
 def test_it_rolls_in_any_direction(root: Path, tmp_path: Path) -> None:
     """The velocity that is commanded is a hair below the least speed in some."""
     (kestrel,) = yaml.safe_load(mission_file(root, tmp_path).read_text())["vehicles"]

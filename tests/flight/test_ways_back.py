@@ -194,6 +194,22 @@ def test_who_is_caught_among_zones_crosses_them_to_a_free_circle() -> None:
     assert first_bad_leg(remaining_path.last_lap(state.chain(1)), walls) is None
 
 
+@pytest.mark.parametrize("on_m", [0.0, 150.0, 400.0])
+def test_who_comes_back_to_its_last_circle_flies_whole_laps_of_it(on_m: float) -> None:
+    state, _ = ended_at_here(())
+    before = state.chain(1)
+    lap = remaining_path.last_lap(before)
+    config = Config(state.mission, Projection(state.mission.frame), (1,))
+    away = AirState(Position(2600.0, -500.0, 320.0), 1.0, 22.0, 0.0)
+    state = replace(state, aircraft=((1, away),)).put(replace(before, s_m=on_m))
+    state = interruption.take_back(config, state, TakeBack(1, 2, 5000, TAKE_BACK), [])
+    after = remaining_path.last_lap(state.chain(1))
+    assert math.dist(after[0], after[-1]) < 1e-6
+    middle = [sum(p[k] for p in lap[1:]) / (len(lap) - 1) for k in (0, 1)]
+    radius_m = math.dist(lap[0][:2], middle)
+    assert all(abs(math.dist(p[:2], middle) - radius_m) < 0.01 for p in after)
+
+
 def test_who_can_circle_nowhere_says_so() -> None:
     cage = box(ZoneKind.KEEP_IN, 1950.0, 2050.0, 1000.0)
     state, said = ended_at_here((cage,))
