@@ -9,14 +9,12 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from fractions import Fraction
 from typing import Any, NamedTuple
 
 from cratous.core.authority.gate import UXAS, gate_accepts
 from cratous.core.authority.timeliness import in_time
-from cratous.core.geofence.distance import comes_within, edge_against
+from cratous.core.geofence.distance import FARTHER, comes_within, edge_against
 from cratous.core.geofence.planar import keep_in_leg_ok, keep_out_leg_ok, locate
-from cratous.core.geofence.regions import layer_place
 from cratous.core.kernel import Vec2
 from cratous.core.readings.exact import exact
 from cratous.core.routing.polylines import Track
@@ -30,7 +28,7 @@ from cratous.spec.mission import Mission, Position, Zone
 MARGINS_M = (1.0, 2.0, 5.0, 10.0, 20.0)
 """The least of these that is enough is the margin; the last is what routes keep from zones where there is room [m]."""
 KERNELS = (
-    comes_within, edge_against, gate_accepts, in_time, keep_in_leg_ok, keep_out_leg_ok, layer_place, locate,
+    comes_within, edge_against, gate_accepts, in_time, keep_in_leg_ok, keep_out_leg_ok, locate,
 )  # fmt: skip
 Leg = tuple[Position, Position]
 
@@ -71,7 +69,7 @@ class NearLegsWatch:
     def message(self, message: Message) -> None:
         """A state of the gate, a command, or where an aircraft is."""
         kind, now_ms, _, body = message
-        if self._record.unseen:
+        if self._record.unseen or kind not in self.kinds:
             return
         number = body.VehicleID
         if number not in self._gates:
@@ -178,11 +176,10 @@ def _is_near(ends: Leg, leg: Leg, margin_m: float) -> bool:
     if not all(math.isfinite(x) for p in ends for x in p):
         return False
     a, b = (Vec2(p.north_m, p.east_m) for p in leg)
-    margin = Fraction(margin_m)
-    low, high = sorted(Fraction(p.alt_m) for p in leg)
+    low, high = (Vec2(p.alt_m, 0.0) for p in leg)
     for p in ends:
-        if exact(edge_against, Vec2(p.north_m, p.east_m), a, b, margin_m) > 0:
-            return False
-        if layer_place(Fraction(p.alt_m), low - margin, high + margin) < 0:  # type: ignore[arg-type]
+        beside = exact(edge_against, Vec2(p.north_m, p.east_m), a, b, margin_m)
+        level = exact(edge_against, Vec2(p.alt_m, 0.0), low, high, margin_m)
+        if FARTHER in (beside, level):
             return False
     return True

@@ -152,9 +152,8 @@ def rolling_up(state: AirState, speed_m_s: float, climb_m_s: float, dt_s: float)
     """The state of a vehicle that rolls faster, up to a speed, with the velocity of the coming step: straight on; and off
     the ground, at a climb above 0, once that speed is reached."""
     speed = min(state.speed_m_s + MAX_ACCELERATION_M_S2 * dt_s, speed_m_s)
-    return state._replace(
-        speed_m_s=speed, climb_m_s=max(climb_m_s, 0.0) if speed == speed_m_s else 0.0
-    )
+    slower_by = speed_m_s - speed
+    return state._replace(speed_m_s=speed, climb_m_s=0.0 if slower_by else max(climb_m_s, 0.0))
 
 
 def traffic_state(traffic: Traffic, now_ms: int) -> AirState | None:

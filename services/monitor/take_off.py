@@ -17,11 +17,12 @@ from cratous.core.authority.take_off import (
     Departure,
     departure_step,
 )
-from cratous.core.authority.timeliness import in_time
+from cratous.core.authority.timeliness import in_time, lasted
 from cratous.core.avoidance.landing import on_ground
 from cratous.core.kernel import Vec2, qualified
 from cratous.core.permit.tubes import disc_within
 from cratous.core.readings.exact import exact
+from cratous.services.assumptions.authority import has_it, reported
 from cratous.services.mission.landing import is_down, sites_of
 from cratous.services.mission.take_off import grounded, silence_ms
 from cratous.services.monitor.observation import Ending, Presence
@@ -54,7 +55,7 @@ class Seen:
 
 def _at(history: list[tuple[int, Any]], time_ms: int) -> Any:
     """What was so at an instant, by its changes."""
-    return next(value for since_ms, value in reversed(history) if since_ms <= time_ms)
+    return next(value for since_ms, value in reversed(history) if lasted(since_ms, time_ms, 0))
 
 
 class TakeOffWatch:
@@ -95,7 +96,7 @@ class TakeOffWatch:
         """How a gate stands."""
         seen = self._seen.get(body.VehicleID)
         if seen is not None:
-            seen.icarous.append((body.Time, body.Owner.name == "ICAROUS"))
+            seen.icarous.append((body.Time, has_it(reported(body))))
 
     def step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
         """Two successive instants."""
@@ -112,7 +113,8 @@ class TakeOffWatch:
             return
         seen.checks += 1
         moved = Vec2(there.north_m - here.north_m, there.east_m - here.east_m)
-        rolls, still = _at(seen.said, at_ms) == ROLLING, disc_within(moved, 0.0, 0.0)
+        mode, still = _at(seen.said, at_ms), disc_within(moved, 0.0, 0.0)
+        rolls = mode == ROLLING
         if not still and not _at(seen.icarous, at_ms):
             seen.wrong.append((at_ms, "it moved on the ground while UxAS had it"))
         slower = exact(disc_within, moved, 0.0, seen.leg_m + ROUNDED_M)

@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from cratous.bridge.port import is_due
 from cratous.core.geofence.mission_leg_arrays import first_bad
 from cratous.core.readings.tiered import SOON, swift
 from cratous.core.routing.bulk import direct_many, route_many, route_points
@@ -47,7 +48,7 @@ def pieces(contexts: Contexts | None = None) -> Iterator[bool]:
     plan(TASKS[:1], zone="")
     yield True
     told = Told(contexts, source)
-    while not told.much and (told.any or time.monotonic() < until_s):
+    while not told.much and (told.any or not is_due(until_s, time.monotonic())):
         yield from told.options()
     for piece in _read():
         yield from told.options(piece)
