@@ -24,6 +24,7 @@ from cratous.services.mission.frames import Projection
 from cratous.services.mission.known_zones import zones_of
 from cratous.services.mission.zones import exact_leg_keeps
 from cratous.spec.mission import Mission, Position, Zone
+from cratous.spec.mission.changes import VEHICLE_LOST
 
 MARGINS_M = (1.0, 2.0, 5.0, 10.0, 20.0)
 """The least of these that is enough is the margin; the last is what routes keep from zones where there is room [m]."""
@@ -59,6 +60,8 @@ class NearLegsWatch:
         self._mission, self._projection = mission, Projection(mission.frame)
         self._gates = {v.id: UNTOUCHED for v in mission.vehicles if v.protected}
         self._paths: dict[int, Path] = {}
+        self._ended: dict[int, tuple[int, Path]] = {}
+        self._free_ms = dict.fromkeys(self._gates, 0)
         self._before: dict[int, tuple[int, Position]] = {}
         self._kept: dict[tuple[Leg, Zone, float], bool] = {}
         zones = mission.zones or any(change.zone for change in mission.changes)
@@ -75,9 +78,11 @@ class NearLegsWatch:
         if number not in self._gates:
             return
         if kind == "GateState":
-            self._gates[number] = reported(body)
+            had, self._gates[number] = has_it(self._gates[number]), reported(body)
             if has_it(self._gates[number]):
-                self._paths.pop(number, None)
+                self._end_path(number, now_ms)
+            elif had:
+                self._free_ms[number] = now_ms
         elif kind == "GatedCommand":
             self._command(number, now_ms, body)
         else:
@@ -88,7 +93,7 @@ class NearLegsWatch:
         sender = sender_of(body)
         if not gate_accepts(self._gates[number], sender, body.Epoch):
             return
-        self._paths.pop(number, None)
+        self._end_path(number, now_ms)
         if sender != UXAS:
             return
         points = getattr(body.Command, "WaypointList", None)
@@ -102,18 +107,43 @@ class NearLegsWatch:
         track = Track(tuple(Position(float(n), float(e), float(alt)) for n, e, alt in places))
         self._paths[number] = Path(now_ms, track)
 
+    def _end_path(self, number: int, now_ms: int) -> None:
+        """What was flown until now was flown on the path that ends here, the first of those that end at this instant."""
+        path, ended = self._paths.pop(number, None), self._ended.get(number)
+        if path is not None and (ended is None or ended[0] != now_ms):
+            self._ended[number] = now_ms, path
+
+    def _flown(self, number: int, since_ms: int, now_ms: int) -> Path | None:
+        """The path on which all was flown since then, until now."""
+        ended_ms, ended = self._ended.get(number, (None, None))
+        for path in (self._paths.get(number), ended if ended_ms == now_ms else None):
+            if path is not None and in_time(path.since_ms, since_ms, ANY_LATER):
+                return path
+        return None
+
     def _gap(self, text: str) -> None:
         if not self._record.gaps:
             self._record.gaps.append(text)
 
     def _sample(self, number: int, now_ms: int, here: Position) -> None:
         before, self._before[number] = self._before.get(number), (now_ms, here)
-        path = self._paths.get(number)
-        if path is None or before is None or not in_time(path.since_ms, before[0], ANY_LATER):
+        if before is None:
+            return
+        path = self._flown(number, before[0], now_ms)
+        if path is None:
+            self._without_path(number, before, here)
             return
         if not in_time(before[0], now_ms, self._mission.simulation.step_ms):
             self._gap(f"vehicle {number} was not seen from {before[0] / 1000:.2f} s")
         self._hold(number, path, before, here)
+
+    def _without_path(self, number: int, before: tuple[int, Position], here: Position) -> None:
+        """What flies under UxAS though no path was commanded is near no leg."""
+        since_ms = before[0]
+        if has_it(self._gates[number]) or not in_time(self._free_ms[number], since_ms, ANY_LATER):
+            return
+        if number not in self._paths and here != before[1]:
+            self._gap(f"vehicle {number} flew on no path of UxAS from {since_ms / 1000:.2f} s")
 
     def _hold(self, number: int, path: Path, before: tuple[int, Position], here: Position) -> None:
         """What was flown since the last sample, against the nearest leg that keeps the zones."""
@@ -121,25 +151,34 @@ class NearLegsWatch:
         first, last = (track.nearest(p, path.s_m, window).s_m for p in (before[1], here))
         if not all(map(math.isfinite, (first, last))):
             first = last = path.s_m
-        self._paths[number] = path._replace(s_m=max(path.s_m, min(last, track.length_m)))
+        if self._paths.get(number) is path:
+            self._paths[number] = path._replace(s_m=max(path.s_m, min(last, track.length_m)))
         ends = (before[1], here)
-        legs = path.legs(min(first, last), max(first, last))
         zones = [b.zone for b in zones_of(self._mission, before[0] + 1) if b.binds(before[0])]
+        near, why = self._beside(ends, path.legs(min(first, last), max(first, last)), zones)
+        if why and self._record.broken is None:
+            # a lap that is commanded anew begins ahead: the vehicle is on its last legs
+            near, why = self._beside(ends, path.legs(0.0, track.length_m), zones)
+        if why:
+            text = f"vehicle {number} is {near:.4g} m off the leg that UxAS commanded at {path.since_ms / 1000:.2f} s"
+            self._record.check(False, before[0], number, f"{text}, {why}")
+        self._record.see(near)
+
+    def _beside(self, ends: Leg, legs: list[Leg], zones: list[Zone]) -> tuple[float, str]:
+        """How far the nearest leg that keeps the zones is [m]; else the nearest, and why none will do."""
         found = sorted(((_off_m(ends, leg), leg) for leg in legs), key=lambda one: one[0])
-        off_m, why = found[0][0], ""
-        for _, leg in found:
+        why = ""
+        for off_m, leg in found:
             margin = next((m for m in MARGINS_M if _is_near(ends, leg, m)), None)
             if margin is None:
+                if off_m > 2 * MARGINS_M[-1]:
+                    break  # nor are the others
                 continue
             bad = [zone.id for zone in zones if not self._keeps(leg, zone, margin)]
             if not bad:
-                break
+                return off_m, ""
             why = why or f"which keeps zone {bad[0]} by less than {margin:g} m"
-        else:
-            text = f"vehicle {number} is {off_m:.4g} m off the leg that UxAS commanded at {path.since_ms / 1000:.2f} s"
-            said = why or "more than any margin of a leg"
-            self._record.check(False, before[0], number, f"{text}, {said}")
-        self._record.see(off_m)
+        return found[0][0], why or "more than any margin of a leg"
 
     def _keeps(self, leg: Leg, zone: Zone, margin_m: float) -> bool:
         """Whether a leg keeps a zone by a margin; asked once."""
@@ -149,7 +188,15 @@ class NearLegsWatch:
         return self._kept[key]
 
     def end(self, at_ms: int) -> None:
-        """Nothing is open."""
+        """What was on a path is to have been seen until the end, or until it was lost."""
+        lost = {c.vehicle: c.at_ms for c in self._mission.changes if c.kind == VEHICLE_LOST}
+        for number, path in self._paths.items():
+            last_ms = self._before[number][0] if number in self._before else path.since_ms
+            until_ms = min(at_ms, lost.get(number, at_ms))
+            if not self._record.unseen and not in_time(
+                until_ms, last_ms + self._mission.simulation.step_ms, ANY_LATER
+            ):
+                self._gap(f"vehicle {number} was not seen from {last_ms / 1000:.2f} s")
 
     def records(self) -> dict[str, Record]:
         """See `Watch`."""

@@ -25,6 +25,8 @@ from cratous.spec.mission import Mission, Zone
 from cratous.spec.mission.plan import Pose
 
 WAYS_AT_ONCE = 4096
+WAYS_AHEAD_MOST = 200_000
+"""So many ways are found before anybody asks for them: about 100 MB."""
 Offers = tuple[tuple[Option, ...], tuple[Dropped, ...]]
 """The options of a task, and what is not offered of it."""
 
@@ -70,12 +72,14 @@ class Inputs:
             self._taken[task_id] = expand(self.mission, [self.mission.task(task_id)], self.zones)
 
     def find_ways(self) -> Iterator[None]:
-        """Find how long all ways between options take, some at a time, before anybody asks for them."""
+        """Find how long ways between options take, some at a time, before anybody asks for them: all, if not too many."""
+        left = WAYS_AHEAD_MOST
         for index, vehicle in enumerate(self.mission.vehicles):
             mine = [k for k, option in enumerate(self.options) if vehicle.id in option.vehicles]
             pairs = ((a, b) for a in mine for b in mine if self._differ(a, b))
-            while some := list(islice(pairs, WAYS_AT_ONCE)):
+            while some := list(islice(pairs, min(left, WAYS_AT_ONCE))):
                 self.routes.prepare(index, some)
+                left -= len(some)
                 yield
 
     def _differ(self, one: int, other: int) -> bool:

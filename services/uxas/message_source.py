@@ -31,6 +31,8 @@ _OF_ZONES = -1  # no region that comes in a message is this one
 MOST_OVERRIDDEN = 1000
 _FORESEEN = {name.rpartition(".")[2] for name in TASKS} - {"WatchTask"}
 """Kinds of tasks of which a task alone says how it is flown."""
+FORESEEN_MOST = 100
+"""Of so many tasks, the newest, options are made before anybody asks for them."""
 
 
 class MessageSource:
@@ -98,7 +100,7 @@ class MessageSource:
         return Inputs(mission, {vehicle.id: poses[vehicle.id] for vehicle in mission.vehicles})
 
     def foreseen(self) -> Inputs | None:
-        """What a request would mean that names every aircraft, every task of ours and the newest region.
+        """What a request would mean that names every aircraft, the newest tasks of ours and the newest region.
 
         None where that means nothing. Its frame is that of the request to come, if things stay about where they are.
         """
@@ -107,10 +109,11 @@ class MessageSource:
             for state in self.world.of("state")
             if type(state).__name__ == "AirVehicleState"
         }
+        ours = [t.TaskID for t in self.world.of("task") if type(t).__name__ in _FORESEEN]
         body = lmcp.new(
             "AutomationRequest",
             EntityList=sorted(flown & {*self.world.ids("configuration")}),
-            TaskList=[t.TaskID for t in self.world.of("task") if type(t).__name__ in _FORESEEN],
+            TaskList=ours[-FORESEEN_MOST:],
             OperatingRegion=next(reversed(self.world.ids("region")), 0),
         )
         if not body.EntityList or not body.TaskList:

@@ -56,7 +56,7 @@ def without(home: Path, name: str) -> None:
 
 
 CHANGED: dict[str, tuple[str, Callable[[str], str]]] = {
-    "a state in words": (YAML, once("NO THEOREM: ", "")),
+    "a state in words": (YAML, once("premises satisfiable, ", "")),
     "a state as a class": (YAML, once("  classes:\n  - no-theorem\n", "")),
     "what supports a goal": (YAML, once("  - Sn-G1-row-1\n", "")),
     "a comment": (YAML, once("This is evidence, not certification credit.", "Certified.")),
@@ -148,7 +148,7 @@ def test_a_ledger_that_gives_the_same_argument_is_named(
 
 
 def test_a_signer_who_names_a_ledger_of_his_own_proves_nothing(run: Run, home: Path) -> None:
-    write(home, YAML, lambda text: other_seal(text).replace("NO THEOREM: ", "", 1))
+    write(home, YAML, lambda text: other_seal(text).replace("premises satisfiable, ", "", 1))
     code, out, err = verify(run, home)
     assert (code, err) == (3, "")
     assert f"not decided: views/{YAML}: made with the ledger {OTHER[:16]}" in out

@@ -49,6 +49,7 @@ def seen(mission: Mission, change: Callable[[Log], None] = lambda log: None) -> 
     for one in log:
         kind = one.topic.rpartition(".")[2]
         watch.message(Message(kind, one.time_ms, one.source, one.body))
+    watch.end(log[-1].time_ms)
     return watch.records()["near its legs"].observed(log[-1].time_ms, True)
 
 
@@ -124,6 +125,68 @@ def test_what_is_not_seen_is_not_said_to_be_near() -> None:
 
     found = seen(at_zone(zone(100.0)), change)
     assert (found.state, "vehicle 1 was not seen" in found.note) == (State.NOT_OBSERVED, True)
+
+
+def test_what_is_not_seen_to_the_end_is_not_said_to_be_near() -> None:
+    def change(log: Log) -> None:
+        log[:] = [
+            one for one in log if not one.topic.endswith("TruthState") or one.time_ms < 60_000
+        ]
+
+    found = seen(at_zone(zone(100.0)), change)
+    assert (found.state, found.checks > 100) == (State.NOT_OBSERVED, True)
+    assert "vehicle 1 was not seen from" in found.note
+
+
+def test_what_flies_on_no_path_is_not_said_to_be_near() -> None:
+    """Its gate was ICAROUS's and is back, and UxAS has commanded nothing since."""
+
+    def change(log: Log) -> None:
+        topic = log[at(log, "TruthState")].topic.replace("TruthState", "GateState")
+        for since_ms, owner, epoch in ((55_000, "UxAS", 2), (50_000, "ICAROUS", 1)):
+            k = at(log, "TruthState", since_ms, VehicleID=1)
+            gate = lmcp.new("GateState", VehicleID=1, Time=since_ms, Epoch=epoch)
+            gate.Owner = type(gate.Owner)[owner]
+            log.insert(k, replace(log[k], topic=topic, body=gate))
+
+    found = seen(at_zone(zone(100.0)), change)
+    assert (found.state, found.checks > 100) == (State.NOT_OBSERVED, True)
+    assert "vehicle 1 flew on no path of UxAS from 55.00 s" in found.note
+
+
+def test_a_lap_that_is_commanded_anew_ahead_of_the_vehicle_is_near_by_its_last_legs() -> None:
+    def change(log: Log) -> None:
+        command = log[at(log, "GatedCommand", VehicleID=1)]
+        legs = command.body.Command.WaypointList
+        ahead = lmcp.new("Location3D", Latitude=legs[-1].Latitude + 0.01, Altitude=300.0)
+        first = legs[-1].copy(Latitude=ahead.Latitude)
+        lap = command.body.Command.copy(WaypointList=[first, *legs, first])
+        log[at(log, "GatedCommand", VehicleID=1)] = replace(
+            command, body=command.body.copy(Command=lap)
+        )
+
+    assert seen(at_zone(zone(100.0)), change).state is State.HELD
+
+
+def test_what_was_flown_until_a_command_is_held_against_the_one_before() -> None:
+    """The last flight before another path, which begins where the vehicle has got to by then."""
+    last: list[float] = []
+
+    def change(log: Log) -> None:
+        k = next(
+            k for k, one in enumerate(log)
+            if one.topic.endswith("TruthState") and one.body.North > 2500.0
+        )  # fmt: skip
+        body = log[k].body
+        log[k] = other(log[k], East=body.East - 21.0)
+        command = log[at(log, "GatedCommand", VehicleID=1)]
+        log.insert(k, replace(command, time_ms=log[k].time_ms))
+        last.append(log[k].time_ms / 1000)
+
+    found = seen(at_zone(zone(30.0)), change)
+    assert found.state is State.BROKEN
+    assert found.broken is not None
+    assert found.broken.since_ms / 1000 < last[0]
 
 
 def test_another_kind_of_command_is_told() -> None:

@@ -17,6 +17,7 @@ from cratous.services.pipeline.contexts import Contexts
 from cratous.services.planning import inputs
 from cratous.services.planning import routes as planned
 from cratous.services.startup import spare
+from cratous.services.uxas import message_source
 from cratous.services.uxas.message_source import MessageSource
 from cratous.services.uxas.process import Process
 
@@ -208,3 +209,23 @@ def test_of_ways_only_those_of_tasks_that_are_asked_for_again_are_kept(
         (*_, newest) = contexts._found.values()
         kept.append(len(newest.inputs.finder._times))  # type: ignore[union-attr]
     assert kept[0] == kept[1] > kept[2]
+
+
+def test_what_is_made_before_the_first_request_has_a_bound(
+    planning: tuple[Process, Contexts], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ways grow with the square of the tasks: a process that was told 200 of them would take gigabytes."""
+    ours, contexts = planning
+    source = contexts.source
+    assert isinstance(source, MessageSource)
+    monkeypatch.setattr(message_source, "FORESEEN_MOST", 3)
+    monkeypatch.setattr(inputs, "WAYS_AHEAD_MOST", 150)
+    monkeypatch.setattr(inputs, "WAYS_AT_ONCE", 100)
+    tell(ours, *(must_fly(number) for number in range(5, 10)))
+    foreseen = source.foreseen()
+    assert foreseen is not None
+    assert [task.id for task in foreseen.mission.tasks] == [7, 8, 9]
+    pairs = len(foreseen.options) ** 2
+    assert pairs > 300
+    assert sum(1 for _ in foreseen.find_ways()) == 2
+    assert 0 < len(foreseen.finder._times) <= 150
