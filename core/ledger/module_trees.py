@@ -114,8 +114,7 @@ class Tree:
     def _read(self, file: str, module: str) -> Table:
         data = self.edits.get(Path(file)) if self.edits else None
         if data is None:
-            with open(file, "rb") as source:
-                data = source.read()
+            data = Path(file).read_bytes()
         return table(data, module, os.path.basename(file) == "__init__.py")
 
     def unit(self, place: Place) -> Unit:

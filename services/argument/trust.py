@@ -22,6 +22,7 @@ TRUSTED = (
     "what is not looked into",
     "how far a theorem reaches",
     "numba",
+    "what is compiled beside the gate",
     "the reading over the reals",
     "the exact reading on arrays",
     "that a driver's output is re-checked",

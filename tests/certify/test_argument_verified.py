@@ -57,7 +57,7 @@ def without(home: Path, name: str) -> None:
 
 CHANGED: dict[str, tuple[str, Callable[[str], str]]] = {
     "a state in words": (YAML, once("premises satisfiable, ", "")),
-    "a state as a class": (YAML, once("  classes:\n  - no-theorem\n", "")),
+    "a state as a class": (YAML, once("  classes:\n  - nothing-to-check\n", "")),
     "what supports a goal": (YAML, once("  - Sn-G1-row-1\n", "")),
     "a comment": (YAML, once("This is evidence, not certification credit.", "Certified.")),
     "a line more": (YAML, lambda text: text + "\n"),

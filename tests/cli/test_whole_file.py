@@ -183,7 +183,7 @@ KEPT = {
     "proofs/statements/relation_cache.py": "what statements relate, renamed when whole, in the private cache",
     "proofs/self_test/case.py": "packages of the self-test, in a temporary folder",
     "proofs/ledger/text_cache.py": "texts, renamed when whole, in the private cache",
-    "services/startup/spare.py": "a mission in a temporary folder",
+    "services/startup/little_missions.py": "a mission in a temporary folder",
     "services/startup/warm.py": "a mission in a temporary folder",
     "services/results/folder.py": "inside the hidden folder of a run",
     "services/logs/log.py": "inside the hidden folder of a run; renamed when whole",

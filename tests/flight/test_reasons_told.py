@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from cratous.services.certify.timeline import Flight, _progress
+from cratous.services.flight.asked_plan import planned
 from cratous.services.flight.changes import unplanned
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.executive_state import Asked, Config, first_state
 from cratous.services.flight.left_out import leave_out, nothing_of
-from cratous.services.flight.loop import _planned
 from cratous.services.flight.messages import AskPlan, NotPlanned, Planned
 from cratous.services.loading import load
 from cratous.services.mission.availability import absent
@@ -59,7 +59,7 @@ def test_where_nothing_can_be_done_each_task_has_its_own_reason() -> None:
     changes = (*mission.changes, Change(30_000, VEHICLE_LOST, vehicle=1))
     known = known_at(replace(mission, changes=changes), 30_000)
     away = ((1, "it was lost at 30.00 s"), (2, "it was lost at 20.00 s"))
-    answer = _planned(AskPlan(30_000, known, (), (), away, (), ()))
+    answer = planned(AskPlan(30_000, known, (), (), away, (), ()))
     assert isinstance(answer, NotPlanned)
     assert dict(answer.of) == {
         1: "no vehicle can do it: vehicle 1: it was lost at 30.00 s",
@@ -86,7 +86,7 @@ def test_a_vehicle_in_a_zone_that_appeared_is_planned_for_from_its_way_out() -> 
     zone = Zone(9, ZoneKind.KEEP_OUT, corners, 0.0, 5000.0)
     mission = replace(load(LOST), changes=(), zones=(zone,))
     starts = ((1, Pose(1000.0, 0.0, 400.0, 1.0)), (2, Pose(0.0, 6000.0, 600.0, 0.0)))
-    answer = _planned(AskPlan(10_000, mission, starts, (), (), (), ()))
+    answer = planned(AskPlan(10_000, mission, starts, (), (), (), ()))
     assert isinstance(answer, Planned)
     (item,) = answer.plan.chain(1)
     assert item.transit[0] == Position(1000.0, 0.0, 400.0)

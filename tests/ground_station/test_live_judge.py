@@ -118,7 +118,7 @@ class Flight:
 
     def fly(self, run: Callable[[LiveFlight], dict[str, Any]]) -> None:
         self._patch.setattr(serve_flight, "run_mission", lambda *given: run(given[-1]))
-        asked = {"path": str(CROSSING), "seed": 0, "out": str(self._out), "daa": True,
+        asked = {"path": str(CROSSING), "seed": 0, "options": [], "out": str(self._out), "daa": True,
                  "allow_unproved": True, "command": "", "text": CROSSING.read_text(encoding="utf-8")}  # fmt: skip
         serve_flight._fly(asked, self.sent.append, lambda *_, **__: None)
 

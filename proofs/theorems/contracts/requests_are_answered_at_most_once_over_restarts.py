@@ -1,7 +1,7 @@
 """Whatever happens to the service of automation requests in any number of events, be it started anew at any of them and
-forget its line: each request is taken, published and answered at most once and in this order; one that was taken in the
-present life is answered exactly as the line of this life says, so once, and one of a former life is not answered any more:
-an answer that comes for it is told from one that is waited for, as long as no number of a request is given again."""
+forget its line: each request is taken, published and answered at most once and in this order, and one that was taken in
+the present life is answered exactly as the line of this life says, so once. What comes for a request of a former life is
+taken for no answer, as long as no number of a request is given again."""
 
 from typing import Any
 
