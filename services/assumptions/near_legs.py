@@ -110,13 +110,14 @@ class NearLegsWatch:
     def _end_path(self, number: int, now_ms: int) -> None:
         """What was flown until now was flown on the path that ends here, the first of those that end at this instant."""
         path, ended = self._paths.pop(number, None), self._ended.get(number)
-        if path is not None and (ended is None or ended[0] != now_ms):
+        if path is not None and (ended is None or not in_time(ended[0], now_ms, 0)):
             self._ended[number] = now_ms, path
 
     def _flown(self, number: int, since_ms: int, now_ms: int) -> Path | None:
         """The path on which all was flown since then, until now."""
-        ended_ms, ended = self._ended.get(number, (None, None))
-        for path in (self._paths.get(number), ended if ended_ms == now_ms else None):
+        ended = self._ended.get(number)
+        just = ended[1] if ended is not None and in_time(ended[0], now_ms, 0) else None
+        for path in (self._paths.get(number), just):
             if path is not None and in_time(path.since_ms, since_ms, ANY_LATER):
                 return path
         return None
