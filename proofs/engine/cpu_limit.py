@@ -56,8 +56,10 @@ def ends_within(seconds: float) -> Iterator[None]:
         return
     soft, hard = resource.getrlimit(resource.RLIMIT_CPU)
     latest = math.ceil(time.process_time() + seconds + GRACE_S)
-    known = [bound for bound in (soft, hard) if bound != resource.RLIM_INFINITY]
-    resource.setrlimit(resource.RLIMIT_CPU, (min([latest, *known]), hard))
+    for bound in (soft, hard):
+        if bound != resource.RLIM_INFINITY and bound < latest:
+            latest = bound
+    resource.setrlimit(resource.RLIMIT_CPU, (latest, hard))
     try:
         yield
     finally:
