@@ -22,7 +22,7 @@ Report = Callable[[str, str], None]
 
 FULL_POLICIES = ("DropNewest", "DropOldest", "Close")
 LOOPBACK = "127.0.0.1"
-_ADDRESS = re.compile(r"(tcp|udp)://(\*|\[[0-9a-fA-F:]+\]|[A-Za-z0-9_.-]+):([0-9]{1,5})")
+_ADDRESS = re.compile(r"(tcp|udp|zmq)://(\*|\[[0-9a-fA-F:]+\]|[A-Za-z0-9_.-]+):([0-9]{1,5})")
 
 
 class Incoming(NamedTuple):
@@ -152,11 +152,13 @@ def address(
 ) -> Address:
     """A socket's address, e.g. `tcp://127.0.0.1:5555`, `ipc:///run/user/x`, `inproc://hub`, else BadInput.
 
+    `zmq://127.0.0.1:5560` is of a ZeroMQ socket on TCP, where plain TCP may be meant as well.
+
     free: port 0 (chosen by the system) is allowed.
     """
     scheme, _, rest = text.partition("://")
     expected = " or ".join(
-        f"{s}://HOST:PORT" if s in ("tcp", "udp") else f"{s}://NAME" for s in schemes
+        f"{s}://HOST:PORT" if s in ("tcp", "udp", "zmq") else f"{s}://NAME" for s in schemes
     )
     wrong = BadInput("not an address", where=where, item=item, expected=expected, got=text)
     if scheme not in schemes or not rest:

@@ -83,6 +83,7 @@ class ZmqPort:
         self._context, self._curve = context, curve
         self._waiting: deque[tuple[bytes, ...]] = deque()
         self._bytes = 0
+        self.connected = 0  # peers that have shaken hands and are not gone
         self.since_full = 0  # messages sent since a subscriber was first full, that one included
         try:
             if receiver is not None:
@@ -259,6 +260,9 @@ class ZmqPort:
                 found = _TELL.get(event["event"])
                 if found is None:
                     continue
+                self.connected += event["event"] == zmq.EVENT_HANDSHAKE_SUCCEEDED
+                if event["event"] == zmq.EVENT_DISCONNECTED:
+                    self.connected = max(0, self.connected - 1)
                 severity, what = found
                 if severity != "WARN":
                     self._report(severity, f"{text}: {what}")

@@ -26,8 +26,9 @@ from cratous.spec.mission.guarantees import Outcome, exit_code
 @click.option("--verdicts", is_flag=True, help="Also each verdict, as `id:sample,T`, F or ?.")
 @click.option(
     "--attach",
-    metavar="HOST:PORT",
-    help="Watch a running system instead of a LOG: a TCP bridge of UxAS, or AMASE.",
+    metavar="ADDRESS",
+    help="Watch a running system instead of a LOG: HOST:PORT of a TCP bridge of UxAS, or of AMASE; "
+    "zmq://HOST:PORT of what a ZeroMQ bridge publishes.",
 )
 @click.option("--seconds", type=Number(0, min_open=True), help="With --attach: end after so many.")
 @click.option(

@@ -53,7 +53,7 @@ def attach(
     from cratous.services.requirements.watch import Watch
 
     text = address if "://" in address else f"tcp://{address}"
-    where = read_address(text, ("tcp",), item="--attach")
+    where = read_address(text, ("tcp", "zmq"), item="--attach")
     spec = read(requirements)
     if not spec.timed:
         raise BadInput(

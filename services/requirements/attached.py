@@ -1,4 +1,4 @@
-"""The messages of a running system, from the port where it tells them: a TCP bridge of UxAS, or AMASE.
+"""The messages of a running system, from the port where it tells them: a TCP or ZeroMQ bridge of UxAS, or AMASE.
 
 Nothing is sent, and what comes is taken at once, so that the peer never waits. Times are those of arrival,
 [ms] since the first connection, on a clock that does not go back.
@@ -6,12 +6,14 @@ Nothing is sent, and what comes is taken at once, so that the peer never waits. 
 
 from __future__ import annotations
 
-import select
 import time
 from collections.abc import Callable, Iterator
 
+import zmq
+
 from cratous.bridge import envelope
 from cratous.bridge.port import Address, Report, is_due
+from cratous.bridge.subscription import Subscription
 from cratous.bridge.tcp_port import TcpPort
 from cratous.services.logs.entry import Entry
 from cratous.services.logs.files import entry_of
@@ -25,7 +27,11 @@ class Attached:
     """One connection, made again when it is lost; `find(kind)` is told of what is missing then."""
 
     def __init__(self, where: Address, report: Report, find: Callable[[str, int], None]) -> None:
-        self._port = TcpPort(where, server=False, report=report)
+        self._port: TcpPort | Subscription = (
+            Subscription(where, report)
+            if where.scheme == "zmq"
+            else TcpPort(where, server=False, report=report)
+        )
         self._where, self._find = where, find
         self._begun_s: float | None = None
         self._refused = 0
@@ -59,12 +65,12 @@ class Attached:
             self._port.close()
 
     def _sleep(self) -> None:
-        poll = select.poll()
+        poll = zmq.Poller()
         for handle, _ in self._port.handles():
-            poll.register(handle, select.POLLIN)
+            poll.register(handle, zmq.POLLIN)
         due_s = self._port.due_s
         left_s = POLL_S if due_s is None else min(POLL_S, max(0.0, due_s - time.monotonic()))
-        poll.poll(left_s * 1000)
+        poll.poll(int(left_s * 1000))
 
     def _entry(self, payload: bytes) -> Entry | None:
         seq, self.seq = self.seq, self.seq + 1

@@ -68,7 +68,9 @@ def test_a_mission_is_flown_paused_stepped_and_its_results_are_replayed(page: Pa
     assert page.text("live-text").startswith("HOLDS: results in ")
     assert page.text("source") == "flown to its end"
     page.click("#results")
-    page.until("document.getElementById('live')?.hidden && document.getElementById('play')?.hidden === false")
+    page.until(
+        "document.getElementById('live')?.hidden && document.getElementById('play')?.hidden === false"
+    )
     page.until("document.getElementById('overall').textContent === 'holds'")
     assert page.text("source").startswith("log.sqlite")
 

@@ -15,8 +15,10 @@ import urllib.request
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import pytest
+import zmq
 
 from cratous.bridge import envelope, lmcp, sentinel
 from cratous.services.cli import main
@@ -30,7 +32,7 @@ requirement SOON: altitude < 250 m implies eventually within 10 s altitude >= 25
 ROOT = Path(__file__).parents[2]
 
 
-def _state(altitude_m: float, vehicle: int = 7) -> bytes:
+def _message(altitude_m: float, vehicle: int = 7) -> bytes:
     state = lmcp.types["afrl.cmasi.AirVehicleState"]()
     state.ID = vehicle
     state.Location.Altitude = altitude_m
@@ -38,7 +40,11 @@ def _state(altitude_m: float, vehicle: int = 7) -> bytes:
     message = envelope.AddressedMessage(
         name, envelope.LMCP, name, "", "7", "1", lmcp.binary.pack(state)
     )
-    return sentinel.frame(message.pack())
+    return message.pack()
+
+
+def _state(altitude_m: float, vehicle: int = 7) -> bytes:
+    return sentinel.frame(_message(altitude_m, vehicle))
 
 
 class Peer:
@@ -236,4 +242,97 @@ def test_nobody_there_is_said(requirements, monkeypatch, capsys):
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
     assert _attach(port, requirements, seconds=20) == 2
+    assert "nobody listens there" in capsys.readouterr().err
+
+
+def _whole(out: str) -> dict[str, Any]:
+    """The result at the end, behind the lines of what happened."""
+    found: dict[str, Any] = json.loads(out[out.index("{\n") :])
+    return found
+
+
+class Publisher:
+    """A PUB socket, as a bridge of UxAS binds it: tells each talk to whoever has subscribed, then is gone for a moment."""
+
+    def __init__(self, *talks: list[bytes]) -> None:
+        self._context = zmq.Context()
+        self._talks, self.port, self._over = talks, 0, threading.Event()
+        self._bound = threading.Event()
+        self._thread = threading.Thread(target=self._talk, daemon=True)
+        self._thread.start()
+        assert self._bound.wait(10)
+
+    def _talk(self) -> None:
+        for number, talk in enumerate(self._talks, 1):
+            sock = self._context.socket(zmq.XPUB)  # which is told of subscriptions
+            sock.linger = 500
+            if self.port:
+                sock.bind(f"tcp://127.0.0.1:{self.port}")
+            else:
+                self.port = sock.bind_to_random_port("tcp://127.0.0.1")
+            self._bound.set()
+            if sock.poll(20_000):
+                assert sock.recv() == b"\x01"  # of everything
+                for piece in talk:
+                    sock.send(piece)
+                    time.sleep(
+                        0.15
+                    )  # a process that reads the first one late still tells them apart
+                if number == len(self._talks):
+                    self._over.wait(20)
+            sock.close()
+            time.sleep(0.3)
+
+    def close(self) -> None:
+        self._over.set()
+        self._thread.join(10)
+        self._context.destroy(linger=0)
+
+
+@pytest.fixture
+def publishers() -> Iterator[Callable[..., Publisher]]:
+    made: list[Publisher] = []
+
+    def publisher(*talks: list[bytes]) -> Publisher:
+        made.append(Publisher(*talks))
+        return made[-1]
+
+    yield publisher
+    for one in made:
+        one.close()
+
+
+def test_what_a_publisher_tells_is_judged_as_its_log_is(publishers, requirements, tmp_path, capsys):
+    talk = [_message(300), _message(20, vehicle=8), _message(150), _message(80), _message(300)]
+    peer, log = publishers(talk), tmp_path / "kept.sqlite"
+    words = ["monitor", "--attach", f"zmq://127.0.0.1:{peer.port}"]
+    words += ["--requirements", str(requirements), "--seconds", "2"]
+    assert main([*words, "--keep", str(log), "--json"]) == 1
+    live = _whole(capsys.readouterr().out)
+    assert [r["verdict"] for r in live["requirements"]][:2] == ["violated", "violated"]
+    assert main(["monitor", str(log), "--requirements", str(requirements), "--json"]) == 1
+    assert json.loads(capsys.readouterr().out)["requirements"] == live["requirements"]
+
+
+def test_a_publisher_that_goes_is_met_again_and_nothing_holds_then(
+    publishers, requirements, capsys
+):
+    peer = publishers([_message(300), _message(310)], [_message(320), _message(330)])
+    words = ["monitor", "--attach", f"zmq://127.0.0.1:{peer.port}", "--seconds", "2.5"]
+    assert main([*words, "--requirements", str(requirements), "--json"]) == 3
+    said = capsys.readouterr()
+    found = _whole(said.out)
+    assert found["requirements"][0]["verdict"] == "unknown"
+    assert "a peer is gone" in said.err
+    assert said.err.count("a peer has connected") == 2
+
+
+def test_no_publisher_is_said(requirements, monkeypatch, capsys):
+    from cratous.services.cli import monitor_attach
+
+    monkeypatch.setattr(monitor_attach, "WAIT_S", 0.3)
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+    words = ["monitor", "--attach", f"zmq://127.0.0.1:{port}", "--seconds", "20"]
+    assert main([*words, "--requirements", str(requirements)]) == 2
     assert "nobody listens there" in capsys.readouterr().err

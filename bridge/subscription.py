@@ -1,0 +1,35 @@
+"""All that a ZeroMQ publisher tells, as of UxAS's `LmcpObjectNetworkPublishPullBridge`; nothing is sent to it.
+
+What a publisher tells before the subscription has come, or while its queue for us is full, ZeroMQ drops without a word.
+"""
+
+from __future__ import annotations
+
+import zmq
+
+from cratous.bridge.port import Address, Report
+from cratous.bridge.zmq_port import End, ZmqPort
+
+
+class Subscription(ZmqPort):
+    """A SUB socket that connects, and again where the connection is lost."""
+
+    def __init__(self, where: Address, report: Report) -> None:
+        """where: `zmq://HOST:PORT`; BadInput if it cannot be used."""
+        self._own: zmq.Context[zmq.Socket[bytes]] = zmq.Context()
+        publisher = where._replace(scheme="tcp", text=where.text.replace("zmq://", "tcp://", 1))
+        try:
+            super().__init__(self._own, None, End("SUB", publisher, False, ("",)), report=report)
+        except BaseException:
+            self._own.destroy(linger=0)
+            raise
+
+    @property
+    def peers(self) -> int:
+        """Whether the publisher is there."""
+        return self.connected
+
+    def close(self) -> None:
+        """End the connection."""
+        super().close()
+        self._own.destroy(linger=0)
