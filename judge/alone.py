@@ -31,8 +31,7 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
         said, place = log.alone.get(vehicle, []), down(mission, vehicle, flown.get(vehicle))
         faults = [*_faults(mission, asked, said), *_missed(mission, asked, log, vehicle, said)]
         if log.end_ms is not None:
-            seen = not _unseen(flown.get(vehicle))
-            faults += _landing(mission, said, place, log.end_ms, seen)
+            faults += _landing(mission, said, place, log.end_ms, flown.get(vehicle))
         faults += _taken(mission, flown, vehicle, place)
         note = ", ".join(f"{one.mode} from {seconds(one.time_ms)}" for one in said)
         note = note or "it was never said to be without the link"
@@ -124,16 +123,19 @@ def _taken(
 
 
 def _landing(
-    mission: Mission, said: list[Alone], place: Down | None, end_ms: int, seen: bool
+    mission: Mission, said: list[Alone], place: Down | None, end_ms: int, track: Track | None
 ) -> Iterator[tuple[int, str]]:
-    """What was said of the ground, and where the vehicle was. seen: all the time."""
-    landed = [one.time_ms for one in said if one.mode == LANDED]
+    """What was said of the ground, and where the vehicle was; nothing of where it was not logged."""
+    landed, seen = [one.time_ms for one in said if one.mode == LANDED], not _unseen(track)
+    # where it was logged before it was on the ground, it was in the air
+    times = [] if track is None else track.times
+    flew = [t for t in times if landed and landed[0] <= t and (place is None or t < place.at_ms)]
     if place is None:
-        if landed:
+        if flew:
             yield landed[0], "it said that it had landed, and was in the air"
     elif not (place.good or (place.fault == MOVES and not seen)):
         yield place.at_ms, f"it {place.words()}"
-    elif landed and landed[0] < place.at_ms:
+    elif flew:
         yield landed[0], f"it said that it had landed before it {place.words()}"
     elif not landed and end_ms - place.at_ms > NOTICED * mission.heartbeat_ms:
         yield end_ms, f"it {place.words()}, and did not say so"

@@ -2,7 +2,7 @@
 
 By where it was, by who commanded it, and by what its ICAROUS said (`TakeOffState`). Modes follow one another as `AFTER` has
 it. On the ground it moves only while ICAROUS has it, and is faster than before only while it is said to roll. It leaves the
-ground while it is said to roll, once.
+ground while it is said to roll, once. Of a leg that was not logged whole nothing is said to be wrong.
 """
 
 from __future__ import annotations
@@ -38,17 +38,19 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
         faults = list(_said(mission, said))
         states = [] if track is None else track.states
         first = first_in_the_air(mission, vehicle, states)
-        faults += _rolled(states[: first + 1], said, gates)
+        doubt = f"no position of {vehicle} was logged" if track is None else track.doubt
+        faults += _rolled(mission, states[: first + 1], said, gates)
         if first < len(states):
             faults += _off(mission, vehicle, states[first - 1 :] if first else states, said)
-        elif any(one.mode in (CLIMBING, UP) for one in said):
+        elif states and any(
+            one.mode in (CLIMBING, UP) and one.time_ms <= states[-1].time_ms for one in said
+        ):
             faults.append((said[-1].time_ms, "it said that it had left the ground, and was on it"))
         note = ", ".join(f"{one.mode} from {seconds(one.time_ms)}" for one in _changes(said))
         where = "it stayed on the ground"
         if 0 < first < len(states):
             where = f"off the ground at {seconds(states[first - 1].time_ms)}"
         note = f"{where}; {note}" if note else where
-        doubt = f"no position of {vehicle} was logged" if track is None else track.doubt
         if faults:
             at, text = min(faults)
             yield Row("G4", subject, item, VIOLATED, f"{text}; {note}", at, len(said))
@@ -85,12 +87,20 @@ def _mode(said: Sequence[Leaves], at_ms: int) -> str:
     return before[-1] if before else STANDING
 
 
+def _logged(mission: Mission, before: State, after: State) -> bool:
+    """Whether a leg was logged as it was flown."""
+    return after.time_ms - before.time_ms <= mission.step_ms
+
+
 def _rolled(
-    states: Sequence[State], said: Sequence[Leaves], gates: Sequence[Gate]
+    mission: Mission, states: Sequence[State], said: Sequence[Leaves], gates: Sequence[Gate]
 ) -> Iterator[Fault]:
     """What was wrong on the ground."""
-    fast = 0.0
+    fast = 0.0 if states and states[0].time_ms == 0 else math.inf
     for before, after in pairwise(states):
+        if not _logged(mission, before, after):
+            fast = math.inf
+            continue
         moved = math.dist((before.north_m, before.east_m), (after.north_m, after.east_m))
         had = [one.side for one in gates if one.time_ms <= before.time_ms]
         if moved > 0 and (not had or had[-1] != "ICAROUS"):
@@ -105,12 +115,14 @@ def _off(
 ) -> Iterator[Fault]:
     """What was wrong as it left the ground, and afterwards."""
     off_ms = states[0].time_ms
-    if _mode(said, off_ms) != ROLLING:
-        yield off_ms, "it left the ground and was not said to roll"
-    told = [one.time_ms for one in said if one.mode == CLIMBING]
-    bound_ms = off_ms + NOTICED * mission.heartbeat_ms
-    if states[-1].time_ms > bound_ms and not (told and off_ms <= told[0] <= bound_ms):
-        yield off_ms, "it left the ground, and did not say so then"
+    begins = is_at(mission, vehicle, states[0]) or off_ms == 0
+    if begins and all(_logged(mission, *leg) for leg in pairwise(states[:2])):
+        if _mode(said, off_ms) != ROLLING:
+            yield off_ms, "it left the ground and was not said to roll"
+        told = [one.time_ms for one in said if one.mode == CLIMBING]
+        bound_ms = off_ms + NOTICED * mission.heartbeat_ms
+        if states[-1].time_ms > bound_ms and not (told and off_ms <= told[0] <= bound_ms):
+            yield off_ms, "it left the ground, and did not say so then"
     for state in states[1:]:
         if not mission.sites and is_at(mission, vehicle, state):
             yield state.time_ms, "it came to the ground again"

@@ -131,13 +131,16 @@ class LinkLossWatch:
     def _on_the_ground(self, vehicle: int, told: Told, now_ms: int) -> str:
         """What is wrong with how a vehicle has landed, or has not; empty if nothing."""
         down, said = self._down.get(vehicle), told.loss.mode == LANDED
+        said_ms = told.loss.since_ms
         if down is None:
-            return "it said that it had landed, and was in the air" if said else ""
+            known = said and not self._unseen(vehicle, (said_ms, said_ms + self._presence.step_ms))
+            return "it said that it had landed, and was in the air" if known else ""
         if not down.site:
             return "it came to the ground beside every landing site"
         if fault := down.taken or down.wrong:
             return f"{down.words()}, and {fault}"
-        if said and not runs_forward(down.since_ms, told.loss.since_ms):
+        early = said and not runs_forward(down.since_ms, said_ms)
+        if early and not self._unseen(vehicle, (said_ms, down.since_ms)):
             return f"it said that it had landed before it {down.words()}"
         if not down.stands:
             # of one that was not seen to the end it is not known

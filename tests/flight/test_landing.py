@@ -148,6 +148,9 @@ def test_monitor_and_judge_see_a_landing_that_is_none(landed: Flown, tmp_path: P
     assert changed("LinkLossState", lambda d: {**d, **heard} if d["Mode"] == "Final" else d) == bad
     rolls = down_ms + 500
     assert changed("TruthState", lambda d: d if d["Time"] < rolls else None) == unseen
+    assert changed("TruthState", lambda d: d if d["Time"] < down_ms - 1000 else None, 0) == unseen
+    late = range(down_ms - 1000, down_ms + 1000)
+    assert changed("TruthState", lambda d: None if d["Time"] in late else d, 0) == unseen
     gap = range(down_ms - 5000, down_ms - 4000)
     assert changed("TruthState", lambda d: None if d["Time"] in gap else d, 0) == unseen
     end = landed.told("TruthState")[-1]
