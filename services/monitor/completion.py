@@ -1,4 +1,8 @@
-"""G3: every task that is asked for was flown to its end and served; what search sensors really saw."""
+"""G3: every task that is asked for was flown to its end and served; what search sensors really saw.
+
+A search is judged by the footprints that its vehicle's own states tell, not by true positions: where some of these are
+missing it may hold all the same. A state that is missing itself can only lower what was seen.
+"""
 
 from __future__ import annotations
 
@@ -207,7 +211,8 @@ class CompletionWatch:
         return (*([seen] if seen is not None else []), *map(qualified, [*asked, service_verdict]))
 
     def _unseen(self, number: int) -> str:
-        """What was not seen of the flight of a complete task that is judged by places; empty if nothing."""
+        """What was not seen of the flight of a complete task that is judged by places, as no search without a standoff
+        is; empty if nothing."""
         task, doing = self._kinds[number], self._tasks[number]
         by_place = task.standoff_m or task.kind in (TaskKind.MUST_FLY, TaskKind.LOITER)
         if not by_place or doing.complete_ms is None:
