@@ -1,4 +1,5 @@
-"""The assumption that what was looked at at a heartbeat is flown until the next. Decided by the kernel `disc_within`.
+"""The assumption that what was looked at at a heartbeat is flown until the next. Decided by the kernels `disc_within`
+and `in_time`.
 
 The way that an instance predicts is not in the log: what can be seen is how far each aircraft is from flying straight on,
 which the prediction of another aircraft is, and the first piece of its own way wherever that leads on.
@@ -8,12 +9,12 @@ from __future__ import annotations
 
 import math
 
-from cratous.core.authority.timeliness import lasted
+from cratous.core.authority.timeliness import in_time, lasted
 from cratous.core.avoidance.prediction import Piece, after
 from cratous.core.permit.tubes import disc_within
 from cratous.services.assumptions.link import NO_INSTANCE
 from cratous.services.assumptions.motion import Positions, Seen, is_within, off_by, room_of
-from cratous.services.assumptions.observed import Message, Record
+from cratous.services.assumptions.observed import Message, Record, gone_ms
 from cratous.spec.mission import Mission
 
 
@@ -25,10 +26,14 @@ class AheadWatch:
     def __init__(self, mission: Mission) -> None:
         self._room = room_of(mission.daa)
         self._period_ms = mission.simulation.heartbeat_ms
+        self._step_ms = mission.simulation.step_ms
         self._positions = Positions()
+        self._last_ms = {v.id: 0 for v in mission.vehicles}
+        self._last_ms |= {t.id: t.appears_ms for t in mission.traffic}
+        self._gone_ms = gone_ms(mission)
         self._base: dict[int, Seen] = {}
         none = "" if mission.instances else NO_INSTANCE
-        kernels = (disc_within, lasted)
+        kernels = (disc_within, in_time, lasted)
         self._record = Record("m", self._room.wide_m, kernels, none, waits="no aircraft was seen")
 
     def message(self, message: Message) -> None:
@@ -36,6 +41,9 @@ class AheadWatch:
         if message.kind != "TruthState" or self._record.unseen:
             return
         number, here = message.body.VehicleID, self._positions.seen(message)
+        last_ms = self._last_ms.get(number, here.time_ms)
+        self._record.unseen_between(f"aircraft {number}", last_ms, here.time_ms, self._step_ms)
+        self._last_ms[number] = here.time_ms
         base = self._base.setdefault(number, here)
         t_s = (here.time_ms - base.time_ms) / 1000
         off = off_by(here.position, after(Piece(0.0, t_s, base.position, base.velocity), t_s))
@@ -51,7 +59,10 @@ class AheadWatch:
             self._base[number] = here
 
     def end(self, at_ms: int) -> None:
-        """Nothing is open."""
+        """Every aircraft is to have been seen until the end, or until it is not there."""
+        for number, last_ms in self._last_ms.items():
+            until_ms = max(last_ms, min(at_ms, self._gone_ms.get(number, at_ms)))
+            self._record.unseen_between(f"aircraft {number}", last_ms, until_ms, self._step_ms)
 
     def records(self) -> dict[str, Record]:
         """See `Watch`."""

@@ -153,11 +153,8 @@ class IntruderWatch:
     def _was_seen(self, own: int, other: int, now_ms: int) -> None:
         """From the last sample to now, no step of which it was not seen."""
         last_ms = self._last[own, other]
-        if not self._record.gaps and not in_time(last_ms, now_ms, self._step_ms):
-            self._record.gaps.append(
-                f"aircraft {other} was not seen from {last_ms / 1000:.2f} s to {now_ms / 1000:.2f} s, "
-                f"during a takeover of {own}"
-            )
+        who = f"aircraft {other}, which {own} avoids,"
+        self._record.unseen_between(who, last_ms, now_ms, self._step_ms)
 
     def _sample(self, message: Message) -> None:
         here, other = self._positions.seen(message), message.body.VehicleID

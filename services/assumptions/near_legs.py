@@ -19,12 +19,11 @@ from cratous.core.kernel import Vec2
 from cratous.core.readings.exact import exact
 from cratous.core.routing.polylines import Track
 from cratous.services.assumptions.authority import UNTOUCHED, has_it, reported, sender_of
-from cratous.services.assumptions.observed import ANY_LATER, Message, Record
+from cratous.services.assumptions.observed import ANY_LATER, Message, Record, gone_ms
 from cratous.services.mission.frames import Projection
 from cratous.services.mission.known_zones import zones_of
 from cratous.services.mission.zones import exact_leg_keeps
 from cratous.spec.mission import Mission, Position, Zone
-from cratous.spec.mission.changes import VEHICLE_LOST
 
 MARGINS_M = (1.0, 2.0, 5.0, 10.0, 20.0)
 """The least of these that is enough is the margin; the last is what routes keep from zones where there is room [m]."""
@@ -126,6 +125,11 @@ class NearLegsWatch:
         if not self._record.gaps:
             self._record.gaps.append(text)
 
+    def _seen_between(self, number: int, last_ms: int, now_ms: int) -> None:
+        if not self._record.unseen:
+            step_ms = self._mission.simulation.step_ms
+            self._record.unseen_between(f"vehicle {number}", last_ms, now_ms, step_ms)
+
     def _sample(self, number: int, now_ms: int, here: Position) -> None:
         before, self._before[number] = self._before.get(number), (now_ms, here)
         if before is None:
@@ -134,8 +138,7 @@ class NearLegsWatch:
         if path is None:
             self._without_path(number, before, here)
             return
-        if not in_time(before[0], now_ms, self._mission.simulation.step_ms):
-            self._gap(f"vehicle {number} was not seen from {before[0] / 1000:.2f} s")
+        self._seen_between(number, before[0], now_ms)
         self._hold(number, path, before, here)
 
     def _without_path(self, number: int, before: tuple[int, Position], here: Position) -> None:
@@ -190,14 +193,11 @@ class NearLegsWatch:
 
     def end(self, at_ms: int) -> None:
         """What was on a path is to have been seen until the end, or until it was lost."""
-        lost = {c.vehicle: c.at_ms for c in self._mission.changes if c.kind == VEHICLE_LOST}
+        gone = gone_ms(self._mission)
         for number, path in self._paths.items():
             last_ms = self._before[number][0] if number in self._before else path.since_ms
-            until_ms = min(at_ms, lost.get(number, at_ms))
-            if not self._record.unseen and not in_time(
-                until_ms, last_ms + self._mission.simulation.step_ms, ANY_LATER
-            ):
-                self._gap(f"vehicle {number} was not seen from {last_ms / 1000:.2f} s")
+            until_ms = max(last_ms, min(at_ms, gone.get(number, at_ms)))
+            self._seen_between(number, last_ms, until_ms)
 
     def records(self) -> dict[str, Record]:
         """See `Watch`."""

@@ -7,8 +7,11 @@ from dataclasses import dataclass, field
 from sys import float_info
 from typing import Any, NamedTuple, Protocol
 
+from cratous.core.authority.timeliness import in_time
 from cratous.core.kernel import qualified
 from cratous.services.assumptions.listing import State
+from cratous.spec.mission import Mission
+from cratous.spec.mission.changes import VEHICLE_LOST
 
 ANY_LATER = 2**60
 """As a bound of `in_time`: not before, and however much later [ms]."""
@@ -66,6 +69,13 @@ class Record:
         if not holds and self.broken is None:
             self.broken = Break(since_ms, vehicle_id, text)
 
+    def unseen_between(self, who: str, last_ms: int, now_ms: int, step_ms: int) -> None:
+        """Note if more than a step [ms] lies between two samples of an aircraft; the first such gap is kept."""
+        if not self.gaps and not in_time(last_ms, now_ms, step_ms):
+            self.gaps.append(
+                f"{who} was not seen from {last_ms / 1000:.2f} s to {now_ms / 1000:.2f} s"
+            )
+
     def observed(self, at_ms: int, over: bool) -> Observed:
         """The answer. at_ms: when the messages end; over: the mission has ended by then."""
         names = tuple(sorted(map(qualified, self.kernels))) if self.checks else ()
@@ -80,6 +90,13 @@ class Record:
         why = why or "; ".join(self.gaps)
         state = State.NOT_OBSERVED if why else State.HELD
         return Observed(state, None, *measures, why, self.checks, names)
+
+
+def gone_ms(mission: Mission) -> dict[int, int]:
+    """From when on an aircraft that is lost or vanishes is not there [ms]; those that stay are left out."""
+    lost = {c.vehicle: c.at_ms for c in mission.changes if c.kind == VEHICLE_LOST}
+    vanish = {t.id: t.vanishes_ms for t in mission.traffic if t.vanishes_ms is not None}
+    return {**lost, **vanish}
 
 
 class Message(NamedTuple):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import CancelledError
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from typing import Any, NamedTuple
 
 from cratous.services.campaign import worker
@@ -102,10 +102,19 @@ def _cluster(workers: int, scheduler: str | None) -> Iterator[Engine]:
             try:
                 yield lambda feed: _made(distributed, client, scheduler or "local workers", feed)
             finally:
-                client.close(timeout=5)
+                _ended(client, 5)
         finally:
             if cluster is not None:
-                cluster.close(timeout=10)
+                _ended(cluster, 10)
+
+
+def _ended(closable: Any, timeout: int) -> None:
+    """Close a client or cluster; what it does not manage in time ends with this process.
+
+    Results are taken by then, and an error here would hide why it is closed, a signal to stop say.
+    """
+    with suppress(Exception):
+        closable.close(timeout=timeout)
 
 
 def _client(distributed: Any, address: Any) -> Any:
@@ -168,7 +177,8 @@ def _made(distributed: Any, client: Any, where: str, feed: Feed) -> Iterator[Ans
         raise _gone(where) from None  # all that is under way is cancelled where a scheduler ends
     finally:
         if client.status == "running":
-            client.cancel(list(running), force=True)
+            with suppress(Exception):  # no more than `_ended` may
+                client.cancel(list(running), force=True)
 
 
 def _done(distributed: Any, running: Iterable[Any]) -> list[Any]:

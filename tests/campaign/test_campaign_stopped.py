@@ -1,0 +1,69 @@
+"""A signal to stop comes up as itself, whatever dask does when it is closed."""
+
+from __future__ import annotations
+
+import signal
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from cratous.services.campaign import engine
+from cratous.services.cli.stopping import Stopped
+
+pytest.importorskip("distributed")
+
+
+class Slow:
+    """A client and a cluster of dask that close and cancel as a machine that is too busy does."""
+
+    status = "running"
+
+    def __init__(self, *_: Any, **__: Any) -> None:
+        self.asked = list[str]()
+
+    def close(self, timeout: int) -> None:
+        self.asked.append("close")
+        raise TimeoutError(f"timed out after {timeout} s.")
+
+    def cancel(self, _futures: Any, force: bool) -> None:
+        self.asked.append("cancel")
+        raise OSError("the connection is gone")
+
+    def nthreads(self) -> dict[str, int]:
+        return {"worker": 1}
+
+    def subscribe_topic(self, _topic: str, _note: Any) -> None:
+        """Nobody says anything."""
+
+    def submit(self, *_: Any, **__: Any) -> Any:
+        return object()
+
+
+@pytest.mark.parametrize("stopped", [True, False])
+def test_an_error_of_closing_hides_neither_a_stop_nor_a_result(
+    monkeypatch: pytest.MonkeyPatch, stopped: bool
+) -> None:
+    client, cluster = Slow(), Slow()
+
+    def wait(*_: Any, **__: Any) -> None:
+        raise Stopped(signal.SIGTERM)
+
+    made = SimpleNamespace(
+        Client=lambda *_, **__: client, LocalCluster=lambda **_: cluster, wait=wait,
+        client=SimpleNamespace(ClosedClientError=ConnectionError),
+    )  # fmt: skip
+    monkeypatch.setattr(engine, "_distributed", lambda: made)
+    tasks = iter([{"id": "1"}] if stopped else [])
+
+    def flown() -> None:
+        with engine.engine(2, None) as fly:
+            list(fly(lambda: next(tasks, None)))
+
+    if stopped:
+        with pytest.raises(Stopped) as stop:
+            flown()
+        assert stop.value.exit_code == 143
+    else:
+        flown()
+    assert (client.asked, cluster.asked) == (["cancel", "close"], ["close"])
