@@ -142,12 +142,12 @@ class NearLegsWatch:
         self._hold(number, path, before, here)
 
     def _without_path(self, number: int, before: tuple[int, Position], here: Position) -> None:
-        """What flies under UxAS though no path was commanded is near no leg."""
+        """What flies under UxAS though no one path was commanded all the while is not seen to be near a leg."""
         since_ms = before[0]
         if has_it(self._gates[number]) or not in_time(self._free_ms[number], since_ms, ANY_LATER):
             return
-        if number not in self._paths and here != before[1]:
-            self._gap(f"vehicle {number} flew on no path of UxAS from {since_ms / 1000:.2f} s")
+        if here != before[1]:
+            self._gap(f"vehicle {number} flew on no one path of UxAS from {since_ms / 1000:.2f} s")
 
     def _hold(self, number: int, path: Path, before: tuple[int, Position], here: Position) -> None:
         """What was flown since the last sample, against the nearest leg that keeps the zones."""

@@ -151,7 +151,7 @@ def test_what_flies_on_no_path_is_not_said_to_be_near() -> None:
 
     found = seen(at_zone(zone(100.0)), change)
     assert (found.state, found.checks > 100) == (State.NOT_OBSERVED, True)
-    assert "vehicle 1 flew on no path of UxAS from 55.00 s" in found.note
+    assert "vehicle 1 flew on no one path of UxAS from 55.00 s" in found.note
 
 
 def test_a_lap_that_is_commanded_anew_ahead_of_the_vehicle_is_near_by_its_last_legs() -> None:
@@ -187,6 +187,22 @@ def test_what_was_flown_until_a_command_is_held_against_the_one_before() -> None
     assert found.state is State.BROKEN
     assert found.broken is not None
     assert found.broken.since_ms / 1000 < last[0]
+
+
+def test_a_command_between_two_samples_leaves_what_is_flown_between_them_not_observed() -> None:
+    """Where the vehicle was when the path changed is not in the log."""
+
+    def change(log: Log) -> None:
+        k = next(
+            k for k, one in enumerate(log)
+            if one.topic.endswith("TruthState") and one.body.North > 2500.0
+        )  # fmt: skip
+        command = log[at(log, "GatedCommand", VehicleID=1)]
+        log.insert(k, replace(command, time_ms=log[k].time_ms - 100))
+
+    found = seen(at_zone(zone(100.0)), change)
+    assert (found.state, found.checks > 100) == (State.NOT_OBSERVED, True)
+    assert "vehicle 1 flew on no one path of UxAS" in found.note
 
 
 def test_another_kind_of_command_is_told() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import contextlib
 import itertools
 from collections.abc import Iterator
 from pathlib import Path
@@ -90,15 +91,22 @@ PLANS = "TaskManager AutomationRequestValidator RoutePlannerVisibility RouteAggr
 AT = {"Latitude": 0.02, "Longitude": 0.01}
 
 
-@pytest.fixture
-def planning(tmp_path: Path) -> Iterator[tuple[Process, Contexts]]:
+@contextlib.contextmanager
+def planner(folder: Path) -> Iterator[Process]:
     """A process that plans, with two aircraft."""
     services = "".join(f'<Service Type="{name}Service"/>' for name in PLANS.split())
     assignment = '<Service Type="AssignmentTreeBranchBoundService"/>'
-    with process(write_cfg(tmp_path, services + assignment), virtual=True)[0] as ours:
+    with process(write_cfg(folder, services + assignment), virtual=True)[0] as ours:
         for body in (*vehicle(1), *vehicle(2, 0.01)):
             ours.bus.publish(body, "test")
         ours.run(1.0)
+        yield ours
+
+
+@pytest.fixture
+def planning(tmp_path: Path) -> Iterator[tuple[Process, Contexts]]:
+    """Such a process, and who knows what has been told."""
+    with planner(tmp_path) as ours:
         yield ours, ours.host.shared["contexts"]
 
 
@@ -106,6 +114,15 @@ def tell(ours: Process, *bodies: Any) -> None:
     for body in bodies:
         ours.bus.publish(body, "test")
     ours.bus.run()
+
+
+def asked(ours: Process, body: Any) -> list[Any]:
+    """What is said once a request was told."""
+    said: list[Any] = []
+    ours.bus.tap(lambda envelope: said.append(envelope.body))
+    tell(ours, body)
+    ours.run(10.0)
+    return said
 
 
 def line(number: int) -> Any:
@@ -146,7 +163,10 @@ def test_where_nobody_tells_a_task_everything_is_read(
 
 @pytest.mark.parametrize("vehicles", [(1, 2), (2,)])
 def test_options_made_ahead_are_those_of_the_request_if_it_is_for_the_same(
-    planning: tuple[Process, Contexts], monkeypatch: pytest.MonkeyPatch, vehicles: tuple[int, ...]
+    planning: tuple[Process, Contexts],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    vehicles: tuple[int, ...],
 ) -> None:
     """Else they are made anew; either way the plan is the one that is made without them."""
     ours, contexts = planning
@@ -170,10 +190,7 @@ def test_options_made_ahead_are_those_of_the_request_if_it_is_for_the_same(
 
     monkeypatch.setattr(inputs, "expand", counted)
     monkeypatch.setattr(planned, "routes", looked)
-    said: list[Any] = []
-    ours.bus.tap(lambda envelope: said.append(envelope.body))
-    tell(ours, request(6, 5, vehicles=vehicles))
-    ours.run(10.0)
+    said = asked(ours, request(6, 5, vehicles=vehicles))
     assert sorted(made) == ([] if vehicles == (1, 2) else [5, 6])
     offers = [body for body in said if type(body).__name__ == "TaskPlanOptions"]
     options = sum(len(offer.Options) for offer in offers)
@@ -181,6 +198,14 @@ def test_options_made_ahead_are_those_of_the_request_if_it_is_for_the_same(
     assert (sum(searched) == (len(vehicles) + 1) * options) == (vehicles == (1, 2))
     (response,) = (body for body in said if type(body).__name__ == "AutomationResponse")
     assert response.MissionCommandList, response.Info
+    (tmp_path / "other").mkdir()
+    with planner(tmp_path / "other") as other:
+        tell(other, line(6), must_fly(5))
+        (plain,) = (
+            body for body in asked(other, request(6, 5, vehicles=vehicles))
+            if type(body).__name__ == "AutomationResponse"
+        )  # fmt: skip
+    assert response == plain
 
 
 def test_a_world_that_means_nothing_is_left_alone(planning: tuple[Process, Contexts]) -> None:
