@@ -18,15 +18,18 @@ from cratous.bridge.text_protocol.keys import KEY_VARIABLE
 from cratous.core.assignment.annealing import anneal
 from cratous.core.assignment.anytime import greedy, improve
 from cratous.core.assignment.layers import look_ahead, tables
+from cratous.core.assignment.problem import START
 from cratous.core.assignment.tables import latest_tables
 from cratous.core.readings.machine.compiled import machine
 from cratous.core.readings.tiered import at_once
 from cratous.core.routing.bulk import direct_many, route_many
 from cratous.core.routing.visibility import Roadmap, lengths_around, routes
-from cratous.services.planning import coming
+from cratous.services.planning import coming, stages
+from cratous.services.planning import routes as planned
 from cratous.services.planning.assign import solve
 from cratous.services.planning.assign_warm import simple_instance
 from cratous.services.planning.detours import many_detours
+from cratous.services.planning.inputs import Inputs
 from cratous.services.planning.zones import roadmaps
 from cratous.services.startup import ahead, little_missions, warm
 from cratous.spec.assignment.search import ORDER, AssignmentProblem, Choice
@@ -152,6 +155,32 @@ def test_many_that_lead_around_get_the_ways_that_direct_ones_and_the_rest_get() 
     assert set(apart.links.tolist()) > {1}  # direct ones are among them, and others
     for one, other in zip(apart[:3], whole[:3], strict=True):
         assert one.tobytes() == other.tobytes()
+
+
+@pytest.mark.parametrize(("east_m", "name"), [(320.0, coming.AROUND), (3000.0, coming.ROUTES)])
+def test_who_searches_many_ways_waits_for_the_search_that_they_need(
+    monkeypatch: pytest.MonkeyPatch, east_m: float, name: str
+) -> None:
+    """Many that lead around zones are all searched by what finds those; else direct ways are found first."""
+    waited: list[str] = []
+    searched: list[str] = []
+    for search in (routes, lengths_around):
+
+        def looked(*given: Any, _search: Any = search) -> Any:
+            searched.append(_search.__name__)
+            return _search(*given)
+
+        monkeypatch.setattr(planned, search.__name__, looked)
+    monkeypatch.setattr(coming, "ready", waited.append)
+    corners = ((4900.0, east_m), (4900.0, east_m + 60), (5100.0, east_m + 60), (5100.0, east_m))
+    made = mission(6, Zone(1, ZoneKind.KEEP_OUT, corners, 0.0, 500.0))
+    ours = Inputs(made, stages.start_poses(made))
+    count = len(ours.options)
+    ours.routes.prepare(
+        0, [(before, to) for before in (START, *range(count)) for to in range(count)]
+    )
+    assert waited == [name]
+    assert set(searched) == {{coming.AROUND: "lengths_around", coming.ROUTES: "routes"}[name]}
 
 
 def test_a_process_that_nobody_waited_for_is_ended(begun: list[Started]) -> None:

@@ -58,6 +58,15 @@ def test_what_is_due_comes_before_a_piece_and_virtual_time_has_none(tmp_path: Pa
         assert not done
 
 
+def test_where_nothing_is_to_do_for_now_it_is_not_asked_again_at_once(tmp_path: Path) -> None:
+    """Else a process that waits would take a core."""
+    ours, _ = process(write_cfg(tmp_path, '<Service Type="HelloWorld"/>'))
+    done: list[int] = []
+    with ours:
+        ours.run(1.0, (bool(done.append(k)) for k in itertools.count()))
+    assert 1 <= len(done) < 10
+
+
 def test_nothing_is_done_ahead_once_something_is_asked_for(tmp_path: Path) -> None:
     ours, _ = process(write_cfg(tmp_path, '<Service Type="HelloWorld"/>'))
     done: list[int] = []
@@ -206,6 +215,34 @@ def test_options_made_ahead_are_those_of_the_request_if_it_is_for_the_same(
             if type(body).__name__ == "AutomationResponse"
         )  # fmt: skip
     assert response == plain
+
+
+def test_what_was_made_stays_made_when_more_is_told_or_asked_for(
+    planning: tuple[Process, Contexts], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One task more is one task to make, and a request that comes before ways are found has not to make options."""
+    ours, contexts = planning
+    monkeypatch.setattr(spare, "_read", lambda: iter(()))
+    made: list[int] = []
+    expand = inputs.expand
+
+    def counted(mission: Any, tasks: Any, *more: Any) -> Any:
+        made.extend(task.id for task in tasks)
+        return expand(mission, tasks, *more)
+
+    tell(ours, line(6), must_fly(5))
+    pieces = spare.pieces(contexts)
+    assert next(pieces)  # a point
+    monkeypatch.setattr(inputs, "expand", counted)
+    assert [*itertools.takewhile(bool, pieces)]
+    assert made == [6, 5]
+    tell(ours, must_fly(8))
+    assert [next(pieces) for _ in range(3)] == [True] * 3
+    assert made == [6, 5, 8]
+    said = asked(ours, request(6, 5, 8, vehicles=(1, 2)))
+    assert made == [6, 5, 8]
+    (response,) = (body for body in said if type(body).__name__ == "AutomationResponse")
+    assert response.MissionCommandList, response.Info
 
 
 def test_a_world_that_means_nothing_is_left_alone(planning: tuple[Process, Contexts]) -> None:
