@@ -125,9 +125,9 @@ def main(argv: list[str] | None = None) -> int:
     except Exception as error:
         if debug and not isinstance(error, CratousError):
             raise
-        stop = stop_behind(error)
-        if stop is not None:
-            return _stopped(stop, f"; on the way out: {type(error).__name__}: {error}")
+        behind = stop_behind(error)
+        if behind is not None:
+            return _stopped(behind, f"; on the way out: {type(error).__name__}: {error}")
         if isinstance(error, CratousError):
             return report_error(error, as_json)
         name = type(error).__name__
