@@ -23,7 +23,7 @@ from typing import Any
 import click
 
 from cratous import __version__
-from cratous.services.cli.stopping import Stopped, handlers_as_before, stoppable
+from cratous.services.cli.stopping import Stopped, handlers_as_before, stop_behind, stoppable
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 from cratous.spec.files.extras import told
 from cratous.spec.files.printable import json_text, printable
@@ -114,8 +114,7 @@ def main(argv: list[str] | None = None) -> int:
     except click.exceptions.Exit as done:
         return done.exit_code
     except Stopped as stop:
-        click.echo(f"cratous: stopped ({stop.name})", err=True)
-        return stop.exit_code
+        return _stopped(stop)
     except SystemExit as done:
         return done.code if isinstance(done.code, int) else int(done.code is not None)
     except click.ClickException as error:
@@ -123,11 +122,14 @@ def main(argv: list[str] | None = None) -> int:
     except (click.Abort, KeyboardInterrupt):
         click.echo("cratous: stopped", err=True)
         return 130
-    except CratousError as error:
-        return report_error(error, as_json)
     except Exception as error:
-        if debug:
+        if debug and not isinstance(error, CratousError):
             raise
+        behind = stop_behind(error)
+        if behind is not None:
+            return _stopped(behind, f"; on the way out: {type(error).__name__}: {error}")
+        if isinstance(error, CratousError):
+            return report_error(error, as_json)
         name = type(error).__name__
         said = printable(f"{name}: {error}")
         click.echo(f"cratous: internal error ({said}){_place(error)}", err=True)
@@ -135,6 +137,11 @@ def main(argv: list[str] | None = None) -> int:
         if as_json:
             click.echo(json.dumps({"error": f"internal error: {name}", "exit_code": 70}))
         return INTERNAL_ERROR
+
+
+def _stopped(stop: Stopped, more: str = "") -> int:
+    click.echo(f"cratous: stopped ({stop.name}){printable(more)}", err=True)
+    return stop.exit_code
 
 
 def _place(error: BaseException) -> str:

@@ -21,6 +21,16 @@ class Stopped(SystemExit):
         self.name = signal.Signals(number).name
 
 
+def stop_behind(error: BaseException | None) -> Stopped | None:
+    """The signal to stop while which was handled an error came up, say of what was being closed; None if there is none.
+
+    Python itself may raise one in its place, as where it comes between the two steps of a wait for an event.
+    """
+    while error is not None and not isinstance(error, Stopped):
+        error = error.__context__
+    return error
+
+
 @contextmanager
 def handlers_as_before() -> Iterator[None]:
     """What a command of this process does about Ctrl-C and the like ends with the command, for who has called it."""

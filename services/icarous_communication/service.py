@@ -6,11 +6,12 @@ before it says StartupComplete, and is refused when they do not come.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable
 from typing import Any
 
 from cratous.bridge.link import LinkEvent
-from cratous.bridge.port import Report, Tally, is_due
+from cratous.bridge.port import Report, Tally, is_due, often
 from cratous.bridge.redial import Redial
 from cratous.bridge.text_connection import PROGRAM_LIMITS, REFUSED, Bounds, Opened
 from cratous.bridge.text_port import Came, TextPort
@@ -107,6 +108,7 @@ class IcarousCommunicationService:
         self._early: dict[int, list[Message]] = {}
         self._known: set[int] = set()
         self._tally = Tally(name, report)
+        self._forgeries: Counter[int] = Counter()
         self._started = False
         self._until_s: float | None = None
         self._say_s, self._said = 0.0, ""
@@ -236,10 +238,17 @@ class IcarousCommunicationService:
     def _forged(self, key: int, what: str) -> None:
         """Somebody without the key has put a mode into the connection of a vehicle."""
         vid, now_ms = self._seats.vehicle(key), self._bus.now_ms
+        if vid is None:
+            return
+        self._forgeries[vid] += 1
+        count = self._forgeries[vid]
+        if not often(count):  # so the log does not grow with what a stranger sends
+            return
+        why = what if count == 1 else f"{what} ({count} so far)"
 
         def step(state: State) -> Step:
-            peer = None if vid is None else state.link.peer(vid)
-            return state, [] if peer is None else [modes.forged(self.name, peer, now_ms, what)]
+            peer = state.link.peer(vid)
+            return state, [] if peer is None else [modes.forged(self.name, peer, now_ms, why)]
 
         self._stepped(step)
 

@@ -169,7 +169,7 @@ class AuthorityWatch:
             if seen.forged:
                 note += f", {seen.forged} of these of an epoch that was never given"
             if seen.refused:
-                note += f"; {seen.refused} modes refused that could not be true"
+                note += f"; at least {seen.refused} modes refused that could not be true"
             time_ms = None
             if seen.faults:
                 outcome, (time_ms, note) = Outcome.VIOLATED, seen.faults[0]

@@ -8,8 +8,10 @@ from typing import Any
 
 import pytest
 
+from cratous.services import cli
 from cratous.services.campaign import engine
 from cratous.services.cli.stopping import Stopped
+from cratous.spec.errors import BadInput
 
 pytest.importorskip("distributed")
 
@@ -38,6 +40,26 @@ class Slow:
 
     def submit(self, *_: Any, **__: Any) -> Any:
         return object()
+
+
+@pytest.mark.parametrize("error", [RuntimeError, TimeoutError, BadInput])
+def test_an_error_on_the_way_out_of_a_stop_is_told_and_the_exit_code_is_the_signals(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], error: type[Exception]
+) -> None:
+    def stopped(**_: Any) -> None:
+        try:
+            raise Stopped(signal.SIGTERM)
+        finally:
+            try:
+                raise OSError("gone")
+            except OSError:
+                raise error("cannot be closed") from None
+
+    monkeypatch.setattr(cli.cli, "main", stopped)
+    assert cli.main(["campaign"]) == 143
+    assert capsys.readouterr().err == (
+        f"cratous: stopped (SIGTERM); on the way out: {error.__name__}: cannot be closed\n"
+    )
 
 
 @pytest.mark.parametrize("stopped", [True, False])

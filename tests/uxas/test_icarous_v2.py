@@ -98,6 +98,19 @@ def test_a_forged_mode_moves_no_gate_and_is_counted_where_authority_is_judged(ri
     assert "1 modes refused" in verdict.note
 
 
+@pytest.mark.shows(SERVICE, "Dialect")
+def test_many_forged_modes_are_told_seldom_and_counted_all(rig: Rig) -> None:
+    one = Sealed(rig)
+    one.say(tp.SetMode("PASSIVE", 0))
+    rig.until(lambda: rig.process.bus.state(SERVICE).fresh == frozenset())
+    stranger = Seal(1, b"k" * 32, b"k" * 32, sent=one.seal.sent)
+    for k in range(100):
+        one.sock.sendall(stranger.wrap(tp.encode(tp.SetMode("ACTIVE", k)), 1000))
+    rig.until(lambda: refused(rig) == {FORGED: 100})
+    more = [f" ({count} so far)" for count in (2, 4, 8, 16, 32, 64)]
+    assert [r.Reason for r in rig.got("ModeRefused")] == [FORGED + m for m in ("", *more)]
+
+
 def test_a_peer_without_a_key_is_refused_whatever_it_says(opened: list[Any], rig: Rig) -> None:
     peer = socket.create_connection(("127.0.0.1", rig.port), timeout=5)
     opened.append(peer)
