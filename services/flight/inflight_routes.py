@@ -79,10 +79,14 @@ class Ways:
         return Track(way) if way else None
 
     def _there(self, state: AirState, place: Position) -> bool:
-        """Whether a vehicle is at a place, as well as a track is followed."""
+        """Whether a vehicle is at a place, as well as a track is followed, and no zone is entered on the way there."""
         p = state.position
         off = math.hypot(place.north_m - p.north_m, place.east_m - p.east_m)
-        return off <= 3 * state.speed_m_s * self.dt_s + 1
+        if off > 3 * state.speed_m_s * self.dt_s + 1:
+            return False
+        inside = entered(p, self.zones)
+        kept = tuple(zone for zone in self.zones if zone not in inside)
+        return first_bad_leg((p, place), kept) is None
 
     def lap(self, chain: Chain, item: PlanItem) -> Track | None:
         """One lap of the hold at the start pose of an item; None if no circle there keeps the zones."""

@@ -116,27 +116,17 @@ def conflict(foreseen: Foresees) -> Any:
 
 def link_loss_state(said: WithoutLink) -> Any:
     """What a vehicle flies while UxAS is not heard, or that it is heard again, as a `LinkLossState`."""
-    return lmcp.new(
-        "LinkLossState",
-        VehicleID=said.vehicle_id,
-        Time=said.now_ms,
-        Mode=said.mode,
-        Chosen=said.chosen,
-        Heard=said.heard_ms,
-        Reason=said.reason,
-    )
+    return _mode_told("LinkLossState", said, Chosen=said.chosen)
 
 
 def take_off_state(said: TakesOff) -> Any:
     """How a vehicle leaves the ground from now on, or why it stands, as a `TakeOffState`."""
-    return lmcp.new(
-        "TakeOffState",
-        VehicleID=said.vehicle_id,
-        Time=said.now_ms,
-        Mode=said.mode,
-        Heard=said.heard_ms,
-        Reason=said.reason,
-    )
+    return _mode_told("TakeOffState", said)
+
+
+def _mode_told(name: str, said: WithoutLink | TakesOff, **more: Any) -> Any:
+    ours = {"VehicleID": said.vehicle_id, "Time": said.now_ms, "Mode": said.mode}
+    return lmcp.new(name, **ours, Heard=said.heard_ms, Reason=said.reason, **more)
 
 
 def guidance(told: Guides, projection: Projection) -> Any:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from cratous.core.avoidance.drift import NONE
 from cratous.core.avoidance.prediction import buffered
 from cratous.core.avoidance.resolution import Scene
 from cratous.services.flight.dynamics import first_state
 from cratous.services.flight.landing_reach import at_start
-from cratous.services.icarous.course_permits import refused
-from cratous.services.icarous.take_off import NO_WAY, may_stop, ways_up
+from cratous.services.icarous.take_off import NO_WAY, first_way_up, why_forbidden
 from cratous.services.loading.polygons import hard_zones
 from cratous.services.mission.take_off import TakeOff, grounded, silence_ms
 from cratous.spec.errors import BadInput
@@ -45,12 +46,6 @@ def _why_not(mission: Mission, vehicle: GroundedVehicle) -> str:
     sensed = at_start(mission, vehicle, first_state(vehicle))._replace(on_ground=True)
     volume = buffered(daa.well_clear, daa.buffer)
     scene = Scene((), zones, volume, daa.lookahead_s, NONE.here, daa.looks_first)
-    first = ""
-    for course in ways_up(plan, sensed) if plan is not None else ():
-        why = refused(course, sensed, scene, daa, mission.simulation.heartbeat_ms / 1000)
-        if not why and not may_stop(course, sensed, zones):
-            why = "a zone is where the roll would end if it were broken off"
-        if not why:
-            return ""
-        first = first or why
-    return first or NO_WAY
+    beat_s = mission.simulation.heartbeat_ms / 1000
+    by = partial(why_forbidden, sensed=sensed, scene=scene, daa=daa, beat_s=beat_s)
+    return NO_WAY if plan is None else first_way_up(plan, sensed, by)[1]

@@ -7,7 +7,8 @@ answered by the kernel `departure_step` at each heartbeat. One of ours rolls at 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 
 from cratous.core.authority.take_off import (
     CLIMBING,
@@ -19,7 +20,7 @@ from cratous.core.authority.take_off import (
 )
 from cratous.core.authority.timeliness import in_time, lasted
 from cratous.core.avoidance.manoeuvre import Pace
-from cratous.core.avoidance.resolution import Choice
+from cratous.core.avoidance.resolution import Choice, Scene
 from cratous.core.geofence.clearance import leg_keeps
 from cratous.core.routing.polylines import Track
 from cratous.services.icarous import course as courses
@@ -32,7 +33,7 @@ from cratous.services.icarous.state import Config, Rising, State
 from cratous.services.mission.landing import BRAKING_M_S2
 from cratous.services.mission.take_off import USED, TakeOff, roll_m
 from cratous.spec.authority.take_off import BEGIN, BREAK_OFF, END, LEAVE, LIFT_OFF, NOTHING
-from cratous.spec.mission import Position, Zone
+from cratous.spec.mission import Daa, Position, Zone
 from cratous.spec.mission.plan import Pose
 from cratous.spec.records import replace
 
@@ -69,10 +70,11 @@ def heartbeat(config: Config, state: State, sensed: Sensed) -> tuple[State, tupl
     if mode == STANDING:
         course = None
         if _is_due(config, plan, sensed, before):
-            course, why = _found(config, state, sensed, plan)
+            by = partial(_why_not, config, state, sensed)
+            course, why = first_way_up(plan, sensed, by)
             state = replace(state, rising=before._replace(tried_ms=now_ms))
     elif course is not None:
-        why = why_not(config, state, sensed, course)
+        why = _why_not(config, state, sensed, course)
         course = None if why else course
     linked = in_time(heard_ms, now_ms, plan.silence_ms)
     why = why if linked else NO_LINK
@@ -112,7 +114,7 @@ def flown(config: Config, state: State, sensed: Sensed) -> tuple[State, Choice]:
     return state, choice._replace(speed_m_s=course.speed_m_s, climb_m_s=climb, climb_for_s=beat_s)
 
 
-def ways_up(plan: TakeOff, sensed: Sensed) -> Iterator[Course]:
+def _ways_up(plan: TakeOff, sensed: Sensed) -> Iterator[Course]:
     """Ways from where the vehicle stands to the altitude of its plan, with the circle at their end to either side."""
     motion, ability = sensed.motion, sensed.ability
     speed, heading, here = ability.min_speed_m_s, motion.heading_rad, motion.position
@@ -140,16 +142,22 @@ def ways_up(plan: TakeOff, sensed: Sensed) -> Iterator[Course]:
             yield course(points, side)
 
 
-def why_not(config: Config, state: State, sensed: Sensed, course: Course) -> str:
+def _why_not(config: Config, state: State, sensed: Sensed, course: Course) -> str:
     """Why a way up is not permitted from here on; "" if it is."""
     if sensed.on_ground and sensed.rolling:
         return f"vehicle {sensed.rolling[0]} rolls"
     if not _at_its_speed(course, sensed):
         return "in the wind of now it flies at another speed"
-    scene = scene_of(config, state, sensed)
-    if sensed.on_ground and not may_stop(course, sensed, scene.zones):
+    return why_forbidden(
+        course, sensed, scene_of(config, state, sensed), config.daa, _beat_s(config)
+    )
+
+
+def why_forbidden(course: Course, sensed: Sensed, scene: Scene, daa: Daa, beat_s: float) -> str:
+    """Why zones or somebody in the air forbid a way up from here on; "" if they do not."""
+    if sensed.on_ground and not _may_stop(course, sensed, scene.zones):
         return "a zone is where the roll would end if it were broken off"
-    return refused(course, sensed, scene, config.daa, _beat_s(config))
+    return refused(course, sensed, scene, daa, beat_s)
 
 
 def _at_its_speed(course: Course, sensed: Sensed) -> bool:
@@ -158,7 +166,7 @@ def _at_its_speed(course: Course, sensed: Sensed) -> bool:
     return lowest == course.speed_m_s or (not sensed.on_ground and lowest < course.speed_m_s)
 
 
-def may_stop(course: Course, sensed: Sensed, zones: tuple[Zone, ...]) -> bool:
+def _may_stop(course: Course, sensed: Sensed, zones: tuple[Zone, ...]) -> bool:
     """Whether the ground ahead keeps the zones up to where a roll that is broken off at its end comes to a stand."""
     here, heading, track = sensed.motion.position, sensed.motion.heading_rad, course.track
     left_m = 0.0 if track is None else max(track.s_m[1] - course.s_m, 0.0)
@@ -166,13 +174,13 @@ def may_stop(course: Course, sensed: Sensed, zones: tuple[Zone, ...]) -> bool:
     return all(leg_keeps(here, stop, zone, 0.0) for zone in zones)
 
 
-def _found(
-    config: Config, state: State, sensed: Sensed, plan: TakeOff
+def first_way_up(
+    plan: TakeOff, sensed: Sensed, why_not_by: Callable[[Course], str]
 ) -> tuple[Course | None, str]:
-    """A way up that is permitted, or why the first is not."""
+    """A way up that is permitted, or why the first is not; why_not_by: says it of one, "" if it is."""
     first = ""
-    for course in ways_up(plan, sensed):
-        why = why_not(config, state, sensed, course)
+    for course in _ways_up(plan, sensed):
+        why = why_not_by(course)
         if not why:
             return course, ""
         first = first or why

@@ -42,7 +42,7 @@ class Finding(NamedTuple):
     at: str = ""
 
 
-def _refused(
+def as_errors(
     check: Callable[[Mission], Iterator[Finding]],
 ) -> Callable[[Mission, Where], Iterator[BadInput]]:
     """The check, with what it finds as errors that say where."""
@@ -59,7 +59,7 @@ def mission_problems(mission: Mission, where: Where) -> list[BadInput]:
     """Everything wrong with the mission before its zones are padded."""
     found: list[BadInput] = []
     for check in (_ids, _vehicles, _powers, _tasks, _zones, _places, _numbers, _instances):
-        found.extend(_refused(check)(mission, where))
+        found.extend(as_errors(check)(mission, where))
     return found or list(relation_problems(mission, where))
 
 
@@ -293,7 +293,7 @@ def relation_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
             )
 
 
-@_refused
+@as_errors
 def change_problems(mission: Mission) -> Iterator[Finding]:
     """Changes in flight of vehicles or tasks that do not exist, or too low, and a mission that begins empty."""
     vehicles, tasks = {v.id for v in mission.vehicles}, {t.id for t in mission.tasks}
@@ -327,7 +327,7 @@ def change_problems(mission: Mission) -> Iterator[Finding]:
             )
 
 
-@_refused
+@as_errors
 def zone_end_problems(mission: Mission) -> Iterator[Finding]:
     """Ends in flight of zones that do not exist, have ended before, or bind no leg until then."""
     step_ms = mission.simulation.step_ms
@@ -357,7 +357,7 @@ def zone_end_problems(mission: Mission) -> Iterator[Finding]:
         yield Finding(item, what, expected, got)
 
 
-@_refused
+@as_errors
 def start_problems(mission: Mission) -> Iterator[Finding]:
     """Vehicles whose start is inside a keep-out or not inside a keep-in (padding included)."""
     for k, vehicle in enumerate(mission.vehicles):

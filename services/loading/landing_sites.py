@@ -9,7 +9,7 @@ from itertools import combinations
 from cratous.core.avoidance.landing import on_ground, roll_fits
 from cratous.core.geofence.planar import keep_in_leg_ok
 from cratous.core.permit.remainder import zones_permit
-from cratous.services.loading.checks import Where
+from cratous.services.loading.checks import Finding, as_errors
 from cratous.services.loading.document import Document
 from cratous.services.loading.places import Places
 from cratous.services.mission.landing import BRAKING_M_S2, TOUCHES_OFF_BEATS, sites_of
@@ -71,11 +71,12 @@ def site_problems(document: Document, sites: tuple[LandingSite, ...]) -> Iterato
         )
 
 
-def ground_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
+@as_errors
+def ground_problems(mission: Mission) -> Iterator[Finding]:
     """Sites that zones forbid at the start, those that are too small for a vehicle to roll to a stand, those that have
     ground in common, and ground that is as high as the mission flies."""
-    yield from _heights(mission, where)
-    yield from _overlaps(mission, where)
+    yield from _heights(mission)
+    yield from _overlaps(mission)
     beat_s = mission.simulation.heartbeat_ms / 1000
     guarded = [mission.vehicle(number) for number in mission.instances]
     for k, site in enumerate(sites_of(mission)):
@@ -83,12 +84,11 @@ def ground_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
         for zone in mission.zones:
             if not zones_permit(place, (zone,), site.radius_m):
                 item = f"{SECTION}[{k}].position"
-                yield BadInput(
+                yield Finding(
+                    item,
                     f"nobody may land at {site.name}",
-                    where=where(item),
-                    item=item,
-                    expected=f"a disc on the ground that keeps zone {zone.id}",
-                    got=f"{site.radius_m:g} m around {site.north_m:g} m north, {site.east_m:g} m east,"
+                    f"a disc on the ground that keeps zone {zone.id}",
+                    f"{site.radius_m:g} m around {site.north_m:g} m north, {site.east_m:g} m east,"
                     f" at {site.ground_m:g} m MSL",
                 )
         for vehicle in guarded:
@@ -96,16 +96,15 @@ def ground_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
             off_m = TOUCHES_OFF_BEATS * speed * beat_s
             if not roll_fits(site.radius_m, speed, BRAKING_M_S2, off_m):
                 item, least_m = f"{SECTION}[{k}].radius_m", speed * speed / (4 * BRAKING_M_S2)
-                yield BadInput(
+                yield Finding(
+                    item,
                     f"vehicle {vehicle.id} does not come to a stand on {site.name}",
-                    where=where(item),
-                    item=item,
-                    expected=f"at least {least_m + off_m:.4g} m, for a landing at {speed:g} m/s",
-                    got=f"{site.radius_m:g} m",
+                    f"at least {least_m + off_m:.4g} m, for a landing at {speed:g} m/s",
+                    f"{site.radius_m:g} m",
                 )
 
 
-def _heights(mission: Mission, where: Where) -> Iterator[BadInput]:
+def _heights(mission: Mission) -> Iterator[Finding]:
     """Ground of a site, or terrain beside all of them, that a vehicle starts or flies its tasks at, or below."""
     sites = sites_of(mission)
     grounds = [
@@ -119,27 +118,25 @@ def _heights(mission: Mission, where: Where) -> Iterator[BadInput]:
             flown_m = min(vehicle.position.alt_m, vehicle.cruise_alt_m)
             # strictly above it, as above the floor of a keep-in
             if not keep_in_leg_ok(1, False, flown_m, flown_m, ground_m, math.inf):
-                yield BadInput(
+                yield Finding(
+                    item,
                     f"{ground} is as high as vehicle {vehicle.id} flies",
-                    where=where(item),
-                    item=item,
-                    expected=f"below {flown_m:g} m MSL, at which it starts or flies its tasks",
-                    got=f"{ground_m:g} m MSL",
+                    f"below {flown_m:g} m MSL, at which it starts or flies its tasks",
+                    f"{ground_m:g} m MSL",
                 )
                 break
 
 
-def _overlaps(mission: Mission, where: Where) -> Iterator[BadInput]:
+def _overlaps(mission: Mission) -> Iterator[Finding]:
     """Pairs of sites whose discs share a place: each has room for one vehicle."""
     for (_, one), (k, two) in combinations(enumerate(sites_of(mission)), 2):
         north_m, east_m = two.north_m - one.north_m, two.east_m - one.east_m
         both_m = one.radius_m + two.radius_m
         if on_ground(north_m, east_m, both_m, 0.0, 0.0):
             item = f"{SECTION}[{k}].position"
-            yield BadInput(
+            yield Finding(
+                item,
                 f"landing sites {one.name} and {two.name} overlap",
-                where=where(item),
-                item=item,
-                expected=f"middles more than {both_m:g} m apart",
-                got=f"{math.hypot(north_m, east_m):g} m",
+                f"middles more than {both_m:g} m apart",
+                f"{math.hypot(north_m, east_m):g} m",
             )

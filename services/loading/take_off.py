@@ -9,7 +9,7 @@ from dataclasses import replace
 from cratous.core.authority.timeliness import in_time
 from cratous.core.avoidance.landing import on_ground
 from cratous.core.geofence.planar import keep_in_leg_ok
-from cratous.services.loading.checks import Where
+from cratous.services.loading.checks import Finding, as_errors
 from cratous.services.mission.landing import (
     BRAKING_M_S2,
     MAX_ACCELERATION_M_S2,
@@ -17,7 +17,6 @@ from cratous.services.mission.landing import (
     sites_of,
 )
 from cratous.services.mission.take_off import LONGEST_MS, grounded, roll_m, take_off_ms
-from cratous.spec.errors import BadInput
 from cratous.spec.mission import GroundedVehicle, Mission
 from cratous.spec.mission.link_loss import LandingSite
 
@@ -36,7 +35,8 @@ def on_their_ground(mission: Mission) -> Mission:
     return replace(mission, vehicles=tuple(vehicles))
 
 
-def take_off_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
+@as_errors
+def take_off_problems(mission: Mission) -> Iterator[Finding]:
     """Vehicles on the ground that nobody takes off, that are there already, that would roll beyond level ground or that
     climb for too long; and those of missions with sensors."""
     for vehicle in grounded(mission):
@@ -64,7 +64,7 @@ def take_off_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
                 found.append((what, expected, got))
         for what, expected, got in found:
             name = f"vehicle {vehicle.id} starts on the ground: {what}"
-            yield BadInput(name, where=where(item), item=item, expected=expected, got=got)
+            yield Finding(item, name, expected, got)
 
 
 def _is_level(vehicle: GroundedVehicle, site: LandingSite, roll: float, terrain_m: float) -> bool:

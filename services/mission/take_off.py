@@ -16,7 +16,8 @@ BEATS = 4
 
 
 SILENCE_MS = 2000
-"""For so long UxAS may be silent while a vehicle takes off, where the mission does not say [ms]: four heartbeats."""
+"""For so long UxAS may be silent while a vehicle takes off, where the mission does not say [ms]: four heartbeats
+of the length that they have if the mission does not say that either."""
 
 
 class TakeOff(NamedTuple):

@@ -25,6 +25,6 @@ def take_off_rows(mission: Mission, vehicle: Vehicle) -> Iterator[Parameter]:
         ("way up", USED * vehicle.max_climb_m_s, "m/s", f"{USED:g} x max_climb_m_s"),
         ("take-off", whole_s, "s", "roll and climb to its position, and four heartbeats"),
         ("silence on the ground", silence_ms(mission) / 1000, "s",
-         "link_loss.after_s, else four heartbeats: after it nobody rolls"),
+         "link_loss.after_s, else 2 s: after it nobody rolls"),
     ):  # fmt: skip
         yield Parameter(name, vehicle.id, value, unit, None, None, None, DERIVED, how)

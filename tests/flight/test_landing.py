@@ -6,59 +6,31 @@ import json
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import pytest
 import yaml
-from judge_tools import Message, write
+from ground_tools import Flown, flown_of
 
 from cratous.bridge import lmcp
 from cratous.judge import judge
-from cratous.services.bus import Bus
 from cratous.services.flight.dynamics import traffic_state
 from cratous.services.flight.landing_reach import require_reachable
-from cratous.services.flight.loop import fly
 from cratous.services.flight.notices import truth
-from cratous.services.flight.result import FlightResult
 from cratous.services.loading import load
-from cratous.services.logs.records import to_data
-from cratous.services.monitor import Monitor
 from cratous.services.parameters.listing import parameters_of
-from cratous.services.pipeline.plan import make_plan
 from cratous.services.system_model.replay import replay
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import LandingLoss, LinkLossDaa, Mission
-from cratous.spec.mission.guarantees import Outcome, Verdict
+from cratous.spec.mission import LandingLoss, LinkLossDaa
+from cratous.spec.mission.guarantees import Outcome
 
 ROW = "what vehicle 1 flies without the link"
 FIELD = {"name": "field", "position": {"north_m": 300, "east_m": 1500}, "radius_m": 60}
 MEADOW = {"name": "meadow", "position": {"north_m": 1500, "east_m": -600}, "radius_m": 60, "ditch": True}  # fmt: skip
 
 
-class Flown(NamedTuple):
-    mission: Mission
-    log: list[Any]
-    result: FlightResult
-
-    def told(self, topic: str) -> list[Any]:
-        return [one.body for one in self.log if one.topic.rpartition(".")[2] == topic]
-
-    def modes(self, vehicle: int = 1) -> list[str]:
-        return [b.Mode.name for b in self.told("LinkLossState") if b.VehicleID == vehicle]
-
-    def verdicts(self, log: list[Any] | None = None) -> dict[str, Verdict]:
-        monitor = Monitor(self.mission, make_plan(self.mission))
-        for one in self.log if log is None else log:
-            monitor.tap(one)
-        return {v.item or v.requirement: v for v in monitor.verdicts()}
-
-    def judged(self, folder: Path, log: list[Any] | None = None) -> dict[str, str]:
-        rows = (
-            Message(one.time_ms, one.topic, json.loads(lmcp.to_json(one.body)))
-            for one in (self.log if log is None else log)
-        )
-        file = write(folder / "log.sqlite", {"mission": to_data(self.mission)}, rows)
-        return {row.item: row.verdict for row in judge(file).rows}
+def modes(flight: Flown, vehicle: int = 1) -> list[str]:
+    return [b.Mode.name for b in flight.told("LinkLossState") if b.VehicleID == vehicle]
 
 
 def mission_file(root: Path, folder: Path, **sections: Any) -> Path:
@@ -71,13 +43,7 @@ def mission_file(root: Path, folder: Path, **sections: Any) -> Path:
 
 
 def flown(path: Path) -> Flown:
-    return of(load(path))
-
-
-def of(mission: Mission) -> Flown:
-    bus, log = Bus(lmcp.full_names), list[Any]()
-    bus.tap(log.append)
-    return Flown(mission, log, fly(mission, make_plan(mission), bus))
+    return flown_of(load(path))
 
 
 @pytest.fixture(scope="module")
@@ -86,7 +52,7 @@ def landed(root: Path) -> Flown:
 
 
 def test_it_comes_down_on_the_site_and_stands_there(landed: Flown) -> None:
-    assert landed.modes() == ["Land", "Final", "Landed"]
+    assert modes(landed) == ["Land", "Final", "Landed"]
     down_ms = landed.told("LinkLossState")[-1].Time
     ground = [b for b in landed.told("TruthState") if b.Time >= down_ms]
     assert all(math.hypot(b.North - 300, b.East - 1500) < 60 for b in ground)
@@ -177,7 +143,7 @@ def test_who_is_on_the_ground_is_in_nobodys_way(root: Path, tmp_path: Path) -> N
     hovers = {"id": 9, "position": {"north_m": 300, "east_m": 1500, "alt_m": 20}, "velocity": {"north_m_s": 0, "east_m_s": 0}}  # fmt: skip
     passes = {"id": 10, "position": {"north_m": 1500, "east_m": -600, "alt_m": 25}, "velocity": {"north_m_s": 30, "east_m_s": 0}, "appears_s": 150}  # fmt: skip
     found = flown(mission_file(root, tmp_path, traffic=[hovers, passes]))
-    assert found.modes()[-1] == "Landed"
+    assert modes(found)[-1] == "Landed"
     reasons = [body.Reason for body in found.told("LinkLossState")]
     assert "here at meadow (field: it is not permitted against 9)" in reasons[0]
     assert reasons[-1] == "landed at meadow"
@@ -192,7 +158,7 @@ def test_heard_in_the_last_descent_it_lands_all_the_same(root: Path, tmp_path: P
     found = flown(
         mission_file(root, tmp_path, simulation={"limit_s": 400, "bridge_faults": faults})
     )
-    assert found.modes() == ["Land", "Final", "Landed"]
+    assert modes(found) == ["Land", "Final", "Landed"]
     assert found.result.outcome == "failed"
     assert found.verdicts()["G4"].outcome is Outcome.HOLDS
 
@@ -253,7 +219,7 @@ def test_who_is_flown_into_the_ground_ends_there(root: Path, tmp_path: Path) -> 
     assert isinstance(loss, LandingLoss)
     higher = replace(loss, sites=(loss.sites[0], replace(loss.sites[1], ground_m=350.0)))
     assert isinstance(mission.daa, LinkLossDaa)
-    found = of(replace(mission, daa=replace(mission.daa, link_loss=higher)))
+    found = flown_of(replace(mission, daa=replace(mission.daa, link_loss=higher)))
     assert found.result.outcome == "failed"
     row = found.verdicts()[ROW]
     assert "landed at hill" in row.note

@@ -2,29 +2,25 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import pytest
 import yaml
+from ground_tools import Flown, assert_in_the_guide, flown_of
 from loading_tools import small
 
 from cratous.bridge import lmcp
-from cratous.services.bus import Bus
 from cratous.services.flight.encounter import ways_of
-from cratous.services.flight.loop import fly
 from cratous.services.loading import load
-from cratous.services.monitor import Monitor
 from cratous.services.parameters.listing import parameters_of
-from cratous.services.pipeline.plan import make_plan
 from cratous.services.processes.coverage import told_of
 from cratous.services.system_model.replay import replay
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import FaultySimulation, Mission, Simulation
+from cratous.spec.mission import FaultySimulation, Simulation
 from cratous.spec.mission.bridge_faults import BridgeFaults
 from cratous.spec.mission.guarantees import Outcome, Verdict
 
@@ -33,22 +29,11 @@ MEADOW = (300.0, 900.0)
 AHEAD = {"id": 9, "position": {"north_m": 400, "east_m": 3200, "alt_m": 265}, "velocity": {"north_m_s": 0, "east_m_s": -30}}  # fmt: skip
 
 
-class Flown(NamedTuple):
-    mission: Mission
-    log: list[Any]
-    outcome: str
-
-    def told(self, topic: str) -> list[Any]:
-        return [one.body for one in self.log if one.topic.rpartition(".")[2] == topic]
+class WithoutLink(Flown):
+    """A flight, of which is asked what is flown without the link."""
 
     def modes(self) -> list[tuple[int, str]]:
         return [(body.Time, body.Mode.name) for body in self.told("LinkLossState")]
-
-    def verdicts(self, log: list[Any] | None = None) -> dict[str, Verdict]:
-        monitor = Monitor(self.mission, make_plan(self.mission))
-        for one in self.log if log is None else log:
-            monitor.tap(one)
-        return {v.item or v.requirement: v for v in monitor.verdicts()}
 
 
 def mission_file(root: Path, tmp_path: Path, **sections: Any) -> Path:
@@ -58,19 +43,16 @@ def mission_file(root: Path, tmp_path: Path, **sections: Any) -> Path:
     return path
 
 
-def flown(path: Path) -> Flown:
-    mission = load(path)
-    bus, log = Bus(lmcp.full_names), list[Any]()
-    bus.tap(log.append)
-    return Flown(mission, log, fly(mission, make_plan(mission), bus).outcome)
+def flown(path: Path) -> WithoutLink:
+    return WithoutLink(*flown_of(load(path)))
 
 
 @pytest.fixture(scope="module")
-def returned(root: Path) -> Flown:
+def returned(root: Path) -> WithoutLink:
     return flown(root / "tests/missions/link_loss.yaml")
 
 
-def test_it_returns_by_a_permitted_way_and_the_mission_goes_on(returned: Flown) -> None:
+def test_it_returns_by_a_permitted_way_and_the_mission_goes_on(returned: WithoutLink) -> None:
     begin, over, again = returned.modes()
     assert [name for _, name in (begin, over, again)] == ["Return", "Over", "Linked"]
     heard = returned.told("LinkLossState")[0].Heard
@@ -82,7 +64,7 @@ def test_it_returns_by_a_permitted_way_and_the_mission_goes_on(returned: Flown) 
         if over[0] <= b.Time <= again[0]
     ]
     assert max(near) < 300
-    assert returned.outcome == "complete"
+    assert returned.result.outcome == "complete"
     verdicts = returned.verdicts()
     for name in ("G1", "G2", "G3", "G4", ROW):
         assert verdicts[name].outcome is Outcome.HOLDS, verdicts[name]
@@ -90,7 +72,7 @@ def test_it_returns_by_a_permitted_way_and_the_mission_goes_on(returned: Flown) 
     assert replay(returned.mission, True, returned.log).finding is None
 
 
-def test_uxas_commands_nothing_meanwhile_and_counts_no_leg(returned: Flown) -> None:
+def test_uxas_commands_nothing_meanwhile_and_counts_no_leg(returned: WithoutLink) -> None:
     commands = [
         one.time_ms for one in returned.log
         if one.topic.endswith("GatedCommand") and one.body.Sender.name == "UxAS"
@@ -111,7 +93,7 @@ def test_it_finishes_the_known_way(root: Path, tmp_path: Path) -> None:
     end = found.modes()[1][0]
     place = next(b for b in found.told("TruthState") if b.Time == end)
     assert math.hypot(place.North - 3000, place.East) < 40
-    assert found.outcome == "complete"
+    assert found.result.outcome == "complete"
 
 
 def test_what_is_not_permitted_waits_in_a_circle(root: Path, tmp_path: Path) -> None:
@@ -148,7 +130,7 @@ def test_a_short_break_is_no_loss(root: Path, tmp_path: Path) -> None:
     assert found.verdicts()[ROW].outcome is Outcome.HOLDS
 
 
-def test_g5_sees_what_was_not_flown(returned: Flown) -> None:
+def test_g5_sees_what_was_not_flown(returned: WithoutLink) -> None:
     def changed(**fields: Any) -> Verdict:
         log = list(returned.log)
         for k, one in enumerate(log):
@@ -170,7 +152,7 @@ def test_g5_sees_what_was_not_flown(returned: Flown) -> None:
     assert returned.verdicts(returned.log[:-5])[ROW].outcome is Outcome.UNKNOWN
 
 
-def test_where_lines_are_lost_nobody_knows_whether_uxas_was_heard(returned: Flown) -> None:
+def test_where_lines_are_lost_nobody_knows_whether_uxas_was_heard(returned: WithoutLink) -> None:
     """Its connection stands, so that nothing was said is no proof that there was nothing to say."""
     quiet = [
         one for one in returned.log if not one.topic.endswith(("LinkLossState", "BridgeStatus"))
@@ -217,14 +199,14 @@ def test_what_makes_no_sense_is_refused(
     assert item in str(caught.value)
 
 
-def test_how_long_uxas_may_be_silent_is_a_parameter(returned: Flown, root: Path) -> None:
+def test_how_long_uxas_may_be_silent_is_a_parameter(returned: WithoutLink, root: Path) -> None:
     path = root / "tests/missions/link_loss.yaml"
     found = {row.name: row for row in parameters_of(returned.mission, path)}
     row = found["link_loss.after_s"]
     assert (row.value, row.default, row.low, row.high) == (3, 5, 1, 3600)
 
 
-def test_it_is_not_flown_in_processes_nor_as_an_encounter(returned: Flown) -> None:
+def test_it_is_not_flown_in_processes_nor_as_an_encounter(returned: WithoutLink) -> None:
     mission = replace(returned.mission, simulation=Simulation(), relations="")
     for flies in (told_of, ways_of):
         with pytest.raises(BadInput) as caught:
@@ -233,11 +215,4 @@ def test_it_is_not_flown_in_processes_nor_as_an_encounter(returned: Flown) -> No
 
 
 def test_the_diagram_in_the_guide_is_the_kernel_s(root: Path) -> None:
-    spec = importlib.util.spec_from_file_location(
-        "machine", root / "docs/tools/link_loss_machine.py"
-    )
-    assert spec is not None
-    assert spec.loader is not None
-    machine = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(machine)
-    assert machine.block() in (root / "docs/guides/detect-and-avoid.md").read_text("utf-8")
+    assert_in_the_guide(root, "link_loss_machine.py")

@@ -2,35 +2,28 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import pytest
 import yaml
-from judge_tools import Message, write
+from ground_tools import Flown, assert_in_the_guide, flown_of
 
 from cratous.bridge import lmcp
-from cratous.judge import judge
-from cratous.services.bus import Bus
 from cratous.services.flight.encounter import ways_of
-from cratous.services.flight.loop import fly
-from cratous.services.flight.result import FlightResult
 from cratous.services.flight.take_off import require_take_offs
 from cratous.services.loading import load
 from cratous.services.logs.records import from_data, to_data
-from cratous.services.monitor import Monitor
 from cratous.services.parameters.listing import parameters_of
-from cratous.services.pipeline.plan import make_plan
 from cratous.services.processes.coverage import told_of
 from cratous.services.system_model.replay import replay
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission
-from cratous.spec.mission.guarantees import Outcome, Verdict
+from cratous.spec.mission.guarantees import Outcome
 
 ROW = "take-off of vehicle 1"
 WITHOUT_LINK = "what vehicle 1 flies without the link"
@@ -38,31 +31,14 @@ HOVERS = {"id": 9, "position": {"north_m": 600, "east_m": 0, "alt_m": 90}, "velo
 FIELD = {"name": "field", "position": {"north_m": 0, "east_m": -500}, "radius_m": 60}
 
 
-class Flown(NamedTuple):
-    mission: Mission
-    log: list[Any]
-    result: FlightResult
+class TakeOff(Flown):
+    """A flight, of which is asked what one vehicle did."""
 
-    def told(self, topic: str, vehicle: int = 1) -> list[Any]:
-        said = (one.body for one in self.log if one.topic.rpartition(".")[2] == topic)
-        return [body for body in said if body.VehicleID == vehicle]
+    def of(self, topic: str, vehicle: int = 1) -> list[Any]:
+        return [body for body in self.told(topic) if body.VehicleID == vehicle]
 
     def modes(self, vehicle: int = 1) -> list[tuple[str, str]]:
-        return [(b.Mode.name, b.Reason) for b in self.told("TakeOffState", vehicle)]
-
-    def verdicts(self, log: list[Any] | None = None) -> dict[str, Verdict]:
-        monitor = Monitor(self.mission, make_plan(self.mission))
-        for one in self.log if log is None else log:
-            monitor.tap(one)
-        return {v.item or v.requirement: v for v in monitor.verdicts()}
-
-    def judged(self, folder: Path, log: list[Any] | None = None) -> dict[str, str]:
-        rows = (
-            Message(one.time_ms, one.topic, json.loads(lmcp.to_json(one.body)))
-            for one in (self.log if log is None else log)
-        )
-        file = write(folder / "log.sqlite", {"mission": to_data(self.mission)}, rows)
-        return {row.item: row.verdict for row in judge(file).rows}
+        return [(b.Mode.name, b.Reason) for b in self.of("TakeOffState", vehicle)]
 
 
 def mission_file(root: Path, folder: Path, **sections: Any) -> Path:
@@ -76,24 +52,22 @@ def mission_file(root: Path, folder: Path, **sections: Any) -> Path:
     return path
 
 
-def flown(path: Path) -> Flown:
+def flown(path: Path) -> TakeOff:
     mission = load(path)
     require_take_offs(mission)
-    bus, log = Bus(lmcp.full_names), list[Any]()
-    bus.tap(log.append)
-    return Flown(mission, log, fly(mission, make_plan(mission), bus))
+    return TakeOff(*flown_of(mission))
 
 
 @pytest.fixture(scope="module")
-def both(root: Path) -> Flown:
+def both(root: Path) -> TakeOff:
     return flown(root / "examples/takeoff/mission.yaml")
 
 
-def test_each_stands_rolls_and_climbs_and_flies_its_plan(both: Flown, tmp_path: Path) -> None:
+def test_each_stands_rolls_and_climbs_and_flies_its_plan(both: TakeOff, tmp_path: Path) -> None:
     assert both.result.outcome == "complete"
-    rolls, climbs, up = both.told("TakeOffState")
+    rolls, climbs, up = both.of("TakeOffState")
     assert [b.Mode.name for b in (rolls, climbs, up)] == ["Rolling", "Climbing", "Up"]
-    truth = both.told("TruthState")
+    truth = both.of("TruthState")
     ground = [b for b in truth if b.Altitude == 0]
     assert {(b.East, b.Heading) for b in ground} == {(0.0, 0.0)}
     assert all(a.VelocityNorth <= b.VelocityNorth for a, b in pairwise(ground))
@@ -111,22 +85,22 @@ def test_each_stands_rolls_and_climbs_and_flies_its_plan(both: Flown, tmp_path: 
     assert replay(both.mission, True, both.log).finding is None
 
 
-def test_it_stands_while_no_way_up_is_permitted_and_says_why(both: Flown) -> None:
+def test_it_stands_while_no_way_up_is_permitted_and_says_why(both: TakeOff) -> None:
     said = both.modes(2)
     assert ("Standing", "it stands: vehicle 1 rolls") in said
     assert ("Standing", "it stands: it is not permitted against 9") in said
-    rolls_ms = next(b.Time for b in both.told("TakeOffState", 2) if b.Mode.name == "Rolling")
-    stood = [b for b in both.told("TruthState", 2) if b.Time < rolls_ms]
+    rolls_ms = next(b.Time for b in both.of("TakeOffState", 2) if b.Mode.name == "Rolling")
+    stood = [b for b in both.of("TruthState", 2) if b.Time < rolls_ms]
     assert rolls_ms > 15_000
     assert {(b.North, b.East, b.Altitude, b.VelocityNorth) for b in stood} == {(0, 1500, 0, 0)}
 
 
-def test_a_mission_with_a_take_off_is_written_and_read(both: Flown) -> None:
+def test_a_mission_with_a_take_off_is_written_and_read(both: TakeOff) -> None:
     assert from_data(Mission, json.loads(json.dumps(to_data(both.mission)))) == both.mission
 
 
-def test_monitor_and_judge_see_a_take_off_that_is_none(both: Flown, tmp_path: Path) -> None:
-    rolls, climbs, up = both.told("TakeOffState")
+def test_monitor_and_judge_see_a_take_off_that_is_none(both: TakeOff, tmp_path: Path) -> None:
+    rolls, climbs, up = both.of("TakeOffState")
 
     def changed(topic: str, edit: Callable[[dict[str, Any]], Any]) -> str:
         log = list[Any]()
@@ -170,7 +144,7 @@ def test_monitor_and_judge_see_a_take_off_that_is_none(both: Flown, tmp_path: Pa
     ],
 )
 def test_of_a_take_off_that_was_not_seen_nothing_is_said(
-    both: Flown, tmp_path: Path, unseen: range
+    both: TakeOff, tmp_path: Path, unseen: range
 ) -> None:
     log = [o for o in both.log if not o.topic.endswith("TruthState") or o.time_ms not in unseen]
     found = both.verdicts(log)[ROW]
@@ -184,8 +158,8 @@ def test_a_roll_that_is_permitted_no_more_is_broken_off(root: Path, tmp_path: Pa
     said = [mode for mode, _ in found.modes()]
     assert said == ["Rolling", "Standing", "Rolling", "Climbing", "Up"]
     assert found.modes()[1][1] == "the roll is broken off: it is not permitted against 9"
-    broken_ms = found.told("TakeOffState")[1].Time
-    brakes = [b for b in found.told("TruthState") if broken_ms <= b.Time < 40_000]
+    broken_ms = found.of("TakeOffState")[1].Time
+    brakes = [b for b in found.of("TruthState") if broken_ms <= b.Time < 40_000]
     assert all(a.VelocityNorth - b.VelocityNorth <= 0.5 for a, b in pairwise(brakes))
     assert brakes[-1].VelocityNorth == 0
     assert found.result.outcome == "complete"
@@ -210,7 +184,7 @@ def test_what_is_flown_without_the_link_begins_in_the_climb(root: Path, tmp_path
     path = mission_file(root, tmp_path, link_loss=loss, landing_sites=[FIELD], simulation=cut)
     found = flown(path)
     assert found.modes()[-1] == ("Up", "the climb is left: UxAS is not heard")
-    lost = [b.Mode.name for b in found.told("LinkLossState")]
+    lost = [b.Mode.name for b in found.of("LinkLossState")]
     assert lost[-1] == "Landed"
     verdicts, judged = found.verdicts(), found.judged(tmp_path)
     for name in (ROW, WITHOUT_LINK, "authority over vehicle 1"):
@@ -225,12 +199,12 @@ def test_without_the_link_nobody_leaves_the_ground(root: Path, tmp_path: Path) -
     found = flown(mission_file(root, tmp_path, link_loss=loss, simulation=cut, traffic=[comes]))
     assert [mode for mode, _ in found.modes()] == ["Standing", "Standing"]
     assert found.modes()[-1][1] == "it stands: UxAS is not heard"
-    assert {(b.North, b.Altitude) for b in found.told("TruthState")} == {(0.0, 0.0)}
+    assert {(b.North, b.Altitude) for b in found.of("TruthState")} == {(0.0, 0.0)}
     verdicts, judged = found.verdicts(), found.judged(tmp_path)
     assert verdicts[ROW].outcome.value == judged[ROW] == "holds"
     assert verdicts["well clear of 1 and 9"].outcome.value == "unknown"
     assert judged["well clear of 1 and 9"] == "unknown"
-    (lost,) = found.told("LinkLossState")
+    (lost,) = found.of("LinkLossState")
     assert lost.Reason.endswith("it does not leave the ground")
     assert verdicts[WITHOUT_LINK].outcome.value == judged[WITHOUT_LINK] == "holds"
 
@@ -275,7 +249,7 @@ def test_what_uxas_has_for_it_meanwhile_begins_up_there(
     assert said[0] == "refused: it has not taken off"
     back = [b.Time for b in found.told("AuthorityChange") if b.Owner.name == "UxAS"]
     assert back[0] < found.result.end_ms - 60_000
-    low = min(b.Altitude for b in found.told("TruthState") if b.Time >= back[0])
+    low = min(b.Altitude for b in found.of("TruthState") if b.Time >= back[0])
     assert low > 149
 
 
@@ -301,7 +275,7 @@ def test_it_rolls_in_any_direction(root: Path, tmp_path: Path) -> None:
     short = {"limit_s": 20}
     found = flown(mission_file(root, tmp_path, vehicles=[turned], simulation=short))
     assert [mode for mode, _ in found.modes()] == ["Rolling", "Climbing"]
-    assert found.told("TruthState")[-1].Altitude > 5
+    assert found.of("TruthState")[-1].Altitude > 5
 
 
 START = {"id": 1, "start": "ground", "position": {"north_m": 0, "east_m": 0, "alt_m": 150}, "heading_deg": 0, "speed_m_s": 22, "min_speed_m_s": 15}  # fmt: skip
@@ -342,7 +316,7 @@ def test_a_start_on_a_site_is_as_high_as_the_site(root: Path, tmp_path: Path) ->
     require_take_offs(mission)
 
 
-def test_it_is_not_flown_in_processes_nor_as_an_encounter(both: Flown) -> None:
+def test_it_is_not_flown_in_processes_nor_as_an_encounter(both: TakeOff) -> None:
     mission = replace(both.mission, relations="", frame=replace(both.mission.frame, terrain_m=0.0))
     for flies in (told_of, ways_of):
         with pytest.raises(BadInput) as caught:
@@ -350,7 +324,7 @@ def test_it_is_not_flown_in_processes_nor_as_an_encounter(both: Flown) -> None:
         assert "vehicles.start" in str(caught.value)
 
 
-def test_what_follows_from_a_take_off_is_a_parameter(both: Flown, root: Path) -> None:
+def test_what_follows_from_a_take_off_is_a_parameter(both: TakeOff, root: Path) -> None:
     rows = parameters_of(both.mission, root / "examples/takeoff/mission.yaml")
     found = {row.name: row.value for row in rows if row.vehicle == 1}
     assert (found["take-off roll"], found["room to stop"], found["take-off"]) == (
@@ -361,11 +335,4 @@ def test_what_follows_from_a_take_off_is_a_parameter(both: Flown, root: Path) ->
 
 
 def test_the_diagram_in_the_guide_is_the_kernel_s(root: Path) -> None:
-    spec = importlib.util.spec_from_file_location(
-        "machine", root / "docs/tools/take_off_machine.py"
-    )
-    assert spec is not None
-    assert spec.loader is not None
-    machine = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(machine)
-    assert machine.block() in (root / "docs/guides/detect-and-avoid.md").read_text("utf-8")
+    assert_in_the_guide(root, "take_off_machine.py")

@@ -20,6 +20,7 @@ from cratous.services.flight.commands import decode
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.executive import Executive
 from cratous.services.flight.executive_state import Config, State, first_state
+from cratous.services.flight.inflight_routes import Ways
 from cratous.services.flight.messages import Begin, Say, SetOut, Suspend, TakeBack, Tick
 from cratous.services.flight.rejoining import Router
 from cratous.services.mission.frames import Projection
@@ -208,6 +209,26 @@ def test_who_comes_back_to_its_last_circle_flies_whole_laps_of_it(on_m: float) -
     middle = [sum(p[k] for p in lap[1:]) / (len(lap) - 1) for k in (0, 1)]
     radius_m = math.dist(lap[0][:2], middle)
     assert all(abs(math.dist(p[:2], middle) - radius_m) < 0.01 for p in after)
+
+
+def test_a_place_beyond_a_zone_is_not_where_the_vehicle_is() -> None:
+    """A wall between a vehicle and the end of its track, and the begin of its next one, 12 m to its side."""
+    wall = Zone(4, ZoneKind.KEEP_OUT, ((1000.0, 303.0), (1000.0, 307.0), (3000.0, 307.0), (3000.0, 303.0)), 0.0, 1000.0)  # fmt: skip
+    beside = Position(2000.0, 312.0, 300.0)
+    mission = replace(meeting(), traffic=())
+    (item,) = make_plan(mission).items
+    item = replace(item, transit=(beside, *item.transit[1:]))
+    ended = ended_at_here(())[0].chain(1)
+    track = Track((beside._replace(north_m=1500.0), beside))
+    for zones, kept in (((), True), ((wall,), False)):
+        ways = Ways(zones, 0.25)
+        last = ways.last(replace(ended, k=1, track=track), HERE, 0.0)
+        assert (last.track.points[0] == beside) is kept
+        assert first_bad_leg((HERE.position, *last.track.points), zones) is None
+        way = ways.transit(replace(ended, items=(item,), k=0, phase=Phase.TRANSIT), HERE)
+        assert way is not None
+        assert (way.points[0] == beside) is kept
+        assert first_bad_leg((HERE.position, *way.points), zones) is None
 
 
 def test_who_can_circle_nowhere_says_so() -> None:

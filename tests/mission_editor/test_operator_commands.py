@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import pytest
 from chromium_tools import Page, browsing
-from ground_station_tools import flying
+from ground_station_tools import Served, flying
 
 from cratous.services.cli import main
 from cratous.services.ground_station import live_session
@@ -34,6 +36,7 @@ TEXT = (ROOT / "examples" / "crossing" / "mission.yaml").read_text(encoding="utf
 SHORT = TEXT.replace("east_m: 2500", "east_m: -1500").replace("north_m: 2500", "north_m: -600")
 """Of a crossing that is over before the two meet."""
 STATE = "document.getElementById('live-state')?.textContent"
+STANDS = f"{STATE} === 'paused' && !document.getElementById('fly').disabled"
 
 
 def _command(text: str = TEXT, now_ms: int = 24_000, **asked: Any) -> Any:
@@ -270,11 +273,7 @@ def test_orders_wait_for_the_next_step_and_one_that_cannot_be_is_told() -> None:
 def test_a_flight_obeys_at_once_and_is_that_of_the_mission_that_it_writes(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    mission = tmp_path / "crossing.yaml"
-    mission.write_text(SHORT, encoding="utf-8")
-    with flying(mission, tmp_path / "live") as live, browsing(tmp_path / "profile") as page:
-        page.go(live.url)
-        page.until(f"{STATE} === 'paused' && !document.getElementById('fly').disabled")
+    with _flown_in_browser(tmp_path) as (live, page):
         number = live.told()["flight"]
         page.click("#fly")
         page.until(f"{STATE} === 'flying' && Number(document.getElementById('slider').max) > 1000")
@@ -304,15 +303,34 @@ def test_a_flight_obeys_at_once_and_is_that_of_the_mission_that_it_writes(
     assert main(["certify", str(results)]) in (0, 1)
     assert "no file of the results" not in capsys.readouterr().err
     report = json.loads((results / "report.json").read_text(encoding="utf-8"))
-    assert report["command"].endswith("mission.yaml --out again")
     assert [one["kind"] for one in report["mission"]["changes"]] == [
         "vehicle_holds", "vehicle_resumes",
     ]  # fmt: skip
-    words = ["run", str(results / "mission.yaml"), "--quiet", "--out", str(tmp_path / "again")]
-    assert main(words) == report["exit_code"]
+    _same_when_flown_again(tmp_path, report)
+    capsys.readouterr()
+
+
+@contextmanager
+def _flown_in_browser(tmp_path: Path) -> Iterator[tuple[Served, Page]]:
+    """SHORT, planned and standing at its begin, and the page that commands it."""
+    mission = tmp_path / "crossing.yaml"
+    mission.write_text(SHORT, encoding="utf-8")
+    with flying(mission, tmp_path / "live") as live, browsing(tmp_path / "profile") as page:
+        page.go(live.url)
+        page.until(STANDS)
+        yield live, page
+
+
+def _same_when_flown_again(tmp_path: Path, report: dict[str, Any]) -> None:
+    """The mission that was written with the commands gives the same log."""
+    assert report["command"].endswith("mission.yaml --out again")
+    written = tmp_path / "live" / "crossing" / "mission.yaml"
+    assert (
+        main(["run", str(written), "--quiet", "--out", str(tmp_path / "again")])
+        == report["exit_code"]
+    )
     second = json.loads((tmp_path / "again" / "crossing" / "report.json").read_text("utf-8"))
     assert second["log"]["digest"] == report["log"]["digest"]
-    capsys.readouterr()
 
 
 def _choose(page: Page, what: str) -> None:
@@ -326,11 +344,7 @@ def _choose(page: Page, what: str) -> None:
 def test_a_flight_with_a_command_is_that_of_the_mission_that_it_writes(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    mission = tmp_path / "crossing.yaml"
-    mission.write_text(SHORT, encoding="utf-8")
-    with flying(mission, tmp_path / "live") as live, browsing(tmp_path / "profile") as page:
-        page.go(live.url)
-        page.until(f"{STATE} === 'paused' && !document.getElementById('fly').disabled")
+    with _flown_in_browser(tmp_path) as (live, page):
         page.click("#fly-step")
         page.until("Number(document.getElementById('slider').max) === 1000")
         before = live.told()["updates"]
@@ -342,7 +356,7 @@ def test_a_flight_with_a_command_is_that_of_the_mission_that_it_writes(
         page.click("#command-yes")
         # it is flown anew up to the command, and stands there
         page.until("document.getElementById('events')?.textContent.includes('task 3 is requested')")
-        page.until(f"{STATE} === 'paused' && !document.getElementById('fly').disabled")
+        page.until(STANDS)
         assert page.text("live-who") == "This page commands the flight."
         again = live.told()["updates"]
         assert _rows(again)[: len(_rows(before))] == _rows(before)  # what was flown is the same
@@ -357,12 +371,8 @@ def test_a_flight_with_a_command_is_that_of_the_mission_that_it_writes(
         assert page.logged == []
     results = tmp_path / "live" / "crossing"
     report = json.loads((results / "report.json").read_text(encoding="utf-8"))
-    assert report["command"].endswith("mission.yaml --out again")
     assert "by the operator" in (results / "mission.yaml").read_text(encoding="utf-8")
-    words = ["run", str(results / "mission.yaml"), "--quiet", "--out", str(tmp_path / "again")]
-    assert main(words) == report["exit_code"]
-    second = json.loads((tmp_path / "again" / "crossing" / "report.json").read_text("utf-8"))
-    assert second["log"]["digest"] == report["log"]["digest"]
+    _same_when_flown_again(tmp_path, report)
     capsys.readouterr()
 
 
