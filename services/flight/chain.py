@@ -54,9 +54,9 @@ class Leg(NamedTuple):
         """ICAROUS takes over."""
         return self._replace(takeovers=self.takeovers + 1, taken_ms=now_ms)
 
-    def given_back(self, now_ms: int) -> Leg:
-        """UxAS flies again."""
-        return self._replace(under_ms=self.flown_ms(True, now_ms))
+    def given_back(self, now_ms: int, free_ms: int = 0) -> Leg:
+        """UxAS flies again. free_ms: so much of the time was no avoidance [ms]."""
+        return self._replace(under_ms=max(0, self.flown_ms(True, now_ms) - free_ms))
 
     def flown_ms(self, suspended: bool, now_ms: int) -> int:
         """How long ICAROUS has flown on this leg [ms]. suspended: it does now."""

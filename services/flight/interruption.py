@@ -8,6 +8,7 @@ from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.executive_outputs import command, route
 from cratous.services.flight.executive_state import Config, Out, State
 from cratous.services.flight.hold_ways import held_again
+from cratous.services.flight.legs import take_off_of
 from cratous.services.flight.messages import (
     Because,
     HeardAgain,
@@ -86,10 +87,10 @@ def take_back(config: Config, state: State, message: TakeBack, out: Out) -> Stat
     """ICAROUS hands back: route to the resume point, then along the rest of the path. Where no way
     there keeps the zones, its task fails and the next one is made for; the vehicle circles after its last."""
     vid, now_ms = message.vehicle_id, message.now_ms
-    state = replace(state, epochs=tuple({**dict(state.epochs), vid: message.epoch}.items()))
     chain = state.chain(vid)
     if chain.suspended:
-        chain = replace(chain, leg=chain.leg.given_back(now_ms))
+        chain = replace(chain, leg=chain.leg.given_back(now_ms, take_off_of(state, chain.vehicle)))
+    state = replace(state, epochs=tuple({**dict(state.epochs), vid: message.epoch}.items()))
     chain = replace(chain, suspended=suspended_after(chain.suspended, message.act))
     return flown_back(config, state, chain, now_ms, NAME, out)
 

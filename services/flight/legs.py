@@ -15,6 +15,7 @@ from cratous.services.flight.executive_state import Config, Out, State
 from cratous.services.flight.task_transitions import circling, fail
 from cratous.services.mission.landing import MAX_ACCELERATION_M_S2
 from cratous.services.mission.take_off import take_off_ms
+from cratous.spec.mission import Vehicle
 from cratous.spec.records import replace
 
 MOST_TAKEOVERS = 12
@@ -34,9 +35,7 @@ def give_up(config: Config, state: State, out: Out) -> State:
             continue
         under_ms = chain.leg.flown_ms(chain.suspended, state.now_ms)
         # a take-off that is permitted at once is none of the time that avoidance may take
-        if state.epoch(vid) == 0:
-            beat_ms = state.mission.simulation.heartbeat_ms
-            under_ms -= take_off_ms(chain.vehicle, MAX_ACCELERATION_M_S2, beat_ms)
+        under_ms -= take_off_of(state, chain.vehicle)
         if chain.item is None:
             if chain.suspended and leg_given_up(0, 0, under_ms, ANEW_MS):
                 state = _circle_here(config, state, chain, out)
@@ -45,6 +44,13 @@ def give_up(config: Config, state: State, out: Out) -> State:
             if state.chain(vid).suspended:
                 state = route(state, vid, out)
     return state
+
+
+def take_off_of(state: State, vehicle: Vehicle) -> int:
+    """How long a take-off that is permitted at once takes, of a vehicle that UxAS has not had yet [ms]; else 0."""
+    if state.epoch(vehicle.id) != 0:
+        return 0
+    return take_off_ms(vehicle, MAX_ACCELERATION_M_S2, state.mission.simulation.heartbeat_ms)
 
 
 def _blocked(chain: Chain, under_ms: int) -> str:

@@ -15,6 +15,7 @@ from ground_tools import Flown, assert_in_the_guide, flown_of
 
 from cratous.bridge import lmcp
 from cratous.services.flight.encounter import ways_of
+from cratous.services.flight.legs import LONGEST_LOOKAHEADS
 from cratous.services.flight.take_off import require_take_offs
 from cratous.services.loading import load
 from cratous.services.logs.records import from_data, to_data
@@ -251,6 +252,20 @@ def test_what_uxas_has_for_it_meanwhile_begins_up_there(
     assert back[0] < found.result.end_ms - 60_000
     low = min(b.Altitude for b in found.of("TruthState") if b.Time >= back[0])
     assert low > 149
+
+
+def test_a_take_off_is_none_of_the_time_that_avoidance_may_take(root: Path, tmp_path: Path) -> None:
+    """It takes longer than ICAROUS may fly on a leg; its task is not given up for that, neither then nor later."""
+    data = yaml.safe_load((root / "examples/takeoff/mission.yaml").read_text())
+    slow = {**data["vehicles"][0], "max_climb_m_s": 1}
+    far = {**data["tasks"][0], "points": [{"north_m": 8000, "east_m": 0, "alt_m": 150}]}
+    sections = {"daa": {"lookahead_s": 20}, "simulation": {"limit_s": 900}}
+    path = mission_file(root, tmp_path, vehicles=[slow], tasks=[far], **sections)
+    found = flown(path)
+    back = next(b.Time for b in found.told("AuthorityChange") if b.Owner.name == "UxAS")
+    assert back > 1000 * LONGEST_LOOKAHEADS * 20
+    assert found.result.outcome == "complete"
+    assert dict(found.result.ends)[1] > back
 
 
 def test_a_way_up_for_another_wind_is_not_flown(root: Path, tmp_path: Path) -> None:

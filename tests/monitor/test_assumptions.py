@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import copy
 import json
-from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
 from typing import Any
 
 import pytest
+from assumption_logs import LIMIT_MS, WHOLE, Change, flown, judged, tampered
 from flight_tools import meeting
 from tampering import (
     Log,
@@ -27,46 +26,17 @@ from cratous.bridge import lmcp
 from cratous.services.assumptions.listing import LISTING
 from cratous.services.assumptions.said import sentence
 from cratous.services.assumptions.watch import AssumptionWatch
-from cratous.services.bus import Bus, Envelope
-from cratous.services.flight.loop import fly
 from cratous.services.monitor import Monitor
 from cratous.services.pipeline.plan import make_plan
-from cratous.spec.mission import FaultySimulation, Mission, Simulation, Zone, ZoneKind
+from cratous.spec.mission import FaultySimulation, Mission, Zone, ZoneKind
 from cratous.spec.mission.bridge_faults import BridgeFaults
 
 WATCHED = {one.name for one in LISTING if one.watch}
-LIMIT_MS = 400_000
-Change = Callable[[Log], None]
 
 
 def with_faults(**faults: Any) -> Mission:
     simulation = FaultySimulation(limit_ms=150_000, bridge_faults=BridgeFaults(1, **faults))
     return replace(meeting(), simulation=simulation)
-
-
-@cache
-def flown(mission: Mission) -> tuple[Envelope, ...]:
-    bus, log = Bus(lmcp.full_names), list[Any]()
-    bus.tap(log.append)
-    fly(mission, make_plan(mission), bus)
-    return tuple(log)
-
-
-WHOLE = replace(meeting(), simulation=Simulation(limit_ms=LIMIT_MS))
-"""It ends long before its limit."""
-
-
-def judged(mission: Mission, messages: Log) -> dict[str, dict[str, Any]]:
-    monitor = Monitor(mission, make_plan(mission))
-    for one in messages:
-        monitor.tap(one)
-    return {row["name"]: row for row in monitor.assumptions()}
-
-
-def tampered(change: Change) -> dict[str, dict[str, Any]]:
-    log = [copy.copy(one) for one in flown(WHOLE)]
-    change(log)
-    return judged(WHOLE, log)
 
 
 def test_a_flight_in_which_all_hold() -> None:
@@ -216,51 +186,6 @@ BREAKS: dict[str, tuple[Change, str]] = {
 
 def test_each_watch_has_a_log_in_which_its_assumption_breaks() -> None:
     assert {*BREAKS, "near its legs"} == WATCHED  # that one needs a zone: test_near_its_legs
-
-
-def unseen(number: int, since_ms: int, until_ms: int) -> Change:
-    """An aircraft has no samples between two instants."""
-
-    def change(log: Log) -> None:
-        log[:] = [
-            one for one in log
-            if not one.topic.endswith("TruthState") or one.body.VehicleID != number
-            or not since_ms <= one.time_ms < until_ms
-        ]  # fmt: skip
-
-    return change
-
-
-@pytest.mark.parametrize("number", [1, 90])
-@pytest.mark.parametrize(
-    ("since_ms", "until_ms", "said"),
-    [
-        (0, LIMIT_MS, "was not seen from 0.00 s to"),
-        (0, 5000, "was not seen from 0.00 s to 5.00 s"),
-        (10_000, 10_001, "was not seen from 9."),
-        (30_000, LIMIT_MS, "was not seen from 29."),
-    ],
-)
-def test_what_is_not_seen_is_not_said_to_be_flown_as_looked_at(
-    number: int, since_ms: int, until_ms: int, said: str
-) -> None:
-    row = tampered(unseen(number, since_ms, until_ms))["flown as looked at"]
-    assert (row["state"], row["checks"] > 50) == ("not observed", True)
-    assert row["note"].startswith(f"aircraft {number} {said}")
-
-
-def test_an_aircraft_that_comes_and_vanishes_is_seen_while_it_is_there() -> None:
-    (intruder,) = WHOLE.traffic
-    seldom = replace(intruder, appears_ms=5_000, vanishes_ms=30_000)
-    mission = replace(WHOLE, traffic=(seldom,))
-    log = list(flown(WHOLE))
-    for since_ms, until_ms in ((0, 5_000), (30_001, LIMIT_MS)):
-        unseen(90, since_ms, until_ms)(log)
-    assert judged(mission, log)["flown as looked at"]["state"] == "held"
-    unseen(90, 20_000, LIMIT_MS)(log)
-    row = judged(mission, log)["flown as looked at"]
-    assert row["state"] == "not observed"
-    assert row["note"].endswith("to 30.00 s")
 
 
 def rows_told(mission: Mission, log: Log, of_every_kind: bool) -> list[Any]:
