@@ -76,6 +76,7 @@ class Campaign:
     """All that a campaign file says. seeds: empty if every mission is run once, as it is written.
 
     requirements: what every run has to hold, guarantees first; own: files that the others of them are in.
+    model: the log of every flight is held against the proved steps of authority.
     """
 
     name: str
@@ -91,6 +92,7 @@ class Campaign:
     kind: str = MISSIONS
     duration_s: float = DURATION_S
     own: tuple[OwnFile, ...] = ()
+    model: bool = False
 
     @property
     def random(self) -> bool:
@@ -191,6 +193,7 @@ def _campaign(document: Document, folder: Path, seeds: range | None) -> Campaign
         kind=kind,
         duration_s=duration_s,
         own=tuple(own_file(folder / name, name) for name in asked if name not in ALL),
+        model=data.get("model", False),
     )
 
 
@@ -289,6 +292,9 @@ def _check_kind(campaign: Campaign, document: Document) -> None:
     for name in (one for one in campaign.requirements if one not in HELD):
         what = "an encounter has no bridge and no log, so nothing is known of it"
         raise _wrong(document, ("requirements",), what, ", ".join(HELD), name)
+    if campaign.model:
+        what = "an encounter has no log, so no steps of authority"
+        raise _wrong(document, ("model",), what, f"false, or kind: {MISSIONS}", "true")
     if not campaign.judge:
         raise _wrong(document, ("judge",), "encounters are always judged", "true", "false")
     if (campaign.generator or {}).get("kind") == CHANGES:

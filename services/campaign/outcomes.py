@@ -9,17 +9,18 @@ from cratous.services.campaign.runs import Run
 from cratous.services.requirements.own_files import TAKEN
 from cratous.spec.mission.guarantees import Outcome, worst
 
-DISAGREE, LOST = "disagreement", "lost"
+DISAGREE, MISFIT, LOST = "disagreement", "misfit", "lost"
 NO_PLAN, IMPOSSIBLE, FAILED = "no plan", "impossible", "failed"
 ORDER = (
-    DISAGREE, str(Outcome.VIOLATED), NO_PLAN, FAILED, LOST, str(Outcome.UNKNOWN),
+    DISAGREE, MISFIT, str(Outcome.VIOLATED), NO_PLAN, FAILED, LOST, str(Outcome.UNKNOWN),
     str(Outcome.EXCUSED), IMPOSSIBLE, str(Outcome.HOLDS),
 )  # fmt: skip
 """The outcomes, the worst first."""
-BAD = (DISAGREE, str(Outcome.VIOLATED), NO_PLAN)
+BAD = (DISAGREE, MISFIT, str(Outcome.VIOLATED), NO_PLAN)
 """These make a campaign's exit code 1; all others but `holds` make it 3."""
 MEANING = {
     DISAGREE: "judge and monitor do not say the same: one of them is wrong",
+    MISFIT: "an event of its log is no step of the proved system, so no theorem on authority speaks of it",
     "violated": "a requirement is violated",
     NO_PLAN: "no plan exists, so nothing was flown",
     FAILED: "an internal error ended it",
@@ -70,6 +71,8 @@ class Row:
         ]
         if "refused" in judge:
             said.append(f"the judge cannot read its log: {judge['refused']}")
+        if (result.get("model") or {}).get("fits") is False:
+            said.append(f"its log does not fit the model: {result['model']['why']}")
         for name, row in result.get("requirements", {}).items():
             if row["verdict"] != Outcome.HOLDS:
                 said.append(f"{name} {row['verdict']}: {row['item']}: {row.get('note', '')}")
@@ -93,6 +96,8 @@ def outcome_of(result: dict[str, Any] | None, requirements: tuple[str, ...]) -> 
     judge = result["judge"]
     if judge is not None and _disagrees(judge, requirements):
         return DISAGREE
+    if (result.get("model") or {}).get("fits") is False:
+        return MISFIT
     found = [Outcome.HOLDS if result["proved"] else Outcome.UNKNOWN]
     for name in requirements:
         verdict = Outcome(result["requirements"][name]["verdict"])

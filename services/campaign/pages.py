@@ -42,6 +42,13 @@ def share(rate: dict[str, Any]) -> str:
     return text
 
 
+def model_line(model: dict[str, int]) -> str:
+    """In words, how many logs are runs of the proved steps of authority. model: as in campaign.json."""
+    asked = model["fits"] + model["does_not_fit"]
+    words = f"Logs that fit the proved steps of authority: {model['fits']} of {asked}, {model['events']} events in these"
+    return f"{words}; {model['not_asked']} without ICAROUS" if model["not_asked"] else words
+
+
 def page(
     summary: dict[str, Any], links: dict[str, str], maps: Mapping[str, bytes] | None = None
 ) -> str:
@@ -51,6 +58,7 @@ def page(
     text: str = _template().render(
         c=summary,
         meaning=MEANING,
+        model=model_line(summary["model"]) if summary["model"] else "",
         margins=list(_margins(summary)),
         places=list(_places(summary)),
         worst=[{**runs[name], "link": links.get(name)} for name in summary["worst"]],

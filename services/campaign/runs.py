@@ -27,7 +27,7 @@ class Run:
     """One run. id: a digest of all that decides its result, `decides`.
 
     deciding gives: mission (text of the file), seed (of the mission's own variants, 0 for none), daa,
-    allow_unproved, judge, version, kind, own (files of requirements of the user's own, as a report keeps them). drawn: what was drawn for it, by name.
+    allow_unproved, judge, model, version, kind, own (files of requirements of the user's own, as a report keeps them). drawn: what was drawn for it, by name.
     """
 
     id: str
@@ -79,6 +79,7 @@ class Made:
         given: Mapping[str, Any] | None = None,
     ) -> None:
         self._option, self._judge, self._seed = option, campaign.judge, seed
+        self._model = campaign.model
         self._own = [file.data() for file in campaign.own]
         self.drawn: dict[str, Any] = {}
         self.bounds: dict[str, tuple[float, float]] = {}
@@ -125,7 +126,7 @@ class Made:
             return {
                 "mission": self._text or _text(self.data), "seed": self._own_seed, "daa": self._option.daa,
                 "judge": self._judge, "allow_unproved": allow_unproved, "version": version,
-                "kind": self._kind, "own": self._own,
+                "kind": self._kind, "own": self._own, "model": self._model,
             }  # fmt: skip
 
         key = (self._name, self._option.name, self._seed)

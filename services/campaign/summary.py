@@ -40,6 +40,7 @@ def build(campaign: Campaign, rows: list[Row], version: str) -> dict[str, Any]:
         "own": [file.named for file in campaign.own],
         "judged": campaign.judge,
         "disagreements": _disagreements(rows),
+        "model": _model(rows) if campaign.model else None,
         "runs_in_all": len(rows),
         "outcomes": {name: outcomes[name] for name in ORDER if outcomes[name]},
         "exit_code": code_of(set(outcomes)),
@@ -85,6 +86,18 @@ def _grouped(rows: list[Row], key: Callable[[Row], Any]) -> list[tuple[Any, list
 def _disagreements(rows: list[Row]) -> int:
     """In how many runs the judge does not say what the monitor says, on whatever requirement."""
     return sum(bool(((row.result or {}).get("judge") or {}).get("disagreements")) for row in rows)
+
+
+def _model(rows: list[Row]) -> dict[str, int]:
+    """How many logs fit the proved steps, do not, or asked nothing of them; and the events in those that fit."""
+    found = [r.result["model"] for r in rows if r.flown and r.result and r.result["model"]]
+    fits = [one for one in found if one["fits"]]
+    return {
+        "fits": len(fits),
+        "does_not_fit": sum(one["fits"] is False for one in found),
+        "not_asked": sum(one["fits"] is None for one in found),
+        "events": sum(one["events"] for one in fits),
+    }
 
 
 def _limits(campaign: Campaign, rows: list[Row]) -> Iterator[str]:

@@ -86,8 +86,8 @@ def campaign(
                cratous campaign examples/crossing/mission.yaml --seeds 1-1000
                cratous campaign examples/campaigns/traffic.yaml --find worst G2
 
-    Exit codes: 0 all runs hold, 1 something is violated, without a plan, or judge and monitor
-    disagree, 2 bad input, 3 something is unknown, excused, impossible or lost.
+    Exit codes: 0 all runs hold, 1 something is violated, without a plan, a misfit, or judge and
+    monitor disagree, 2 bad input, 3 something is unknown, excused, impossible or lost.
     """
     from cratous.services.campaign.definition import ALL, load_campaign
 
@@ -277,10 +277,12 @@ def show(summary: dict[str, Any], lost: list[str]) -> None:
 
     lost: why attempts were lost, those at runs that were flown later included.
     """
-    from cratous.services.campaign.pages import share
+    from cratous.services.campaign.pages import model_line, share
 
     if summary["disagreements"]:
         say(f"DISAGREEMENT of judge and monitor in {summary['disagreements']} runs")
+    if summary["model"]:
+        say(model_line(summary["model"]))
     head = ["mission", "option", "runs", "flown", "violated", "not holding"]
     rows = []
     for group in summary["groups"]:

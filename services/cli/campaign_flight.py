@@ -21,7 +21,7 @@ FLOWN, NO_PLAN, IMPOSSIBLE, FAILED = "flown", "no plan", "impossible", "failed"
 def fly_run(task: dict[str, Any]) -> dict[str, Any]:
     """The result of a run, as plain data that follows from `task` alone.
 
-    task: `decides` of a run (mission, seed, daa, allow_unproved, judge, own), and `keep`: a folder for its
+    task: `decides` of a run (mission, seed, daa, allow_unproved, judge, model, own), and `keep`: a folder for its
     results, None if only the result is wanted.
     """
     keep = task.get("keep")
@@ -117,6 +117,7 @@ def _result(
         "mission_hash": report["mission_hash"],
         "drawn": _drawn(mission) if task["seed"] else {},
         "judge": _judged(report, folder) if task["judge"] else None,
+        "model": _modelled(mission, folder, task["daa"]) if task["model"] else None,
     }
 
 
@@ -135,6 +136,27 @@ def _drawn(mission: Any) -> dict[str, float]:
         found[f"vehicle {vehicle.id} course_deg"] = round(course, 3)
         found[f"vehicle {vehicle.id} speed_m_s"] = round(vehicle.speed_m_s, 3)
     return found
+
+
+def replayed(mission: Any, avoidance: bool, envelopes: Any) -> Any:
+    """The events of a log as steps of the proved system; the one door to it."""
+    from cratous.services.system_model.replay import replay
+
+    return replay(mission, avoidance, envelopes)
+
+
+def _modelled(mission: Any, folder: Path, avoidance: bool) -> dict[str, Any]:
+    """Whether each event of authority in the log is a step of the proved system; fits None: no vehicle has an ICAROUS."""
+    from cratous.services.logs.log import read_envelopes
+    from cratous.services.results.names import LOG_NAME
+
+    found = replayed(mission, avoidance, read_envelopes(folder / LOG_NAME))
+    misfit = found.finding
+    return {
+        "fits": misfit is None if found.vehicles else None,
+        "events": found.events.total(),
+        "why": "" if misfit is None else misfit.text,
+    }
 
 
 def _judged(report: dict[str, Any], folder: Path) -> dict[str, Any]:

@@ -182,6 +182,10 @@ def judged(**more: Any) -> dict[str, Any]:
     return result
 
 
+def fitting(fits: bool | None) -> dict[str, Any]:
+    return {"fits": fits, "events": 9, "why": "" if fits else "x"}
+
+
 DIFFERENCE = {"guarantee": "G2", "item": "x", "judge": "violated", "monitor": "holds", "note": ""}
 
 
@@ -194,6 +198,10 @@ DIFFERENCE = {"guarantee": "G2", "item": "x", "judge": "violated", "monitor": "h
         (judged(disagreements=[DIFFERENCE]), "disagreement"),
         (judged(guarantees={"G2": "unknown"}), "unknown"),
         ({**flown({}), "judge": {"refused": "a cut log"}}, "unknown"),
+        ({**flown({"G2": 10.0}), "model": fitting(False)}, "misfit"),
+        ({**flown({"G2": -1.0}), "model": fitting(False)}, "misfit"),
+        ({**flown({"G2": 10.0}), "model": fitting(True)}, "holds"),
+        ({**flown({"G2": 10.0}), "model": fitting(None)}, "holds"),
         ({"kind": "no plan", "why": ["x"]}, "no plan"),
         (None, "lost"),
     ],
@@ -205,7 +213,7 @@ def test_what_is_not_shown_never_holds(result: dict[str, Any] | None, outcome: s
 def test_exit_codes() -> None:
     assert code_of({"holds"}) == 0
     assert code_of({"holds", "violated", "lost"}) == 1
-    assert code_of({"holds", "disagreement"}) == 1
+    assert code_of({"holds", "disagreement"}) == code_of({"holds", "misfit"}) == 1
     for other in ("lost", "unknown", "excused", "impossible", "failed"):
         assert code_of({"holds", other}) == 3
     assert code_of(set()) == 3
