@@ -71,6 +71,7 @@ from cratous.services.pipeline.status import status
 from cratous.spec.authority.link_end import (
     ENDED,
     HEARD,
+    NOTHING,
     OVERTAKEN,
     PASSED,
     REFUSED,
@@ -294,12 +295,11 @@ def _flown(peer: Peer, s_m: float) -> OfOne:
 
 def _heard(peer: Peer, line: Message, now_ms: int) -> OfOne:
     """Act on one line from an instance."""
-    peer, out = _sign(replace(peer, heard_ms=now_ms), HEARD, now_ms, "heard again")
+    if isinstance(line, SetMode):
+        return _mode(peer, line, now_ms)
+    peer, out = _alive(peer, now_ms)
     if isinstance(line, Heartbeat):
         return peer, (*out, _heartbeat(peer, now_ms, "Up", line.sequence))
-    if isinstance(line, SetMode):
-        peer, more = _mode(peer, line, now_ms)
-        return peer, (*out, *more)
     if isinstance(line, SetVelocity) and peer.end.active:
         flies = Velocity(line.north_mps, line.east_mps, line.down_mps)
         return replace(peer, steered=flies), out
@@ -310,22 +310,34 @@ def _heard(peer: Peer, line: Message, now_ms: int) -> OfOne:
 
 
 def _mode(peer: Peer, line: SetMode, now_ms: int) -> OfOne:
-    """A SETMOD line; one without an epoch, as the original sends it, is of the present one."""
+    """A SETMOD line; one without an epoch, as the original sends it, is of the present one.
+
+    One that cannot be true is no sign of life, nor one that says again that UxAS commands: anybody can have sent it.
+    """
     epoch = line.epoch if line.epoch is not None else peer.gate.epoch
     linked = link_mode(peer.end, peer.gate, line.mode == "ACTIVE", epoch)
-    after, vid = replace(peer, end=linked.end), peer.vehicle_id
+    vid = peer.vehicle_id
+    if linked.act == REFUSED:
+        return peer, (Say(mode_refused(vid, now_ms, line, epoch, peer.gate), NAME),)
+    if (linked.act, linked.end) == (NOTHING, peer.end) and not peer.end.active:
+        return peer, ()
+    peer, out = _alive(peer, now_ms)
+    after = replace(peer, end=linked.end._replace(alive=peer.end.alive))
     if linked.act == SUSPEND:
         after = replace(after, flies=())
-        return after, (Suspend(vid, now_ms, linked.act),)
+        return after, (*out, Suspend(vid, now_ms, linked.act))
     if linked.act == TAKE_BACK:
         after = replace(after, steered=None)
-        return after, (TakeBack(vid, now_ms, linked.act, epoch),)
+        return after, (*out, TakeBack(vid, now_ms, linked.act, epoch))
     if linked.act == OVERTAKEN:
         note = f"a mode of epoch {epoch} is overtaken by one of epoch {peer.gate.epoch}"
-        return after, (_status(after, after.end.alive, now_ms, note),)
-    if linked.act == REFUSED:
-        return after, (Say(mode_refused(vid, now_ms, line, epoch, peer.gate), NAME),)
-    return after, ()
+        return after, (*out, _status(after, after.end.alive, now_ms, note))
+    return after, out
+
+
+def _alive(peer: Peer, now_ms: int) -> OfOne:
+    """A line of the instance's has come."""
+    return _sign(replace(peer, heard_ms=now_ms), HEARD, now_ms, "heard again")
 
 
 def _sign(peer: Peer, event: int, now_ms: int, note: str) -> OfOne:

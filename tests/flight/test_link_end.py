@@ -159,7 +159,23 @@ def test_a_mode_that_cannot_be_true_is_refused(mode: str, epoch: int | None, rea
     assert type(said.body).__name__ == "ModeRefused"
     assert (said.body.Epoch, said.body.GateEpoch) == (2 if epoch is None else epoch, 2)
     assert reason in said.body.Reason
-    assert replace(again.peer(1), heard_ms=900) == state.peer(1)
+    assert again.peer(1) == state.peer(1)
+
+
+@pytest.mark.parametrize(
+    ("mode", "epoch", "alive"), [("ACTIVE", 7, False), ("PASSIVE", 0, False), ("ACTIVE", 1, True)]
+)
+def test_a_mode_that_is_refused_or_says_nothing_new_is_no_sign_of_life(
+    mode: str, epoch: int, alive: bool
+) -> None:
+    """Whoever is no instance could keep a silent one alive by it; G5 would not be told."""
+    state, _ = after(messages.Connected(0, (1,)))
+    if alive:
+        state, _ = after(messages.GateIs(1, Gate(ICAROUS, 1, False)), state=state)
+    state, _ = after(messages.Heard(1, 2000, SetMode(mode, epoch)), state=state)
+    _, out = after(messages.Watch(2500), state=state)
+    told = [m.body.Note for m in out if isinstance(m, messages.Say)]
+    assert told == ([] if alive else ["silent since 0 ms"])
 
 
 def test_waypoints_are_told_and_reached_once() -> None:
