@@ -192,7 +192,9 @@ LISTING = (
         "the executive counts the vehicles that are away by their gates",
         ("a_mission_ends", "a_takeover_that_lasts_is_declared"),
         ("G3", "G4"),
-        why_not="what the executive counts is not in the log",
+        "that a takeover that lasts is declared, and that the mission ends as it says",
+        "G4 counts a takeover that is open at the end",
+        "who has each vehicle as the flight ends before its limit: none in the air is under ICAROUS",
     ),
     Assumption(
         "settled tasks",

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from cratous.core.authority.timeliness import in_time
-from cratous.services.assumptions.observed import EVERY, Message, Record
+from cratous.services.assumptions.observed import ANY_LATER, EVERY, Message, Record, gone_ms
 from cratous.spec.mission import Mission
 
 SETTLED = ("Complete", "Failed")
+COUNTED = ("complete", "failed")
+"""So a flight ends that nobody is waited for; the limit and an operator end it whoever is away."""
 AT_WORK = ("Transit", "Waiting", "Active", "Suspended")
 
 
@@ -36,6 +38,53 @@ class EndWatch:
     def records(self) -> dict[str, Record]:
         """See `Watch`."""
         return {"end of the flight": self._record}
+
+
+class AwayWatch:
+    """A flight that ends before its limit ends with no vehicle in the air under ICAROUS."""
+
+    kinds = ("AuthorityChange", "TruthState", "MissionEnd")
+
+    def __init__(self, mission: Mission) -> None:
+        self._away = {v.id: False for v in mission.vehicles}
+        self._lost_ms = gone_ms(mission)
+        self._moves: dict[int, bool] = {}
+        unseen = "" if mission.instances else "no vehicle has an ICAROUS instance"
+        waits = "the flight did not end before its limit, so nobody had to be counted"
+        self._record = Record("vehicles", 0, unseen=unseen, waits=waits)
+
+    def message(self, message: Message) -> None:
+        """Who has a vehicle, whether it moves, and how the flight ended."""
+        body = message.body
+        if message.kind == "TruthState" and body.VehicleID in self._away:
+            self._moves[body.VehicleID] = any(
+                (body.VelocityNorth, body.VelocityEast, body.VelocityDown)
+            )
+        elif message.kind == "AuthorityChange":
+            self._away[body.VehicleID] = body.Owner.name == "ICAROUS"
+        elif message.kind == "MissionEnd" and body.Outcome in COUNTED:
+            self._ends(message)
+
+    def _ends(self, message: Message) -> None:
+        """One that stands, before its take-off or after its landing, is not waited for."""
+        at_ms = message.time_ms
+        there = [
+            vid for vid in self._away if in_time(at_ms, self._lost_ms.get(vid, at_ms), ANY_LATER)
+        ]
+        away = [vid for vid in there if self._away[vid] and self._moves.get(vid, True)]
+        unseen = [vid for vid in there if vid not in self._moves]
+        self._record.gaps.extend(f"vehicle {vid} was not seen" for vid in unseen)
+        self._record.see(len(away))
+        vid = away[0] if away else 0
+        text = f"the flight ended as {message.body.Outcome} while vehicle {vid} was under ICAROUS"
+        self._record.check(not away, at_ms, vid, text)
+
+    def end(self, at_ms: int) -> None:
+        """Nothing is open."""
+
+    def records(self) -> dict[str, Record]:
+        """See `Watch`."""
+        return {"vehicles away counted": self._record}
 
 
 class SettledWatch:

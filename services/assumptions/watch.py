@@ -13,7 +13,7 @@ from cratous.services.assumptions.link import (
     PeriodWatch,
 )
 from cratous.services.assumptions.listing import LISTING, Assumption, State
-from cratous.services.assumptions.mission_end import EndWatch, SettledWatch
+from cratous.services.assumptions.mission_end import AwayWatch, EndWatch, SettledWatch
 from cratous.services.assumptions.motion import IntruderWatch, TrackingWatch
 from cratous.services.assumptions.near_legs import NearLegsWatch
 from cratous.services.assumptions.observed import (
@@ -38,6 +38,7 @@ class AssumptionWatch:
             DeliveryWatch(mission),
             ChangeWatch(mission),
             EndWatch(mission),
+            AwayWatch(mission),
             SettledWatch(),
             IntruderWatch(mission),
             TrackingWatch(mission),

@@ -155,6 +155,11 @@ def beats_of_icarous(log: Log) -> None:
     remove("GatedCommand", taken_ms() + 5000, **BY_ICAROUS)(log)
 
 
+def still_away(log: Log) -> None:
+    """The handback is taken out: the flight ended while ICAROUS had the vehicle."""
+    remove("AuthorityChange", taken_ms() + 1, VehicleID=1, Owner="UxAS")(log)
+
+
 OFFERED = {"VehicleID": 1, "Offered": True}
 BREAKS: dict[str, tuple[Change, str]] = {
     "first command": (alter({"Sender": "ICAROUS"}, "GatedCommand"), "one of ICAROUS in epoch 0"),
@@ -170,6 +175,7 @@ BREAKS: dict[str, tuple[Change, str]] = {
     "offers taken": (not_taken, "had not been taken by"),
     "takeovers told": (told_late, "a command of UxAS in epoch 0; epoch 1 began at"),
     "end of the flight": (days_later, "a MissionEnd at"),
+    "vehicles away counted": (still_away, "ended as complete while vehicle 1 was under ICAROUS"),
     "settled tasks": (flown_again, "task 1 is active after it was complete"),
     "intruder in its tube": (
         lambda log: aside(90, taken_ms() + 3000, East=20.0)(log),
