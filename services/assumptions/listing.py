@@ -210,7 +210,9 @@ LISTING = (
         "the executive counts each takeover on an item, at most one between two heartbeats, and asks `leg_given_up` at each",
         RANK,
         ("G3",),
-        why_not="which item a vehicle is on, while it is on its way, is not in the log",
+        "that less is left at each heartbeat, so that takeovers on an item have an end",
+        "the limit ends the mission; G3 counts what was served",
+        "takeovers on the way to each item and the time under ICAROUS: no more than are allowed, one between two heartbeats",
     ),
     Assumption(
         "intruder in its tube",

@@ -6,6 +6,7 @@ from typing import Any
 
 from cratous.services.assumptions.ahead import AheadWatch
 from cratous.services.assumptions.authority import CommandWatch, SteeringWatch
+from cratous.services.assumptions.given_up import GivenUpWatch
 from cratous.services.assumptions.link import (
     ChangeWatch,
     ClockWatch,
@@ -40,6 +41,7 @@ class AssumptionWatch:
             EndWatch(mission),
             AwayWatch(mission),
             SettledWatch(),
+            GivenUpWatch(mission),
             IntruderWatch(mission),
             TrackingWatch(mission),
             AheadWatch(mission),

@@ -14,14 +14,11 @@ from cratous.services.flight.executive_outputs import route
 from cratous.services.flight.executive_state import Config, Out, State
 from cratous.services.flight.task_transitions import circling, fail
 from cratous.services.mission.landing import MAX_ACCELERATION_M_S2
+from cratous.services.mission.leg_bounds import LONGEST_LOOKAHEADS, MOST_TAKEOVERS
 from cratous.services.mission.take_off import take_off_ms
 from cratous.spec.mission import Vehicle
 from cratous.spec.records import replace
 
-MOST_TAKEOVERS = 12
-"""On one leg ICAROUS may take over this often: it is given up at the takeover after that."""
-LONGEST_LOOKAHEADS = 5
-"""On one leg it flies for at most this many times its look-ahead."""
 ANEW_MS = 10_000
 """A vehicle with nothing left circles where it is, which is found anew after this long under ICAROUS [ms]."""
 

@@ -14,7 +14,6 @@ from typing import Any
 from cratous.core.avoidance.manoeuvre import PIECE_S
 from cratous.core.avoidance.resolution import KEEP_RAD, STEP_DEG
 from cratous.core.excuse import record
-from cratous.services.flight.legs import LONGEST_LOOKAHEADS, MOST_TAKEOVERS
 from cratous.services.icarous import return_to_path, traffic_monitor
 from cratous.services.icarous.derived import derived
 from cratous.services.icarous.ending import TRACKING_S, TURN_MARGIN, WIDEST
@@ -27,6 +26,7 @@ from cratous.services.loading.schema import mission_schema
 from cratous.services.loading.yaml_mission import MAX_BANK_DEG, MAX_CLIMB_M_S
 from cratous.services.mission.ground import GROUND_MARGIN, floor_of
 from cratous.services.mission.landing import MAX_ACCELERATION_M_S2
+from cratous.services.mission.leg_bounds import LONGEST_LOOKAHEADS, MOST_TAKEOVERS
 from cratous.services.parameters.landing import landing_rows
 from cratous.services.parameters.parameter import DEFAULT, DERIVED, FIXED, GIVEN, Parameter
 from cratous.services.parameters.sensed import SECTION, rows_of

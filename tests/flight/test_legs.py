@@ -22,6 +22,7 @@ from cratous.services.flight.executive_state import Config, first_state
 from cratous.services.flight.messages import Begin, Route, SetOut, Suspend, Tick
 from cratous.services.loading import load
 from cratous.services.mission.frames import Projection
+from cratous.services.mission.leg_bounds import MOST_TAKEOVERS
 from cratous.services.pipeline.plan import make_plan
 from cratous.spec.authority.link_end import SUSPEND
 from cratous.spec.mission import Change, Position
@@ -64,7 +65,7 @@ def test_a_goal_that_cannot_be_reached_clear_is_blocked() -> None:
     result, log = flown(replace(mission, traffic=(behind,), simulation=limit))
     assert result.outcome == "failed"
     assert result.end_ms < 400_000  # before: at its limit
-    assert result.takeovers <= legs.MOST_TAKEOVERS
+    assert result.takeovers <= MOST_TAKEOVERS
     (why,) = result.failed.values()
     assert why.startswith("blocked: ICAROUS took vehicle 1 over ")
     assert why.endswith(" with 90")

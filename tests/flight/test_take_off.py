@@ -15,10 +15,10 @@ from ground_tools import Flown, assert_in_the_guide, flown_of
 
 from cratous.bridge import lmcp
 from cratous.services.flight.encounter import ways_of
-from cratous.services.flight.legs import LONGEST_LOOKAHEADS
 from cratous.services.flight.take_off import require_take_offs
 from cratous.services.loading import load
 from cratous.services.logs.records import from_data, to_data
+from cratous.services.mission.leg_bounds import LONGEST_LOOKAHEADS
 from cratous.services.parameters.listing import parameters_of
 from cratous.services.processes.coverage import told_of
 from cratous.services.system_model.replay import replay

@@ -155,6 +155,12 @@ def beats_of_icarous(log: Log) -> None:
     remove("GatedCommand", taken_ms() + 5000, **BY_ICAROUS)(log)
 
 
+def taken_twice(log: Log) -> None:
+    k = at(log, "AuthorityChange", **TAKEN)
+    again = other(log[k], Time=log[k].time_ms + 250)
+    log.insert(at(log, "TruthState", log[k].time_ms + 250), replace(again, time_ms=again.body.Time))
+
+
 def still_away(log: Log) -> None:
     """The handback is taken out: the flight ended while ICAROUS had the vehicle."""
     remove("AuthorityChange", taken_ms() + 1, VehicleID=1, Owner="UxAS")(log)
@@ -176,6 +182,7 @@ BREAKS: dict[str, tuple[Change, str]] = {
     "takeovers told": (told_late, "a command of UxAS in epoch 0; epoch 1 began at"),
     "end of the flight": (days_later, "a MissionEnd at"),
     "vehicles away counted": (still_away, "ended as complete while vehicle 1 was under ICAROUS"),
+    "items given up": (taken_twice, "vehicle 1 was taken over twice between two heartbeats"),
     "settled tasks": (flown_again, "task 1 is active after it was complete"),
     "intruder in its tube": (
         lambda log: aside(90, taken_ms() + 3000, East=20.0)(log),

@@ -1,0 +1,107 @@
+"""The assumption that the executive counts takeovers on an item, and gives up one on which there are too many."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cratous.core.authority.timeliness import lasted
+from cratous.core.executive.steps import leg_given_up
+from cratous.services.assumptions.observed import Message, Record
+from cratous.services.mission.leg_bounds import LONGEST_LOOKAHEADS, MOST_TAKEOVERS
+from cratous.spec.mission import GroundedVehicle, Mission
+from cratous.spec.mission.changes import VEHICLE_HOLDS
+
+TO_ITEM, SETTLED = ("Transit", "Active"), ("Complete", "Failed")
+LATE_BEATS = 4
+"""UxAS hears of a takeover, and of its end, within two heartbeats each."""
+UNHEARD = "LinkLossState"
+
+
+@dataclass
+class _Leg:
+    """task_id: of the item, 0 if there is none; since_ms: when ICAROUS took over, None while UxAS flies."""
+
+    task_id: int = 0
+    takeovers: int = 0
+    under_ms: int = 0
+    since_ms: int | None = None
+
+    def flown_ms(self, now_ms: int) -> int:
+        """How long ICAROUS has flown on it [ms]."""
+        return self.under_ms + (now_ms - self.since_ms if self.since_ms is not None else 0)
+
+
+class GivenUpWatch:
+    """On each item as many takeovers, and as much time under ICAROUS, as the executive allows, and no more.
+
+    One that stands on the ground at first is not held to its time, nor is one that flies without its link or holds by command.
+    """
+
+    kinds = ("AuthorityChange", "TaskProgress", UNHEARD)
+
+    def __init__(self, mission: Mission) -> None:
+        self._legs = {v: _Leg() for v in mission.instances}
+        self._beat_ms = mission.simulation.heartbeat_ms
+        longest_ms = round(1000 * LONGEST_LOOKAHEADS * mission.daa.lookahead_s)
+        self._longest_ms = longest_ms + LATE_BEATS * self._beat_ms
+        self._last_ms: dict[int, int] = {}
+        ground = {v.id for v in mission.vehicles if isinstance(v, GroundedVehicle)}
+        self._spared = ground | {c.vehicle for c in mission.changes if c.kind == VEHICLE_HOLDS}
+        waits = "no vehicle was taken over on its way to an item"
+        self._record = Record("takeovers", MOST_TAKEOVERS + 1, (leg_given_up, lasted), waits=waits)
+
+    def message(self, message: Message) -> None:
+        """Who flies a vehicle, and to which item."""
+        if message.kind not in self.kinds:
+            return
+        vid, now_ms = message.body.VehicleID, message.time_ms
+        leg = self._legs.get(vid)
+        if leg is None:
+            return
+        if message.kind == UNHEARD:
+            self._spared.add(vid)
+        elif message.kind == "AuthorityChange":
+            self._changes(vid, leg, message)
+        elif message.body.Phase.name in TO_ITEM and message.body.TaskID != leg.task_id:
+            self._time(vid, leg, now_ms)
+            since_ms = None if leg.since_ms is None else now_ms
+            self._legs[vid] = _Leg(message.body.TaskID, since_ms=since_ms)
+        elif message.body.Phase.name in SETTLED and message.body.TaskID == leg.task_id:
+            self._time(vid, leg, now_ms)
+            self._legs[vid] = _Leg(since_ms=leg.since_ms)
+
+    def _changes(self, vid: int, leg: _Leg, message: Message) -> None:
+        now_ms = message.time_ms
+        if message.body.Owner.name != "ICAROUS":
+            self._time(vid, leg, now_ms)
+            leg.under_ms, leg.since_ms = leg.flown_ms(now_ms), None
+            return
+        apart = vid not in self._last_ms or lasted(self._last_ms[vid], now_ms, self._beat_ms)
+        text = f"vehicle {vid} was taken over twice between two heartbeats"
+        self._record.check(apart, now_ms, vid, text)
+        self._last_ms[vid], leg.since_ms = now_ms, now_ms
+        if not leg.task_id:
+            return
+        given_up = leg_given_up(leg.takeovers, MOST_TAKEOVERS, 0, self._longest_ms)
+        leg.takeovers += 1
+        self._record.see(leg.takeovers)
+        text = f"takeover {leg.takeovers} of vehicle {vid} on its way to task {leg.task_id}"
+        self._record.check(not given_up, now_ms, vid, text)
+
+    def _time(self, vid: int, leg: _Leg, now_ms: int) -> None:
+        """Whether ICAROUS has flown for too long on an item that is left now."""
+        if not leg.task_id or vid in self._spared:
+            return
+        flown_ms = leg.flown_ms(now_ms)
+        given_up = leg_given_up(0, MOST_TAKEOVERS, flown_ms, self._longest_ms)
+        text = f"vehicle {vid} was flown for {flown_ms / 1000:g} s by ICAROUS on its way to task {leg.task_id}"
+        self._record.check(not given_up, now_ms, vid, text)
+
+    def end(self, at_ms: int) -> None:
+        """Those who are on their way still are held to their time, too."""
+        for vid, leg in self._legs.items():
+            self._time(vid, leg, at_ms)
+
+    def records(self) -> dict[str, Record]:
+        """See `Watch`."""
+        return {"items given up": self._record}

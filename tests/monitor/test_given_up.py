@@ -1,0 +1,92 @@
+"""The watch of "items given up": what ICAROUS takes of an item, told message by message."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from flight_tools import meeting
+
+from cratous.bridge import lmcp
+from cratous.services.assumptions.given_up import GivenUpWatch
+from cratous.services.assumptions.observed import Message, Observed
+from cratous.services.mission.leg_bounds import LONGEST_LOOKAHEADS, MOST_TAKEOVERS
+from cratous.spec.mission import Change, Mission
+from cratous.spec.mission.changes import VEHICLE_HOLDS
+
+MISSION = meeting()
+END_MS = 3_600_000
+LONGEST_MS = round(1000 * LONGEST_LOOKAHEADS * MISSION.daa.lookahead_s)
+Told = tuple[int, str, dict[str, Any]]
+
+
+def to_item(at_ms: int, task_id: int = 1, phase: str = "Transit") -> Told:
+    return at_ms, "TaskProgress", {"TaskID": task_id, "Phase": phase}
+
+
+def by(owner: str, at_ms: int) -> Told:
+    return at_ms, "AuthorityChange", {"Owner": owner}
+
+
+def taken(*times_ms: int, for_ms: int = 1000) -> list[Told]:
+    return [told for at in times_ms for told in (by("ICAROUS", at), by("UxAS", at + for_ms))]
+
+
+def observed(*told: Told, mission: Mission = MISSION) -> Observed:
+    watch = GivenUpWatch(mission)
+    for at_ms, kind, fields in told:
+        body = lmcp.new(f"cratous.{kind}", VehicleID=1, Time=at_ms, **fields)
+        watch.message(Message(kind, at_ms, "", body))
+    watch.end(END_MS)
+    return watch.records()["items given up"].observed(END_MS, True)
+
+
+OFTEN = [k * 10_000 for k in range(1, MOST_TAKEOVERS + 2)]
+
+
+def test_as_often_as_is_allowed_and_once_more() -> None:
+    found = observed(to_item(0), *taken(*OFTEN))
+    assert (found.state, found.extreme) == ("held", MOST_TAKEOVERS + 1)
+    found = observed(to_item(0), *taken(*OFTEN, 900_000))
+    assert (found.state, found.broken and found.broken.since_ms) == ("broken", 900_000)
+    assert found.note == f"takeover {MOST_TAKEOVERS + 2} of vehicle 1 on its way to task 1"
+
+
+def test_another_item_begins_anew_and_the_same_one_does_not() -> None:
+    for phase, task_id, state in (
+        ("Transit", 2, "held"),
+        ("Active", 1, "broken"),
+        ("Transit", 1, "broken"),
+    ):
+        again = to_item(500_000, task_id, phase)
+        found = observed(to_item(0), *taken(*OFTEN), again, *taken(900_000))
+        assert (phase, task_id, found.state) == (phase, task_id, state)
+    settled = observed(to_item(0), *taken(*OFTEN), to_item(500_000, 1, "Failed"), *taken(900_000))
+    assert settled.state == "held"
+
+
+@pytest.mark.parametrize(("over_ms", "state"), [(1000, "held"), (4000, "broken")])
+def test_the_time_under_icarous_has_its_bound_over_all_takeovers(over_ms: int, state: str) -> None:
+    two = [*taken(1000, for_ms=100_000), *taken(200_000, for_ms=LONGEST_MS - 100_000 + over_ms)]
+    assert observed(to_item(0), *two).state == state
+    left_with_it = [by("ICAROUS", 200_000), to_item(200_000 + LONGEST_MS + over_ms - 100_000, 2)]
+    one = [*taken(1000, for_ms=100_000), *left_with_it, by("UxAS", 200_000 + LONGEST_MS)]
+    assert observed(to_item(0), *one).state == state
+
+
+def test_who_gives_up_nothing_is_not_held_to_its_time() -> None:
+    long = [to_item(0), *taken(1000, for_ms=2 * LONGEST_MS)]
+    holds = replace(MISSION, changes=(Change(5000, VEHICLE_HOLDS, vehicle=1),))
+    unheard = (2000, "LinkLossState", {})
+    assert observed(*long).state == "broken"
+    assert observed(*long, mission=holds).state == "held"
+    assert observed(*long[:2], unheard, *long[2:]).state == "held"
+
+
+def test_nothing_is_observed_where_nobody_is_on_the_way_to_an_item() -> None:
+    found = observed(*taken(5000))
+    assert (found.state, found.note) == (
+        "not observed",
+        "no vehicle was taken over on its way to an item",
+    )
