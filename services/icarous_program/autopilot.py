@@ -64,7 +64,7 @@ class Autopilot:
             # a scenario's own states bear no time
             if (
                 type(body).__name__ == "AirVehicleState"
-                and body.ID == self._vehicle_id
+                and self._vehicle_id == body.ID
                 and body.Time
             ):
                 found.append(self._state(body))

@@ -273,7 +273,7 @@ def test_two_ends_hear_each_other_and_count_what_they_drop(opened: list[Any]) ->
     until(lambda: two.step() or two.counts.refused[REPEATED])
     assert two.counts.refused[NO_STATE] == 1
     assert any(REPEATED in text for text in said)
-    many = Keys({k: b"k" * 32 for k in range(MOST_VEHICLES + 1)})
+    many = Keys(dict.fromkeys(range(MOST_VEHICLES + 1), b"k" * 32))
     with pytest.raises(BadInput, match="too many vehicles"):
         DirectLink(1, many, address(GROUP, ("udp",)), lambda _s, _t: None)
 
