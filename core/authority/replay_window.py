@@ -4,7 +4,9 @@ On a connection that keeps their order a mark is enough (`core.authority.replay`
 """
 
 from cratous.core.kernel import kernel
-from cratous.spec.authority.replay_window import WIDTH
+
+WIDTH = 64
+"""As the definition has it; a kernel sees nothing but its arguments, so the number stands in it, too."""
 
 
 @kernel(implements="authority.replay_window.is_fresh", nonnegative=("mark", "last", "ahead"))
