@@ -13,6 +13,8 @@ from cratous.spec.errors import BadInput
 
 KEY_VARIABLE = "CRATOUS_BRIDGE_KEY_{}"
 """The variable of the environment with the key of a vehicle."""
+DIRECT_VARIABLE = "CRATOUS_DIRECT_KEY_{}"
+"""The variable of the environment with the direct key of a vehicle, by which the others believe it without UxAS."""
 WITHOUT = (
     """, there or in a folder of keys; without keys: --plain, and Dialect="cratous" at UxAS's end"""
 )
@@ -29,15 +31,15 @@ class Keys:
         """The key of this vehicle alone, for its end."""
         return Keys({vehicle_id: self.by_vehicle[vehicle_id]})
 
-    def environment(self) -> dict[str, str]:
+    def environment(self, variable: str = KEY_VARIABLE) -> dict[str, str]:
         """The variables from which another process takes them, see `key_of`."""
-        return {KEY_VARIABLE.format(vid): key.hex() for vid, key in self.by_vehicle.items()}
+        return {variable.format(vid): key.hex() for vid, key in self.by_vehicle.items()}
 
 
 def without_keys(environment: Mapping[str, str]) -> dict[str, str]:
     """The environment of a process that needs no key of the bridge."""
-    stem = KEY_VARIABLE.format("")
-    return {name: value for name, value in environment.items() if not name.startswith(stem)}
+    stems = KEY_VARIABLE.format(""), DIRECT_VARIABLE.format("")
+    return {name: value for name, value in environment.items() if not name.startswith(stems)}
 
 
 def new_keys(vehicle_ids: Iterable[int]) -> Keys:
@@ -50,14 +52,25 @@ def keys_of(vehicle_ids: Iterable[int], folder: Path | None) -> Keys:
     return Keys({number: key_of(number, folder) for number in vehicle_ids})
 
 
+def direct_keys_of(vehicle_ids: Iterable[int], folder: Path | None) -> Keys:
+    """The direct keys of these vehicles, of the files `vehicle_ID.direct` or the environment; BadInput if one is missing."""
+    return Keys({number: _key(number, folder, "direct", "") for number in vehicle_ids})
+
+
 def key_of(vehicle_id: int, folder: Path | None) -> bytes:
     """The key of a vehicle: of the file `vehicle_ID.key` of a folder, or of the environment where no folder
     is said. BadInput if there is none, or it is no key; it is never shown."""
+    return _key(vehicle_id, folder, "key", WITHOUT)
+
+
+def _key(vehicle_id: int, folder: Path | None, kind: str, plain: str) -> bytes:
+    """kind: ending of the file; plain: what else to write where there is no folder."""
+    direct = kind == "direct"
     if folder is None:
-        where, item = "environment", KEY_VARIABLE.format(vehicle_id)
-        text, plain = os.environ.get(item), WITHOUT
+        item = (DIRECT_VARIABLE if direct else KEY_VARIABLE).format(vehicle_id)
+        where, text = "environment", os.environ.get(item)
     else:
-        path = folder / f"vehicle_{vehicle_id}.key"
+        path = folder / f"vehicle_{vehicle_id}.{kind}"
         where, item, plain = str(path), "key", ""
         try:
             with path.open("rb") as file:
@@ -67,7 +80,7 @@ def key_of(vehicle_id: int, folder: Path | None) -> bytes:
     if text is None or not is_secret(text):
         got = "nothing that can be read" if text is None else f"{len(text)} characters"
         raise BadInput(
-            "no key of the bridge",
+            "no direct key" if direct else "no key of the bridge",
             where=where,
             item=item,
             expected=f"{SECRET_LENGTH} hexadecimal characters for vehicle {vehicle_id}{plain}",

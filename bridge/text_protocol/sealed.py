@@ -78,7 +78,12 @@ class Seal:
         self.sent += 1
         head = b"%d,%d,%d,%d" % (self.sent, now_ms, self.vehicle_id, self.mark)
         body = line.removesuffix(b"\n")
-        return b"%b,%08x,%b,%b\n" % (head, _crc(head, body), _mac(self.out_key, head, body), body)
+        return b"%b,%08x,%b,%b\n" % (
+            head,
+            crc_of(head, body),
+            mac_of(self.out_key, head, body),
+            body,
+        )
 
     def feed(self, data: bytes) -> tuple[bytes, list[WireError]]:
         """The lines of the packets that are complete now, and what is refused."""
@@ -103,9 +108,9 @@ class Seal:
             return DAMAGED, "a packet of v2", ascii(packet[:40])[1:]
         head, body = b",".join(match.groups()[:4]), packet[match.end() :]
         sequence, time_ms, vehicle_id, acknowledged = map(int, match.groups()[:4])
-        if b"%08x" % _crc(head, body) != match[5]:
+        if b"%08x" % crc_of(head, body) != match[5]:
             return DAMAGED, "its checksum", f"packet {sequence}"
-        if not hmac.compare_digest(_mac(self.in_key, head, body), match[6]):
+        if not hmac.compare_digest(mac_of(self.in_key, head, body), match[6]):
             return FORGED, "its authentication code", f"packet {sequence}"
         if not packet_is_new(self.mark, sequence, WINDOW):
             return REPLAYED, f"a number from {self.mark + 1} to {self.mark + WINDOW}", str(sequence)
@@ -127,11 +132,13 @@ def _tag(packet: bytes) -> str:
     return tag.decode() if tag.isalpha() and len(tag) <= MOST_TAG else ""
 
 
-def _crc(head: bytes, body: bytes) -> int:
+def crc_of(head: bytes, body: bytes) -> int:
+    """CRC-32 of numbers and line."""
     return zlib.crc32(head + b"," + body)
 
 
-def _mac(key: bytes, head: bytes, body: bytes) -> bytes:
+def mac_of(key: bytes, head: bytes, body: bytes) -> bytes:
+    """HMAC-SHA256 of numbers and line by a key, as hexadecimal digits."""
     return hmac.new(key, head + b"," + body, "sha256").hexdigest().encode()
 
 

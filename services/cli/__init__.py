@@ -49,6 +49,7 @@ COMMANDS = {
     "log": "List, filter, follow, export, import and replay message logs.",
     "lmcp": "Read, write, explain and compare LMCP messages.",
     "uxas": "Run a UxAS configuration: services and bridges.",
+    "wire": "Explain what was said over the CRATOUS bridge, line by line.",
     "icarous": "Avoid for one vehicle, over the CRATOUS bridge to UxAS.",
     "sim": "Simulate the aircraft of an AMASE scenario, and be its AMASE on the network.",
     "params": "List what ICAROUS and detect-and-avoid are set to for a mission.",

@@ -12,7 +12,9 @@ from cratous.services.cli.numbers import Number
 from cratous.spec.errors import BadInput
 
 if TYPE_CHECKING:
+    from cratous.bridge.port import Address, Report
     from cratous.bridge.text_protocol.dialects import Dialect
+    from cratous.services.icarous_program.program import Besides
     from cratous.services.icarous_program.step import Craft
 
 
@@ -45,6 +47,14 @@ if TYPE_CHECKING:
 @click.option(
     "--plain-beyond-loopback", is_flag=True, help="Another dialect than v2 to other machines too."
 )
+@click.option(
+    "--direct", metavar="GROUP:PORT",
+    help="Tell the other vehicles the own state, and hear theirs, by UDP multicast on this machine. [not]",
+)  # fmt: skip
+@click.option(
+    "--autopilot", metavar="HOST:PORT",
+    help="The vehicle's autopilot, to go on with when UxAS does not tell it any more. [none]",
+)  # fmt: skip
 @click.option("--once", is_flag=True, help="End when the connection ends; else connect again.")
 @click.option(
     "--wait", type=Number(0), default=60.0, show_default=True,
@@ -77,6 +87,10 @@ def icarous(
     of the handshake is CRATOUS_BRIDGE_SECRET of the environment, if that is set. Either it connects to UxAS
     (--connect), or it waits for a UxAS whose service names its address in Connect (--listen).
 
+    With --direct an aircraft of which UxAS has not told for 2 s is avoided by what it says of itself; that needs direct
+    keys, vehicle_ID.direct of --keys or CRATOUS_DIRECT_KEY_ID of the environment, of all vehicles with an instance. With
+    --autopilot it avoids, and steers, without UxAS too.
+
     Example:  cratous icarous --vehicle 1 --mission mission.yaml --connect 127.0.0.1:5557 --keys keys
 
     Exit codes: 0 it was asked to end (SIGTERM, Ctrl-C), 2 bad input, 3 UxAS was not reached, or is gone.
@@ -106,7 +120,7 @@ def icarous(
     if listens and dialect is Dialect.ORIGINAL:
         raise click.UsageError("the original's UxAS connects to nobody: --original needs --connect")
     where = address(f"tcp://{text}", ("tcp",), item=f"--{name}", free=listens)
-    if link["keys"] and plain:
+    if link["keys"] and plain and link["direct"] is None:
         raise click.UsageError(f"--keys is of --v2, and --{plain[0]} has none")
     if plain and not (where.loopback or link["plain_beyond_loopback"]):
         raise BadInput(
@@ -116,6 +130,11 @@ def icarous(
             got=text,
         )
     craft = craft_of(mission, vehicle, dialect, digest)
+    other_ways = {
+        name: address(f"{scheme}://{link[name]}", (scheme,), item=f"--{name}")
+        for name, scheme in (("direct", "udp"), ("autopilot", "tcp"))
+        if link[name] is not None
+    }
     log = Logs(
         "WARN",
         "DEBUG",
@@ -130,7 +149,10 @@ def icarous(
             where, server=False, listens=listens, dialect=dialect, secret=secret, report=log
         )
         kept = None if epochs is None else EpochFile(epochs, vehicle)
-        program = Program(IcarousEnd(craft), port, log, Patience(wait, once), epochs=kept)
+        besides = besides_of(craft, link["keys"], other_ways, log)
+        program = Program(
+            IcarousEnd(craft), port, log, Patience(wait, once), epochs=kept, besides=besides
+        )
 
         def stop(*_: object) -> None:
             program.stopping = True
@@ -148,6 +170,22 @@ def icarous(
     finally:
         log.close()
     return 0
+
+
+def besides_of(craft: Craft, folder: Path | None, ways: dict[str, Address], log: Report) -> Besides:
+    """The links besides the one to UxAS; BadInput if a direct key is missing, or a vehicle has none to speak with."""
+    from cratous.bridge.text_protocol.keys import direct_keys_of
+    from cratous.services.icarous_program.autopilot import Autopilot
+    from cratous.services.icarous_program.direct import DirectLink
+    from cratous.services.icarous_program.program import Besides
+
+    vehicle, direct, autopilot = craft.config.vehicle_id, None, None
+    if "direct" in ways:
+        keys = direct_keys_of(sorted(craft.cooperating | {vehicle}), folder)
+        direct = DirectLink(vehicle, keys, ways["direct"], log)
+    if "autopilot" in ways:
+        autopilot = Autopilot(vehicle, ways["autopilot"], craft.config.projection, log)
+    return Besides(direct, autopilot)
 
 
 def craft_of(path: Path, vehicle_id: int, dialect: Dialect, digest: str | None = None) -> Craft:

@@ -68,12 +68,13 @@ def next_part(plan: Plan, most: int, spare: int) -> Plan:
 class Away(NamedTuple):
     """ICAROUS commands a vehicle. left: where its way was left; tasks: that it was doing then; paused:
     it is farther from its leg than is allowed, and these tasks are told to pause; proposed: the way of UxAS's
-    planner onto which its ICAROUS hands back, none: the direct one."""
+    planner onto which its ICAROUS hands back, none: the direct one; waypoint: of the way told, that ICAROUS goes on with."""
 
     left: Position
     tasks: tuple[int, ...]
     paused: bool = False
     proposed: tuple[Position, ...] = ()
+    waypoint: int | None = None
 
 
 def position_of(place: Any, projection: Projection) -> Position:
@@ -154,6 +155,18 @@ def resume_point(plan: Plan, left: Position) -> Position | None:
         return None
     leg = Track(plan.positions[plan.goal - 1 : plan.goal + 1])
     return leg.at(leg.nearest(left, 0.0, leg.length_m).s_m)
+
+
+def going_on(plan: Plan, away: Away) -> Plan:
+    """The plan as it makes for the waypoint with which ICAROUS goes on; the same plan where the way is resumed at
+    another place, or a waypoint with actions or tasks would be left out."""
+    goals = [k for k, mark in enumerate(plan.marks) if mark == away.waypoint]
+    if not goals or away.paused or away.proposed or plan.goal <= plan.back:
+        return plan
+    left_out = plan.waypoints[plan.goal : goals[0]]
+    if any(w.VehicleActionList or w.AssociatedTasks for w in left_out):
+        return plan
+    return plan._replace(goal=max(plan.goal, goals[0]))
 
 
 class Resumed(NamedTuple):

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from cratous.bridge.text_protocol import Dialect, Message, SoftReset, Waypoint
+from cratous.bridge.text_protocol import Dialect, GoToWaypoint, Message, SoftReset, Waypoint
 from cratous.bridge.text_protocol.layouts import ORIGINAL_LIMITS
 from cratous.core.authority.timeliness import in_time
 from cratous.services.flight import link_end
@@ -183,6 +183,16 @@ def placed(state: State, vid: int, line: Message, dialect: Dialect) -> Message:
         return SoftReset(0.0, 0.0, 0.0)  # as the original's service has it before a mission
     lat, long = plane(state.frame).to_geodetic(air.position.north_m, air.position.east_m)
     return SoftReset(lat, long, air.position.alt_m)
+
+
+def goes_on(state: State, vid: int, line: Message) -> State:
+    """The same with the waypoint with which the ICAROUS of a vehicle that it has goes on: GOTOWP says it, and steering
+    that comes later says that it does not."""
+    craft = state.craft(vid)
+    if craft.away is None:
+        return state
+    waypoint = line.index if isinstance(line, GoToWaypoint) else None
+    return state.put(vid, replace(craft, away=craft.away._replace(waypoint=waypoint)))
 
 
 def led_back(state: State, vid: int, places: Iterable[tuple[float, float, float]]) -> State:

@@ -1,9 +1,8 @@
 """UxAS's end of the bridge as `cratous uxas` has it: `handle(state, message) -> (state, messages)`.
 
-It is the end that `cratous run` flies (`flight.link_end`), with two things around it. The messages of UxAS
-become what that end is told: MissionCommands ways, states own positions and traffic, zones fences. And
-the gate of each vehicle stands here, since ICAROUS steers through UxAS: a SETMOD moves it, what ICAROUS
-sends is passed on while it owns the vehicle, and the offer to hand back is taken at once.
+It is the end that `cratous run` flies (`flight.link_end`), with two things around it. The messages of UxAS become what that end
+is told: MissionCommands ways, states own positions and traffic, zones fences. And the gate of each vehicle stands here, since ICAROUS
+steers through UxAS: a SETMOD moves it, what ICAROUS sends is passed on while it owns the vehicle, and its offer is taken at once.
 """
 
 from __future__ import annotations
@@ -42,6 +41,7 @@ from cratous.services.icarous_communication.plans import (
     Plan,
     begins_as,
     deviates,
+    going_on,
     next_part,
     part,
     plan_of,
@@ -60,6 +60,7 @@ from cratous.services.icarous_communication.state import (
     State,
     air_state,
     at_the_time_of,
+    goes_on,
     left_out,
     placed,
     plane,
@@ -143,7 +144,7 @@ class Communication:
                 return state, out
             detail = f"vehicle {vehicle_id}: {type(line).__name__} in epoch {peer.gate.epoch}"
             return state, [*out, Refuse("steering by one without authority", detail)]
-        state, command = self._command(state, vehicle_id, action)
+        state, command = self._command(goes_on(state, vehicle_id, line), vehicle_id, action)
         come = at_gate(self.name, vehicle_id, peer.gate, ICAROUS, command.body)
         return state, [*out, come, command]
 
@@ -332,9 +333,9 @@ class Communication:
         if plan is None or away is None or air is None or state.frame is None:
             return self._hold(state, vid, [], "handed back without a mission")
         projection = plane(state.frame)
-        number = COMMANDS_FROM + state.commands + 1
         now = Motion(air.position, air.heading_rad, air.speed_m_s, air.climb_m_s)
-        sent = resumed(plan, away, now, turn_radius_of(craft, air), projection, number)
+        plan, radius_m = going_on(plan, away), turn_radius_of(craft, air)
+        sent = resumed(plan, away, now, radius_m, projection, COMMANDS_FROM + state.commands + 1)
         way = plan_of(sent.command, projection, now_ms, air.position)
         if way is not None:  # the mission's own command is what the next way back leads to
             way = way._replace(command=plan.command, back=sent.back, resume=sent.resume)
@@ -360,8 +361,7 @@ class Communication:
 
     def _hold(self, state: State, vid: int, out: list[Out], why: str) -> Step:
         craft = state.craft(vid)
-        text = f"vehicle {vid} holds: {why}"
-        said = Say(status(0, "Error", [("reason", text)]), self.name)
+        said = Say(status(0, "Error", [("reason", f"vehicle {vid} holds: {why}")]), self.name)
         if craft.air is None or state.frame is None:
             return state, [*out, said]
         state, command = self._command(state, vid, hold(craft.air, plane(state.frame)))

@@ -2,6 +2,10 @@
 
 Either the program connects, or it waits for UxAS to connect to it, one UxAS at a time. The connection that ends comes again, and UxAS tells everything anew on it; epochs go on. Time is that of
 POSTN, so nothing that is decided depends on the machine's clock.
+
+With an autopilot that it reaches itself the program goes on when POSTN does not come any more: the vehicle's state and
+time are then the autopilot's, and what it steers goes there, until POSTN comes again. With a direct link it tells the
+others its own state at each that it believes, and they it theirs.
 """
 
 from __future__ import annotations
@@ -10,7 +14,7 @@ import contextlib
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import zmq
 
@@ -19,9 +23,28 @@ from cratous.bridge.port import Report, Tally, is_due
 from cratous.bridge.redial import Redial
 from cratous.bridge.text_connection import REFUSED, Opened
 from cratous.bridge.text_port import Came, TextPort
-from cratous.bridge.text_protocol import Hello, Message, NotKnown, Skipped, WireError
+from cratous.bridge.text_protocol import (
+    Hello,
+    Message,
+    NotKnown,
+    OwnPosition,
+    Skipped,
+    WireError,
+)
+from cratous.core.authority.timeliness import lasted
+from cratous.services.icarous.others import LINK_LOST_MS
+from cratous.services.icarous_program.autopilot import Autopilot, Reported
+from cratous.services.icarous_program.direct import DirectLink
 from cratous.services.icarous_program.epochs import EpochFile
-from cratous.services.icarous_program.step import Answer, IcarousEnd, Note, Refuse, State, Tell
+from cratous.services.icarous_program.step import (
+    Answer,
+    IcarousEnd,
+    Note,
+    Refuse,
+    State,
+    Step,
+    Tell,
+)
 from cratous.spec.errors import BadInput, CratousError
 
 _LONGEST_POLL_MS = 200  # so that a signal is seen
@@ -41,6 +64,24 @@ class Patience(NamedTuple):
     once: bool = False
 
 
+class Besides(NamedTuple):
+    """What a program has besides UxAS: its direct link to the other vehicles, its autopilot; None without."""
+
+    direct: DirectLink | None = None
+    autopilot: Autopilot | None = None
+
+    def handles(self) -> list[tuple[Any, int]]:
+        """What to poll."""
+        found = [] if self.autopilot is None else self.autopilot.handles()
+        return found if self.direct is None else [*found, (self.direct.fileno(), zmq.POLLIN)]
+
+    def close(self) -> None:
+        """Let go of both."""
+        for one in self:
+            if one is not None:
+                one.close()
+
+
 class Program:
     """One vehicle's ICAROUS; `run` until `stopping` is set, or UxAS is gone for good."""
 
@@ -52,6 +93,7 @@ class Program:
         patience: Patience = Patience(),
         clock: Callable[[], float] = time.monotonic,
         epochs: EpochFile | None = None,
+        besides: Besides = Besides(),
     ) -> None:
         """epochs: keeps the gate over a restart; BadInput if it is none."""
         self._end, self._port, self._report = end, port, report
@@ -65,6 +107,8 @@ class Program:
         self._open = False
         self._redial = Redial(port, () if port.listens else (port.where,))
         self._until_s, self._why = clock() + patience.wait_s, "it has not connected"
+        self._besides, self._alone = besides, False
+        self._told_ms = self._passed = self._waypoints = 0
 
     def run(self) -> None:
         """UxasGone if UxAS cannot be had."""
@@ -73,6 +117,9 @@ class Program:
                 self.turn()
         finally:
             self._port.close()
+            self._besides.close()
+            if self._besides.direct is not None:
+                self._report("INFO", f"direct link: {self._besides.direct.counts.line()}")
             refused = self._tally.counts.refused
             lines = ", ".join(f"{why}: {n}" for why, n in sorted(refused.items())) or "none"
             self._report("INFO", f"ended; {self._port.counts.line()}; not acted upon: {lines}")
@@ -84,13 +131,21 @@ class Program:
         now_s = self._clock()
         for came in self._port.step(now_s):
             self._came(came, now_s)
+        if self._besides.direct is not None:
+            for state in self._besides.direct.step():
+                self._step(self._end.peer(self.state, *state))
+        autopilot = self._besides.autopilot
+        for reported in () if autopilot is None else autopilot.step(now_s):
+            self._flown(reported)
+        if autopilot is not None and autopilot.there:
+            return  # the vehicle is not left alone
         if not self._open and is_due(self._until_s, now_s):
             where = self._port.where.text
             raise UxasGone(f"{where}: no UxAS for {self._patience.wait_s:g} s ({self._why})")
 
     def _wait(self) -> None:
         poller = zmq.Poller()
-        handles = self._port.handles()
+        handles = [*self._port.handles(), *self._besides.handles()]
         for handle, flags in handles:
             poller.register(handle, flags)
         if handles:
@@ -116,9 +171,7 @@ class Program:
                 self._redial.opened(came.key, now_s)
                 self._report("INFO", f"connected to UxAS at {peer}")
                 self._say(Hello(self._end.craft.config.vehicle_id))
-                state, answers = self._end.connected(self.state)
-                self._keep(state, self.state)
-                self._answer(answers)
+                self._step(self._end.connected(self.state))
             case LinkEvent() as event:
                 self._ended(came.key, event, now_s)
             case Message() as line:
@@ -143,10 +196,40 @@ class Program:
 
     def _line(self, line: Message) -> None:
         try:
-            state, answers = self._end.handle(self.state, line)
+            step = self._end.handle(self.state, line)
         except Exception as error:  # one line must not end the avoidance of the next ones
             self._tally.refuse("line that the step fails at", f"{line}: {error!r}")
             return
+        before = self.state.now_ms
+        self._step(step)
+        if isinstance(line, OwnPosition) and self.state.now_ms != before:
+            self._told_ms, self._waypoints = round(1000 * line.time_s), self._passed
+            if self._alone:
+                self._alone = False
+                self._report("INFO", f"{self._told_ms} ms: POSTN comes again")
+            self._say_directly(line)
+
+    def _flown(self, reported: Reported) -> None:
+        """A state of the autopilot's, which counts once POSTN has not come for a while after a plan has."""
+        line, self._passed = reported
+        now_ms, told = round(1000 * line.time_s), self.state.instance.told
+        if not told.started or not lasted(self._told_ms, now_ms, LINK_LOST_MS):
+            return
+        if not self._alone:
+            self._alone = True
+            self._report("WARN", f"{now_ms} ms: no POSTN of UxAS; the state is the autopilot's")
+        before = self.state.now_ms
+        passed, self._waypoints = self._passed - self._waypoints, self._passed
+        self._step(self._end.alone(self.state, line, passed))
+        if self.state.now_ms != before:
+            self._say_directly(line)
+
+    def _say_directly(self, line: OwnPosition) -> None:
+        if self._besides.direct is not None:
+            self._besides.direct.say(replace(line, vehicle_id=self._end.craft.config.vehicle_id))
+
+    def _step(self, step: Step) -> None:
+        state, answers = step
         self._keep(state, self.state)
         self._answer(answers)
 
@@ -170,5 +253,7 @@ class Program:
                     self._tally.refuse(why, detail)
 
     def _say(self, line: Message) -> None:
+        if self._alone and self._besides.autopilot is not None:
+            self._besides.autopilot.steer(line)
         if self._key is not None:
             self._port.send(self._key, line)

@@ -11,7 +11,6 @@ word.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -32,14 +31,14 @@ from cratous.bridge.text_protocol import (
 from cratous.core.authority import gate as gates
 from cratous.core.authority.cycle import gate_wished
 from cratous.core.authority.timeliness import lasted
-from cratous.core.avoidance.manoeuvre import PIECE_S, Ability, Motion
-from cratous.core.avoidance.prediction import Intruder
-from cratous.services.flight.dynamics import Limits, turn_rate_rad_s
+from cratous.core.avoidance.manoeuvre import PIECE_S
+from cratous.services.flight.dynamics import Limits
 from cratous.services.flight.link_lines import MOST_TOLD
 from cratous.services.icarous import state as icarous
 from cratous.services.icarous.asking import Asking
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Foresees, Line, Sensed, Up, Wish
+from cratous.services.icarous_program.onward import onward
 from cratous.services.icarous_program.recovery import (
     ASK_AGAIN_MS,
     Part,
@@ -50,14 +49,20 @@ from cratous.services.icarous_program.recovery import (
     take,
 )
 from cratous.services.icarous_program.routes import Planner
-from cratous.services.mission.landing import MAX_ACCELERATION_M_S2
+from cratous.services.icarous_program.traffic import (
+    MOST_TRAFFIC,
+    SeenBy,
+    another_time,
+    by_themselves,
+    changes,
+    flying,
+    intruders,
+    kept,
+    seen_at,
+    told_by_itself,
+)
 from cratous.spec.authority.cycle import OFFER, TAKE_OVER, WITHDRAW
-from cratous.spec.mission import Position, Velocity
 
-TRAFFIC_KEPT_MS = 5000
-"""An aircraft of which nothing was heard for this long [ms] is no longer flown on in straight line."""
-MOST_TRAFFIC = 500
-"""So many other aircraft are kept at once."""
 SPEEDS = (0.5, 2.0)
 """A speed below this part of the airframe's least, or above this multiple of its greatest, is no state
 of this airframe."""
@@ -65,14 +70,6 @@ UNTOUCHED = gates.Gate(gates.UXAS, 0, False)
 """UxAS commands, and has always done so."""
 OWNERS = {"UXAS": gates.UXAS, "ICAROUS": gates.ICAROUS}
 ACTS = {OFFER: "offers control back", WITHDRAW: "withdraws its offer", TAKE_OVER: "takes over"}
-
-
-class Seen(NamedTuple):
-    """Another aircraft as OBJCT has told it last, at the time of the last POSTN [ms]."""
-
-    position: Position
-    velocity: Velocity
-    at_ms: int
 
 
 class Tell(NamedTuple):
@@ -116,14 +113,17 @@ class Craft:
 class State:
     """instance: what it remembers; gate: of its vehicle; seen: traffic by id; now_ms: time of the last
     POSTN, None before the first on this connection; beat_ms: of the last heartbeat; lost: plan and zones
-    of which lines are asked for again."""
+    of which lines are asked for again; direct: other vehicles as they tell themselves, selves: those of
+    whom that counts."""
 
     instance: icarous.State = field(default_factory=icarous.State)
     gate: gates.Gate = UNTOUCHED
-    seen: Mapping[int, Seen] = field(default_factory=dict)
+    seen: SeenBy = field(default_factory=dict)
     now_ms: int | None = None
     beat_ms: int = 0
     lost: Parts = field(default_factory=dict)
+    direct: SeenBy = field(default_factory=dict)
+    selves: frozenset[int] = frozenset()
 
 
 Step = tuple[State, tuple[Answer, ...]]
@@ -281,10 +281,8 @@ class IcarousEnd:
             return state, (Refuse(why, f"index {line.index}"),)
         if state.now_ms is None:
             return state, ()  # of an instant that is not known; the next one comes in a heartbeat
-        north, east = self.craft.config.projection.to_local(line.lat_deg, line.long_deg)
-        place = Position(north, east, line.alt_m)
-        velocity = Velocity(line.north_mps, line.east_mps, line.down_mps)
-        seen = {**state.seen, line.index: Seen(place, velocity, state.now_ms)}
+        one = seen_at(line, state.now_ms, self.craft.config.projection)
+        seen = {**state.seen, line.index: one}
         return replace(state, seen=seen), ()
 
     def _position(self, state: State, line: OwnPosition) -> Step:
@@ -292,11 +290,38 @@ class IcarousEnd:
         refused = self._wrong(state, line)
         if refused is not None:
             return state, (refused,)
-        now_ms = round(1000 * line.time_s)
-        first = state.now_ms is None
         # as of which instant the instance hears what comes next
-        told = replace(state.instance.told, heard_ms=now_ms)
-        state = replace(state, now_ms=now_ms, instance=replace(state.instance, told=told))
+        told = replace(state.instance.told, heard_ms=round(1000 * line.time_s))
+        return self._due(replace(state, instance=replace(state.instance, told=told)), line)
+
+    def alone(self, state: State, line: OwnPosition, reached: int) -> Step:
+        """The own state as the autopilot has it, while UxAS is not heard; a heartbeat, if one is due. reached: so many
+        waypoints more are behind."""
+        refused = self._wrong(state, line)
+        if refused is not None:
+            return state, (refused,)
+        told = state.instance.told
+        ahead = min(told.next_index + reached, len(told.waypoints))
+        told = replace(told, next_index=max(ahead, told.next_index))
+        return self._due(replace(state, instance=replace(state.instance, told=told)), line)
+
+    def peer(self, state: State, vehicle_id: int, line: OwnPosition) -> Step:
+        """Another vehicle's own state, over the direct link."""
+        if line.vehicle_id != vehicle_id or vehicle_id == self.craft.config.vehicle_id:
+            return state, (Refuse("direct state of another vehicle than the sender", str(line)),)
+        if state.now_ms is None:
+            return state, ()
+        one, before = told_by_itself(line, self.craft.config.projection), state.direct
+        if another_time(one, state.now_ms):
+            detail = f"vehicle {vehicle_id}: {one.at_ms} ms at {state.now_ms} ms"
+            return state, (Refuse("direct state of another time", detail),)
+        if vehicle_id in before and not lasted(before[vehicle_id].at_ms, one.at_ms, 0):
+            return state, ()  # a newer one has overtaken it
+        return replace(state, direct={**before, vehicle_id: one}), ()
+
+    def _due(self, state: State, line: OwnPosition) -> Step:
+        now_ms, first = round(1000 * line.time_s), state.now_ms is None
+        state = replace(state, now_ms=now_ms)
         if not first and not lasted(state.beat_ms, now_ms, self.craft.config.heartbeat_ms):
             return state, ()
         return self._beat(replace(state, beat_ms=now_ms), line, now_ms)
@@ -318,14 +343,19 @@ class IcarousEnd:
 
     def _beat(self, state: State, line: OwnPosition, now_ms: int) -> Step:
         """One heartbeat of the instance, and what it wants of the gate."""
-        gone = [vid for vid, s in state.seen.items() if lasted(s.at_ms, now_ms, TRAFFIC_KEPT_MS)]
-        kept = {vid: s for vid, s in state.seen.items() if vid not in gone}
+        seen, direct = kept(state.seen, now_ms), kept(state.direct, now_ms)
+        selves = by_themselves(seen, direct, now_ms)
+        gone = (state.seen.keys() | state.selves) - seen.keys() - direct.keys()
         answers: list[Answer] = [
-            Note("WARN", f"vehicle {vid}: not heard of for {TRAFFIC_KEPT_MS} ms, no longer avoided")
-            for vid in gone
+            Note(*one) for one in changes(gone, state.selves, selves, seen.keys())
         ]
-        state = replace(state, seen=kept)
-        sensed = Sensed(now_ms, *self._flying(line), self._intruders(kept, now_ms), state.gate)
+        state = replace(state, seen=seen, direct=direct, selves=selves)
+        craft = self.craft
+        motion, ability = flying(
+            line, craft.config.projection, craft.limits, craft.floor_m, craft.step_s
+        )
+        others = intruders(seen, direct, now_ms, ability, craft.cooperating)
+        sensed = Sensed(now_ms, motion, ability, others, state.gate)
         instance, said = self._instance.handle(state.instance, sensed)
         state = replace(state, instance=instance)
         for one in said:
@@ -339,8 +369,10 @@ class IcarousEnd:
                     )
                 case Foresees():
                     answers.append(Note("INFO", f"{now_ms} ms: {one.resolution}"))
-                case Up():
-                    answers.append(Tell(one.line))
+                case Up(_, told):
+                    if isinstance(told, SetMode) and told.request is None:
+                        answers += map(Tell, onward(said, instance, sensed, craft.dialect))
+                    answers.append(Tell(told))
         state, more = self._overdue(state, now_ms)
         answers += more
         if not self.craft.dialect.ours and state.gate.offered:
@@ -364,33 +396,3 @@ class IcarousEnd:
         state = replace(state, instance=replace(state.instance, told=told))
         state, more = self._lacking(state, *open_parts)
         return state, (*answers, *more)
-
-    def _flying(self, line: OwnPosition) -> tuple[Motion, Ability]:
-        """The own state, and what the airframe can do at its present speed."""
-        north, east = self.craft.config.projection.to_local(line.lat_deg, line.long_deg)
-        speed = math.hypot(line.north_mps, line.east_mps)
-        course = math.atan2(line.east_mps, line.north_mps)
-        limits = self.craft.limits
-        ability = Ability(
-            turn_rate_rad_s(speed, limits.max_bank_rad),
-            limits.min_speed_m_s,
-            limits.max_speed_m_s,
-            limits.max_climb_m_s,
-            MAX_ACCELERATION_M_S2,
-            self.craft.floor_m,
-            self.craft.step_s,
-        )
-        return Motion(Position(north, east, line.alt_abs_m), course, speed, -line.down_mps), ability
-
-    def _intruders(self, seen: Mapping[int, Seen], now_ms: int) -> tuple[Intruder, ...]:
-        """Everybody else, flown on in a straight line to this instant."""
-        found = []
-        for vid, (p, v, at_ms) in sorted(seen.items()):
-            t_s = (now_ms - at_ms) / 1000
-            here = Position(
-                p.north_m + v.north_m_s * t_s,
-                p.east_m + v.east_m_s * t_s,
-                p.alt_m - v.down_m_s * t_s,
-            )
-            found.append(Intruder(vid, here, v, vid in self.craft.cooperating))
-        return tuple(found)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import socket
 import time
 from dataclasses import replace
@@ -232,3 +233,37 @@ def test_an_answer_of_a_former_connection_is_not_handed_back_onto() -> None:
     assert state.instance.asking == Asking(number=7)
     state, _ = tell(state, tp.UxasPlans(), tp.RouteStart(7), tp.RouteEnd(7))
     assert (state.instance.asking.allowed, state.instance.asking.proposal) == (True, ())
+
+
+def flown_round(end: IcarousEnd) -> list[tp.Message]:
+    """All that ICAROUS says of a flight along a plan, past an aircraft that comes head on, until it offers control."""
+    state, _ = tell(State(), *way(0, 1, 2, total=3), tp.WaypointReached(0), end=end)
+    north_m, east_m, course, said = 0.0, 0.0, 0.0, list[tp.Message]()
+    for k in range(400):
+        lat, lon = PROJECTION.to_geodetic(north_m, east_m)
+        speeds = 22 * math.cos(course), 22 * math.sin(course), 0.0
+        here = tp.OwnPosition(k / 2, lat, lon, 300.0, 300.0, *speeds, vehicle_id=1)
+        state, answers = tell(state, here, traffic(3000.0 - 11 * k), end=end)
+        said += lines(answers)
+        steered = [m for m in said if isinstance(m, tp.SetVelocity)]
+        if any(isinstance(m, tp.SetMode) and m.mode == "PASSIVE" for m in said):
+            return said
+        if steered:
+            off = math.atan2(steered[-1].east_mps, steered[-1].north_mps) - course
+            course += max(-0.12, min(0.12, math.remainder(off, math.tau)))
+        north_m, east_m = north_m + 11 * math.cos(course), east_m + 11 * math.sin(course)
+    raise AssertionError("control is not offered")
+
+
+@pytest.mark.parametrize("dialect", list(tp.Dialect))
+def test_the_waypoint_with_which_it_goes_on_is_said_as_it_hands_back(dialect: tp.Dialect) -> None:
+    said = flown_round(IcarousEnd(replace(CRAFT, dialect=dialect)))
+    places = [k for k, line in enumerate(said) if isinstance(line, tp.GoToWaypoint)]
+    if dialect is tp.Dialect.ORIGINAL:
+        assert not places
+        return
+    (k,) = places
+    assert said[k] == tp.GoToWaypoint(1)
+    following = said[k + 1]
+    assert isinstance(following, tp.SetMode)
+    assert following.mode == "PASSIVE"

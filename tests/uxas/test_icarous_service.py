@@ -319,3 +319,30 @@ def test_what_cannot_be_honoured_is_refused(tmp_path: Path, opened: list[Any]) -
         with pytest.raises(BadInput, match=what):
             Rig(tmp_path, attributes, opened)
     Rig(tmp_path, 'NumberOfUAVs="1" RoutePlannerUsed="-1"', opened)
+
+
+@pytest.mark.parametrize(
+    ("tasks", "later", "onward"),
+    [([], [], 3), ([7], [], 1), ([], [tp.SetVelocity(20.0, 0.0, 0.0)], 1)],
+)
+def test_the_waypoint_with_which_icarous_goes_on_is_flown_to_where_none_with_a_task_is_left_out(
+    tmp_path: Path, opened: list[Any], tasks: list[int], later: list[tp.Message], onward: int
+) -> None:
+    rig = Rig(tmp_path, 'NumberOfUAVs="1" DeviationAllowed="5000"', opened)
+    one = rig.fake(hello=1)
+    plan = way((0.0, 0.0), (900.0, 0.0), (2400.0, 0.0), (4000.0, 0.0))
+    for waypoint in plan.WaypointList:
+        waypoint.AssociatedTasks = tasks
+    rig.tell(state(1), plan, state(1, 1.0, 1500))
+    one.say(tp.SetMode("ACTIVE", 1), tp.GoToWaypoint(2), *later)
+    rig.until(lambda: len(rig.got("VehicleActionCommand")) == 1 + len(later))
+    (go,) = rig.got("VehicleActionCommand")[0].VehicleActionList
+    assert (type(go).__name__, go.WaypointNumber) == ("GoToWaypointAction", 3)
+    one.say(tp.SetMode("PASSIVE", 2))
+    rig.until(lambda: rig.got("MissionCommand"))
+    command = rig.got("MissionCommand")[-1]
+    known = {w.Number: w for w in command.WaypointList}
+    number = command.FirstWaypoint
+    while number > 4:  # the way back
+        number = known[number].NextWaypoint
+    assert number == onward

@@ -1,0 +1,91 @@
+"""Datagrams to a group of programs on this machine: UDP multicast on the loopback interface, both ways on one socket.
+
+What the network loses nobody can count. Whoever is on this machine can send to the group: what comes is to be
+authenticated, and of what comes too fast the system drops the rest before it is read.
+"""
+
+from __future__ import annotations
+
+import socket
+from ipaddress import ip_address
+
+from cratous.bridge.port import LOOPBACK, Address, Report, Tally
+from cratous.spec.errors import BadInput
+
+MOST_READ = 200
+"""So many datagrams are read at once, so that a flood leaves time for other links."""
+_LONGEST = 65536
+_KEPT_BYTES = 1 << 20
+
+
+class MulticastPort:
+    """One socket of a group; see the module."""
+
+    def __init__(self, where: Address, report: Report = lambda _severity, _text: None) -> None:
+        """BadInput if `where` is no group, or cannot be joined."""
+        try:
+            group = ip_address(where.host)
+        except ValueError:
+            group = None
+        if group is None or group.version != 4 or not group.is_multicast:
+            raise BadInput(
+                "no group",
+                where=where.text,
+                expected="224.0.0.0 to 239.255.255.255",
+                got=where.host,
+            )
+        self.where = where
+        self._to = where.host, where.port
+        self._tally = Tally(where.text, report)
+        self.counts = self._tally.counts
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        near, all_of = socket.inet_aton(LOOPBACK), socket.inet_aton(where.host)
+        try:
+            self._socket.setblocking(False)
+            self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _KEPT_BYTES)
+            self._socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, near)
+            self._socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_LOOP, 1)
+            self._socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)  # stays here
+            self._socket.bind(self._to)
+            self._socket.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, all_of + near)
+        except OSError as error:
+            self._socket.close()
+            raise BadInput(
+                "the group cannot be joined",
+                where=where.text,
+                expected="a group and port of the loopback interface",
+                got=error.strerror or str(error),
+            ) from None
+
+    def fileno(self) -> int:
+        """The descriptor to poll."""
+        return self._socket.fileno()
+
+    def step(self) -> list[bytes]:
+        """The datagrams that have arrived, MOST_READ at most; the own ones come back."""
+        found = list[bytes]()
+        for _ in range(MOST_READ):
+            try:
+                found.append(self._socket.recv(_LONGEST))
+            except OSError:  # nothing is there, or an earlier datagram was not taken
+                break
+        self.counts.received += len(found)
+        return found
+
+    def send(self, data: bytes) -> None:
+        """Send one datagram to the group."""
+        try:
+            self._socket.sendto(data, self._to)
+        except OSError as error:
+            self._tally.lose("not taken by the network", error.strerror or str(error))
+            return
+        self.counts.sent += 1
+
+    def refuse(self, why: str, detail: str) -> None:
+        """Count a datagram that is dropped, and report it at times."""
+        self._tally.refuse(why, detail)
+
+    def close(self) -> None:
+        """Leave the group. Safe to call twice."""
+        self._socket.close()

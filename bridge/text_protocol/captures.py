@@ -1,0 +1,180 @@
+"""Captures of the CRATOUS protocol as lines, whoever took them: pcap of TCP and UDP, recorded sessions, text.
+
+pcap: as `tcpdump -w` writes it (not pcapng), of Ethernet, loopback, `any` and raw IP, IPv4 alone; a TCP segment that comes
+again or out of order is put in its place. Session: a JSON object a line, of which those with `ev` send or write and a
+text `data` count. Text: a line each, after `> ` (to UxAS) or `< ` (to ICAROUS) if that is known.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from cratous.bridge.text_protocol.handshake import ACCEPT, HELLO, SECRET_LENGTH
+from cratous.spec.errors import BadInput
+
+PCAP = {
+    b"\xd4\xc3\xb2\xa1": ("<", 1e-6), b"\xa1\xb2\xc3\xd4": (">", 1e-6),
+    b"\x4d\x3c\xb2\xa1": ("<", 1e-9), b"\xa1\xb2\x3c\x4d": (">", 1e-9),
+}  # fmt: skip
+"""First bytes of a pcap file: byte order, and what a fraction of a second counts [s]."""
+_LINK_BYTES = {1: 14, 113: 16, 276: 20, 101: 0, 0: 4, 12: 0}
+"""Bytes before IP, by link type: Ethernet, Linux cooked (two), raw, BSD loopback."""
+_TCP, _UDP = 6, 17
+_LEFT_OUT = re.compile(r"\A<[^<>]*>")
+"""What stands for a secret in a recorded session."""
+_SECRET = re.compile(rb"[0-9a-fA-F]{%d}" % SECRET_LENGTH)
+MOST_FLOWS = 1000
+MOST_HELD = 1000
+"""Segments of one flow that wait for an earlier one."""
+
+
+class Heard(NamedTuple):
+    """A line without its newline, or what stands in its place. at_s: None where the capture has no times; who: from
+    whom to whom, as the capture has it."""
+
+    at_s: float | None
+    who: str
+    text: bytes
+
+
+@dataclass
+class _Flow:
+    """One way of a connection: what has come of a line, and TCP's next number with the segments beyond it."""
+
+    begun: bool = False
+    pending: bytes = b""
+    following: int | None = None
+    held: dict[int, bytes] = field(default_factory=dict)
+
+    def lines(self, data: bytes) -> Iterator[bytes]:
+        """The lines that are whole now; parts of the compatible handshake, which have no newline, are such too."""
+        self.pending += data
+        while not self.begun:
+            known = next((t for t in (HELLO, ACCEPT) if self.pending.startswith(t)), None)
+            match = _SECRET.match(self.pending)
+            if known is None and match is None:
+                self.begun = bool(self.pending)
+                break
+            whole = known or (match[0] if match else b"")
+            yield whole
+            self.pending, self.begun = self.pending[len(whole) :], known != HELLO
+        *whole_lines, self.pending = self.pending.split(b"\n")
+        yield from whole_lines
+
+    def segment(self, number: int, data: bytes) -> bytes:
+        """The bytes that follow those known, once a segment with this number has come."""
+        if self.following is None:
+            self.following = number
+        if data:
+            self.held.setdefault(number, data)
+        found = b""
+        for _ in range(len(self.held) + 1):
+            at = next((n for n in self.held if (self.following - n) % 2**32 < 2**31), None)
+            if at is None:
+                break
+            part = self.held.pop(at)[(self.following - at) % 2**32 :]
+            found += part
+            self.following = (self.following + len(part)) % 2**32
+        if len(self.held) > MOST_HELD:  # what is missing has not been captured
+            self.following = min(self.held, key=lambda n: (n - (self.following or 0)) % 2**32)
+            return found + self.segment(self.following, b"")
+        return found
+
+
+def read(data: bytes, where: str) -> Iterator[Heard]:
+    """The lines of a capture; BadInput if it is none that is known, or is cut off."""
+    if data[:4] in PCAP:
+        yield from _pcap(data, where)
+    elif data.lstrip().startswith(b"{"):
+        yield from _session(data, where)
+    else:
+        flow = _Flow()
+        for line in [*flow.lines(data), flow.pending]:
+            text = line.removesuffix(b"\r")
+            who = {b"> ": "to UxAS", b"< ": "to ICAROUS"}.get(text[:2], "")
+            if text.strip():
+                yield Heard(None, who, text[2:] if who else text)
+
+
+def _session(data: bytes, where: str) -> Iterator[Heard]:
+    flows: dict[str, _Flow] = {}
+    for number, row in enumerate(data.splitlines(), 1):
+        try:
+            event = json.loads(row) if row.strip() else {}
+        except ValueError as error:
+            raise BadInput("no JSON", where=where, item=f"line {number}", got=str(error)) from None
+        said = event.get("data") if isinstance(event, dict) else None
+        if not isinstance(said, str) or event.get("ev") not in ("send", "write"):
+            continue
+        said = _LEFT_OUT.sub("", said)
+        who, at_s = str(event.get("who", "")), event.get("t")
+        flow = flows.setdefault(f"{who} {event.get('fd', '')}", _Flow())
+        for text in flow.lines(said.encode("utf-8", "replace")):
+            yield Heard(float(at_s) if isinstance(at_s, int | float) else None, who, text)
+    yield from _unfinished({name.partition(" ")[0]: flow for name, flow in flows.items()})
+
+
+def _unfinished(flows: dict[str, _Flow]) -> Iterator[Heard]:
+    """What has no newline at the end of the capture."""
+    return (Heard(None, who, flow.pending) for who, flow in flows.items() if flow.pending)
+
+
+def _pcap(data: bytes, where: str) -> Iterator[Heard]:
+    order, unit_s = PCAP[data[:4]]
+    cut = BadInput("capture cut off", where=where, expected="whole packets")
+    if len(data) < 24:
+        raise cut
+    skip = _LINK_BYTES.get(struct.unpack_from(order + "I", data, 20)[0] & 0xFFFF)
+    if skip is None:
+        raise BadInput(
+            "link type of the capture", where=where, expected="Ethernet, loopback or raw IP"
+        )
+    flows: dict[str, _Flow] = {}
+    at, first_s = 24, None
+    while at < len(data):
+        if len(data) < at + 16:
+            raise cut
+        whole_s, fraction, length, _ = struct.unpack_from(order + "IIII", data, at)
+        at_s = whole_s + fraction * unit_s
+        first_s = at_s if first_s is None else first_s
+        packet = data[at + 16 : at + 16 + length]
+        if len(packet) < length:
+            raise cut
+        at += 16 + length
+        found = _payload(packet[skip:])
+        if found is None or (found.who not in flows and len(flows) >= MOST_FLOWS):
+            continue
+        flow = flows.setdefault(found.who, _Flow())
+        told = flow.lines(flow.segment(found.number, found.data)) if found.tcp else (found.data,)
+        for text in told:
+            yield Heard(at_s - first_s, found.who, text)
+    yield from _unfinished(flows)
+
+
+class _Packet(NamedTuple):
+    who: str
+    tcp: bool
+    number: int
+    data: bytes
+
+
+def _payload(ip: bytes) -> _Packet | None:
+    """What an IPv4 packet carries; None for one that is none of TCP or UDP, or not whole."""
+    if len(ip) < 20 or ip[0] >> 4 != 4:
+        return None
+    head, total, kind = 4 * (ip[0] & 15), int.from_bytes(ip[2:4], "big"), ip[9]
+    body = ip[head : total or None]
+    if kind not in (_TCP, _UDP) or len(body) < (20 if kind == _TCP else 8):
+        return None
+    ends = [".".join(map(str, ip[k : k + 4])) for k in (12, 16)]
+    source, to, number = struct.unpack_from(">HHI", body)
+    who = f"{ends[0]}:{source} > {ends[1]}:{to}"
+    if kind == _UDP:
+        return _Packet(who, False, 0, body[8:])
+    number += bool(body[13] & 2)  # SYN counts as one
+    return _Packet(who, True, number % 2**32, body[4 * (body[12] >> 4) :])

@@ -1,0 +1,134 @@
+"""Who flies how, as an ICAROUS of its own knows it: the own vehicle from POSTN, the others from OBJCT, and from vehicles that tell
+their own state directly.
+
+What a vehicle says of itself counts where OBJCT of it has not come for 2 s, for as long as it is not older than what
+is kept at all; and it counts with what its age leaves open: from the instant of which it tells, it may have turned and
+changed its speed and climb as hard as the own airframe can.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+from cratous.bridge.text_protocol import OwnPosition, Traffic
+from cratous.core.authority.timeliness import lasted
+from cratous.core.avoidance.manoeuvre import Ability, Motion
+from cratous.core.avoidance.prediction import EXACT, Intruder, Spread
+from cratous.services.flight.dynamics import Limits, turn_rate_rad_s
+from cratous.services.icarous.others import LINK_LOST_MS
+from cratous.services.mission.frames import Projection
+from cratous.services.mission.landing import MAX_ACCELERATION_M_S2
+from cratous.spec.mission import Position, Velocity
+
+TRAFFIC_KEPT_MS = 5000
+"""An aircraft of which nothing was heard for this long [ms] is no longer flown on in straight line."""
+MOST_TRAFFIC = 500
+"""So many other aircraft are kept at once."""
+EARLY_MS = 2000
+"""A vehicle's own time is not farther ahead of this one's than so much [ms]: UxAS may be late."""
+
+
+class Seen(NamedTuple):
+    """Another aircraft as OBJCT has told it last, at the time of the last POSTN [ms]; or as it has told itself, at its
+    own time."""
+
+    position: Position
+    velocity: Velocity
+    at_ms: int
+
+
+SeenBy = Mapping[int, Seen]
+
+
+def seen_at(line: Traffic, now_ms: int, projection: Projection) -> Seen:
+    """What OBJCT says."""
+    place = Position(*projection.to_local(line.lat_deg, line.long_deg), line.alt_m)
+    return Seen(place, Velocity(line.north_mps, line.east_mps, line.down_mps), now_ms)
+
+
+def told_by_itself(line: OwnPosition, projection: Projection) -> Seen:
+    """What a vehicle says of itself."""
+    place = Position(*projection.to_local(line.lat_deg, line.long_deg), line.alt_abs_m)
+    velocity = Velocity(line.north_mps, line.east_mps, line.down_mps)
+    return Seen(place, velocity, round(1000 * line.time_s))
+
+
+def another_time(seen: Seen, now_ms: int) -> bool:
+    """Whether what a vehicle says of itself is of no time near the own one."""
+    early = lasted(now_ms, seen.at_ms, EARLY_MS + 1)
+    return early or lasted(seen.at_ms, now_ms, TRAFFIC_KEPT_MS)
+
+
+def kept(seen: SeenBy, now_ms: int) -> dict[int, Seen]:
+    """Those of which something was heard not too long ago."""
+    return {vid: s for vid, s in seen.items() if not lasted(s.at_ms, now_ms, TRAFFIC_KEPT_MS)}
+
+
+def by_themselves(objects: SeenBy, direct: SeenBy, now_ms: int) -> frozenset[int]:
+    """Of whom OBJCT is stale or was none, and who tell their own state."""
+
+    def stale(vid: int) -> bool:
+        return vid not in objects or lasted(objects[vid].at_ms, now_ms, LINK_LOST_MS)
+
+    return frozenset(vid for vid in direct if stale(vid))
+
+
+def intruders(
+    objects: SeenBy, direct: SeenBy, now_ms: int, ability: Ability, cooperating: Iterable[int]
+) -> tuple[Intruder, ...]:
+    """Everybody else, flown on in a straight line to this instant."""
+    selves = by_themselves(objects, direct, now_ms)
+    used = {**objects, **{vid: direct[vid] for vid in selves}}
+    found, ours = [], frozenset(cooperating)
+    for vid, (p, v, at_ms) in sorted(used.items()):
+        t_s = (now_ms - at_ms) / 1000
+        here = Position(
+            p.north_m + v.north_m_s * t_s,
+            p.east_m + v.east_m_s * t_s,
+            p.alt_m - v.down_m_s * t_s,
+        )
+        spread = spread_of(abs(t_s), v, ability) if vid in selves else EXACT
+        found.append(Intruder(vid, here, v, vid in ours, spread=spread))
+    return tuple(found)
+
+
+def spread_of(age_s: float, v: Velocity, ability: Ability) -> Spread:
+    """How far from straight flight an aircraft may be after so long [s], if it flies as hard as the own airframe can."""
+    speed = max(math.hypot(v.north_m_s, v.east_m_s), ability.min_speed_m_s)
+    across = speed * ability.turn_rate_rad_s
+    wide_m = math.hypot(across, ability.acceleration_m_s2) * age_s**2 / 2
+    return Spread(wide_m, 0.0, (ability.max_climb_m_s + abs(v.down_m_s)) * age_s, 0.0)
+
+
+def changes(
+    gone: Iterable[int], before: frozenset[int], now: frozenset[int], told: Iterable[int]
+) -> list[tuple[str, str]]:
+    """Severity and text of what is different since the last heartbeat: who is gone, and by whose word the others are
+    known. before, now: who are known by their own word; told: whom UxAS tells."""
+    why = f"not heard of for {TRAFFIC_KEPT_MS} ms, no longer avoided"
+    found = [("WARN", f"vehicle {vid}: {why}") for vid in sorted(gone)]
+    word = "UxAS does not tell it; avoided by its own word"
+    found += [("WARN", f"vehicle {vid}: {word}") for vid in sorted(now - before)]
+    again = (before - now).intersection(told)
+    return found + [("INFO", f"vehicle {vid}: UxAS tells it again") for vid in sorted(again)]
+
+
+def flying(
+    line: OwnPosition, projection: Projection, limits: Limits, floor_m: float, step_s: float
+) -> tuple[Motion, Ability]:
+    """The own state, and what the airframe can do at its present speed. floor_m, step_s: as of `Ability`."""
+    north, east = projection.to_local(line.lat_deg, line.long_deg)
+    speed = math.hypot(line.north_mps, line.east_mps)
+    course = math.atan2(line.east_mps, line.north_mps)
+    ability = Ability(
+        turn_rate_rad_s(speed, limits.max_bank_rad),
+        limits.min_speed_m_s,
+        limits.max_speed_m_s,
+        limits.max_climb_m_s,
+        MAX_ACCELERATION_M_S2,
+        floor_m,
+        step_s,
+    )
+    return Motion(Position(north, east, line.alt_abs_m), course, speed, -line.down_mps), ability
