@@ -55,6 +55,8 @@ def test_a_place_is_a_task_of_its_vehicle_from_the_next_step_on() -> None:
     assert (task.kind.value, task.eligible, task.label) == ("must_fly", (2,), "by the operator")
     assert task.points[0][:3] == (100.0, -50.0, 300.0)
     assert mission.relations == "|(|(p1 p2) p3)"
+    _, higher = _command(what="loiter", vehicle=2, places=[[0, 0]], duration_s=9, alt_m=412.34)
+    assert next(one for one in higher.tasks if one.id == 3).points[0].alt_m == 412.3
     # a second one takes the next numbers, and keeps the first
     again, both = _command(
         found.text, 40_000, what="loiter", vehicle=1, places=[[0, 0]], duration_s=30
@@ -113,6 +115,9 @@ def test_a_direct_command_is_of_one_vehicle_and_asks_for_nothing_else() -> None:
         HoldCommand(30_000, "vehicle_holds", vehicle=1),
         Change(31_000, "vehicle_resumes", vehicle=2),
     )
+    high = {"what": "hold_here", "vehicle": 2, "alt_m": 320.04}
+    (one,) = directed(TEXT, "m.yaml", 0, 24_000, high).mission.changes
+    assert one == HoldCommand(24_000, "vehicle_holds", vehicle=2, alt_m=320.0)
     # a variant of the mission has the place where it was clicked
     varied = directed(
         TEXT, "m.yaml", 7, 24_250, {"what": "hold_at", "vehicle": 2, "places": [[9, 9]]}
@@ -131,6 +136,12 @@ def test_a_direct_command_is_of_one_vehicle_and_asks_for_nothing_else() -> None:
         ({"what": "hold_at", "vehicle": 1}, NotObeyed),
         ({"what": "hold_at", "vehicle": 1, "places": [[0, 0], [1, 1]]}, NotObeyed),
         ({"what": "hold_at", "vehicle": 1, "places": [[0, 900_000]]}, BadInput),
+        ({"what": "hold_here", "vehicle": 1, "alt_m": "320"}, NotObeyed),
+        ({"what": "hold_here", "vehicle": 1, "alt_m": True}, NotObeyed),
+        ({"what": "hold_here", "vehicle": 1, "alt_m": None}, NotObeyed),
+        ({"what": "hold_here", "vehicle": 1, "alt_m": float("nan")}, NotObeyed),
+        ({"what": "hold_here", "vehicle": 1, "alt_m": 1e6}, NotObeyed),
+        ({"what": "hold_here", "vehicle": 1, "alt_m": 10}, BadInput),
     ],
 )  # fmt: skip
 def test_what_is_no_direct_command_is_refused(asked: Any, error: type[Exception]) -> None:
@@ -277,17 +288,33 @@ def test_a_flight_obeys_at_once_and_is_that_of_the_mission_that_it_writes(
         number = live.told()["flight"]
         page.click("#fly")
         page.until(f"{STATE} === 'flying' && Number(document.getElementById('slider').max) > 1000")
+        page.value("document.activeElement.blur()")
+        page.key("u")
         _choose(page, "hold_at")
         page.until("document.getElementById('operate-hint').textContent.startsWith('Click')")
         page.click("#map")
         page.until("document.getElementById('confirm-command').open")
         assert "without stopping" in page.text("command-text")
         page.value("document.getElementById('command-vehicle').value = 1")
+        # in feet above the ground, which is 0 m; 60 m are two vertical thresholds
+        assert page.text("command-alt-unit") == "ft"
+        assert page.text("command-alt-note").startswith(
+            "Left empty: the altitude that it has then."
+        )
+        for wrong in ("150", "-3", "400000"):
+            _type(page, "command-alt", wrong)
+            assert page.value("document.getElementById('command-yes').disabled"), wrong
+            assert "more than 60 m (197 ft), 100000 m" in page.text("command-alt-note")
+        _type(page, "command-alt", "1050")
+        assert page.text("command-alt-note").startswith(
+            "320 m (1050 ft) above mean sea level, 320 m"
+        )
         page.click("#command-yes")
         page.until(
             "document.getElementById('live-text').textContent.includes('it circles through')"
         )
         page.until("document.getElementById('events').textContent.includes('commanded to hold at')")
+        page.until("document.getElementById('events').textContent.includes(', altitude 320 m')")
         assert page.text("live-state") == "flying"  # it went on all the while
         _choose(page, "resume")
         page.until("document.getElementById('confirm-command').open")
@@ -331,6 +358,13 @@ def _same_when_flown_again(tmp_path: Path, report: dict[str, Any]) -> None:
     )
     second = json.loads((tmp_path / "again" / "crossing" / "report.json").read_text("utf-8"))
     assert second["log"]["digest"] == report["log"]["digest"]
+
+
+def _type(page: Page, name: str, text: str) -> None:
+    page.value(
+        f"(i => {{ i.value = '{text}'; i.dispatchEvent(new Event('input')); }})"
+        f"(document.getElementById('{name}'))"
+    )
 
 
 def _choose(page: Page, what: str) -> None:

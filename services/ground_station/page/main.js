@@ -43,7 +43,7 @@ class Station extends Playback {
     this.follow = true;
     for (const id of ["play", "rate-box"]) by(id).hidden = true;
     this.live = new Live(this.recording, updates => this.grown(updates));
-    if (!this.recording.attached) this.operator = new Operator(this.live, this.map, this.recording, () => this.draw(true));
+    if (!this.recording.attached) this.operator = new Operator(this.live, this.map, this.recording, this);
   }
 
   grown(updates) {
