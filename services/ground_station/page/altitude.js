@@ -1,7 +1,8 @@
 // Altitudes over time, with the spans under ICAROUS and the instant that is shown.
 
-import { Layer, color, colorOf, niceStep, sized } from "./canvas.js";
+import { Layer, color, colorOf, sized } from "./canvas.js";
 import { UNSEEN_MS } from "./instant.js";
+import { niceStep } from "./units.js";
 
 export const LEFT = 66, RIGHT = 10;
 const TOP = 8, BOTTOM = 18;

@@ -45,7 +45,7 @@ export class AltitudeField {
   show() {
     const { recording, alt_m, good } = this, note = by("command-alt-note"), { terrain_m } = recording.frame;
     const bounds = `more than ${both(recording.floor_m)}, ${both(MOST_M)} at most, above mean sea level`;
-    note.className = good ? "soft" : "violated";
+    note.className = good ? "soft" : "wrong";
     note.textContent = !good ? `Expected ${bounds}.`
       : this.empty ? `Left empty: ${this.left_empty}. Else ${bounds}.`
         : `${both(alt_m)} above mean sea level, ${both(alt_m - terrain_m)} above the ground.`;

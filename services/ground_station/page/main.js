@@ -27,7 +27,7 @@ class Station extends Playback {
     if (!recording.live) by("source").textContent = source(recording);
     this.listen();
     panels.events(recording, go);
-    panels.verdicts(recording, this.state, go);
+    this.verdicts();
     panels.tasks(recording, this.state);
     this.live = null;
     this.charted = -CHARTS_MS;
@@ -55,9 +55,14 @@ class Station extends Playback {
     this.charts();
     by("slider").max = recording.end_ms;
     if (updates.some(update => update.more?.events)) panels.events(recording, go);
-    if (updates.some(update => update.set?.verdicts)) panels.verdicts(recording, this.state, go);
+    if (updates.some(update => update.set?.verdicts)) this.verdicts();
     if (this.follow) this.state.time = recording.end_ms;
     this.draw(true);
+  }
+
+  verdicts() {
+    this.verdicts_aviation = this.state.aviation;
+    panels.verdicts(this.recording, words(this.state.aviation), time => this.go(time));
   }
 
   // charts are drawn anew for a flight that grows, all of them, so less often than the rest
@@ -89,6 +94,7 @@ class Station extends Playback {
     if (this.map.draw(state, said, due)) this.operator?.draw();
     this.chart.draw(state, said, due);
     if (!this.bar(due)) return;
+    if (this.verdicts_aviation !== state.aviation) this.verdicts();
     panels.aircraft(recording, state, said);
     panels.pairs(recording, state, said);
     panel(recording, state, said);

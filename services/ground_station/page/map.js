@@ -3,7 +3,7 @@
 import { alertColor } from "./band_style.js";
 import { ring } from "./bands.js";
 import { UNSEEN_MS, alertsAt, authorityAt, bandsAt, lastAt, positionAt } from "./instant.js";
-import { Layer, color, colorOf, niceStep, sized } from "./canvas.js";
+import { Layer, color, colorOf, sized } from "./canvas.js";
 import { words } from "./units.js";
 
 const EDGE = 50;
@@ -37,6 +37,7 @@ export class FlightMap {
     this.view = state.view || this.whole();
     this.xy = (north, east) => [width / 2 + (east - this.view.east) * this.view.scale, height / 2 - (north - this.view.north) * this.view.scale];
     this.pen = pen;
+    this.width = width;
     this.grid(width, height, said);
   }
 
@@ -92,6 +93,7 @@ export class FlightMap {
   // text on a plate of its own, so that it is read on anything
   label(text, x, y, ink) {
     const wide = this.pen.measureText(text).width;
+    if (x < this.width) x = Math.max(2, Math.min(x, this.width - wide - 4)); // what would end beyond the edge
     Object.assign(this.pen, { fillStyle: color("paper"), globalAlpha: 0.75 });
     this.pen.fillRect(x - 2, y - 11, wide + 4, 15);
     Object.assign(this.pen, { fillStyle: ink, globalAlpha: 1 });
@@ -99,7 +101,7 @@ export class FlightMap {
   }
 
   grid(width, height, words) {
-    const step = niceStep(110 / this.view.scale), pen = this.pen;
+    const step = words.step(110 / this.view.scale), pen = this.pen;
     const east0 = this.view.east - width / 2 / this.view.scale, north0 = this.view.north - height / 2 / this.view.scale;
     pen.beginPath();
     for (let k = Math.ceil(east0 / step); this.xy(0, k * step)[0] < width; k++) {

@@ -83,7 +83,7 @@ export function aircraft(recording, state, words) {
     }
     return [first, second];
   });
-  table("aircraft", [["aircraft"], ["altitude", "n"], ["speed", "n"], ["climb", "n"], ["course", "n"]], rows);
+  table("aircraft", [["aircraft"], ["altitude", "n"], ["speed", "n"], ["climb", "n"], ["course", "n"]], rows.length ? rows : [row(["none yet"])]);
 }
 
 function alarm({ level, time_s, own }) {
@@ -115,7 +115,7 @@ export function pairs(recording, state, words) {
   if (found.length > FEW) by("pairs-note").textContent += ` The nearest ${FEW} of ${found.length}.`;
 }
 
-export function verdicts(recording, state, go) {
+export function verdicts(recording, words, go) {
   const said = recording.verdicts;
   if (said.why_none) {
     by("overall").textContent = by("overall").className = by("verdicts-at").textContent = "";
@@ -134,7 +134,7 @@ export function verdicts(recording, state, go) {
   const rows = [...said.requirements, ...parts].map((one, k) => {
     const whole = k < said.requirements.length;
     const made = row([whole ? `${one.requirement} ${one.title}` : one.item, whole ? "whole" : "part"], [one.verdict, one.verdict],
-      [one.margin === null ? "–" : `${one.margin.toPrecision(4)} ${one.unit}`, "margin"]);
+      [one.margin === null ? "–" : words.margin(one.margin, one.unit), "margin"]);
     made.title = one.note;
     const when = cell(made, "", "n");
     if (one.time_ms !== null && (one.margin !== null || one.verdict !== "holds")) {

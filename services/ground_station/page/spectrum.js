@@ -2,8 +2,9 @@
 
 import { LEAST_PX as MOVED_PX, LEFT, RIGHT, listen } from "./altitude.js";
 import { DIMENSIONS, REGIONS, alertColor, fill, own, pieces, said, scale } from "./band_style.js";
-import { Layer, color, niceStep, sized } from "./canvas.js";
+import { Layer, color, sized } from "./canvas.js";
 import { UNSEEN_MS, bandsAt } from "./instant.js";
+import { niceStep } from "./units.js";
 
 const TOP = 4, STRIP = 11, MOST = 4, LEAST_PX = 1;
 
