@@ -113,7 +113,7 @@ def sim(
             start_s=plan.start_s,
             compatible=compatible,
             terrain=terrain,
-            sensed=sensing and _sensed(sensing),
+            sensed=None if sensing is None else _sensed(sensing),
         )
 
     if listen is not None:
