@@ -68,7 +68,9 @@ def followed(watch: Watch, limit_s: float) -> Flight:
         body = lmcp.binary.received(payload)[0]
         kind = name.rpartition(".")[2]
         if name in RESPONSES and flight.response is None:
-            flight = flight._replace(response=getattr(body, "OriginalResponse", body))
+            response = getattr(body, "OriginalResponse", body)
+            # one without a mission is not flown: another request may be answered
+            flight = flight._replace(response=response if response.MissionCommandList else None)
         elif kind == "TaskComplete":
             flight.ends_ms[body.TaskID] = body.TimeTaskCompleted
         elif kind == "AirVehicleState" and flight.response is not None:

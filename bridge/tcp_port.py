@@ -7,6 +7,7 @@ limited, reported, and of no consequence to the others.
 
 from __future__ import annotations
 
+import os
 import select
 import socket
 from typing import Any
@@ -245,7 +246,7 @@ class TcpPort:
         try:
             code = sock.connect_ex((host, self._where.port))
             if code not in (0, 115, 11):  # in progress
-                error = f"error {code}"
+                error = os.strerror(code)
         except OSError as err:
             error = err.strerror or str(err)
         if error:
@@ -262,7 +263,7 @@ class TcpPort:
         itself = code == 0 and peer.sock.getsockname() == peer.sock.getpeername()
         if code or itself:
             self._forget(peer)
-            self._retry("nobody listens" if itself else f"error {code}")
+            self._retry("nobody listens" if itself else os.strerror(code))
             return
         peer.connecting = False
         self._failures = 0

@@ -17,8 +17,10 @@ from cratous.services.cli.progress import Waiting, waiting
 if TYPE_CHECKING:
     from cratous.bridge.port import Address
     from cratous.services.simulator.scenario import Scenario
+    from cratous.services.simulator.sensed import Sensed
     from cratous.services.simulator.terrain import Terrain
     from cratous.services.simulator.world import World
+    from cratous.spec.mission.sensing import Sensing
 
 
 @click.command()
@@ -42,6 +44,10 @@ if TYPE_CHECKING:
 @click.option(
     "--terrain", "tiles", multiple=True, type=click.Path(path_type=Path), metavar="PATH",
     help="A DTED or SRTM tile (.dt0 .dt1 .dt2 .hgt), or a folder of them; repeatable.",
+)  # fmt: skip
+@click.option(
+    "--sensing", type=click.Path(path_type=Path), metavar="FILE",
+    help="Aircraft have the sensors of the section `sensing` of a mission file (YAML); else states are the true ones.",
 )  # fmt: skip
 @click.option("--until", type=Number(0, min_open=True), help="End after so many seconds of it.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Write all that is told: sentinel frames.")  # fmt: skip
@@ -73,7 +79,11 @@ def sim(
     from cratous.spec.errors import BadInput
 
     clients, only, vehicles = how["clients"], how["only"], how["vehicles"]
-    tiles = how.pop("tiles")
+    tiles, sensing_file = how.pop("tiles"), how.pop("sensing")
+    if sensing_file is not None and compatibility == "amase":
+        raise BadInput(
+            "AMASE has no such sensors", item="--sensing", expected="--compatibility none"
+        )
     if listen is not None and output is not None:
         raise BadInput("not both", item="--listen, -o", expected="one of them")
     if listen is None and (clients or only):
@@ -90,7 +100,7 @@ def sim(
             got=str(clients),
         )
     plan = read(scenario)
-    terrain = _terrain(tiles)
+    terrain, sensing = _terrain(tiles), _sensing(sensing_file)
     for note in plan.notes:
         click.echo(f"note: {note}", err=True)
     end_s = min(plan.duration_s, until or plan.duration_s)
@@ -98,7 +108,12 @@ def sim(
     def make() -> World:
         compatible = compatibility == "amase"
         return World(
-            plan.events, end_s, start_s=plan.start_s, compatible=compatible, terrain=terrain
+            plan.events,
+            end_s,
+            start_s=plan.start_s,
+            compatible=compatible,
+            terrain=terrain,
+            sensed=None if sensing is None else _sensed(sensing),
         )
 
     if listen is not None:
@@ -123,6 +138,22 @@ def _terrain(paths: Sequence[Path]) -> Terrain | None:
     from cratous.services.simulator.terrain import Terrain
 
     return Terrain(paths)
+
+
+def _sensing(path: Path | None) -> Sensing | None:
+    """The sensors of a file; None without one."""
+    if path is None:
+        return None
+    from cratous.services.loading.yaml_sensing import sensing_of_file
+    from cratous.services.simulator.sensed import LEAST_PERIOD_MS
+
+    return sensing_of_file(path, LEAST_PERIOD_MS)
+
+
+def _sensed(sensing: Sensing) -> Sensed:
+    from cratous.services.simulator.sensed import Sensed
+
+    return Sensed(sensing)
 
 
 def _ports(texts: Sequence[str]) -> dict[int, Address]:

@@ -11,6 +11,7 @@ from cratous.services.logs.entry import Entry, any_data, to_text
 from cratous.services.logs.log import Row
 from cratous.services.logs.records import to_data
 from cratous.services.mission.frames import Projection
+from cratous.services.mission.ground import floor_of
 from cratous.spec.mission import Mission
 from cratous.spec.mission.changes import VEHICLE_LOST, without_vehicles
 
@@ -63,6 +64,7 @@ class FlownRecording:
             "name": self._mission.name,
             "source": "mission",
             "frame": plain["frame"],
+            "floor_m": floor_of(self._mission),
             "vehicles": [_ours(vehicle) for vehicle in plain["vehicles"]],
             "volume": plain["daa"]["well_clear"],
             "tasks": [_task(task) for task in plain["tasks"]],

@@ -6,10 +6,11 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from cratous.services.logs.entry import Entry, any_data
+from cratous.services.logs.entry import Entry, any_data, to_object
 from cratous.services.logs.selection import names_of
 from cratous.services.logs.views import STATE, place_of
 from cratous.services.mission.frames import Projection
+from cratous.spec.errors import BadInput
 from cratous.spec.mission import Frame
 
 PERIOD_MS = 1000
@@ -34,6 +35,28 @@ def local_place(
     if not math.isfinite(north_m) or not math.isfinite(east_m):
         return None
     return round(north_m, 1), round(east_m, 1)
+
+
+def state_of(entry: Entry) -> tuple[Any, tuple[float, float, float] | None, bool]:
+    """Of a state: of which vehicle, where (latitude, longitude [deg], altitude [m]; None where it says no numbers), and
+    whether it could be decoded."""
+    if not isinstance(entry.body, bytes):
+        body, error = any_data(entry)
+        told = isinstance(body, dict)
+        return (
+            (body.get("ID"), place_of(body.get("Location")), error is None)
+            if told
+            else (None, None, error is None)
+        )
+    try:
+        state = to_object(entry)
+    except BadInput:
+        return None, None, False
+    # no JSON form in between: it takes as long as all the rest of an hour's log
+    at = getattr(state, "Location", None)
+    place = None if at is None else (at.Latitude, at.Longitude, at.Altitude)
+    finite = place is not None and all(map(math.isfinite, place))
+    return getattr(state, "ID", None), place if finite else None, True
 
 
 class Positions:
@@ -62,12 +85,11 @@ class Positions:
                 self._labels[str(body.get("ID", 0))] = str(body.get("Label", ""))
         if STATE not in names:
             return
-        body, error = any_data(entry)
-        self.unread += error is not None
-        place = place_of(body.get("Location")) if isinstance(body, dict) else None
-        if place is None or not isinstance(body.get("ID"), int):
+        vehicle, place, read = state_of(entry)
+        self.unread += not read
+        if place is None or not isinstance(vehicle, int):
             return
-        number = str(body["ID"])
+        number = str(vehicle)
         if not self._has_place(self._tracks, number):
             self.left_out += 1
             return

@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import gzip
 import json
+import socket
 import threading
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
@@ -175,6 +177,7 @@ class GroundStation(ThreadingHTTPServer):
     """The server; `serve_forever` answers until `shutdown`."""
 
     daemon_threads = True
+    request_queue_size = 128
 
     def __init__(
         self,
@@ -193,6 +196,8 @@ class GroundStation(ThreadingHTTPServer):
             commands = Commands(orders, token="" if live is None else live.token)
         self.commands, self.token = commands, commands.token
         self._places = threading.Semaphore(MOST_AT_ONCE)
+        self._asking: dict[Any, None] = {}
+        self._lock = threading.Lock()
         try:
             super().__init__((HOST, port), _Handler)
         except OSError as error:
@@ -205,13 +210,32 @@ class GroundStation(ThreadingHTTPServer):
         self.url = f"http://{HOST}:{number}/"
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        self._places.acquire()  # further clients wait in the queue of the socket
+        if not self._places.acquire(blocking=False):
+            self._cut_off()
+            self._places.acquire()  # further clients wait in the queue of the socket
+        with self._lock:
+            self._asking[request] = None
         super().process_request(request, client_address)
+
+    def _cut_off(self) -> None:
+        """Let go of the client that has been asking the longest: whoever takes all places and asks nothing."""
+        with self._lock:
+            oldest = next(iter(self._asking), None)
+            if oldest is not None:
+                del self._asking[oldest]
+                with suppress(OSError):  # it is gone already
+                    oldest.shutdown(socket.SHUT_RDWR)
+
+    def asked(self, request: Any) -> None:
+        """A client has said what it wants."""
+        with self._lock:
+            self._asking.pop(request, None)
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
         try:
             super().process_request_thread(request, client_address)
         finally:
+            self.asked(request)
             self._places.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:
@@ -224,6 +248,12 @@ class _Handler(BaseHTTPRequestHandler):
     server: GroundStation
     timeout = REQUEST_S
     server_version, sys_version = "cratous", ""
+
+    def parse_request(self) -> bool:
+        whole = super().parse_request()
+        if whole and self.command != "POST":  # of which the body is still to come
+            self.server.asked(self.connection)
+        return whole
 
     def do_GET(self) -> None:
         self._send(self._found(), body=True)
@@ -265,7 +295,9 @@ class _Handler(BaseHTTPRequestHandler):
             told = f"expected 1 to {longest} bytes, with Content-Length"
             return _json(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, {"error": told})
         try:
-            asked = json.loads(self.rfile.read(int(length)))
+            content = self.rfile.read(int(length))
+            self.server.asked(self.connection)
+            asked = json.loads(content)
         except (ValueError, RecursionError):
             return _json(HTTPStatus.BAD_REQUEST, {"error": "this is no JSON"})
         try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from cratous.core.authority.timeliness import lasted
@@ -23,15 +24,39 @@ def yaml_sensing(document: Document, simulation: Simulation, instances: int) -> 
     """
     if "sensing" not in document.data:
         return None
+    step = simulation.step_ms, "simulation.step_ms"
+    sensing = read(document)
+    refuse([_problem(document, *one) for one in _found(sensing, step, instances)])
+    return sensing
+
+
+def sensing_of_file(path: Path, least_period_ms: int) -> Sensing:
+    """The section `sensing` of a file, which may be a mission file, alone; BadInput where it has none, or one that is wrong.
+
+    least_period_ms: no sensor measures more often.
+    """
+    from cratous.services.loading.document import read_document
+    from cratous.services.loading.schema import mission_schema, schema_problems
+
+    document = read_document(path)
+    section = {"sensing": mission_schema()["properties"]["sensing"]}
+    asked = {"type": "object", "required": ["sensing"], "properties": section}
+    refuse(schema_problems(document, asked))
+    sensing = read(document)
+    step = least_period_ms, "a step of the simulator"
+    refuse([_problem(document, *one) for one in _found(sensing, step, 1)])
+    return sensing
+
+
+def read(document: Document) -> Sensing:
+    """The section of a document that fits the schema; whether it makes sense is not checked."""
     data = document.data["sensing"]
     rest = {name: value for name, value in data.items() if name not in ("sensors", "coast_s")}
     real = ("sigmas", "manoeuvre_m_s2")
     rest = {name: float(v) if name in real else int(v) for name, v in rest.items()}
     if "coast_s" in data:
         rest["coast_ms"] = _ms(data["coast_s"])
-    sensing = Sensing(tuple(map(_sensor, data["sensors"])), **rest)
-    refuse([_problem(document, *one) for one in _found(sensing, simulation, instances)])
-    return sensing
+    return Sensing(tuple(map(_sensor, data["sensors"])), **rest)
 
 
 def _sensor(data: dict[str, Any]) -> Sensor:
@@ -49,7 +74,8 @@ def _ms(seconds: Any) -> int:
     return round(float(seconds) * 1000)
 
 
-def _found(sensing: Sensing, simulation: Simulation, instances: int) -> Iterator[Found]:
+def _found(sensing: Sensing, step: tuple[int, str], instances: int) -> Iterator[Found]:
+    step_ms, of = step
     if not instances:
         yield (), "nobody carries these sensors", "a vehicle with an ICAROUS instance", "none"
     if not sensing.of_traffic:
@@ -62,8 +88,8 @@ def _found(sensing: Sensing, simulation: Simulation, instances: int) -> Iterator
         yield ("confirm_hits",), "no track would ever count", most, str(sensing.confirm_hits)
     for k, one in enumerate(sensing.sensors):
         where, got = ("sensors", k, "period_s"), f"{one.period_ms / 1000:g} s"
-        if not lasted(simulation.step_ms, one.period_ms, 0):
-            expected = f"at least {simulation.step_ms / 1000:g} s (simulation.step_ms)"
+        if not lasted(step_ms, one.period_ms, 0):
+            expected = f"at least {step_ms / 1000:g} s ({of})"
             yield where, "a sensor measures more often than the simulation steps", expected, got
         if one.kind is SensorKind.GPS and one.range_m is not None:
             what = "the sensor of the own state has no range"

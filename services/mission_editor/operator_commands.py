@@ -28,6 +28,8 @@ HOLD_AT, HOLD_HERE, RESUME = DIRECT = ("hold_at", "hold_here", "resume")
 LABEL = "by the operator"
 MOST_CORNERS, FARTHEST_M, LONGEST_S = 38, 1e7, 86_400.0
 """So many corners, the farthest ones too, fit into what a page may send."""
+LOWEST_M, HIGHEST_M = -1000.0, 100_000.0
+"""Altitudes of a mission file [m]."""
 NO_VEHICLE = "expected vehicle: the id of one of the mission"
 HEAD = "# Commanded by the operator in flight; this file flown again gives the same log.\n"
 
@@ -43,8 +45,8 @@ class Commanded(NamedTuple):
 def commanded(text: str, where: str, seed: int, now_ms: int, asked: Any) -> Commanded:
     """The mission with one more command, which is known a step after an instant.
 
-    asked: `what` it is, and by that `places` ([north, east] [m]), `vehicle`, `duration_s` or `id`. Raises
-    NotObeyed for what is no command, and BadInput where the mission cannot have it.
+    asked: `what` it is, and by that `places` ([north, east] [m]), `vehicle`, `alt_m` (above mean sea level, may be left
+    out), `duration_s` or `id`. Raises NotObeyed for what is no command, and BadInput where the mission cannot have it.
     """
     if not isinstance(asked, dict) or asked.get("what") not in KINDS:
         raise NotObeyed(400, f"expected what: one of {', '.join(KINDS)}")
@@ -73,7 +75,7 @@ def commanded(text: str, where: str, seed: int, now_ms: int, asked: Any) -> Comm
 def directed(text: str, where: str, seed: int, at_ms: int, asked: Any) -> Directed:
     """The mission with one more direct command, which is known at an instant, a step of the flight.
 
-    asked: `what` it is, `vehicle`, and of HOLD_AT one of `places`. Raises NotObeyed and BadInput as `commanded`.
+    asked: `what` it is, `vehicle`, of HOLD_AT one of `places`, and of both holds an `alt_m` or none. Raises NotObeyed and BadInput as `commanded`.
     """
     what = asked.get("what") if isinstance(asked, dict) else None
     if what not in DIRECT:
@@ -84,7 +86,7 @@ def directed(text: str, where: str, seed: int, at_ms: int, asked: Any) -> Direct
         raise NotObeyed(400, NO_VEHICLE)
     found: dict[str, Any] = {"vehicle_resumes": vehicle}
     if what != RESUME:
-        found = {"vehicle_holds": {"vehicle": vehicle}}
+        found = {"vehicle_holds": {"vehicle": vehicle, **_altitude(asked)}}
     if what == HOLD_AT:
         (found["vehicle_holds"]["place"],) = _places(asked, 1, 1)
     new = _headed(mission.added("changes", {"at_s": at_ms / 1000, **found}))
@@ -114,13 +116,14 @@ def _refuse_moved(mission: Mission, found: dict[str, Any], asked: dict[str, Any]
 
 
 def _with_task(mission: MissionText, what: str, asked: dict[str, Any]) -> tuple[MissionText, int]:
-    """The text with a task of one vehicle at a place, at the altitude at which it starts; and its number."""
+    """The text with a task of one vehicle at a place, at the altitude asked for or at which it starts; and its number."""
     vehicle = asked.get("vehicle")
     start = next((v for v in mission.data["vehicles"] if v["id"] == vehicle), None)
     if type(vehicle) is not int or start is None:
         raise NotObeyed(400, NO_VEHICLE)
     ((north_m, east_m),) = _places(asked, 1, 1)
     place = {"north_m": north_m, "east_m": east_m, "alt_m": start["position"]["alt_m"]}
+    place |= _altitude(asked)
     number = max((one["id"] for one in mission.data["tasks"]), default=0) + 1
     task: dict[str, Any] = {
         "id": number, "kind": "must_fly", "label": LABEL, "eligible": [vehicle], "points": [place],
@@ -145,6 +148,16 @@ def _seconds(asked: dict[str, Any]) -> float:
     if type(value) not in (int, float) or not 0 < value <= LONGEST_S:
         raise NotObeyed(400, f"expected duration_s: more than 0, {LONGEST_S:g} at most")
     return float(value)
+
+
+def _altitude(asked: dict[str, Any]) -> dict[str, float]:
+    """The altitude asked for [m above mean sea level], to a decimetre; empty without one."""
+    if "alt_m" not in asked:
+        return {}
+    value: Any = asked["alt_m"]
+    if type(value) not in (int, float) or not LOWEST_M <= value <= HIGHEST_M:
+        raise NotObeyed(400, f"expected alt_m: {LOWEST_M:g} to {HIGHEST_M:g}, in metres")
+    return {"alt_m": round(float(value), 1)}
 
 
 def _places(asked: dict[str, Any], least: int, most: int) -> list[list[float]]:

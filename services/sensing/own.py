@@ -37,8 +37,11 @@ def first(sensor: Sensor, now_ms: int, air: Flown) -> Own:
     return Own(Estimate(*start), ((now_ms, air.position, air.velocity),))
 
 
-def moved(before: Own, now_ms: int, air: Flown, latency_ms: int) -> Own:
-    """After the vehicle has flown on: the inertial unit tells by how much."""
+def moved(before: Own, now_ms: int, air: Flown, since_ms: int) -> Own:
+    """After the vehicle has flown on: the inertial unit tells by how much.
+
+    since_ms: when the oldest fix was made that has not come yet; what was flown before is let go of.
+    """
     _, place, velocity = before.flown[-1]
     known = before.estimate
     grown = later(known, now_ms, DRIFT_M_S2)
@@ -56,12 +59,12 @@ def moved(before: Own, now_ms: int, air: Flown, latency_ms: int) -> Own:
         ),
     )
     flown = (*before.flown, (now_ms, q, w))
-    kept = tuple(one for one in flown if lasted(now_ms - latency_ms, one[0], 0))
+    kept = tuple(one for one in flown if lasted(since_ms, one[0], 0))
     return Own(carried, kept)
 
 
 def fixed(before: Own, fix: Measured) -> Own:
-    """After a fix has come, which was made up to the latency ago: it is carried on by the way flown since."""
+    """After a fix has come, which was made at a step since which the way is known: it is carried on by that way."""
     then = {one[0]: one for one in before.flown}.get(fix.at_ms)
     if then is None:
         return before

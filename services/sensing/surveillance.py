@@ -7,15 +7,15 @@ from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
-from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.drift import Off
 from cratous.core.avoidance.manoeuvre import Motion
 from cratous.core.avoidance.prediction import Intruder, Spread
 from cratous.services.icarous.messages import Sensed
-from cratous.services.sensing import own as own_state
+from cratous.services.sensing import carried
+from cratous.services.sensing.carried import Carried, Sensors
 from cratous.services.sensing.filter import Cov, Estimate, Flown, deviations
 from cratous.services.sensing.own import Own
-from cratous.services.sensing.sensors import Detection, detections
+from cratous.services.sensing.sensors import Detection
 from cratous.services.sensing.tracks import Tracks, estimate, tracked
 from cratous.spec.mission import Mission, SensedDaa
 
@@ -62,29 +62,16 @@ def stepped(
     carrier: Carrier, before: Surveillance, now_ms: int, aircraft: Mapping[int, Flown]
 ) -> Surveillance:
     """After a step of the simulation: what is measured now is under way, and the vehicle has flown on."""
-    sensing, air = carrier.daa.sensing, aircraft[carrier.own_id]
-    gps, own = sensing.gps, before.own
-    if gps is not None and own is None:
-        own = own_state.first(gps, now_ms, air)
-    elif gps is not None and own is not None:
-        own = own_state.moved(own, now_ms, air, gps.latency_ms)
-    new = detections(sensing, carrier.seed, carrier.own_id, now_ms, carrier.step_ms, aircraft)
-    return before._replace(own=own, under_way=(*before.under_way, *new))
+    sensors = Sensors(carrier.own_id, carrier.daa.sensing, carrier.seed, carrier.step_ms)
+    after = carried.stepped(sensors, Carried(before.under_way, before.own), now_ms, aircraft)
+    return Surveillance(*after, before.tracks)
 
 
 def arrived(carrier: Carrier, before: Surveillance, now_ms: int) -> Surveillance:
     """At a heartbeat: what has come by now is used."""
-    came, left = list[Detection](), list[Detection]()
-    for one in before.under_way:
-        (came if lasted(one.due_ms, now_ms, 0) else left).append(one)
-    own = before.own
-    for one in came:
-        if one.source == carrier.own_id and own is not None:
-            own = own_state.fixed(own, one.seen)
-    others = [one for one in came if one.source != carrier.own_id]
-    return Surveillance(
-        tuple(left), own, tracked(before.tracks, others, carrier.daa.sensing, now_ms)
-    )
+    known = Carried(before.under_way, before.own)
+    after, others = carried.came(carrier.own_id, known, now_ms)
+    return Surveillance(*after, tracked(before.tracks, others, carrier.daa.sensing, now_ms))
 
 
 def beat(

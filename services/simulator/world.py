@@ -37,6 +37,7 @@ from cratous.services.simulator.tracking import Tracks
 from cratous.spec.errors import BadInput
 
 if TYPE_CHECKING:
+    from cratous.services.simulator.sensed import Sensed
     from cratous.services.simulator.terrain import Terrain
 
 TICK_S = 0.01
@@ -59,7 +60,8 @@ class World:
     """See the module. duration_s: how long the scenario lasts, start_s: at which time it begins: what is
     due before happens then. compatible: AMASE's defects are kept.
 
-    terrain: the ground, at mean sea level without one. unheard: kinds of messages that were told to
+    terrain: the ground, at mean sea level without one. sensed: by which sensors aircraft know themselves and others; without
+    them states are the true ones. unheard: kinds of messages that were told to
     others, but that mean nothing here, counted.
     """
 
@@ -71,7 +73,9 @@ class World:
         start_s: float = 0.0,
         compatible: bool = False,
         terrain: Terrain | None = None,
+        sensed: Sensed | None = None,
     ) -> None:
+        self._sensed = sensed
         self.time_s = self.start_s = start_s
         self.ends_s = start_s + duration_s
         self.compatible = compatible
@@ -122,6 +126,8 @@ class World:
         self._part = due - int(due)
         if not int(due):
             return told
+        if self._sensed is not None:
+            told += self._sense(self._sensed)
         if self.time_s - self._told_s > TELL_S:
             self._told_s = self.time_s
             told += [self.status("Running"), *self.states(), *self._perceive()]
@@ -180,8 +186,15 @@ class World:
             if mounted:
                 seen = payload.states(mounted, one.motion, GROUND_M, self.terrain)
             self.aircraft[key], body = state(one, self.wind_m_s, self.time_ms, seen)
-            told.append(body)
+            told.append(body if self._sensed is None else self._sensed.own(body))
         return [*told, *self.drivers.states(self.time_ms, GROUND_M)]
+
+    def _sense(self, sensed: Sensed) -> list[Any]:
+        """What has come of the sensors of all aircraft, which trackers hear of."""
+        told = sensed.step(self.time_ms, {key: one.motion for key, one in self.aircraft.items()})
+        for body in told:
+            self._perceived(body)
+        return told
 
     def _perceive(self) -> list[Any]:
         """What is perceived now, which trackers hear of; AMASE tells nothing of it."""

@@ -53,7 +53,7 @@ def test_takeover_and_verdict_are_marked_and_a_click_moves_the_clock(page: Page)
         page.value(f"{button}.id = 'wanted-{cell}'")
         page.click(f"#wanted-{cell}")
         at = "00:00:21.5" if cell == 1 else "00:01:23.5"
-        assert page.text("clock") == f"{at} of 00:03:40.7"
+        assert page.text("clock") == f"{at} of 00:03:40.8"
         assert page.value(f"{_row(page, name)}.className") == "near"
         under = "ICAROUS since 21.5 s" if cell == 1 else "UxAS"
         assert f"2 Merlin: {under}" in page.text("now-a")
@@ -87,7 +87,7 @@ def test_one_clock_moves_both_maps_and_says_which_flight_has_ended(page: Page) -
     page.key(" ")
     assert page.text("play") == "Pause"
     page.until("document.getElementById('play').textContent === 'Play'")
-    assert page.text("clock") == "00:03:40.7 of 00:03:40.7"
+    assert page.text("clock") == "00:03:40.8 of 00:03:40.8"
     assert page.text("now-b").endswith("the flight ended at 214.3 s")
     assert "ended" not in page.text("now-a")
     page.click("#altitude-b")

@@ -9,6 +9,7 @@ import socket
 import sqlite3
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -17,7 +18,7 @@ from simulator_tools import mission, scenario, waypoint
 
 from cratous.services.cli import main
 from cratous.services.ground_station.recording import recording
-from cratous.services.ground_station.server import page_files
+from cratous.services.ground_station.server import MOST_AT_ONCE, page_files
 from cratous.services.ground_station.verdicts import NO_REPORT, OTHER_LOG
 from cratous.spec.errors import BadInput
 
@@ -250,6 +251,23 @@ def test_silent_clients_hold_up_nobody(port: int) -> None:
     assert ask(port, "/").status == 200
     assert time.monotonic() - began_s < 5
     for one in silent:
+        one.close()
+
+
+def test_who_floods_it_and_asks_nothing_is_cut_off(port: int) -> None:
+    """More than it takes at once: the oldest go, and who asks is answered."""
+    flood, began_s = [], time.monotonic()
+    for k in range(3 * MOST_AT_ONCE):
+        flood.append(socket.create_connection(("127.0.0.1", port)))
+        if k % 3:  # some begin a request, or the head of a command, and never end it
+            flood[-1].sendall(b"GET / HT" if k % 3 == 1 else b"POST /command HTTP/1.0\r\n")
+    for _ in range(5):
+        assert ask(port, "/").status == 200
+    assert time.monotonic() - began_s < 8, "not only once their time is over"
+    flood[0].settimeout(5)
+    with suppress(ConnectionResetError):
+        assert flood[0].recv(1) == b""
+    for one in flood:
         one.close()
 
 

@@ -28,8 +28,6 @@ from cratous.services.mission_editor.operator_commands import (
     directed,
 )
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import Change
-from cratous.spec.mission.changes import HoldCommand
 
 ROOT = Path(__file__).resolve().parents[2]
 TEXT = (ROOT / "examples" / "crossing" / "mission.yaml").read_text(encoding="utf-8")
@@ -55,6 +53,8 @@ def test_a_place_is_a_task_of_its_vehicle_from_the_next_step_on() -> None:
     assert (task.kind.value, task.eligible, task.label) == ("must_fly", (2,), "by the operator")
     assert task.points[0][:3] == (100.0, -50.0, 300.0)
     assert mission.relations == "|(|(p1 p2) p3)"
+    _, higher = _command(what="loiter", vehicle=2, places=[[0, 0]], duration_s=9, alt_m=412.34)
+    assert next(one for one in higher.tasks if one.id == 3).points[0].alt_m == 412.3
     # a second one takes the next numbers, and keeps the first
     again, both = _command(
         found.text, 40_000, what="loiter", vehicle=1, places=[[0, 0]], duration_s=30
@@ -95,47 +95,6 @@ def test_zones_and_tasks_are_added_and_taken_away() -> None:
 def test_what_is_no_command_or_not_possible_is_refused(asked: Any, error: type[Exception]) -> None:
     with pytest.raises(error):
         commanded(TEXT, "m.yaml", 0, 24_000, asked)
-
-
-def test_a_direct_command_is_of_one_vehicle_and_asks_for_nothing_else() -> None:
-    at = directed(
-        TEXT, "m.yaml", 0, 24_250, {"what": "hold_at", "vehicle": 2, "places": [[9.96, -5]]}
-    )
-    assert at.text.startswith(HEAD)
-    (hold,) = at.mission.changes
-    assert hold == HoldCommand(24_250, "vehicle_holds", vehicle=2, place=(10.0, -5.0))
-    here = directed(at.text, "m.yaml", 0, 30_000, {"what": "hold_here", "vehicle": 1})
-    again = directed(here.text, "m.yaml", 0, 31_000, {"what": "resume", "vehicle": 2})
-    assert again.text.count(HEAD) == 1
-    assert again.mission == loaded(parse_document(again.text, "m.yaml"))
-    assert again.mission.changes == (
-        hold,
-        HoldCommand(30_000, "vehicle_holds", vehicle=1),
-        Change(31_000, "vehicle_resumes", vehicle=2),
-    )
-    # a variant of the mission has the place where it was clicked
-    varied = directed(
-        TEXT, "m.yaml", 7, 24_250, {"what": "hold_at", "vehicle": 2, "places": [[9, 9]]}
-    )
-    (change,) = varied.mission.changes
-    assert isinstance(change, HoldCommand)
-    assert change.place == (9.0, 9.0)
-
-
-@pytest.mark.parametrize(
-    ("asked", "error"),
-    [
-        (None, NotObeyed), ({"what": "go_to", "vehicle": 1, "places": [[0, 0]]}, NotObeyed),
-        ({"what": "resume"}, NotObeyed), ({"what": "resume", "vehicle": 7}, NotObeyed),
-        ({"what": "resume", "vehicle": True}, NotObeyed),
-        ({"what": "hold_at", "vehicle": 1}, NotObeyed),
-        ({"what": "hold_at", "vehicle": 1, "places": [[0, 0], [1, 1]]}, NotObeyed),
-        ({"what": "hold_at", "vehicle": 1, "places": [[0, 900_000]]}, BadInput),
-    ],
-)  # fmt: skip
-def test_what_is_no_direct_command_is_refused(asked: Any, error: type[Exception]) -> None:
-    with pytest.raises(error):
-        directed(TEXT, "m.yaml", 0, 24_000, asked)
 
 
 def test_a_page_can_send_as_many_corners_as_it_draws() -> None:
@@ -277,17 +236,33 @@ def test_a_flight_obeys_at_once_and_is_that_of_the_mission_that_it_writes(
         number = live.told()["flight"]
         page.click("#fly")
         page.until(f"{STATE} === 'flying' && Number(document.getElementById('slider').max) > 1000")
+        page.value("document.activeElement.blur()")
+        page.key("u")
         _choose(page, "hold_at")
         page.until("document.getElementById('operate-hint').textContent.startsWith('Click')")
         page.click("#map")
         page.until("document.getElementById('confirm-command').open")
         assert "without stopping" in page.text("command-text")
         page.value("document.getElementById('command-vehicle').value = 1")
+        # in feet above the ground, which is 0 m; 60 m are two vertical thresholds
+        assert page.text("command-alt-unit") == "ft"
+        assert page.text("command-alt-note").startswith(
+            "Left empty: the altitude that it has then."
+        )
+        for wrong in ("150", "-3", "400000"):
+            _type(page, "command-alt", wrong)
+            assert page.value("document.getElementById('command-yes').disabled"), wrong
+            assert "more than 60 m (197 ft), 100000 m" in page.text("command-alt-note")
+        _type(page, "command-alt", "1050")
+        assert page.text("command-alt-note").startswith(
+            "320 m (1050 ft) above mean sea level, 320 m"
+        )
         page.click("#command-yes")
         page.until(
             "document.getElementById('live-text').textContent.includes('it circles through')"
         )
         page.until("document.getElementById('events').textContent.includes('commanded to hold at')")
+        page.until("document.getElementById('events').textContent.includes(', altitude 320 m')")
         assert page.text("live-state") == "flying"  # it went on all the while
         _choose(page, "resume")
         page.until("document.getElementById('confirm-command').open")
@@ -331,6 +306,13 @@ def _same_when_flown_again(tmp_path: Path, report: dict[str, Any]) -> None:
     )
     second = json.loads((tmp_path / "again" / "crossing" / "report.json").read_text("utf-8"))
     assert second["log"]["digest"] == report["log"]["digest"]
+
+
+def _type(page: Page, name: str, text: str) -> None:
+    page.value(
+        f"(i => {{ i.value = '{text}'; i.dispatchEvent(new Event('input')); }})"
+        f"(document.getElementById('{name}'))"
+    )
 
 
 def _choose(page: Page, what: str) -> None:

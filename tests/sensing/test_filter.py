@@ -24,10 +24,17 @@ from cratous.services.sensing.filter import (
     later,
     measured,
 )
-from cratous.services.sensing.surveillance import Carrier, Shown, exactly
+from cratous.services.sensing.surveillance import (
+    Carrier,
+    Shown,
+    Surveillance,
+    arrived,
+    exactly,
+    stepped,
+)
 from cratous.services.sensing.surveillance import given as given_to
 from cratous.spec.mission import Position, SensedDaa, Velocity, WellClear
-from cratous.spec.mission.sensing import Sensor, SensorKind
+from cratous.spec.mission.sensing import Sensing, Sensor, SensorKind
 
 Matrix = np.ndarray
 EVERY = st.floats(0.1, 50)
@@ -104,7 +111,7 @@ def test_a_late_fix_is_carried_on_by_the_way_flown_since() -> None:
 
     own = own_state.first(gps, 0, at(0))
     for now in range(250, 10_001, 250):
-        own = own_state.moved(own, now, at(now), gps.latency_ms)
+        own = own_state.moved(own, now, at(now), now - gps.latency_ms)
         if now >= 500:
             then = at(now - 500)
             own = own_state.fixed(own, measured(gps, now - 500, *then))
@@ -114,6 +121,26 @@ def test_a_late_fix_is_carried_on_by_the_way_flown_since() -> None:
     # 39 fixes tell more than one
     assert deviations(own.estimate.wide)[0] < 1.0
     assert len(own.flown) == 3
+
+
+@pytest.mark.parametrize("latency_ms", [0, 100, 250, 700, 1300])
+def test_a_fix_that_is_used_later_than_it_comes_still_corrects_the_own_state(
+    latency_ms: int,
+) -> None:
+    gps = Sensor(SensorKind.GPS, 3.0, 5.0, 0.3, latency_ms=latency_ms)
+    sensing = Sensing((gps, Sensor(SensorKind.ADSB, 10.0, 8.0, 1.0)))
+    daa = SensedDaa(WellClear(150.0, 30.0, 15.0, 0.0), sensing=sensing)
+    carrier, now = Carrier(1, daa, 0, 250, frozenset({1})), Surveillance()
+    for time_ms in range(0, 60_001, 250):
+        air = Flown(Position(0.022 * time_ms, 0.0, 300.0), Velocity(22.0, 0.0, 0.0))
+        now = stepped(carrier, now, time_ms, {1: air})
+        if time_ms % 1000 == 0:  # the heartbeat, at which no fix of 100 ms comes just then
+            now = arrived(carrier, now, time_ms)
+    assert now.own is not None
+    # sixty fixes of 3 m and 0.3 m/s; a minute of the drift alone would be 22 m
+    assert deviations(now.own.estimate.wide)[0] < 1.0
+    assert math.dist(now.own.estimate.position[:2], (1320.0, 0.0)) < 4.0
+    assert len(now.own.flown) <= 2 + (latency_ms + 1000) // 250, "nothing is kept for ever"
 
 
 @pytest.mark.parametrize(

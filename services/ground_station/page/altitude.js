@@ -1,10 +1,12 @@
 // Altitudes over time, with the spans under ICAROUS and the instant that is shown.
 
-import { Layer, color, colorOf, niceStep, sized } from "./canvas.js";
+import { Layer, color, colorOf, sized } from "./canvas.js";
 import { UNSEEN_MS } from "./instant.js";
+import { niceStep } from "./units.js";
 
 export const LEFT = 66, RIGHT = 10;
 const TOP = 8, BOTTOM = 18;
+export const LEAST_PX = 0.5; // what has moved by less is not drawn anew
 
 // a click on a chart goes to its instant
 export function listen(canvas, recording, go) {
@@ -28,16 +30,21 @@ export class AltitudeChart {
     let low = Infinity, high = -Infinity;
     for (const track of Object.values(this.recording.tracks)) for (const row of track) { low = Math.min(low, row[3]); high = Math.max(high, row[3]); }
     this.low = low; this.high = high;
+    this.end_ms = Math.max(this.recording.end_ms, 1000);
     this.layer.forget();
   }
 
-  draw(state, words) {
-    const { pen, width, height } = sized(this.canvas), end = Math.max(this.recording.end_ms, 1000);
+  // whole: also where the instant has not moved to be seen
+  draw(state, words, whole = true) {
+    const end = this.end_ms;
+    if (!whole && Math.abs(state.time - this.shown) / end * this.canvas.width < LEAST_PX) return;
+    const { pen, width, height } = sized(this.canvas);
+    this.shown = state.time;
     if (this.low > this.high) return;
     const kept = this.layer.for(this.canvas, words.altitude(0));
     if (kept.empty) this.tracks(kept.pen, width, height, end, words);
     this.layer.onto(pen, width, height);
-    const x = LEFT + (width - LEFT - RIGHT) * state.time / end;
+    const x = LEFT + (width - LEFT - RIGHT) * Math.min(state.time / end, 1);
     pen.strokeStyle = color("ink"); pen.lineWidth = 1.5;
     pen.beginPath(); pen.moveTo(x, 0); pen.lineTo(x, height - BOTTOM + 4); pen.stroke();
   }
@@ -63,11 +70,27 @@ export class AltitudeChart {
     for (const [id, track] of Object.entries(this.recording.tracks)) {
       pen.strokeStyle = colorOf(this.recording, id);
       pen.beginPath();
-      track.forEach((row, k) => {
-        const broken = k && row[0] - track[k - 1][0] > UNSEEN_MS;
-        if (k && !broken) pen.lineTo(x(row[0]), y(row[3])); else pen.moveTo(x(row[0]), y(row[3]));
-      });
+      for (const [row, on] of seen(track, (end / (width - LEFT - RIGHT)) / 2)) {
+        if (on) pen.lineTo(x(row[0]), y(row[3])); else pen.moveTo(x(row[0]), y(row[3]));
+      }
       pen.stroke();
     }
+  }
+}
+
+// the rows of a track that are seen, and whether a line leads there: of those within `apart_ms` (half a pixel) the first,
+// the lowest, the highest and the last
+export function* seen(track, apart_ms) {
+  for (let k = 0; k < track.length;) {
+    const first = k, on = k > 0 && track[k][0] - track[k - 1][0] <= UNSEEN_MS;
+    let low = k, high = k;
+    while (k + 1 < track.length && track[k + 1][0] - track[first][0] < apart_ms && track[k + 1][0] - track[k][0] <= UNSEEN_MS) {
+      k++;
+      if (track[k][3] < track[low][3]) low = k;
+      if (track[k][3] > track[high][3]) high = k;
+    }
+    yield [track[first], on];
+    for (const one of new Set([Math.min(low, high), Math.max(low, high), k])) if (one !== first) yield [track[one], true];
+    k++;
   }
 }

@@ -50,9 +50,3 @@ export function colorOf(recording, id) {
   const k = recording.vehicles.findIndex(v => String(v.id) === String(id));
   return color(k < 0 ? "traffic" : `c${k % 6}`);
 }
-
-// the least of 1, 2, 5, 10, 20 ... that is not below
-export function niceStep(least) {
-  const power = 10 ** Math.floor(Math.log10(Math.max(least, 1e-3)));
-  return [1, 2, 5, 10].map(k => k * power).find(step => step >= least) || 10 * power;
-}

@@ -1,6 +1,5 @@
 // Two runs side by side: one clock, a map, events and altitudes of each, and the rows in which they differ.
 
-import * as address from "./address.js";
 import { AltitudeChart } from "./altitude.js";
 import { authorityAt } from "./instant.js";
 import { FlightMap } from "./map.js";
@@ -47,9 +46,9 @@ class Pane {
 
   by(name) { return by(`${name}-${this.side}`); }
 
-  draw(state, said) {
-    this.map.draw(state, said);
-    this.chart.draw(state, said);
+  draw(state, said, due) {
+    this.map.draw(state, said, due);
+    this.chart.draw(state, said, due);
   }
 
   lists(state) {
@@ -93,7 +92,7 @@ class Pair extends Playback {
       .filter(one => one && one.time_ms !== null).map(one => one.time_ms);
     // both maps and both charts have the same scale
     const [one, two] = this.maps.map(map => map.bounds);
-    const bounds = { north0: Math.min(one.north0, two.north0), north1: Math.max(one.north1, two.north1), east0: Math.min(one.east0, two.east0), east1: Math.max(one.east1, two.east1) };
+    const bounds = { north0: Math.min(one.north0, two.north0), north1: Math.max(one.north1, two.north1), east0: Math.min(one.east0, two.east0), east1: Math.max(one.east1, two.east1), fastest: Math.max(one.fastest, two.fastest) };
     const low = Math.min(a.chart.low, b.chart.low), high = Math.max(a.chart.high, b.chart.high);
     for (const pane of this.panes) { pane.map.bounds = bounds; Object.assign(pane.chart, { low, high }); }
     const names = found.a.name === found.b.name ? found.a.name : `${found.a.name} and ${found.b.name}`;
@@ -142,16 +141,16 @@ class Pair extends Playback {
   }
 
   draw(whole) {
-    const { state } = this, said = words(state.aviation);
-    theme(state.theme);
+    const { state } = this, said = words(state.aviation), due = this.due(whole);
+    if (due) theme(state.theme);
     // one view for both: of two maps of other heights the whole flight fits into either
     const view = state.view || this.maps.map(map => map.whole()).sort((one, two) => one.scale - two.scale)[0];
-    for (const pane of this.panes) pane.draw({ ...state, view }, said);
-    if (!this.bar(whole)) return;
+    for (const pane of this.panes) pane.draw({ ...state, view }, said, due);
+    if (!this.bar(due)) return;
     for (const pane of this.panes) pane.lists(state);
     const near = one => one && one.time_ms !== null && Math.abs(one.time_ms - state.time) <= NEAR_MS;
     this.rows.forEach((made, k) => made.classList.toggle("near", !!(near(this.differences[k].a) || near(this.differences[k].b))));
-    address.write(state);
+    this.address();
   }
 }
 

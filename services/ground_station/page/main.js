@@ -1,6 +1,5 @@
 // The page of one flight or log: holds its state, and draws it whenever it changes.
 
-import * as address from "./address.js";
 import { AltitudeChart } from "./altitude.js";
 import { panel } from "./bands.js";
 import { Live } from "./live.js";
@@ -13,6 +12,7 @@ import { Spectrum } from "./spectrum.js";
 import { words } from "./units.js";
 
 const by = id => document.getElementById(id);
+const CHARTS_MS = 1000;
 
 class Station extends Playback {
   constructor(recording) {
@@ -27,9 +27,11 @@ class Station extends Playback {
     if (!recording.live) by("source").textContent = source(recording);
     this.listen();
     panels.events(recording, go);
-    panels.verdicts(recording, this.state, go);
+    this.verdicts();
     panels.tasks(recording, this.state);
     this.live = null;
+    this.charted = -CHARTS_MS;
+    this.later = null;
     if (recording.live) this.fly();
   }
 
@@ -43,20 +45,36 @@ class Station extends Playback {
     this.follow = true;
     for (const id of ["play", "rate-box"]) by(id).hidden = true;
     this.live = new Live(this.recording, updates => this.grown(updates));
-    if (!this.recording.attached) this.operator = new Operator(this.live, this.map, this.recording, () => this.draw(true));
+    if (!this.recording.attached) this.operator = new Operator(this.live, this.map, this.recording, this);
   }
 
   grown(updates) {
     const { recording } = this, go = time => this.go(time);
     if (this.live?.forgot) { this.map.trails.forget(); this.live.forgot = false; }
     this.map.grown();
-    this.chart.grown();
-    this.spectrum.grown();
+    this.charts();
     by("slider").max = recording.end_ms;
     if (updates.some(update => update.more?.events)) panels.events(recording, go);
-    if (updates.some(update => update.set?.verdicts)) panels.verdicts(recording, this.state, go);
+    if (updates.some(update => update.set?.verdicts)) this.verdicts();
     if (this.follow) this.state.time = recording.end_ms;
     this.draw(true);
+  }
+
+  verdicts() {
+    this.verdicts_aviation = this.state.aviation;
+    panels.verdicts(this.recording, words(this.state.aviation), time => this.go(time));
+  }
+
+  // charts are drawn anew for a flight that grows, all of them, so less often than the rest
+  charts() {
+    const now = performance.now(), wait = this.charted + CHARTS_MS - now;
+    if (wait > 0) {
+      this.later ??= setTimeout(() => { this.later = null; this.charts(); this.draw(true); }, wait);
+      return;
+    }
+    this.charted = now;
+    this.chart.grown();
+    this.spectrum.grown();
   }
 
   go(time) {
@@ -70,19 +88,19 @@ class Station extends Playback {
 
   // whole: the tables and the address too; else they follow at their own pace
   draw(whole) {
-    const { state, recording } = this, said = words(state.aviation);
-    theme(state.theme);
-    this.spectrum.draw(state, said); // first: where it comes up, the map gets smaller
-    this.map.draw(state, said);
-    this.operator?.draw();
-    this.chart.draw(state, said);
-    if (!this.bar(whole)) return;
+    const { state, recording } = this, said = words(state.aviation), due = this.due(whole);
+    if (due) theme(state.theme);
+    this.spectrum.draw(state, said, due); // first: where it comes up, the map gets smaller
+    if (this.map.draw(state, said, due)) this.operator?.draw();
+    this.chart.draw(state, said, due);
+    if (!this.bar(due)) return;
+    if (this.verdicts_aviation !== state.aviation) this.verdicts();
     panels.aircraft(recording, state, said);
     panels.pairs(recording, state, said);
     panel(recording, state, said);
     panels.tasks(recording, state);
     panels.mark(recording, state);
-    address.write(state);
+    this.address();
   }
 
   listen() {

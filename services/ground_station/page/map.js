@@ -3,10 +3,11 @@
 import { alertColor } from "./band_style.js";
 import { ring } from "./bands.js";
 import { UNSEEN_MS, alertsAt, authorityAt, bandsAt, lastAt, positionAt } from "./instant.js";
-import { Layer, color, colorOf, niceStep, sized } from "./canvas.js";
+import { Layer, color, colorOf, sized } from "./canvas.js";
 import { words } from "./units.js";
 
 const EDGE = 50;
+const LEAST_PX = 0.25; // what has moved by less is not drawn anew
 
 export class FlightMap {
   constructor(canvas, recording, changed) {
@@ -16,12 +17,13 @@ export class FlightMap {
     this.view = null;
     this.trails = new Layer();
     this.drawn = { time: 0, to: {} }; // until when, and of each track to which row, the trails stand on their layer
-    this.bounds = extent(recording);
+    this.measured = {};
+    this.grown();
     this.listen();
   }
 
   // the recording has grown
-  grown() { this.bounds = extent(this.recording); }
+  grown() { this.bounds = extent(this.recording, this.measured); }
 
   // the view that shows everything
   whole() {
@@ -35,10 +37,20 @@ export class FlightMap {
     this.view = state.view || this.whole();
     this.xy = (north, east) => [width / 2 + (east - this.view.east) * this.view.scale, height / 2 - (north - this.view.north) * this.view.scale];
     this.pen = pen;
+    this.width = width;
     this.grid(width, height, said);
   }
 
-  draw(state, words) {
+  // whether all aircraft are where they were drawn
+  still(time) {
+    const s = (time - this.shown) / 1000;
+    return s >= 0 && s * this.bounds.fastest * this.view.scale * (window.devicePixelRatio || 1) < LEAST_PX;
+  }
+
+  // whole: also where nothing has moved to be seen; gives whether it has drawn
+  draw(state, words, whole = true) {
+    if (!whole && this.still(state.time)) return false;
+    this.shown = state.time;
     const { pen, width, height } = sized(this.canvas);
     this.begin(pen, width, height, state, words);
     const { time } = state, recording = this.recording;
@@ -52,6 +64,7 @@ export class FlightMap {
     if (at && at.seen) ring(this, ...this.xy(at.north, at.east), said.row);
     const alerts = alertsAt(recording, state);
     for (const id of Object.keys(recording.tracks)) this.aircraft(id, state, words, alerts[id]);
+    return true;
   }
 
   path(places, closed) {
@@ -80,6 +93,7 @@ export class FlightMap {
   // text on a plate of its own, so that it is read on anything
   label(text, x, y, ink) {
     const wide = this.pen.measureText(text).width;
+    if (x < this.width) x = Math.max(2, Math.min(x, this.width - wide - 4)); // what would end beyond the edge
     Object.assign(this.pen, { fillStyle: color("paper"), globalAlpha: 0.75 });
     this.pen.fillRect(x - 2, y - 11, wide + 4, 15);
     Object.assign(this.pen, { fillStyle: ink, globalAlpha: 1 });
@@ -87,7 +101,7 @@ export class FlightMap {
   }
 
   grid(width, height, words) {
-    const step = niceStep(110 / this.view.scale), pen = this.pen;
+    const step = words.step(110 / this.view.scale), pen = this.pen;
     const east0 = this.view.east - width / 2 / this.view.scale, north0 = this.view.north - height / 2 / this.view.scale;
     pen.beginPath();
     for (let k = Math.ceil(east0 / step); this.xy(0, k * step)[0] < width; k++) {
@@ -277,16 +291,31 @@ function routesAt(recording, time) {
   return found;
 }
 
-function extent(recording) {
-  const places = [];
-  const ours = new Set(recording.vehicles.map(v => String(v.id)));
-  for (const [id, track] of Object.entries(recording.tracks)) if (ours.has(id)) for (const row of track) places.push([row[1], row[2]]);
-  for (const task of recording.tasks) places.push(...task.points);
-  for (const zone of recording.zones) if (zone.kind === "keep_out") places.push(...zone.vertices);
-  const found = { north0: Infinity, north1: -Infinity, east0: Infinity, east1: -Infinity };
-  for (const [north, east] of places) {
-    found.north0 = Math.min(found.north0, north); found.north1 = Math.max(found.north1, north);
-    found.east0 = Math.min(found.east0, east); found.east1 = Math.max(found.east1, east);
+const nowhere = () => ({ north0: Infinity, north1: -Infinity, east0: Infinity, east1: -Infinity });
+
+function widened(found, north, east) {
+  found.north0 = Math.min(found.north0, north); found.north1 = Math.max(found.north1, north);
+  found.east0 = Math.min(found.east0, east); found.east1 = Math.max(found.east1, east);
+}
+
+// what is shown by default, and the speed of the fastest aircraft [m/s]; measured: of each track how many rows have been
+// looked at and what they gave, so that a track that grows is not looked at again
+function extent(recording, measured) {
+  const ours = new Set(recording.vehicles.map(v => String(v.id))), found = { ...nowhere(), fastest: 0 };
+  for (const [id, track] of Object.entries(recording.tracks)) {
+    let of = measured[id];
+    // a row may have been replaced by a newer one, and old ones let go of
+    if (!of || of.count > track.length || of.first !== track[0]) of = measured[id] = { ...nowhere(), count: 0, fastest: 0, first: track[0] };
+    for (let k = Math.max(of.count - 1, 0); k < track.length; k++) {
+      const row = track[k], before = track[k - 1];
+      widened(of, row[1], row[2]);
+      if (before && row[0] > before[0] && row[0] - before[0] <= UNSEEN_MS) of.fastest = Math.max(of.fastest, Math.hypot(row[1] - before[1], row[2] - before[2]) / (row[0] - before[0]) * 1000);
+    }
+    of.count = track.length;
+    found.fastest = Math.max(found.fastest, of.fastest);
+    if (ours.has(id) && track.length) { widened(found, of.north0, of.east0); widened(found, of.north1, of.east1); }
   }
-  return places.length ? found : { north0: -500, north1: 500, east0: -500, east1: 500 };
+  for (const task of recording.tasks) for (const point of task.points) widened(found, point[0], point[1]);
+  for (const zone of recording.zones) if (zone.kind === "keep_out") for (const point of zone.vertices) widened(found, point[0], point[1]);
+  return found.north0 <= found.north1 ? found : { north0: -500, north1: 500, east0: -500, east1: 500, fastest: found.fastest };
 }

@@ -1,5 +1,7 @@
 // Commands of the operator that change the mission in flight: picked, drawn on the map, confirmed, and sent.
 
+import { AltitudeField } from "./altitude_field.js";
+
 const by = id => document.getElementById(id);
 // obeyed by the flight as it is, at its next step
 const DIRECT = ["hold_at", "hold_here", "resume"];
@@ -8,13 +10,17 @@ const DRAWN = { hold_at: [1, 1], hold_here: [0, 0], resume: [0, 0], keep_out: [3
 const HINTS = { hold_at: "Click the place on the map; Esc gives it up.", keep_out: "Click the corners of the keep-out on the map; Enter ends it, Esc gives it up.", go_to: "Click the place on the map; Esc gives it up.", loiter: "Click the place on the map; Esc gives it up." };
 const NAMES = { hold_at: "Go to a place, and circle through it until it is to resume", hold_here: "Circle where it is, until it is to resume", resume: "Resume the plan", keep_out: "A keep-out zone", go_to: "A task to fly through a place", loiter: "A task to loiter at a place", drop_task: "A task is dropped", end_zone: "A zone ends" };
 
+// what it is where no altitude is typed; the others have none
+const HEIGHTS = { hold_at: "the altitude that it has then", hold_here: "the altitude that it has then", go_to: "the altitude at which the vehicle starts", loiter: "the altitude at which the vehicle starts" };
+
 const AT_ONCE = "The flight obeys at its next step, without stopping, and the plan stays. Where ICAROUS has the vehicle, or no way keeps the zones, it is refused.";
 const ANEW = "It is known from the next step on, and what is left is planned anew where it asks for that. The flight is flown anew up to now, stands there, and its results have the mission with this command.";
 
 export class Operator {
-  // live: the flight; map: on which is drawn; redraw: draws it
-  constructor(live, map, recording, redraw) {
-    Object.assign(this, { live, map, recording, redraw, what: null, places: [] });
+  // live: the flight; map: on which is drawn; station: whose state has the units, and which draws it
+  constructor(live, map, recording, station) {
+    Object.assign(this, { live, map, recording, station, what: null, places: [] });
+    this.altitude = new AltitudeField(recording, () => this.may());
     by("operate").addEventListener("change", () => this.begin(by("operate").value));
     by("command-not").addEventListener("click", () => this.end());
     by("command-yes").addEventListener("click", () => this.send());
@@ -45,7 +51,7 @@ export class Operator {
 
   place(place) {
     this.places.push(place.map(x => Math.round(x * 10) / 10));
-    if (this.places.length >= DRAWN[this.what][1]) this.confirm(); else this.redraw();
+    if (this.places.length >= DRAWN[this.what][1]) this.confirm(); else this.station.draw(true);
   }
 
   draw() {
@@ -65,13 +71,18 @@ export class Operator {
     by("command-vehicle-box").hidden = ![...DIRECT, "go_to", "loiter"].includes(what);
     by("command-seconds-box").hidden = what !== "loiter";
     by("command-id-box").hidden = DRAWN[what] !== null;
-    by("command-yes").disabled = DRAWN[what] === null && !listed.length;
+    this.none = DRAWN[what] === null && !listed.length;
+    if (HEIGHTS[what]) this.altitude.open(this.station.state.aviation, HEIGHTS[what]); else this.altitude.close();
+    this.may();
     by("command-text").textContent = `${NAMES[what]}${this.places.length ? `, at ${this.places.map(([n, e]) => `north ${n} m, east ${e} m`).join("; ")}` : ""}. ${DIRECT.includes(what) ? AT_ONCE : ANEW}`;
     by("confirm-command").showModal();
   }
 
+  // whether it can be commanded as it stands
+  may() { by("command-yes").disabled = this.none || !this.altitude.good; }
+
   async send() {
-    const { what, places } = this, command = { what };
+    const { what, places } = this, command = { what, ...this.altitude.told };
     if (places.length) command.places = places;
     if (!by("command-vehicle-box").hidden) command.vehicle = Number(by("command-vehicle").value);
     if (!by("command-seconds-box").hidden) command.duration_s = Number(by("command-seconds").value);
@@ -86,6 +97,6 @@ export class Operator {
     Object.assign(this, { what: null, places: [] });
     by("operate-hint").textContent = "";
     by("confirm-command").close();
-    this.redraw();
+    this.station.draw(true);
   }
 }

@@ -18,7 +18,35 @@ export function cell(row, text, classes = "", tag = "td") {
 export function table(id, heads, rows) {
   const head = document.createElement("tr");
   for (const [text, classes] of heads) cell(head, text, classes, "th");
-  by(id).replaceChildren(...(rows.length ? [head, ...rows] : []));
+  replace(by(id), rows.length ? [head, ...rows] : []);
+}
+
+// what stands there and is not the same as what is to: the browser lays out anew no more than that
+function replace(place, wanted) {
+  wanted.forEach((made, k) => {
+    const old = place.children[k];
+    if (!old) place.append(made);
+    else if (old.tagName === made.tagName && old.tagName === "TR" && !made.querySelector("button") && !old.querySelector("button")) same(old, made);
+    else old.replaceWith(made);
+  });
+  while (place.children.length > wanted.length) place.lastChild.remove();
+}
+
+// a row without buttons, whose listeners would be another's
+function same(old, made) {
+  if (old.isEqualNode(made)) return;
+  if (old.className !== made.className) old.className = made.className;
+  if (old.dataset.aircraft !== made.dataset.aircraft) { old.replaceWith(made); return; }
+  replaceCells(old, [...made.children]);
+}
+
+function replaceCells(old, cells) {
+  cells.forEach((made, k) => {
+    const there = old.children[k];
+    if (!there) old.append(made);
+    else if (!there.isEqualNode(made)) there.replaceWith(made);
+  });
+  while (old.children.length > cells.length) old.lastChild.remove();
 }
 
 export function row(...cells) {
@@ -55,7 +83,7 @@ export function aircraft(recording, state, words) {
     }
     return [first, second];
   });
-  table("aircraft", [["aircraft"], ["altitude", "n"], ["speed", "n"], ["climb", "n"], ["course", "n"]], rows);
+  table("aircraft", [["aircraft"], ["altitude", "n"], ["speed", "n"], ["climb", "n"], ["course", "n"]], rows.length ? rows : [row(["none yet"])]);
 }
 
 function alarm({ level, time_s, own }) {
@@ -87,7 +115,7 @@ export function pairs(recording, state, words) {
   if (found.length > FEW) by("pairs-note").textContent += ` The nearest ${FEW} of ${found.length}.`;
 }
 
-export function verdicts(recording, state, go) {
+export function verdicts(recording, words, go) {
   const said = recording.verdicts;
   if (said.why_none) {
     by("overall").textContent = by("overall").className = by("verdicts-at").textContent = "";
@@ -106,7 +134,7 @@ export function verdicts(recording, state, go) {
   const rows = [...said.requirements, ...parts].map((one, k) => {
     const whole = k < said.requirements.length;
     const made = row([whole ? `${one.requirement} ${one.title}` : one.item, whole ? "whole" : "part"], [one.verdict, one.verdict],
-      [one.margin === null ? "–" : `${one.margin.toPrecision(4)} ${one.unit}`, "margin"]);
+      [one.margin === null ? "–" : words.margin(one.margin, one.unit), "margin"]);
     made.title = one.note;
     const when = cell(made, "", "n");
     if (one.time_ms !== null && (one.margin !== null || one.verdict !== "holds")) {
@@ -141,9 +169,14 @@ export function tasks(recording, state) {
   table("tasks", [["task"], ["kind"], ["now"]], rows);
 }
 
-// made once; `mark` shows which of them is the last at an instant
+const listed = new WeakMap(); // of a list of events the first one, and how many of them it has
+
+// `mark` shows which of them is the last at an instant; where there are only more, those are made
 export function events(recording, go, list = by("events")) {
-  list.replaceChildren(...recording.events.map(event => {
+  const { events } = recording, kept = listed.get(list), grown = kept && kept.count && kept.first === events[0] && kept.count <= events.length;
+  if (!grown) list.replaceChildren();
+  listed.set(list, { first: events[0], count: events.length });
+  list.append(...events.slice(grown ? kept.count : 0).map(event => {
     const item = document.createElement("li"), jump = document.createElement("button");
     jump.type = "button";
     jump.textContent = `${seconds(event.time_ms)}  ${event.vehicle === null ? "" : `vehicle ${event.vehicle}: `}${event.text}`;
@@ -156,5 +189,8 @@ export function events(recording, go, list = by("events")) {
 export function mark(recording, state, list = by("events")) {
   let last = -1;
   recording.events.forEach((event, k) => { if (event.time_ms <= state.time) last = k; });
-  [...list.children].forEach((item, k) => { item.className = k === last ? "now" : k > last ? "ahead" : ""; });
+  [...list.children].forEach((item, k) => {
+    const wanted = k === last ? "now" : k > last ? "ahead" : "";
+    if (item.className !== wanted) item.className = wanted;
+  });
 }

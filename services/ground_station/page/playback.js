@@ -6,6 +6,8 @@ import { clock } from "./units.js";
 
 const by = id => document.getElementById(id);
 const SLOW_MS = 200; // what follows at a slower pace while it plays
+const CLOCK_MS = 90; // so often, at most, the clock and the slider: each of them lays out the page
+const ADDRESS_MS = 1000; // so often, at most, the address: browsers take few of them
 const MOVES = { ArrowLeft: [60, 0], ArrowRight: [-60, 0], ArrowUp: [0, 60], ArrowDown: [0, -60] };
 
 // whoever extends it gives `end_ms`, `instants` of the events, `ids` of the aircraft, `maps`, and `draw`
@@ -13,7 +15,7 @@ export class Playback {
   constructor() {
     this.state = { time: 0, rate: 1, picked: null, theme: null, aviation: false, view: null, dimension: DIMENSIONS[0] };
     this.playing = false;
-    this.slow = 0;
+    this.slow = this.clocked = this.addressed = 0;
   }
 
   go(time) {
@@ -58,17 +60,35 @@ export class Playback {
     this.draw(true);
   }
 
-  // draws the clock; gives whether it is time for what follows at a slower pace: lists and address
-  bar(whole) {
-    const { state } = this, now = performance.now();
-    by("slider").value = state.time;
-    by("clock").textContent = `${clock(state.time)} of ${clock(this.end_ms)}`;
+  // whether it is time for what follows at a slower pace: lists, address, and what has not moved to be seen
+  due(whole) {
+    const now = performance.now();
     if (!whole && now - this.slow < SLOW_MS) return false;
     this.slow = now;
+    return true;
+  }
+
+  // the clock, which tells tenths of a second, and if it is time for them the buttons; gives whether it is
+  bar(due) {
+    const { state } = this, now = performance.now();
+    if (due || now - this.clocked >= CLOCK_MS) {
+      this.clocked = now;
+      by("slider").value = state.time;
+      by("clock").textContent = `${clock(state.time)} of ${clock(this.end_ms)}`;
+    }
+    if (!due) return false;
     by("play").textContent = this.playing ? "Pause" : "Play";
     by("rate").value = state.rate;
     by("units").textContent = state.aviation ? "aviation units" : "SI units";
     return true;
+  }
+
+  // the state into the address: at once, but while it plays
+  address() {
+    const now = performance.now();
+    if (this.playing && now - this.addressed < ADDRESS_MS) return;
+    this.addressed = now;
+    address.write(this.state);
   }
 
   zoom(factor) { this.maps[0].zoom(factor); }

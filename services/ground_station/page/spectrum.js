@@ -1,9 +1,10 @@
 // Bands over time: one dimension of the vehicle that is shown, and beneath it the alert level of each intruder.
 
-import { LEFT, RIGHT, listen } from "./altitude.js";
+import { LEAST_PX as MOVED_PX, LEFT, RIGHT, listen } from "./altitude.js";
 import { DIMENSIONS, REGIONS, alertColor, fill, own, pieces, said, scale } from "./band_style.js";
-import { Layer, color, niceStep, sized } from "./canvas.js";
+import { Layer, color, sized } from "./canvas.js";
 import { UNSEEN_MS, bandsAt } from "./instant.js";
+import { niceStep } from "./units.js";
 
 const TOP = 4, STRIP = 11, MOST = 4, LEAST_PX = 1;
 
@@ -13,17 +14,24 @@ export class Spectrum {
     select.append(...DIMENSIONS.map(one => new Option(one, one)));
     listen(canvas, recording, go);
     this.layer = new Layer();
+    this.grown();
   }
 
   // the recording has grown
-  grown() { this.layer.forget(); }
+  grown() {
+    this.end_ms = Math.max(this.recording.end_ms, 1000);
+    this.layer.forget();
+  }
 
-  draw(state, words) {
+  // whole: also where the instant has not moved to be seen
+  draw(state, words, whole = true) {
+    if (!whole && (this.box.hidden || Math.abs(state.time - this.shown) / this.end_ms * this.canvas.width < MOVED_PX)) return;
+    this.shown = state.time;
     const shown = bandsAt(this.recording, state);
     this.box.hidden = !Object.keys(this.recording.bands).length;
     if (this.box.hidden) return;
     this.select.value = state.dimension;
-    const { pen, width, height } = sized(this.canvas), end = Math.max(this.recording.end_ms, 1000);
+    const { pen, width, height } = sized(this.canvas), end = this.end_ms;
     if (!shown) {
       pen.fillStyle = color("soft");
       pen.fillText(`Pick an aircraft: the log has bands of ${Object.keys(this.recording.bands).join(", ")}.`, LEFT, 20);
@@ -32,7 +40,7 @@ export class Spectrum {
     const kept = this.layer.for(this.canvas, [shown.id, state.dimension, words.altitude(0)].join());
     if (kept.empty) this.all(kept.pen, width, height, end, shown.id, state.dimension, words);
     this.layer.onto(pen, width, height);
-    const x = LEFT + (width - LEFT - RIGHT) * state.time / end;
+    const x = LEFT + (width - LEFT - RIGHT) * Math.min(state.time / end, 1);
     pen.strokeStyle = color("ink"); pen.lineWidth = 1.5;
     pen.beginPath(); pen.moveTo(x, 0); pen.lineTo(x, height); pen.stroke();
   }

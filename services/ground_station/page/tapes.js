@@ -1,7 +1,8 @@
 // Three tapes, of speed, climb and altitude: bands of the vehicle that is shown, and its own value.
 
 import { DIMENSIONS, fill, own, pieces, said, scale } from "./band_style.js";
-import { color, niceStep, sized } from "./canvas.js";
+import { color, sized } from "./canvas.js";
+import { niceStep } from "./units.js";
 
 const TOP = 24, BOTTOM = 8, LEFT = 44, WIDE = 18;
 

@@ -1,0 +1,55 @@
+"""The sensors on one vehicle: what they have measured and is under way, and the own state by them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from cratous.core.authority.timeliness import lasted
+from cratous.services.sensing import own as own_state
+from cratous.services.sensing.filter import Flown
+from cratous.services.sensing.own import Own
+from cratous.services.sensing.sensors import Detection, detections
+from cratous.spec.mission.sensing import Sensing
+
+
+class Sensors(NamedTuple):
+    """Whose sensors, and which. seed: of the mission's variant, beside their own; step_ms: since the step before."""
+
+    own_id: int
+    sensing: Sensing
+    seed: int
+    step_ms: int
+
+
+class Carried(NamedTuple):
+    """under_way: measurements that have not come yet; own: None before the first step, or without a GPS."""
+
+    under_way: tuple[Detection, ...] = ()
+    own: Own | None = None
+
+
+def stepped(
+    sensors: Sensors, before: Carried, now_ms: int, aircraft: Mapping[int, Flown]
+) -> Carried:
+    """After a step of the simulation: what is measured now is under way, and the vehicle has flown on."""
+    sensing, air, own = sensors.sensing, aircraft[sensors.own_id], before.own
+    if sensing.gps is not None and own is None:
+        own = own_state.first(sensing.gps, now_ms, air)
+    elif own is not None:
+        fixes = (one.seen.at_ms for one in before.under_way if one.source == sensors.own_id)
+        own = own_state.moved(own, now_ms, air, min(fixes, default=now_ms))
+    new = detections(sensing, sensors.seed, sensors.own_id, now_ms, sensors.step_ms, aircraft)
+    return Carried((*before.under_way, *new), own)
+
+
+def came(own_id: int, before: Carried, now_ms: int) -> tuple[Carried, tuple[Detection, ...]]:
+    """After all that has come by now: fixes correct the own state; what there is of others."""
+    there, left = list[Detection](), list[Detection]()
+    for one in before.under_way:
+        (there if lasted(one.due_ms, now_ms, 0) else left).append(one)
+    own = before.own
+    for one in there:
+        if one.source == own_id and own is not None:
+            own = own_state.fixed(own, one.seen)
+    return Carried(tuple(left), own), tuple(one for one in there if one.source != own_id)

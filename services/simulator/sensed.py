@@ -1,0 +1,111 @@
+"""What aircraft know by their sensors: the own state by GPS, others by ADS-B and radar.
+
+The sensors are those of missions (`services.sensing`), errors, latency and drop-outs too. What one has measured of another
+aircraft is told as an EntityPerception when it comes: with the other's id by ADS-B, without one (0) by radar, with no
+payload, and with the standard deviations of its errors. Where there is a GPS an aircraft's state says where it takes itself
+to be. It steers by its true state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import atan2, degrees, hypot
+from typing import Any
+
+from cratous.bridge import lmcp
+from cratous.services.mission.frames import Projection
+from cratous.services.sensing import carried
+from cratous.services.sensing.carried import Carried, Sensors
+from cratous.services.sensing.filter import Flown
+from cratous.services.sensing.sensors import Detection
+from cratous.services.simulator.motion import Motion
+from cratous.services.simulator.perception import MOST_ID
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Frame, Position, Velocity
+from cratous.spec.mission.sensing import Sensing
+
+LEAST_PERIOD_MS = 40
+"""The longest step of the simulator, on ticks of 10 ms."""
+FARTHEST_M = 2_000_000.0
+"""From where the first aircraft began: there a range in its frame is longer by up to 2 %."""
+
+
+class Sensed:
+    """The sensors of all aircraft of a world."""
+
+    def __init__(self, sensing: Sensing) -> None:
+        self.sensing = sensing
+        self._carried: dict[int, Carried] = {}
+        self._projection: Projection | None = None
+        self._now_ms: int | None = None
+
+    def step(self, now_ms: int, aircraft: Mapping[int, Motion]) -> list[Any]:
+        """Measure at a step, and use what has come by now; the EntityPerceptions of that.
+
+        BadInput where an aircraft is too far from the first one for one frame.
+        """
+        flown = {key: self._flown(key, motion) for key, motion in aircraft.items()}
+        last_ms = now_ms - LEAST_PERIOD_MS if self._now_ms is None else self._now_ms
+        step_ms, self._now_ms = now_ms - last_ms, now_ms
+        self._carried = {key: self._carried.get(key, Carried()) for key in flown}
+        told: list[Any] = []
+        for key, before in self._carried.items():
+            sensors = Sensors(key, self.sensing, 0, step_ms)
+            after = carried.stepped(sensors, before, now_ms, flown)
+            self._carried[key], others = carried.came(key, after, now_ms)
+            if 0 < key <= MOST_ID:
+                told += [self._perception(key, one) for one in others]
+        return told
+
+    def own(self, body: Any) -> Any:
+        """An AirVehicleState as its aircraft knows itself; as it is where there is no GPS."""
+        known = self._carried.get(body.ID, Carried()).own
+        if known is None:
+            return body
+        (north, east, alt_m), v = known.estimate.position, known.estimate.velocity
+        return body.copy(
+            Location=self._location(north, east, alt_m),
+            Groundspeed=hypot(v.north_m_s, v.east_m_s),
+            Course=degrees(atan2(v.east_m_s, v.north_m_s)),
+            VerticalSpeed=-v.down_m_s,
+        )
+
+    def _flown(self, key: int, m: Motion) -> Flown:
+        lat_deg, lon_deg = degrees(m.lat_rad), degrees(m.lon_rad)
+        if self._projection is None:
+            self._projection = Projection(Frame(lat_deg, lon_deg))
+        north, east = self._projection.to_local(lat_deg, lon_deg)
+        if not hypot(north, east) <= FARTHEST_M:
+            first = self._projection.frame
+            raise BadInput(
+                "an aircraft too far from the first one for sensors",
+                item=f"AirVehicleState {key}",
+                expected=f"within {FARTHEST_M / 1000:g} km of {first.latitude_deg:.5f}, "
+                f"{first.longitude_deg:.5f}",
+                got=f"{lat_deg:.5f}, {lon_deg:.5f}",
+            )
+        return Flown(
+            Position(north, east, m.alt_m), Velocity(m.north_m_s, m.east_m_s, -m.climb_m_s)
+        )
+
+    def _location(self, north_m: float, east_m: float, alt_m: float) -> Any:
+        assert self._projection is not None
+        lat, lon = self._projection.to_geodetic(north_m, east_m)
+        return lmcp.new(
+            "Location3D", Latitude=lat, Longitude=lon, Altitude=alt_m, AltitudeType="MSL"
+        )
+
+    def _perception(self, perceiver: int, one: Detection) -> Any:
+        sensor, v = self.sensing.sensors[one.sensor], one.seen.velocity
+        wide, high, fast = sensor.horizontal_m, sensor.vertical_m, sensor.velocity_m_s
+        return lmcp.new(
+            "EntityPerception",
+            PerceivedEntityID=one.name if 0 < one.name <= MOST_ID else 0,
+            PerceiverID=perceiver,
+            Velocity=list(v),
+            VelocityError=[fast, fast, fast],
+            VelocityValid=True,
+            Location=self._location(*one.seen.position),
+            LocationError=[wide, wide, high],
+            TimeLastSeen=one.seen.at_ms,
+        )
