@@ -65,6 +65,11 @@ def any_departure(c: Claim) -> tuple[Departure, tuple[Any, ...]]:
     return departure, (heard, now, bound, *told)
 
 
+def any_other(c: Claim, step: Any, mode: Any) -> Any:
+    """Whatever else a heartbeat might come to: records of the kinds `step` and `mode`."""
+    return step(mode(c.integer("other_mode"), c.integer("other_since")), c.integer("other_act"))
+
+
 def heartbeat_as_defined(
     c: Claim, step: Any, meant: Any, given: tuple[Any, ...], other: Any
 ) -> Any:

@@ -11,6 +11,7 @@ from cratous.core.authority.take_off import (
 from cratous.proofs.claim import Claim
 from cratous.proofs.methods.command import (
     any_departure,
+    any_other,
     heartbeat_as_defined,
     takes_and_goes_as_defined,
 )
@@ -19,10 +20,7 @@ from cratous.spec.authority import take_off
 
 def claim(c: Claim) -> None:
     before, seen = any_departure(c)
-    other = DepartureStep(
-        Departure(c.integer("other_mode"), c.integer("other_since")), c.integer("other_act")
-    )
-    meant = take_off.is_after_heartbeat
+    meant, other = take_off.is_after_heartbeat, any_other(c, DepartureStep, Departure)
     stepped = heartbeat_as_defined(c, departure_step, meant, (before, *seen), other)
     c.show(c.define(take_off.is_mode, stepped.departure.mode), "it is one of the four")
     takes, goes = (departure_takes, take_off.must_fly), (departure_lets_go, take_off.may_go_back)
