@@ -26,7 +26,7 @@ from cratous.core.assignment.layers import (
 )
 from cratous.core.assignment.lower_bounds import heads, least_until, least_work
 from cratous.core.assignment.refutation import bound
-from cratous.core.assignment.search_records import Ahead
+from cratous.core.assignment.search_records import REFUTES, Ahead
 from cratous.core.assignment.steps import earliest_start, raised, soonest_end, weighted
 from cratous.core.kernel import driver
 from cratous.core.schedule.rows import later
@@ -149,13 +149,7 @@ def rough_bound(instance: Instance) -> int:
     return weighted(last, int(work), int(legs), int(i.weight[0]), int(i.weight[1]))
 
 
-@driver(
-    checked_by=(
-        "earliest_start", "latest_departure", "covers_step", "keeps_step", "weighted", "opened",
-        "raised", "least_of", "add_least", "no_shortcut", "tail_step", "soonest_end", "room_step",
-        "lacks_room", "later",
-    )
-)  # fmt: skip
+@driver(checked_by=REFUTES)
 def settle_bound(
     instance: Instance,
     limit: int,

@@ -21,7 +21,7 @@ from cratous.core.assignment.compiled import machine_for
 from cratous.core.assignment.instance import Instance
 from cratous.core.assignment.layers import first_state, look_ahead, search_below
 from cratous.core.assignment.refutation import bound, place
-from cratous.core.assignment.search_records import Ahead, Search
+from cratous.core.assignment.search_records import REFUTES, Ahead, Search
 from cratous.core.assignment.steps import opened
 from cratous.core.assignment.tables import deals
 from cratous.core.kernel import driver
@@ -125,13 +125,7 @@ class Listed:
     leaves: int
 
 
-@driver(
-    checked_by=(
-        "earliest_start", "latest_departure", "keeps_step", "weighted", "opened",
-        "raised", "least_of", "add_least", "no_shortcut", "tail_step", "soonest_end", "room_step",
-        "lacks_room", "later",
-    )
-)  # fmt: skip
+@driver(checked_by=tuple(name for name in REFUTES if name != "covers_step"))
 def chains_below(
     instance: Instance,
     limit: int,

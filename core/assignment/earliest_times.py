@@ -19,15 +19,8 @@ from typing import NamedTuple
 from cratous.core.assignment.steps import chain_holds, raised
 from cratous.core.kernel import Refusal, driver
 from cratous.core.schedule.rows import schedule_holds
-from cratous.spec.constraint_rows import (
-    AFTER_END,
-    AFTER_START,
-    NOT_AFTER,
-    NOT_BEFORE,
-    WITHIN_END,
-    WITHIN_START,
-    Row,
-)
+from cratous.spec import constraint_rows as kinds
+from cratous.spec.constraint_rows import Row
 
 CHOICES_MAX = 2_000
 """Choices that are tried for one schedule."""
@@ -82,13 +75,13 @@ def next_wait_ms(wait_ms: int, lap_ms: int, lap_max_ms: int) -> int | None:
 
 def reference_ms(row: Row, starts: dict[int, int], ends: dict[int, int]) -> int | None:
     """Latest end (kinds 1, 3) or earliest start (2, 4) of the row's group; None if not all known."""
-    known = starts if row.kind in (AFTER_START, WITHIN_START) else ends
+    known = starts if row.kind in (kinds.AFTER_START, kinds.WITHIN_START) else ends
     times = [known[task] for task in row.group if task in known]
-    if row.kind in (NOT_BEFORE, NOT_AFTER):
+    if row.kind in (kinds.NOT_BEFORE, kinds.NOT_AFTER):
         return 0
     if len(times) < len(row.group) or not times:
         return None
-    return min(times) if row.kind in (AFTER_START, WITHIN_START) else max(times)
+    return min(times) if row.kind in (kinds.AFTER_START, kinds.WITHIN_START) else max(times)
 
 
 def rows_hold(rows: Sequence[Row], starts: dict[int, int], ends: dict[int, int]) -> bool:
@@ -140,7 +133,7 @@ class _System:
             self.first[k], self.latest[k] = visit.fixed_ms, (visit.fixed_ms, None)
             return
         text = f"task {visit.task_id} would have to wait, but there is no room to hold"
-        full = Row(NOT_AFTER, visit.task_id, (), 0, 0, text)
+        full = Row(kinds.NOT_AFTER, visit.task_id, (), 0, 0, text)
         if visit.previous < 0:
             self.first[k] = visit.ready_ms + visit.travel_ms
             if visit.lap_max_ms <= 0:
@@ -153,20 +146,20 @@ class _System:
 
     def _row(self, row: Row, i: int, group: list[int]) -> None:
         long = self.visits[i].duration_ms
-        if row.kind == NOT_BEFORE:
+        if row.kind == kinds.NOT_BEFORE:
             self.first[i] = max(self.first[i], row.lo)
-        elif row.kind == NOT_AFTER:
+        elif row.kind == kinds.NOT_AFTER:
             if row.hi - long < self.latest[i][0]:
                 self.latest[i] = (row.hi - long, row)
-        elif row.kind == AFTER_END:
+        elif row.kind == kinds.AFTER_END:
             for m in group:
                 self.edges[m].append(_Edge(i, self.visits[m].duration_ms + row.lo, row))
-        elif row.kind == WITHIN_START:
+        elif row.kind == kinds.WITHIN_START:
             for m in group:
                 self.edges[i].append(_Edge(m, long - row.hi, row))
-        elif row.kind == AFTER_START:
+        elif row.kind == kinds.AFTER_START:
             self._any([(m, _Edge(i, row.lo, row)) for m in group])
-        elif row.kind == WITHIN_END:
+        elif row.kind == kinds.WITHIN_END:
             last = [self.visits[m].duration_ms for m in group]
             self._any(
                 [(i, _Edge(m, long - row.hi - d, row)) for m, d in zip(group, last, strict=True)]
@@ -264,7 +257,7 @@ Edge0: tuple[int, Row | None] = (-1, None)
 
 def _unnamed(visit: Visit) -> Row:
     text = f"task {visit.task_id} cannot be flown so early"
-    return Row(NOT_AFTER, visit.task_id, (), 0, 0, text)
+    return Row(kinds.NOT_AFTER, visit.task_id, (), 0, 0, text)
 
 
 Cost = Callable[[list[int]], int]
@@ -380,7 +373,7 @@ def _legs(times: Times, visits: Sequence[Visit]) -> Iterator[list[tuple[int, int
 
 
 def _none_below(limit: int) -> Row:
-    return Row(NOT_AFTER, 0, (), 0, limit, "no schedule costs less")
+    return Row(kinds.NOT_AFTER, 0, (), 0, limit, "no schedule costs less")
 
 
 def least_starts(visits: Sequence[Visit], rows: Sequence[Row]) -> list[int] | None:

@@ -29,7 +29,7 @@ from cratous.core.assignment.lower_bounds import (
     ways_to_tasks,
 )
 from cratous.core.assignment.refutation import cost_now, expand, place, rehash
-from cratous.core.assignment.search_records import Ahead, Layer, Search, Tables
+from cratous.core.assignment.search_records import REFUTES, Ahead, Layer, Search, Tables
 from cratous.core.assignment.tables import CELLS_MAX, latest_tables
 from cratous.core.kernel import driver
 
@@ -135,13 +135,7 @@ def first_state(instance: Instance) -> np.ndarray:
     return np.array([0, *[options] * v, *instance.ready, 0, 0, *refs], np.int64)
 
 
-@driver(
-    checked_by=(
-        "earliest_start", "latest_departure", "covers_step", "keeps_step", "weighted", "opened",
-        "raised", "least_of", "add_least", "no_shortcut", "tail_step", "soonest_end", "room_step",
-        "lacks_room", "later",
-    )
-)  # fmt: skip
+@driver(checked_by=REFUTES)
 def refute(
     instance: Instance,
     limit: int,

@@ -15,16 +15,11 @@ from cratous.core.assignment.compiled import STATES_MOST, is_brief, machine_afte
 from cratous.core.assignment.instance import Instance
 from cratous.core.assignment.layers import first_state, look_ahead, search_below
 from cratous.core.assignment.refutation import closed, cost_now
+from cratous.core.assignment.search_records import REFUTES
 from cratous.core.kernel import driver
 
 
-@driver(
-    checked_by=(
-        "earliest_start", "latest_departure", "covers_step", "keeps_step", "weighted", "opened",
-        "raised", "least_of", "add_least", "no_shortcut", "tail_step", "soonest_end", "room_step",
-        "lacks_room", "later",
-    )
-)  # fmt: skip
+@driver(checked_by=REFUTES)
 def least_cost(instance: Instance, limit: int, origins: Sequence[np.ndarray]) -> tuple[int, str]:
     """(no completion costs less than this, what is wrong): the first counts if the second is ""."""
     i = instance

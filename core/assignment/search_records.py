@@ -11,6 +11,13 @@ import numpy as np
 
 from cratous.core.assignment.instance import Instance
 
+REFUTES = (
+    "earliest_start", "latest_departure", "covers_step", "keeps_step", "weighted", "opened",
+    "raised", "least_of", "add_least", "no_shortcut", "tail_step", "soonest_end", "room_step",
+    "lacks_room", "later",
+)  # fmt: skip
+"""The kernels that decide in a refutation."""
+
 
 class Ahead(NamedTuple):
     """What the search looks ahead with; the same for every limit, but for the tables [ms].

@@ -6,11 +6,12 @@ The same kernels are asked as by the bands, for one value, intruder by intruder.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from cratous.core.daa.bands import Raw, manoeuvres
+from cratous.core.daa.bands import Raw, Traffic, manoeuvres
 from cratous.core.daa.climb import altitude_conflict
 from cratous.core.daa.coordination import step_is_repulsive
 from cratous.core.daa.engine import Seen
@@ -87,62 +88,66 @@ def coordination_reasons(
     return found
 
 
+def _looked_at(p: Parameters, traffic: Traffic, raw: Raw) -> Iterator[tuple[int, int, str, float]]:
+    """Each region of the bands, most severe first, with each intruder that counts there: (region, which, its id,
+    how far ahead it is looked [s])."""
+    for region in range(NEAR, 0, -1):
+        if not raw.state[region]:
+            continue
+        for i, name in enumerate(traffic.ids):
+            if traffic.mapped[region, i]:
+                horizon_s = p.lookahead_time_s
+                if not traffic.conflict[region, i]:
+                    horizon_s = min(horizon_s, float(traffic.alerting_s[region, i]))
+                yield region, i, name, horizon_s
+
+
 @driver(checked_by=("in_conflict", "piece_counts", "straight_from"))
 def step_reasons(p: Parameters, seen: Seen, raw: Raw, side: int, k: int) -> list[Reason]:
     """What is in the way of step k to the right (side 1) or left (side -1), most severe first."""
     g, traffic = raw.grid, seen.traffic
     path = g.right if side > 0 else g.left
     found: list[Reason] = []
-    for region in range(NEAR, 0, -1):
-        if not raw.state[region]:
-            continue
-        for i, name in enumerate(traffic.ids):
-            if not traffic.mapped[region, i]:
+    for region, i, name, horizon_s in _looked_at(p, traffic, raw):
+        kind = int(traffic.kinds[region, i])
+        volume = traffic.volumes[region, i]
+        for j in range(k + 1):
+            at_s = j * g.step_s
+            relative = path[j, :6] - traffic.states[i]
+            relative[:3] -= at_s * traffic.states[i, 3:]
+            state: Any = (
+                kind,
+                Relative(
+                    Vec2(relative[0], relative[1]), Vec2(relative[3], relative[4]),
+                    relative[2], relative[5],
+                ),
+                volume, at_s,
+            )  # fmt: skip
+            violated: Any = lost
+            times_of: Any = lost_span
+            counted = p.bands_add_time_to_maneuver
+            last_s = horizon_s if counted else p.lookahead_time_s
+            way = g.step_s > 0 and piece_counts(at_s, 0, last_s) and violated(*state, 0, g.step_s)
+            end_s = until(p.lookahead_time_s, horizon_s, at_s, counted)
+            after = j == k and violated(*state, straight_from(at_s, 0), end_s - at_s)
+            if not way and not after:
                 continue
-            horizon_s = p.lookahead_time_s
-            if not traffic.conflict[region, i]:
-                horizon_s = min(horizon_s, float(traffic.alerting_s[region, i]))
-            kind = int(traffic.kinds[region, i])
-            volume = traffic.volumes[region, i]
-            for j in range(k + 1):
-                at_s = j * g.step_s
-                relative = path[j, :6] - traffic.states[i]
-                relative[:3] -= at_s * traffic.states[i, 3:]
-                state: Any = (
-                    kind,
-                    Relative(
-                        Vec2(relative[0], relative[1]), Vec2(relative[3], relative[4]),
-                        relative[2], relative[5],
-                    ),
-                    volume, at_s,
-                )  # fmt: skip
-                violated: Any = lost
-                times_of: Any = lost_span
-                counted = p.bands_add_time_to_maneuver
-                last_s = horizon_s if counted else p.lookahead_time_s
-                way = (
-                    g.step_s > 0 and piece_counts(at_s, 0, last_s) and violated(*state, 0, g.step_s)
+            first_s, final_s = times_of(*state, 0, g.step_s if way else end_s - at_s)
+            miss, above = _least(relative, first_s, final_s)
+            times = (at_s + first_s, at_s + final_s)
+            found.append(
+                Reason(
+                    name,
+                    region,
+                    bool(way),
+                    *times,
+                    miss,
+                    above,
+                    float(volume[0]),
+                    float(volume[1]),
                 )
-                end_s = until(p.lookahead_time_s, horizon_s, at_s, counted)
-                after = j == k and violated(*state, straight_from(at_s, 0), end_s - at_s)
-                if not way and not after:
-                    continue
-                first_s, final_s = times_of(*state, 0, g.step_s if way else end_s - at_s)
-                miss, above = _least(relative, first_s, final_s)
-                times = (at_s + first_s, at_s + final_s)
-                found.append(
-                    Reason(
-                        name,
-                        region,
-                        bool(way),
-                        *times,
-                        miss,
-                        above,
-                        float(volume[0]),
-                        float(volume[1]),
-                    )
-                )
-                break
+            )
+            break
     return found
 
 
@@ -152,33 +157,25 @@ def altitude_reasons(p: Parameters, seen: Seen, raw: Raw, k: int) -> list[Reason
     g, traffic = raw.grid, seen.traffic
     looking = Looking(p.lookahead_time_s, p.bands_add_time_to_maneuver, 0.0, False, False)
     found: list[Reason] = []
-    for region in range(NEAR, 0, -1):
-        if not raw.state[region]:
-            continue
-        for i, name in enumerate(traffic.ids):
-            if not traffic.mapped[region, i]:
-                continue
-            horizon_s = p.lookahead_time_s
-            if not traffic.conflict[region, i]:
-                horizon_s = min(horizon_s, float(traffic.alerting_s[region, i]))
-            volume = traffic.volumes[region, i]
-            if swift(altitude_conflict)(
-                manoeuvres(g, g.step_s), g.targets[k], traffic.states[i], traffic.kinds[region, i],
-                volume, Looked(0.0, horizon_s, False), looking,
-            ):  # fmt: skip
-                found.append(
-                    Reason(
-                        name,
-                        region,
-                        False,
-                        None,
-                        None,
-                        None,
-                        None,
-                        float(volume[0]),
-                        float(volume[1]),
-                    )
+    for region, i, name, horizon_s in _looked_at(p, traffic, raw):
+        volume = traffic.volumes[region, i]
+        if swift(altitude_conflict)(
+            manoeuvres(g, g.step_s), g.targets[k], traffic.states[i], traffic.kinds[region, i],
+            volume, Looked(0.0, horizon_s, False), looking,
+        ):  # fmt: skip
+            found.append(
+                Reason(
+                    name,
+                    region,
+                    False,
+                    None,
+                    None,
+                    None,
+                    None,
+                    float(volume[0]),
+                    float(volume[1]),
                 )
+            )
     return found
 
 

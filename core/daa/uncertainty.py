@@ -214,6 +214,22 @@ def speed_error(range_m: float, near_m_s: float, far_m_s: float, distance_m: flo
     return near_m_s + (far_m_s - near_m_s) * (range_m / distance_m)
 
 
+def uncertainty_of(
+    state: Relative, w: np.ndarray, at_s: float
+) -> tuple[bool, Relative, Uncertainty]:
+    """(whether there is any, the state at_s seconds before, its uncertainties, > 0). w: as for `lost`."""
+    s, v = state.s, state.v
+    back = Vec2(s.x - at_s * v.x, s.y - at_s * v.y)
+    es, ez, ew = w[5], w[6], w[7]
+    distance = sqrt(back.x * back.x + back.y * back.y)
+    ev = speed_error(distance - es, w[8], w[9], w[10])
+    some = es > 0 or ez > 0 or ew > 0 or ev > 0
+    error = Uncertainty(
+        max(es, LEAST_ERROR), max(ez, LEAST_ERROR), max(ev, LEAST_ERROR), max(ew, LEAST_ERROR)
+    )
+    return some, Relative(back, v, state.sz - at_s * state.vz, state.vz), error
+
+
 @driver(checked_by=("in_conflict", "uncertain_conflict", "speed_error"))
 def lost(kind: int, state: Relative, w: np.ndarray, at_s: float, b_s: float, t_s: float):
     """Whether the volume w of that kind is, or may be, violated at some instant of [b_s, t_s].
@@ -224,16 +240,10 @@ def lost(kind: int, state: Relative, w: np.ndarray, at_s: float, b_s: float, t_s
     s, v, sz, vz = state.s, state.v, state.sz, state.vz
     thresholds = Thresholds(w[0], w[1], w[2], w[3], w[4])
     if kind == SUM_KIND:
-        back = Vec2(s.x - at_s * v.x, s.y - at_s * v.y)
-        es, ez, ew = w[5], w[6], w[7]
-        distance = sqrt(back.x * back.x + back.y * back.y)
-        ev = speed_error(distance - es, w[8], w[9], w[10])
-        if es > 0 or ez > 0 or ew > 0 or ev > 0:
-            error = Uncertainty(
-                max(es, LEAST_ERROR), max(ez, LEAST_ERROR), max(ev, LEAST_ERROR), max(ew, LEAST_ERROR)
-            )  # fmt: skip
+        some, back, error = uncertainty_of(state, w, at_s)
+        if some:
             return uncertain_conflict(
-                back, v, sz - at_s * vz, vz, error, thresholds, at_s + b_s, at_s + t_s
+                back.s, v, back.sz, vz, error, thresholds, at_s + b_s, at_s + t_s
             )
     return in_conflict(kind, s, v, sz, vz, thresholds, b_s, t_s)
 
@@ -244,16 +254,10 @@ def lost_span(kind: int, state: Relative, w: np.ndarray, at_s: float, b_s: float
     s, v, sz, vz = state.s, state.v, state.sz, state.vz
     thresholds = Thresholds(w[0], w[1], w[2], w[3], w[4])
     if kind == SUM_KIND:
-        back = Vec2(s.x - at_s * v.x, s.y - at_s * v.y)
-        es, ez, ew = w[5], w[6], w[7]
-        distance = sqrt(back.x * back.x + back.y * back.y)
-        ev = speed_error(distance - es, w[8], w[9], w[10])
-        if es > 0 or ez > 0 or ew > 0 or ev > 0:
-            error = Uncertainty(
-                max(es, LEAST_ERROR), max(ez, LEAST_ERROR), max(ev, LEAST_ERROR), max(ew, LEAST_ERROR)
-            )  # fmt: skip
+        some, back, error = uncertainty_of(state, w, at_s)
+        if some:
             first, last = uncertain_span(
-                back, v, sz - at_s * vz, vz, error, thresholds, at_s + b_s, at_s + t_s
+                back.s, v, back.sz, vz, error, thresholds, at_s + b_s, at_s + t_s
             )
             return first - at_s, last - at_s
     first, last = conflict_span(kind, s, v, sz, vz, thresholds, b_s, t_s)

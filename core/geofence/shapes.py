@@ -102,34 +102,19 @@ class Region:
 
 
 def _corner(k: int, corner: Any, where: str, item: str) -> tuple[float, float]:
-    name = f"{item}[{k}]"
+    def bad(what: str, expected: str = "(x, y)") -> BadInput:
+        text, name = f"vertex {k + 1} {what}", f"{item}[{k}]"
+        return BadInput(text, where=where, item=name, expected=expected, got=repr(corner))
+
     try:
         parts = tuple(corner)
         values = tuple(float(part) for part in parts)
     except (TypeError, ValueError, OverflowError) as error:
-        raise BadInput(
-            f"vertex {k + 1} is no pair of numbers",
-            where=where,
-            item=name,
-            expected="(x, y)",
-            got=repr(corner),
-        ) from error
+        raise bad("is no pair of numbers") from error
     if len(values) != 2:
-        raise BadInput(
-            f"vertex {k + 1} has {len(values)} coordinates",
-            where=where,
-            item=name,
-            expected="(x, y)",
-            got=repr(corner),
-        )
+        raise bad(f"has {len(values)} coordinates")
     if any(value != part for value, part in zip(values, parts, strict=True) if part == part):
-        raise BadInput(
-            f"vertex {k + 1} is no pair of doubles",
-            where=where,
-            item=name,
-            expected="numbers that doubles can hold",
-            got=repr(corner),
-        )
+        raise bad("is no pair of doubles", "numbers that doubles can hold")
     return values[0], values[1]
 
 

@@ -9,14 +9,7 @@ from math import isfinite
 
 import numpy as np
 
-from cratous.core.requirements.since import (
-    Broken,
-    Found,
-    is_due,
-    since_broken,
-    since_decided,
-    since_found,
-)
+from cratous.core.requirements import since
 from cratous.core.requirements.until import Times, until_decided, until_times
 from cratous.core.requirements.verdict import both, either, negated, reaches
 
@@ -101,15 +94,15 @@ def since_of(
 ) -> None:
     """Fill `found` (2, n) with phi since psi between low and high ago."""
     n, young, last = len(times), 0, 0
-    latest, broken = Found(NEVER - 1, NEVER - 1), Broken(NEVER, NEVER)
+    latest, broken = since.Found(NEVER - 1, NEVER - 1), since.Broken(NEVER, NEVER)
     for k in range(n):
         last = max(max(phi[1, k], psi[1, k]), last)
         found[1, k] = last
         if last >= n:
             found[0, k], found[1, k] = 1, n
             continue
-        while young <= k and is_due(times[young], times[k], low):
-            latest = since_found(latest, times[young], psi[0, young])
+        while young <= k and since.is_due(times[young], times[k], low):
+            latest = since.since_found(latest, times[young], psi[0, young])
             young += 1
-        broken = since_broken(broken, times[k], phi[0, k])
-        found[0, k] = since_decided(latest, broken, times[k], high)
+        broken = since.since_broken(broken, times[k], phi[0, k])
+        found[0, k] = since.since_decided(latest, broken, times[k], high)

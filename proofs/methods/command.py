@@ -63,3 +63,28 @@ def any_departure(c: Claim) -> tuple[Departure, tuple[Any, ...]]:
     c.premise(c.all_of(c.define(take_off.is_mode, departure.mode), bound >= 0))
     told = (c.boolean("permitted"), c.boolean("airborne"), c.boolean("ended"))
     return departure, (heard, now, bound, *told)
+
+
+def any_other(c: Claim, step: Any, mode: Any) -> Any:
+    """Whatever else a heartbeat might come to: records of the kinds `step` and `mode`."""
+    return step(mode(c.integer("other_mode"), c.integer("other_since")), c.integer("other_act"))
+
+
+def heartbeat_as_defined(
+    c: Claim, step: Any, meant: Any, given: tuple[Any, ...], other: Any
+) -> Any:
+    """What a heartbeat comes to: it is what its definition says of what is `given`, and no `other` is."""
+    stepped = c.use(step, *given)
+    c.show(c.define(meant, *given, stepped), "a heartbeat")
+    another = c.define(meant, *given, other)
+    c.show(c.implies(another, c.same(other, stepped)), "and it can be no other: never two modes")
+    return stepped
+
+
+def takes_and_goes_as_defined(
+    c: Claim, before: Any, takes: tuple[Any, Any], goes: tuple[Any, Any], when: str
+) -> None:
+    """That ICAROUS takes the vehicle and lets it go by its definitions. takes, goes: kernel and definition."""
+    reason = c.boolean("reason")
+    for (kernel, meant), text in ((takes, "why ICAROUS has the vehicle"), (goes, when)):
+        c.show(c.same(c.use(kernel, before, reason), c.define(meant, before, reason)), text)

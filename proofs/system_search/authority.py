@@ -22,18 +22,7 @@ from cratous.spec.authority import cycle as instance
 from cratous.spec.authority import gate as authority
 from cratous.spec.authority.link_end import TAKE_BACK, End, believes_uxas
 from cratous.spec.system import authority as system
-from cratous.spec.system.trace import (
-    COMMAND,
-    HEARTBEAT,
-    MODE,
-    NOTHING,
-    REPORT,
-    RESTART,
-    TRACK,
-    Entry,
-    Event,
-    Standing,
-)
+from cratous.spec.system import trace
 
 NAMES = ("UxAS", "ICAROUS")
 
@@ -76,18 +65,18 @@ class Step(NamedTuple):
     text: str
     after: State
     wrong: str = ""
-    event: Event = Event("")
+    event: trace.Event = trace.Event("")
     accepted: bool = False
-    sent: int = NOTHING
+    sent: int = trace.NOTHING
 
     @property
-    def entry(self) -> Entry:
+    def entry(self) -> trace.Entry:
         """The step as an entry of a trace."""
         gate, end, mode = self.after.gate, self.after.end, self.after.cycle.mode
-        stands = Standing(
+        stands = trace.Standing(
             *gate, mode, end.active, end.epoch, self.after.suspended, self.accepted, self.sent
         )
-        return Entry(self.text, self.event, stands)
+        return trace.Entry(self.text, self.event, stands)
 
 
 def taken_epoch(state: State) -> int:
@@ -115,26 +104,28 @@ class Design:
 def steps(design: Design, state: State) -> Iterator[Step]:
     """Everything that can happen next."""
     for free in (False, True):
-        yield _heartbeat(design, state, free)._replace(event=Event(HEARTBEAT, free))
+        yield _heartbeat(design, state, free)._replace(event=trace.Event(trace.HEARTBEAT, free))
     for report in sorted(state.reports):
         if report != state.known:
-            event = Event(REPORT, report.offered, report.owner, report.epoch)
+            event = trace.Event(trace.REPORT, report.offered, report.owner, report.epoch)
             text = f"UxAS is told that {_gate(report)}"
             yield Step(text, state._replace(known=report), event=event)
     for active in (False, True):
         for epoch in range(state.gate.epoch + 2):
-            yield _mode(design, state, active, epoch)._replace(event=Event(MODE, active, 0, epoch))
+            yield _mode(design, state, active, epoch)._replace(
+                event=trace.Event(trace.MODE, active, 0, epoch)
+            )
     if design.tells(state.suspended, True):
         told = _uxas_commands(state, design.names(state), "UxAS commands a new track")
-        yield told._replace(event=Event(TRACK))
+        yield told._replace(event=trace.Event(trace.TRACK))
     for command in sorted(state.commands):
         yield _arrives(design, state, command)._replace(
-            event=Event(COMMAND, False, *command),
+            event=trace.Event(trace.COMMAND, False, *command),
             accepted=design.accepts(state.gate, command.sender, command.epoch),
         )
     if design.restarted is not None:
         after = _changed(state, design.restarted(state.gate))
-        yield _checked("the gate restarts", state, after)._replace(event=Event(RESTART))
+        yield _checked("the gate restarts", state, after)._replace(event=trace.Event(trace.RESTART))
 
 
 def _heartbeat(design: Design, state: State, free: bool) -> Step:

@@ -86,7 +86,7 @@ def worst(states: Iterable[State]) -> State:
 
 
 class Argument:
-    """Elements by id, in the order in which they were added; each once."""
+    """The elements of an argument by id, each once, in the order in which they were added."""
 
     def __init__(self) -> None:
         self.elements: dict[str, Element] = {}

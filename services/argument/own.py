@@ -9,15 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from cratous.core.kernel.names import short
-from cratous.services.argument.elements import (
-    OF_VERDICT,
-    Argument,
-    Element,
-    Kind,
-    State,
-    counted,
-    worst,
-)
+from cratous.services.argument import elements
 from cratous.services.argument.proved import Proofs, plain
 from cratous.services.certify.own_said import sentence
 from cratous.services.certify.own_views import own_requirements
@@ -33,7 +25,7 @@ STRATEGY = "S-own"
 class Own:
     """Adds the requirements of one's own of a report to an argument. kept: the ledger as it is now."""
 
-    def __init__(self, argument: Argument, report: Data, kept: Data) -> None:
+    def __init__(self, argument: elements.Argument, report: Data, kept: Data) -> None:
         self.rows = own_requirements(report)
         self._argument = argument
         self._known = kept["kernels"]
@@ -52,7 +44,9 @@ class Own:
         own = report.get(OWN, {})
         self._files = {
             one["file"]: argument.add(
-                Element(f"C-own-file-{number}", Kind.CONTEXT, _file_said(one, own["findings"]))
+                elements.Element(
+                    f"C-own-file-{number}", elements.Kind.CONTEXT, _file_said(one, own["findings"])
+                )
             )
             for number, one in enumerate(own.get("files", ()), 1)
         }
@@ -66,26 +60,30 @@ class Own:
             f"Over each requirement of one's own ({len(goals)}), held against the log by the monitor after "
             "the flight; nothing is proved of them beyond this run"
         )
-        state = worst(map(self._argument.state, goals))
-        return (self._argument.add(Element(STRATEGY, Kind.STRATEGY, text, goals, state=state)),)
+        state = elements.worst(map(self._argument.state, goals))
+        return (
+            self._argument.add(
+                elements.Element(STRATEGY, elements.Kind.STRATEGY, text, goals, state=state)
+            ),
+        )
 
-    def names(self, *states: State) -> list[str]:
+    def names(self, *states: elements.State) -> list[str]:
         """The ids of the requirements whose goals stand so."""
         numbered = enumerate(self.rows, 1)
         return [row["requirement"] for n, row in numbered if self._argument.state(_id(n)) in states]
 
     def _goal(self, number: int, row: Data) -> str:
-        state = OF_VERDICT[Outcome(row["verdict"])]
+        state = elements.OF_VERDICT[Outcome(row["verdict"])]
         text = f"{row['text']} In this run: {row['verdict']}, {row['note']}"
         if row["blame"] is not None:
             text += f". Blame: {sentence(row['blame'])}"
         below: tuple[str, ...] = ()
-        if state is State.SUPPORTED:
+        if state is elements.State.SUPPORTED:
             kernels = tuple(self._kernel(name) for name in row["kernels"])
-            if any(self._argument.state(one) is not State.SUPPORTED for one in kernels):
-                state, below = State.NOT_PROVED, kernels
+            if any(self._argument.state(one) is not elements.State.SUPPORTED for one in kernels):
+                state, below = elements.State.NOT_PROVED, kernels
             elif not (row["checks"] and kernels):  # what reads no signal is decided by none
-                state = State.NOTHING
+                state = elements.State.NOTHING
                 text += ". Nothing in the flight tested it"
             else:
                 below = (*kernels, self._evidence(number, row))
@@ -94,20 +92,26 @@ class Own:
             odd = f"Odd about {row['requirement']}: " + "; ".join(
                 one["text"] for one in row["lint"]
             )
-            context.append(self._argument.add(Element(f"C-own-lint-{number}", Kind.CONTEXT, odd)))
+            context.append(
+                self._argument.add(
+                    elements.Element(f"C-own-lint-{number}", elements.Kind.CONTEXT, odd)
+                )
+            )
         return self._argument.add(
-            Element(_id(number), Kind.GOAL, text, below, tuple(context), state)
+            elements.Element(_id(number), elements.Kind.GOAL, text, below, tuple(context), state)
         )
 
     def _evidence(self, number: int, row: Data) -> str:
         text = (
-            f"report.json, {row['requirement']}: holds at {counted(row['samples']['holds'], 'sample')}, "
-            f"{counted(row['checks'], 'check')}"
+            f"report.json, {row['requirement']}: holds at {elements.counted(row['samples']['holds'], 'sample')}, "
+            f"{elements.counted(row['checks'], 'check')}"
         )
         if row["margin"] is not None:
             text += f", margin {row['margin']:.4g} {row['unit']}".rstrip()
         text += "; judged again from its text and the log"
-        return self._argument.add(Element(f"Sn-own-{number}", Kind.SOLUTION, text))
+        return self._argument.add(
+            elements.Element(f"Sn-own-{number}", elements.Kind.SOLUTION, text)
+        )
 
     def _whole(self, name: str) -> Data | None:
         """The record of a kernel, or of the fold that it is a step of."""

@@ -59,7 +59,7 @@ def trusted() -> Element:
 
 
 def not_shown(found: Iterable[tuple[str, str]]) -> Iterator[Element]:
-    """What no row of the report speaks of, or nothing vouches for; none where there is none."""
+    """The element for what no row of the report covers and nothing vouches for; None if there is no such thing."""
     said = [f"{what}: {why}" for what, why in found]
     if said:
         yield Element("C-not-shown", Kind.CONTEXT, f"Not shown here: {'; '.join(said)}")

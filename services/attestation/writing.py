@@ -37,7 +37,7 @@ class Wanted(NamedTuple):
 
 
 class Written(NamedTuple):
-    """What was written, as paths, and what was left out of it, in words."""
+    """The paths that were written, and in words what was left out."""
 
     files: list[str]
     left_out: list[str]

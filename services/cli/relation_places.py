@@ -20,7 +20,7 @@ BEGIN = re.compile(r"[^#]*\brelations[\"']?\s*:|.*<TaskRelationships>")
 
 
 class RelationPlaces:
-    """The places in one mission's file. Nothing is added where the file is gone or no text."""
+    """Finds the lines of relations in one mission file. Adds nothing if the file is missing or is not text."""
 
     def __init__(self, mission: Mission) -> None:
         """Reads the file once."""

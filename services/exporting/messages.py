@@ -11,18 +11,8 @@ from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.services.mission.frames import Projection, compass
+from cratous.spec import mission as spec
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import (
-    Loiter,
-    Mission,
-    Pattern,
-    Position,
-    Task,
-    TaskKind,
-    Vehicle,
-    View,
-    Zone,
-)
 
 REGION = 1
 """Id of the one operating region, which has all zones."""
@@ -35,7 +25,11 @@ DIRECTIONS = {
     "any": "VehicleDefault",
 }
 
-PATTERNS = {Pattern.SPIRAL: "Spiral", Pattern.SECTOR: "Sector", Pattern.SWEEP: "Sweep"}
+PATTERNS = {
+    spec.Pattern.SPIRAL: "Spiral",
+    spec.Pattern.SECTOR: "Sector",
+    spec.Pattern.SWEEP: "Sweep",
+}
 
 
 class Told(NamedTuple):
@@ -55,7 +49,7 @@ class Told(NamedTuple):
         )  # fmt: skip
 
 
-def messages_of(mission: Mission) -> Told:
+def messages_of(mission: spec.Mission) -> Told:
     """The messages; BadInput for a task of a kind that is not written."""
     plane = Projection(mission.frame)
     return Told(
@@ -85,7 +79,7 @@ def messages_of(mission: Mission) -> Told:
 # vehicles --------------------------------------------------------------------------------------
 
 
-def configuration_of(vehicle: Vehicle) -> Any:
+def configuration_of(vehicle: spec.Vehicle) -> Any:
     """An AirVehicleConfiguration: level flight, and the steepest climb and descent."""
     bank = degrees(vehicle.max_bank_rad)
 
@@ -114,7 +108,7 @@ def configuration_of(vehicle: Vehicle) -> Any:
     )
 
 
-def payloads_of(vehicle: Vehicle) -> list[tuple[Any, Any]]:
+def payloads_of(vehicle: spec.Vehicle) -> list[tuple[Any, Any]]:
     """Gimbal and camera for each camera, in order; a camera without an id gets a free one."""
     taken = {camera.payload_id for camera in vehicle.cameras}
     found = []
@@ -150,7 +144,7 @@ def payloads_of(vehicle: Vehicle) -> list[tuple[Any, Any]]:
     return found
 
 
-def _mounted(vehicle: Vehicle) -> list[Any]:
+def _mounted(vehicle: spec.Vehicle) -> list[Any]:
     """The states of the payloads at the start: each gimbal looks ahead, as far down as it can."""
     found = []
     for gimbal, camera in payloads_of(vehicle):
@@ -165,7 +159,7 @@ def _mounted(vehicle: Vehicle) -> list[Any]:
 
 def state_of(
     number: int,
-    place: Position,
+    place: spec.Position,
     heading_rad: float,
     speed_m_s: float,
     plane: Projection,
@@ -187,7 +181,7 @@ def state_of(
     )
 
 
-def _place(place: Position, plane: Projection) -> Any:
+def _place(place: spec.Position, plane: Projection) -> Any:
     latitude, longitude = plane.to_geodetic(place.north_m, place.east_m)
     return lmcp.new(
         "Location3D",
@@ -201,11 +195,11 @@ def _place(place: Position, plane: Projection) -> Any:
 # zones and tasks -------------------------------------------------------------------------------
 
 
-def _polygon(corners: list[Position], plane: Projection) -> Any:
+def _polygon(corners: list[spec.Position], plane: Projection) -> Any:
     return lmcp.new("Polygon", BoundaryPoints=[_place(corner, plane) for corner in corners])
 
 
-def _zone(zone: Zone, plane: Projection) -> Any:
+def _zone(zone: spec.Zone, plane: Projection) -> Any:
     return lmcp.new(
         "KeepInZone" if zone.kind.value == "keep_in" else "KeepOutZone",
         ZoneID=zone.id,
@@ -215,11 +209,11 @@ def _zone(zone: Zone, plane: Projection) -> Any:
         MaxAltitude=zone.ceiling_m,
         MaxAltitudeType="MSL",
         Padding=zone.padding_m,
-        Boundary=_polygon([Position(*v, 0.0) for v in zone.vertices], plane),
+        Boundary=_polygon([spec.Position(*v, 0.0) for v in zone.vertices], plane),
     )
 
 
-def _task(k: int, task: Task, plane: Projection) -> Any:
+def _task(k: int, task: spec.Task, plane: Projection) -> Any:
     if task.kind not in WRITERS:
         raise BadInput(
             f"a task of kind {task.kind} cannot be told to UxAS",
@@ -241,7 +235,7 @@ def _task(k: int, task: Task, plane: Projection) -> Any:
 Written = tuple[str, dict[str, Any]]
 
 
-def _search(task: Task) -> dict[str, Any]:
+def _search(task: spec.Task) -> dict[str, Any]:
     """What all searches say."""
     return {
         "DwellTime": task.duration_ms,
@@ -251,7 +245,7 @@ def _search(task: Task) -> dict[str, Any]:
     }
 
 
-def _wedge(view: View) -> Any:
+def _wedge(view: spec.View) -> Any:
     return lmcp.new(
         "Wedge",
         AzimuthCenterline=degrees(view.azimuth_rad),
@@ -260,14 +254,14 @@ def _wedge(view: View) -> Any:
     )
 
 
-def _line(task: Task, plane: Projection) -> Written:
+def _line(task: spec.Task, plane: Projection) -> Written:
     inertial = task.view is not None and task.view.inertial
     points = [_place(point, plane) for point in task.points]
     fields = {"PointList": points, "UseInertialViewAngles": inertial}
     return "LineSearchTask", {**_search(task), **fields}
 
 
-def _point(task: Task, plane: Projection) -> Written:
+def _point(task: spec.Task, plane: Projection) -> Written:
     spot = {
         "SearchLocation": _place(task.points[0], plane),
         "StandoffDistance": task.standoff_m,
@@ -275,16 +269,16 @@ def _point(task: Task, plane: Projection) -> Written:
     return "PointSearchTask", {**_search(task), **spot}
 
 
-def _must_fly(task: Task, plane: Projection) -> Written:
+def _must_fly(task: spec.Task, plane: Projection) -> Written:
     return "MustFlyTask", {"Position": _place(task.points[0], plane), "UseAltitude": True}
 
 
-def _area(task: Task, plane: Projection) -> Written:
+def _area(task: spec.Task, plane: Projection) -> Written:
     return "AreaSearchTask", {**_search(task), "SearchArea": _polygon(list(task.points), plane)}
 
 
-def _loiter(task: Task, plane: Projection) -> Written:
-    loiter = task.loiter or Loiter(task.points[0], task.radius_m)
+def _loiter(task: spec.Task, plane: Projection) -> Written:
+    loiter = task.loiter or spec.Loiter(task.points[0], task.radius_m)
     action = lmcp.new(
         "LoiterAction",
         LoiterType=SHAPES[loiter.shape],
@@ -298,7 +292,7 @@ def _loiter(task: Task, plane: Projection) -> Written:
     return "LoiterTask", {"DesiredAction": action}
 
 
-def _pattern(task: Task, plane: Projection) -> Written:
+def _pattern(task: spec.Task, plane: Projection) -> Written:
     if task.pattern not in PATTERNS:
         raise BadInput(
             f"the pattern {task.pattern} cannot be told to UxAS",
@@ -311,11 +305,11 @@ def _pattern(task: Task, plane: Projection) -> Written:
     return "PatternSearchTask", {**said, **spot, "Pattern": PATTERNS[task.pattern]}
 
 
-WRITERS: dict[TaskKind, Callable[[Task, Projection], Written]] = {
-    TaskKind.LINE_SEARCH: _line,
-    TaskKind.POINT_SEARCH: _point,
-    TaskKind.MUST_FLY: _must_fly,
-    TaskKind.AREA_SEARCH: _area,
-    TaskKind.LOITER: _loiter,
-    TaskKind.PATTERN_SEARCH: _pattern,
+WRITERS: dict[spec.TaskKind, Callable[[spec.Task, Projection], Written]] = {
+    spec.TaskKind.LINE_SEARCH: _line,
+    spec.TaskKind.POINT_SEARCH: _point,
+    spec.TaskKind.MUST_FLY: _must_fly,
+    spec.TaskKind.AREA_SEARCH: _area,
+    spec.TaskKind.LOITER: _loiter,
+    spec.TaskKind.PATTERN_SEARCH: _pattern,
 }

@@ -194,7 +194,7 @@ class _Ours:
         return self._chain.k
 
     def settle(self, now_ms: int) -> bool:
-        """Go on to the next point if one is passed; whether the last one has been."""
+        """Advance to the next point if the present one is passed. Returns whether the last point is passed."""
         while not self._chain.suspended and (item := self._chain.item) is not None:
             self._chain, at_ms = self._chain.measure(self.state.air, now_ms, self.node.dt_s)
             if at_ms is None:

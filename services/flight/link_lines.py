@@ -98,7 +98,7 @@ Flies = tuple[Position, ...] | Velocity
 
 
 def way_of_another(vehicle_id: int, points: Flies, projection: Projection) -> list[Message]:
-    """How another vehicle flies, as OTHER lines, or OVELO; without points one line, which says that it is not known."""
+    """The way of another vehicle as OTHER lines, or its velocity as OVELO; without points, one line that says that its way is unknown."""
     if isinstance(points, Velocity):
         return [VelocityOfAnother(vehicle_id, *points)]
     if not points:

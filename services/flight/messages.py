@@ -164,7 +164,7 @@ class NotPlanned(NamedTuple):
 
 
 class Report(NamedTuple):
-    """A heartbeat is due: where the cameras look, and how far everybody is on the way."""
+    """A heartbeat is due: report where the cameras point and how far each vehicle is along its path."""
 
     now_ms: int
 
@@ -210,7 +210,7 @@ class NotHeard(NamedTuple):
 
 
 class Stands(NamedTuple):
-    """A vehicle has come to a stand on the ground, and stays there. site: on which landing site, "" beside all."""
+    """A vehicle has stopped on the ground and stays there. site: the landing site on which it stands, "" if on none."""
 
     vehicle_id: int
     site: str

@@ -12,7 +12,7 @@ from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.holding import Change
 from cratous.services.icarous.messages import Foresees, Guides, TakesOff, WithoutLink
 from cratous.services.logs.records import fingerprint, to_data
-from cratous.services.mission.frames import Projection, compass
+from cratous.services.mission.frames import Projection, compass, place_and_velocity
 from cratous.spec.mission.plan import Plan
 
 
@@ -142,17 +142,11 @@ def guidance(told: Guides, projection: Projection) -> Any:
 
 def truth(vehicle_id: int, s: AirState, now_ms: int, cooperative: bool) -> Any:
     """Where an aircraft is and how it flies until the next step, as the monitor reads it."""
-    p, v = s.position, s.velocity
     return lmcp.new(
         "TruthState",
         VehicleID=vehicle_id,
         Time=now_ms,
-        North=p.north_m,
-        East=p.east_m,
-        Altitude=p.alt_m,
-        VelocityNorth=v.north_m_s,
-        VelocityEast=v.east_m_s,
-        VelocityDown=v.down_m_s,
+        **place_and_velocity(s.position, s.velocity),
         Heading=compass(s.heading_rad),
         Cooperative=cooperative,
     )

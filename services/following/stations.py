@@ -41,7 +41,7 @@ class Station(NamedTuple):
 
 
 def camera_of(asked: Asked, flyer: Flyer) -> Camera | None:
-    """The camera that looks, None where the task looks at nothing or there is none."""
+    """The camera that views the target; None if the task needs no view or the vehicle has no camera."""
     return None if asked.looks is None else camera_for(asked.looks, flyer.cameras)
 
 

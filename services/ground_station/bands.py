@@ -47,7 +47,7 @@ DIMENSIONS = {
 
 
 class Bands:
-    """Reads them in the order of the log. unread: how many messages do not fit."""
+    """Reads the bands of each vehicle in the order of the log. unread: the number of messages that could not be read."""
 
     def __init__(self) -> None:
         self._rows: dict[str, dict[int, dict[str, Any]]] = {}

@@ -204,20 +204,26 @@ def _authority(run: dict[str, Any]) -> list[Said]:
     return found
 
 
+def _said_at(time_ms: int, item: str, text: str, *value: Any) -> Said:
+    """What is said at an instant: the instant is compared with the value."""
+    return Said(item, text, time_ms, (time_ms, *value))
+
+
 def _plans(run: dict[str, Any]) -> list[Said]:
     return [
-        Said("plan", event["text"], event["time_ms"], (event["time_ms"], event["text"]))
+        _said_at(event["time_ms"], "plan", event["text"], event["text"])
         for event in _events(run, PLAN)
     ]
 
 
 def _routes(run: dict[str, Any]) -> list[Said]:
     return [
-        Said(
+        _said_at(
+            route["time_ms"],
             f"route of vehicle {route['vehicle']}",
             f"{route['sender'] or 'plan'}, {len(route['points'])} waypoints",
-            route["time_ms"],
-            (route["time_ms"], route["sender"], route["points"]),
+            route["sender"],
+            route["points"],
         )
         for route in run["routes"]
     ]
@@ -226,11 +232,11 @@ def _routes(run: dict[str, Any]) -> list[Said]:
 def _phases(run: dict[str, Any]) -> list[Said]:
     """What was told of tasks: where their phase changed, and again while it did not."""
     return [
-        Said(
+        _said_at(
+            one["time_ms"],
             f"task {one['task']} {one['phase'].lower()}{again}",
             f"{_who(one)}, {100 * one['served']:.4g} % served{': ' * bool(one['note'])}{one['note']}",
-            one["time_ms"],
-            (one["time_ms"], one["vehicle"], one["served"], one["note"]),
+            *(one[part] for part in ("vehicle", "served", "note")),
         )
         for name, again in (("phases", ""), ("in_phase", ", told again"))
         for one in run[name]
@@ -244,11 +250,11 @@ def _who(phase: dict[str, Any]) -> str:
 def _others(run: dict[str, Any]) -> list[Said]:
     """Events that no other kind tells."""
     return [
-        Said(
+        _said_at(
+            event["time_ms"],
             event["text"] if event["vehicle"] is None else f"vehicle {event['vehicle']}",
             event["text"],
-            event["time_ms"],
-            (event["time_ms"], event["text"]),
+            event["text"],
         )
         for event in _events(run, OTHER)
     ]

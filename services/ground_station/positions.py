@@ -77,7 +77,7 @@ class Positions:
         self._labels: dict[str, str] = {}
 
     def add(self, entry: Entry, time_ms: int) -> None:
-        """Take a message of a time after the log's first; only states and configurations count."""
+        """Take in one message, with its time since the first of the log; only vehicle states and configurations matter."""
         names = names_of(entry.topic)
         if CONFIGURATION in names:
             body, _ = any_data(entry)

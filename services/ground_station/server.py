@@ -164,8 +164,8 @@ class Watched(Protocol):
 
 
 class Commands(NamedTuple):
-    """What pages may ask for: orders by path, of so many bytes at most; polled: what they may look at; token:
-    what orders need, and the address that is printed has."""
+    """What pages may send. orders: what answers them, by path; longest: the most bytes of an order; polled: what pages may
+    read again and again, by path; token: every order needs it, and the printed address contains it."""
 
     orders: Mapping[str, Order]
     longest: int = LONGEST

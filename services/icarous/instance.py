@@ -27,7 +27,7 @@ from cratous.core.authority.link_loss import FINAL, LANDED, LINKED, loss_lets_go
 from cratous.core.authority.take_off import departure_lets_go, departure_takes
 from cratous.core.avoidance.manoeuvre import velocity_of
 from cratous.core.avoidance.resolution import Choice
-from cratous.services.icarous import asking, link_loss, permits, take_off
+from cratous.services.icarous import asking, link_loss, messages, permits, take_off
 from cratous.services.icarous.ending import TURN_MARGIN
 from cratous.services.icarous.foresight import (
     points_back,
@@ -38,19 +38,6 @@ from cratous.services.icarous.foresight import (
 )
 from cratous.services.icarous.geofence_monitor import zone_ahead_s
 from cratous.services.icarous.inbox import beaten, hear
-from cratous.services.icarous.messages import (
-    Foresees,
-    FromInstance,
-    Guides,
-    Line,
-    Offers,
-    Sensed,
-    Steer,
-    ToInstance,
-    Uncertified,
-    Up,
-    Wish,
-)
 from cratous.services.icarous.offers import Refused, certified
 from cratous.services.icarous.others import with_ways
 from cratous.services.icarous.pace import change_ms, pace_of
@@ -79,7 +66,7 @@ NO_LINK = "link: UxAS is not heard"
 TAKES_OFF = "take-off: it is on the ground"
 UXAS_WAY = "the way back that UxAS's planner has found is free"
 
-Step = tuple[State, tuple[FromInstance, ...]]
+Step = tuple[State, tuple[messages.FromInstance, ...]]
 
 
 class Conflict(NamedTuple):
@@ -96,10 +83,10 @@ class Instance:
 
     config: Config
 
-    def handle(self, state: State, message: ToInstance) -> Step:
+    def handle(self, state: State, message: messages.ToInstance) -> Step:
         """One step: the state afterwards, and what to send, in order."""
         match message:
-            case Line(now_ms, line):
+            case messages.Line(now_ms, line):
                 config = self.config
                 told = hear(state.told, line, config.projection, now_ms, config.original)
                 asked = asking.heard(state.asking, line, config.projection)
@@ -108,10 +95,10 @@ class Instance:
                 # an index into the waypoints of another way says nothing
                 goal = state.goal if told.waypoints is state.told.waypoints else 0
                 return replace(state, told=told, goal=goal, asking=asked), ()
-            case Sensed():
+            case messages.Sensed():
                 return self._beat(state, message)
 
-    def _beat(self, state: State, sensed: Sensed) -> Step:
+    def _beat(self, state: State, sensed: messages.Sensed) -> Step:
         """One heartbeat: notice of the gate, then watch or fly, and a sign of life."""
         commands = gate_accepts(sensed.gate, ICAROUS, sensed.gate.epoch)
         cycle = cycle_begun(state.cycle, commands, sensed.now_ms)
@@ -146,9 +133,9 @@ class Instance:
         else:
             state, out = self._fly(state, sensed, in_turn)
         beat = Heartbeat(sequence=state.beats, time_s=sensed.now_ms / 1000)
-        return state, (*up, *lost, *out, Up(self.config.vehicle_id, beat))
+        return state, (*up, *lost, *out, messages.Up(self.config.vehicle_id, beat))
 
-    def _watch(self, state: State, sensed: Sensed, in_turn: frozenset[int]) -> Step:
+    def _watch(self, state: State, sensed: messages.Sensed, in_turn: frozenset[int]) -> Step:
         """MONITOR: take over if a conflict is foreseen that is ours to act on, or the link is lost, or to take off."""
         if take_off.departs(self.config, state):
             departure = take_off.rising(self.config, state).departure
@@ -171,24 +158,31 @@ class Instance:
             state = permits.taken_over(state, conflict.intruder_id)
         state = replace(state, cycle=cycled.cycle, goal=state.told.next_index)
         state, choice = manoeuvre(self.config, state, sensed, in_turn, False)
-        foresees = Foresees(vid, sensed.now_ms, conflict.intruder_id, first_s, describe(choice))
-        wish = Wish(vid, cycled.act, reason, conflict.intruder_id)
+        foresees = messages.Foresees(
+            vid, sensed.now_ms, conflict.intruder_id, first_s, describe(choice)
+        )
+        wish = messages.Wish(vid, cycled.act, reason, conflict.intruder_id)
         offer = self._offer(state, sensed, choice)
         commands = self._commands(sensed, choice, cycled.act)
         return state, (*said, wish, foresees, *offer, *commands)
 
     def _by_itself(
-        self, state: State, sensed: Sensed, in_turn: frozenset[int], cycled: Cycled, why: str
+        self,
+        state: State,
+        sensed: messages.Sensed,
+        in_turn: frozenset[int],
+        cycled: Cycled,
+        why: str,
     ) -> Step:
         """Take over since UxAS is not heard, or to take off."""
         state = replace(state, cycle=cycled.cycle, goal=state.told.next_index)
         state, choice = self._flown_by_itself(state, sensed, in_turn)
-        wish = Wish(self.config.vehicle_id, cycled.act, why, 0)
+        wish = messages.Wish(self.config.vehicle_id, cycled.act, why, 0)
         offer = self._offer(state, sensed, choice)
         return state, (wish, *offer, *self._commands(sensed, choice, cycled.act))
 
     def _flown_by_itself(
-        self, state: State, sensed: Sensed, in_turn: frozenset[int]
+        self, state: State, sensed: messages.Sensed, in_turn: frozenset[int]
     ) -> tuple[State, Choice]:
         """What is flown off the ground, or without the link."""
         if take_off.departs(self.config, state):
@@ -196,7 +190,7 @@ class Instance:
         return link_loss.flown(self.config, state, sensed, in_turn)
 
     def _foreseen(
-        self, state: State, sensed: Sensed, in_turn: frozenset[int]
+        self, state: State, sensed: messages.Sensed, in_turn: frozenset[int]
     ) -> tuple[State, Conflict | None]:
         """All predicted losses of well clear, what is still permitted, and the conflict to act on."""
         scene = scene_of(self.config, state, sensed)
@@ -214,7 +208,7 @@ class Instance:
                 return state, Conflict("zone", 0, zone_s)
         return state, None
 
-    def _fly(self, state: State, sensed: Sensed, in_turn: frozenset[int]) -> Step:
+    def _fly(self, state: State, sensed: messages.Sensed, in_turn: frozenset[int]) -> Step:
         """AVOID and HANDBACK: fly the manoeuvre, and see whether the way back is free."""
         state, guides = self._guided(state, sensed, not (sensed.landed or sensed.on_ground))
         departure = take_off.rising(self.config, state).departure
@@ -223,7 +217,7 @@ class Instance:
         alone = departs or lost
         lasting = state.search.waits(sensed.now_ms)
         free = not alone and way_back_is_free(self.config, state, sensed, in_turn, lasting)
-        proposed, asked = None, list[FromInstance]()
+        proposed, asked = None, list[messages.FromInstance]()
         if not alone:
             state, proposed, asked = self._proposed(state, sensed, in_turn, free)
         heard_ms, before = state.told.heard_ms, state.held
@@ -235,24 +229,24 @@ class Instance:
             state, choice = self._flown_by_itself(state, sensed, in_turn)
         else:
             state, choice = manoeuvre(self.config, state, sensed, in_turn, free)
-        out: list[FromInstance] = [*guides]
+        out: list[messages.FromInstance] = [*guides]
         vid, text = self.config.vehicle_id, describe(choice)
         if cycled.act != NOTHING:
             of_uxas = cycled.act == OFFER and proposed is not None
             reason = f"{UXAS_WAY} (request {proposed})" if of_uxas else REASONS[cycled.act]
-            out.append(Wish(vid, cycled.act, reason, 0))
+            out.append(messages.Wish(vid, cycled.act, reason, 0))
         # along a course the heading changes at each heartbeat
         on_course = departs or (lost and state.no_link.course is not None)
         changed = not on_course and (before is None or describe(before) != text)
         said = f"offer withdrawn; {text}" if cycled.act == WITHDRAW else text
         if changed or cycled.act == WITHDRAW:
-            out.append(Foresees(vid, sensed.now_ms, 0, -1.0, said))
+            out.append(messages.Foresees(vid, sensed.now_ms, 0, -1.0, said))
         offer = self._offer(state, sensed, choice)
         return state, (*out, *asked, *offer, *self._commands(sensed, choice, cycled.act, proposed))
 
     def _proposed(
-        self, state: State, sensed: Sensed, in_turn: frozenset[int], free: bool
-    ) -> tuple[State, int | None, list[FromInstance]]:
+        self, state: State, sensed: messages.Sensed, in_turn: frozenset[int], free: bool
+    ) -> tuple[State, int | None, list[messages.FromInstance]]:
         """The number of the request whose answer is free, where the own way back is not; what UxAS is asked, if it plans
         live, and what there is to say of it."""
         now_ms, motion, before = sensed.now_ms, sensed.motion, state.asking
@@ -273,14 +267,14 @@ class Instance:
         found, line = asking.asks(
             found, now_ms, start, speed_m_s, points[0], self.config.projection
         )
-        vid, out = self.config.vehicle_id, list[FromInstance]()
-        out += [Foresees(vid, now_ms, 0, -1.0, text) for text in found.said]
-        out += [Up(vid, line)] if line is not None else []
+        vid, out = self.config.vehicle_id, list[messages.FromInstance]()
+        out += [messages.Foresees(vid, now_ms, 0, -1.0, text) for text in found.said]
+        out += [messages.Up(vid, line)] if line is not None else []
         return replace(state, asking=found._replace(said=())), number, out
 
     def _guided(
-        self, state: State, sensed: Sensed, wanted: bool
-    ) -> tuple[State, tuple[FromInstance, ...]]:
+        self, state: State, sensed: messages.Sensed, wanted: bool
+    ) -> tuple[State, tuple[messages.FromInstance, ...]]:
         """With what detect and avoid says, once a second while it is wanted, and that for the record."""
         if not wanted:
             return replace(state, bands=None), ()
@@ -293,23 +287,29 @@ class Instance:
         state = replace(state, bands=bands)
         if instant is None or not config.records:
             return state, ()
-        return state, (Guides(config.vehicle_id, sensed.now_ms, sensed.motion, instant),)
+        return state, (messages.Guides(config.vehicle_id, sensed.now_ms, sensed.motion, instant),)
 
-    def _offer(self, state: State, sensed: Sensed, choice: Choice) -> tuple[FromInstance, ...]:
+    def _offer(
+        self, state: State, sensed: messages.Sensed, choice: Choice
+    ) -> tuple[messages.FromInstance, ...]:
         """The certificate of a manoeuvre, for the gate, or why there is none."""
         if not self.config.certifies:
             return ()
         vid, scene = self.config.vehicle_id, scene_of(self.config, state, sensed)
         if state.no_link.loss.mode in (FINAL, LANDED):
-            return (Uncertified(vid, 0, "the last descent to the ground ends in no hold"),)
+            return (messages.Uncertified(vid, 0, "the last descent to the ground ends in no hold"),)
         if sensed.on_ground:
-            return (Uncertified(vid, 0, "it is on the ground"),)
+            return (messages.Uncertified(vid, 0, "it is on the ground"),)
         found = certified(sensed, scene, choice, self.config.daa)
-        return (Uncertified(vid, *found) if isinstance(found, Refused) else Offers(vid, found),)
+        return (
+            messages.Uncertified(vid, *found)
+            if isinstance(found, Refused)
+            else messages.Offers(vid, found),
+        )
 
     def _commands(
-        self, sensed: Sensed, choice: Choice, act: int, proposed: int | None = None
-    ) -> tuple[FromInstance, ...]:
+        self, sensed: messages.Sensed, choice: Choice, act: int, proposed: int | None = None
+    ) -> tuple[messages.FromInstance, ...]:
         """The velocity of a manoeuvre, to the autopilot and to UxAS, and the mode, which UxAS needs to
         hear once: a line that is lost is made good by the next one."""
         vid, gate = self.config.vehicle_id, gate_wished(sensed.gate, act)
@@ -318,4 +318,4 @@ class Instance:
         if gate.offered:
             mode = SetMode("PASSIVE", gate.epoch, proposed)
         told = SetVelocity(north_mps=v.north_m_s, east_mps=v.east_m_s, down_mps=v.down_m_s)
-        return (Steer(vid, gate.epoch, v), Up(vid, mode), Up(vid, told))
+        return (messages.Steer(vid, gate.epoch, v), messages.Up(vid, mode), messages.Up(vid, told))

@@ -79,8 +79,8 @@ JOINS_AFTER = 3.0
 
 
 def onto(points: tuple[Position, ...], now: Motion, radius_m: float) -> tuple[Position, ...]:
-    """The points of a way of somebody else's, planned a moment ago from near here, that are flown by if it is taken now:
-    from JOINS_AFTER turn radii along it on, or its end alone."""
+    """The points that are flown if a route which another planner made a moment ago, from near here, is joined now: those from
+    JOINS_AFTER turn radii along it on, or its end alone."""
     track = Track(points, now.heading_rad)
     near = track.nearest(now.position, 0.0, track.length_m)
     return tuple(track.rest(min(track.length_m, near.s_m + JOINS_AFTER * radius_m)))

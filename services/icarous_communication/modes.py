@@ -57,7 +57,7 @@ def _after(gate: Gate, epoch: int) -> bool:
 
 
 def anew(peer: Peer) -> Peer:
-    """On a new connection no epoch has been heard."""
+    """The state on a new connection: no epoch has been received yet."""
     return replace(peer, end=peer.end._replace(epoch=NO_EPOCH))
 
 

@@ -12,7 +12,8 @@ GRACE_S = 1.0
 
 
 class Refusal(NamedTuple):
-    """Why a connection is refused. why: counted by it, one of a few; detail: this time, with what the peer said."""
+    """Why a connection is refused. why: one of a few fixed reasons, by which refusals are counted; detail: this refusal, with what
+    the peer said."""
 
     why: str
     detail: str

@@ -8,17 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from cratous.services.importing.parts import (
-    Fence,
-    Parts,
-    Place,
-    Reading,
-    Way,
-    altitude,
-    latitude,
-    longitude,
-    number,
-)
+from cratous.services.importing import parts
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import at_most, json_of
 
@@ -32,7 +22,7 @@ MOST = 2000
 """Places of a shape, and shapes of a file."""
 
 
-def kind_of(told: object, how: Reading, where: str, item: str) -> bool:
+def kind_of(told: object, how: parts.Reading, where: str, item: str) -> bool:
     """Whether an area is to be kept out of, from the word for its kind, or from what the user says of areas that
     have none. Raises BadInput."""
     kind = KINDS.get(_word(told or how.areas))
@@ -46,11 +36,23 @@ def kind_of(told: object, how: Reading, where: str, item: str) -> bool:
     return kind == "keep_out"
 
 
+def no_ring(count: int, where: str, item: str) -> BadInput:
+    """The error for an area of more or fewer outlines than one."""
+    what = "an area with holes, or of no outline"
+    return BadInput(what, where=where, item=item, expected="one ring", got=f"{count} rings")
+
+
+def open_ring(where: str, item: str) -> BadInput:
+    """The error for an outline that does not end where it begins."""
+    what = "a ring that is not closed"
+    return BadInput(what, where=where, item=item, expected="the first place again, last")
+
+
 def _word(told: object) -> str:
     return str(told or "").lower().replace("_", "").replace("-", "").replace(" ", "")
 
 
-def read_geojson(text: str, file: str, how: Reading) -> Parts:
+def read_geojson(text: str, file: str, how: parts.Reading) -> parts.Parts:
     """The zones and ways of a text. Raises BadInput with the feature."""
     data = json_of(text, file)
     kind = data.get("type") if isinstance(data, dict) else None
@@ -61,7 +63,7 @@ def read_geojson(text: str, file: str, how: Reading) -> Parts:
             got=str(kind)[:40],
         )  # fmt: skip
     at_most(len(features), MOST, "too many features", file, "of them")
-    ways, fences, left = list[Way](), list[Fence](), dict[str, int]()
+    ways, fences, left = list[parts.Way](), list[parts.Fence](), dict[str, int]()
     for k, feature in enumerate(features):
         item = f"features[{k}]"
         form, coordinates, said = _parts(feature, file, item)
@@ -76,7 +78,7 @@ def read_geojson(text: str, file: str, how: Reading) -> Parts:
             what = f"{told or 'no kind'} ({form})"
             left[what] = left.get(what, 0) + 1
     notes = tuple(f"{file}: not taken over: {count} x {what}" for what, count in left.items())
-    return Parts(ways=tuple(ways), fences=tuple(fences), notes=notes)
+    return parts.Parts(ways=tuple(ways), fences=tuple(fences), notes=notes)
 
 
 def _is_zone(told: object) -> bool:
@@ -117,34 +119,30 @@ def _places(coordinates: Any, place: tuple[str, str]) -> list[list[Any]]:
 
 
 def _fence(
-    coordinates: Any, said: dict[str, Any], name: str, place: tuple[str, str], how: Reading
-) -> Fence:
+    coordinates: Any, said: dict[str, Any], name: str, place: tuple[str, str], how: parts.Reading
+) -> parts.Fence:
     file, item = place
     keep_out = kind_of(said.get("kind", said.get("type")), how, file, item)
     if not isinstance(coordinates, list) or len(coordinates) != 1:
-        raise BadInput(
-            "an area with holes, or of no outline", where=file, item=item, expected="one ring",
-            got=f"{len(coordinates) if isinstance(coordinates, list) else 0} rings",
-        )  # fmt: skip
+        raise no_ring(len(coordinates) if isinstance(coordinates, list) else 0, file, item)
     ring = _places(coordinates[0], place)
     if len(ring) < 4 or ring[0] != ring[-1]:
-        raise BadInput(
-            "a ring that is not closed",
-            where=file,
-            item=item,
-            expected="the first place again, last",
-        )
-    corners = tuple((latitude(p[1], file, item), longitude(p[0], file, item)) for p in ring[:-1])
+        raise open_ring(file, item)
+    corners = tuple(
+        (parts.latitude(p[1], file, item), parts.longitude(p[0], file, item)) for p in ring[:-1]
+    )
     floor, ceiling = (
-        None if said.get(key) is None else number(said[key], file, f"{item}: {key}", -1000, 100_000)
+        None
+        if said.get(key) is None
+        else parts.number(said[key], file, f"{item}: {key}", -1000, 100_000)
         for key in ("floor_msl_m", "ceiling_msl_m")
     )
-    return Fence(name, keep_out, corners, floor, ceiling, False, file)
+    return parts.Fence(name, keep_out, corners, floor, ceiling, False, file)
 
 
 def _way(
-    coordinates: Any, said: dict[str, Any], name: str, place: tuple[str, str], how: Reading
-) -> Way:
+    coordinates: Any, said: dict[str, Any], name: str, place: tuple[str, str], how: parts.Reading
+) -> parts.Way:
     file, item = place
     row = _places(coordinates, place)
     if len(row) < 2:
@@ -164,8 +162,8 @@ def _way(
                 "a way without altitudes", where=file, item=item,
                 expected="a third number in each place, altitude_msl_m, or --altitude M",
             )  # fmt: skip
-        lat, lon = latitude(spot[1], file, item), longitude(spot[0], file, item)
-        places.append(Place(lat, lon, altitude(alt, file, item), False))
+        lat, lon = parts.latitude(spot[1], file, item), parts.longitude(spot[0], file, item)
+        places.append(parts.Place(lat, lon, parts.altitude(alt, file, item), False))
     speed = said.get("speed_m_s")
-    speed = None if speed is None else number(speed, file, f"{item}: speed_m_s", 0.01, 350)
-    return Way(name, tuple(places), speed, file)
+    speed = None if speed is None else parts.number(speed, file, f"{item}: speed_m_s", 0.01, 350)
+    return parts.Way(name, tuple(places), speed, file)

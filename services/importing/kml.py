@@ -10,25 +10,15 @@ from __future__ import annotations
 from typing import Any
 
 from cratous.bridge.lmcp.xml_text import parse
-from cratous.services.importing.geojson import MOST, WAYS, kind_of, no_zone
-from cratous.services.importing.parts import (
-    Fence,
-    Parts,
-    Place,
-    Reading,
-    Way,
-    altitude,
-    latitude,
-    longitude,
-    number,
-)
+from cratous.services.importing import parts
+from cratous.services.importing.geojson import MOST, WAYS, kind_of, no_ring, no_zone, open_ring
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import at_most
 
 ABSOLUTE, RELATIVE = "absolute", "relativeToGround"
 
 
-def read_kml(text: bytes, file: str, how: Reading) -> Parts:
+def read_kml(text: bytes, file: str, how: parts.Reading) -> parts.Parts:
     """The zones and ways of all placemarks. Raises BadInput with line and name."""
     root = parse(text, file)
     if _tag(root) != "kml":
@@ -37,7 +27,7 @@ def read_kml(text: bytes, file: str, how: Reading) -> Parts:
         )
     marks = [element for element in root.iter() if _tag(element) == "Placemark"]
     at_most(len(marks), MOST, "too many placemarks", file, "of them")
-    ways, fences, left = list[Way](), list[Fence](), dict[str, int]()
+    ways, fences, left = list[parts.Way](), list[parts.Fence](), dict[str, int]()
     for mark in marks:
         where = f"{file}:{mark.sourceline}"
         said = _said(mark)
@@ -54,7 +44,7 @@ def read_kml(text: bytes, file: str, how: Reading) -> Parts:
             what = f"{told or 'no kind'} ({kind or 'another geometry'})"
             left[what] = left.get(what, 0) + 1
     notes = tuple(f"{file}: not taken over: {count} x {what}" for what, count in left.items())
-    return Parts(ways=tuple(ways), fences=tuple(fences), notes=notes)
+    return parts.Parts(ways=tuple(ways), fences=tuple(fences), notes=notes)
 
 
 def _tag(element: Any) -> str:
@@ -85,33 +75,27 @@ def _rows(element: Any, where: str, item: str) -> list[list[str]]:
     return rows
 
 
-def _fence(form: Any, said: dict[str, str], name: str, where: str, how: Reading) -> Fence:
+def _fence(
+    form: Any, said: dict[str, str], name: str, where: str, how: parts.Reading
+) -> parts.Fence:
     keep_out = kind_of(said.get("kind"), how, where, name)
     rings = [element for element in form.iter() if _tag(element) == "LinearRing"]
     if len(rings) != 1:
-        raise BadInput(
-            "an area with holes, or of no outline", where=where, item=name, expected="one ring",
-            got=f"{len(rings)} rings",
-        )  # fmt: skip
+        raise no_ring(len(rings), where, name)
     corners = [
-        (latitude(r[1], where, name), longitude(r[0], where, name))
+        (parts.latitude(r[1], where, name), parts.longitude(r[0], where, name))
         for r in _rows(rings[0], where, name)
     ]
     if len(corners) < 4 or corners[0] != corners[-1]:
-        raise BadInput(
-            "a ring that is not closed",
-            where=where,
-            item=name,
-            expected="the first place again, last",
-        )
+        raise open_ring(where, name)
     floor, ceiling = (
-        number(said[key], where, f"{name}: {key}", -1000, 100_000) if key in said else None
+        parts.number(said[key], where, f"{name}: {key}", -1000, 100_000) if key in said else None
         for key in ("floor_msl_m", "ceiling_msl_m")
     )
-    return Fence(name, keep_out, tuple(corners[:-1]), floor, ceiling, False, where)
+    return parts.Fence(name, keep_out, tuple(corners[:-1]), floor, ceiling, False, where)
 
 
-def _way(form: Any, said: dict[str, str], name: str, where: str, how: Reading) -> Way:
+def _way(form: Any, said: dict[str, str], name: str, where: str, how: parts.Reading) -> parts.Way:
     mode = _text(form, "altitudeMode")
     places = []
     for row in _rows(form, where, name):
@@ -123,10 +107,12 @@ def _way(form: Any, said: dict[str, str], name: str, where: str, how: Reading) -
                 expected=f"altitudes and the mode {ABSOLUTE} or {RELATIVE}, or --altitude M",
                 got=mode or "clampToGround",
             )  # fmt: skip
-        lat, lon = latitude(row[1], where, name), longitude(row[0], where, name)
-        places.append(Place(lat, lon, altitude(alt, where, name), own and mode == RELATIVE))
+        lat, lon = parts.latitude(row[1], where, name), parts.longitude(row[0], where, name)
+        places.append(
+            parts.Place(lat, lon, parts.altitude(alt, where, name), own and mode == RELATIVE)
+        )
     if len(places) < 2:
         raise BadInput("a way that leads nowhere", where=where, item=name, expected="two places")
     told = said.get("speed_m_s")
-    speed = None if told is None else number(told, where, f"{name}: speed_m_s", 0.01, 350)
-    return Way(name, tuple(places), speed, where)
+    speed = None if told is None else parts.number(told, where, f"{name}: speed_m_s", 0.01, 350)
+    return parts.Way(name, tuple(places), speed, where)

@@ -12,17 +12,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from cratous.services.importing.parts import (
-    Intruder,
-    Parts,
-    Place,
-    Reading,
-    Way,
-    altitude,
-    latitude,
-    longitude,
-    number,
-)
+from cratous.services.importing import parts
 from cratous.services.mission.frames import Projection
 from cratous.spec.daa.encounter_files import Row, parse
 from cratous.spec.daa.parameters import UNITS
@@ -46,10 +36,10 @@ class _Point(NamedTuple):
     where: str
     id: str
     time_s: float
-    place: Place
+    place: parts.Place
 
 
-def read_eutl(text: str, file: str, how: Reading) -> Parts:
+def read_eutl(text: str, file: str, how: parts.Reading) -> parts.Parts:
     """The ways of all plans in a file, in the order in which they begin. Raises BadInput with line and column."""
     points, curved = list[_Point](), False
     for point, turns in _points(text, file, how):
@@ -65,7 +55,7 @@ def read_eutl(text: str, file: str, how: Reading) -> Parts:
             )
         places = tuple(point.place for point in mine)
         spent_s = mine[-1].time_s - mine[0].time_s
-        ways.append(Way(name, places, _length_m(places) / spent_s, mine[0].where))
+        ways.append(parts.Way(name, places, _length_m(places) / spent_s, mine[0].where))
     if not ways:
         raise BadInput("the file has no points", where=file, expected="a header, units and rows")
     notes = [f"{file}: all legs are flown at the mean speed of the plan, its times are not kept"]
@@ -73,7 +63,7 @@ def read_eutl(text: str, file: str, how: Reading) -> Parts:
         notes.append(
             f"{file}: turns are the vehicle's own, those of the plan's points are not flown"
         )
-    return Parts(ways=tuple(ways), notes=tuple(notes))
+    return parts.Parts(ways=tuple(ways), notes=tuple(notes))
 
 
 def _in_order(points: Sequence[_Point]) -> None:
@@ -86,7 +76,7 @@ def _in_order(points: Sequence[_Point]) -> None:
             )  # fmt: skip
 
 
-def _points(text: str, file: str, how: Reading) -> Iterator[tuple[_Point, bool]]:
+def _points(text: str, file: str, how: parts.Reading) -> Iterator[tuple[_Point, bool]]:
     names: list[str] | None = None
     units, first = dict[str, str](USUAL), True
     for count, raw in enumerate(io.StringIO(text, newline=None), 1):
@@ -95,16 +85,16 @@ def _points(text: str, file: str, how: Reading) -> Iterator[tuple[_Point, bool]]
         at_most(count, 2 * MOST, "too many lines", where, "of them")
         if not line or (names is None and "=" in line):
             continue
-        parts = [p.strip() for p in line.split(",")] if "," in line else line.split()
+        cells = [p.strip() for p in line.split(",")] if "," in line else line.split()
         if names is None:
-            names = _header(parts, where)
+            names = _header(cells, where)
             continue
-        if len(parts) != len(names):
+        if len(cells) != len(names):
             raise BadInput(
                 "a row of another length", where=where, expected=f"{len(names)} values",
-                got=str(len(parts)),
+                got=str(len(cells)),
             )  # fmt: skip
-        row = dict(zip(names, parts, strict=True))
+        row = dict(zip(names, cells, strict=True))
         if first and _is_units(row):
             units.update(_units(row, where))
             first = False
@@ -114,14 +104,14 @@ def _points(text: str, file: str, how: Reading) -> Iterator[tuple[_Point, bool]]
         yield _point(row, units, where, how), turns
 
 
-def _header(parts: Sequence[str], where: str) -> list[str]:
+def _header(cells: Sequence[str], where: str) -> list[str]:
     by_name = {other: name for name, others in COLUMNS.items() for other in others}
-    names = [by_name.get(part.lower(), part.lower()) for part in parts]
+    names = [by_name.get(part.lower(), part.lower()) for part in cells]
     for ways in (({"id"},), ({"lat", "lon"}, {"x", "y"}), ({"alt"},), ({"time"},)):
         if not any(way <= set(names) for way in ways):
             raise BadInput(
                 "a column is missing", where=where,
-                expected=" or ".join(" and ".join(sorted(way)) for way in ways), got=", ".join(parts)[:80],
+                expected=" or ".join(" and ".join(sorted(way)) for way in ways), got=", ".join(cells)[:80],
             )  # fmt: skip
     twice = [name for name in names if names.count(name) > 1]
     if twice:
@@ -150,37 +140,39 @@ def _units(row: dict[str, str], where: str) -> dict[str, str]:
     return found
 
 
-def _point(row: dict[str, str], units: dict[str, str], where: str, how: Reading) -> _Point:
+def _point(row: dict[str, str], units: dict[str, str], where: str, how: parts.Reading) -> _Point:
     def amount(name: str) -> float:
-        return number(row[name], where, name, -1e10, 1e10) * UNITS[units[name]][1]
+        return parts.number(row[name], where, name, -1e10, 1e10) * UNITS[units[name]][1]
 
-    alt_m = altitude(amount("alt"), where)
+    alt_m = parts.altitude(amount("alt"), where)
     if "lat" in row:
         lat, lon = math.degrees(amount("lat")), math.degrees(amount("lon"))
-        place = Place(latitude(lat, where), longitude(lon, where), alt_m, False)
+        place = parts.Place(parts.latitude(lat, where), parts.longitude(lon, where), alt_m, False)
     else:
         place = _from_metres(amount("y"), amount("x"), alt_m, where, how)
     return _Point(where, row["id"], amount("time"), place)
 
 
-def _from_metres(north_m: float, east_m: float, alt_m: float, where: str, how: Reading) -> Place:
+def _from_metres(
+    north_m: float, east_m: float, alt_m: float, where: str, how: parts.Reading
+) -> parts.Place:
     if how.origin is None:
         raise BadInput(
             "places in metres from nowhere", where=where, expected="--origin LATITUDE,LONGITUDE",
             got="sx and sy",
         )  # fmt: skip
     plane = Projection(Frame(*how.origin))
-    number(math.hypot(north_m, east_m), where, "distance from the origin", 0, 100_000)
-    return Place(*plane.to_geodetic(north_m, east_m), alt_m, False)
+    parts.number(math.hypot(north_m, east_m), where, "distance from the origin", 0, 100_000)
+    return parts.Place(*plane.to_geodetic(north_m, east_m), alt_m, False)
 
 
-def _length_m(places: Sequence[Place]) -> float:
+def _length_m(places: Sequence[parts.Place]) -> float:
     plane = Projection(Frame(places[0].latitude_deg, places[0].longitude_deg))
     flat = [plane.to_local(place.latitude_deg, place.longitude_deg) for place in places]
     return sum(math.dist(a, b) for a, b in pairwise(flat))
 
 
-def read_daa(text: str, file: str, how: Reading) -> Parts:
+def read_daa(text: str, file: str, how: parts.Reading) -> parts.Parts:
     """The ownship's way from its first place to its last, and everybody else from where each is seen first."""
     found = parse(text, file)
     first, last = dict[str, Row](), dict[str, Row]()
@@ -195,7 +187,7 @@ def read_daa(text: str, file: str, how: Reading) -> Parts:
             "a plan that leads nowhere", where=file, expected="two states of the ownship"
         )
     speed = _length_m(places) / (end.time_s - own.time_s)
-    way = Way(found.ownship, places, speed, f"{file}:{own.line}")
+    way = parts.Way(found.ownship, places, speed, f"{file}:{own.line}")
     others = tuple(
         _intruder(k, row, file, how, row.time_s - own.time_s)
         for k, row in enumerate((row for name, row in first.items() if name != found.ownship), 1)
@@ -204,21 +196,21 @@ def read_daa(text: str, file: str, how: Reading) -> Parts:
         f"{file}: the ownship flies straight from its first place to its last, the others straight on"
     ]
     notes += [f"{file}: left out: {what}" for what in found.left_out]
-    return Parts(ways=(way,), intruders=others, notes=tuple(notes))
+    return parts.Parts(ways=(way,), intruders=others, notes=tuple(notes))
 
 
-def _of_row(row: Row, file: str, how: Reading) -> Place:
+def _of_row(row: Row, file: str, how: parts.Reading) -> parts.Place:
     where, v = f"{file}:{row.line}", row.values
-    alt_m = altitude(v["alt"], where)
+    alt_m = parts.altitude(v["alt"], where)
     if row.geodetic:
         lat, lon = math.degrees(v["lat"]), math.degrees(v["lon"])
-        return Place(latitude(lat, where), longitude(lon, where), alt_m, False)
+        return parts.Place(parts.latitude(lat, where), parts.longitude(lon, where), alt_m, False)
     return _from_metres(v["y"], v["x"], alt_m, where, how)
 
 
-def _intruder(k: int, row: Row, file: str, how: Reading, appears_s: float) -> Intruder:
+def _intruder(k: int, row: Row, file: str, how: parts.Reading, appears_s: float) -> parts.Intruder:
     place, v = _of_row(row, file, how), row.values
     moves = (v["vy"], v["vx"], -v["vs"])
-    return Intruder(
+    return parts.Intruder(
         k, place, 0.0, 0.0, place.alt_m, moves, max(0.0, appears_s), f"{file}:{row.line}"
     )

@@ -9,7 +9,7 @@ from math import isfinite, radians
 
 from cratous.services.loading.places import Places
 from cratous.services.loading.uxas_cfg import Sent
-from cratous.services.loading.uxas_parts import heading, point, vehicle
+from cratous.services.loading.uxas_parts import heading, no_vehicle, point, vehicle
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Vehicle
 
@@ -47,13 +47,8 @@ def _ground_vehicle(configuration: Sent, state: Sent, places: Places) -> GroundV
     body = configuration.body
     speed = float(body.NominalSpeed)
     if not isfinite(speed) or speed <= 0:
-        raise BadInput(
-            f"vehicle {body.ID} does not drive",
-            where=configuration.where,
-            item="NominalSpeed",
-            expected="more than 0 m/s",
-            got=f"{speed:g}",
-        )
+        what, expected = "does not drive", "more than 0 m/s"
+        raise no_vehicle(configuration, "NominalSpeed", what, expected, f"{speed:g}")
     position = point(state.body.Location, places, state, "Location")
     return GroundVehicle(
         id=body.ID,

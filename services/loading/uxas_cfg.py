@@ -17,14 +17,18 @@ from cratous.spec.files.limits import integer_of
 from cratous.spec.files.text_file import bytes_of
 from cratous.spec.schedule import TIME_LIMIT_MS
 
+PIPELINE = (
+    "TaskManagerService",
+    "AutomationRequestValidatorService",
+    "RoutePlannerVisibilityService",
+    "RouteAggregatorService",
+    "AssignmentTreeBranchBoundService",
+    "PlanBuilderService",
+)
+"""Services that make a plan of a request."""
 PLAYED = frozenset(
     {
-        "TaskManagerService",
-        "AutomationRequestValidatorService",
-        "RoutePlannerVisibilityService",
-        "RouteAggregatorService",
-        "AssignmentTreeBranchBoundService",
-        "PlanBuilderService",
+        *PIPELINE,
         "WaypointPlanManagerService",
         "SendMessagesService",
         "IcarousCommunicationService",

@@ -68,18 +68,19 @@ def heading(degrees: float, where: str, item: str) -> float:
     return radians(degrees)
 
 
+def no_vehicle(configuration: Sent, item: str, what: str, expected: str, got: str) -> BadInput:
+    """The error for a configuration whose item makes no vehicle."""
+    text, where = f"vehicle {configuration.body.ID} {what}", configuration.where
+    return BadInput(text, where=where, item=item, expected=expected, got=got)
+
+
 def vehicle(configuration: Sent, state: Sent, places: Places, notes: list[str]) -> Vehicle:
     """A vehicle from its AirVehicleConfiguration and its AirVehicleState."""
     body = configuration.body
     profile = body.NominalFlightProfile
     if profile is None:
-        raise BadInput(
-            f"vehicle {body.ID} has no nominal flight profile",
-            where=configuration.where,
-            item="NominalFlightProfile",
-            expected="a FlightProfile",
-            got="none",
-        )
+        item, what = "NominalFlightProfile", "has no nominal flight profile"
+        raise no_vehicle(configuration, item, what, "a FlightProfile", "none")
     climbs = [abs(entry.VerticalSpeed) for entry in (profile, *body.AlternateFlightProfiles)]
     climb = max(climbs)
     if climb == 0:
@@ -87,13 +88,9 @@ def vehicle(configuration: Sent, state: Sent, places: Places, notes: list[str]) 
         notes.append(f"vehicle {body.ID} states no climb rate: {climb:g} m/s (our default)")
     bank = profile.MaxBankAngle
     if not 1 <= bank <= 80:
-        raise BadInput(
-            f"vehicle {body.ID} cannot turn like that",
-            where=configuration.where,
-            item="NominalFlightProfile.MaxBankAngle",
-            expected="1 to 80 degrees",
-            got=f"{bank:g}",
-        )
+        item = "NominalFlightProfile.MaxBankAngle"
+        what, expected = "cannot turn like that", "1 to 80 degrees"
+        raise no_vehicle(configuration, item, what, expected, f"{bank:g}")
     speed = body.NominalSpeed if body.NominalSpeed > 0 else profile.Airspeed
     position = point(state.body.Location, places, state, "Location")
     nominal = msl(

@@ -59,24 +59,18 @@ def place_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
     if to is None:
         return
     item = "link_loss.to.position"
+
+    def bad(what: str, expected: str, got: str) -> BadInput:
+        return BadInput(what, where=where(item), item=item, expected=expected, got=got)
+
     floor_m = floor_of(mission)
     if not keep_in_leg_ok(1, False, to.alt_m, to.alt_m, floor_m, math.inf):
-        yield BadInput(
-            "no manoeuvre goes so low",
-            where=where(item),
-            item=item,
-            expected=f"above {floor_m:g} m MSL",
-            got=f"{to.alt_m:g} m MSL",
-        )
+        above = f"above {floor_m:g} m MSL"
+        yield bad("no manoeuvre goes so low", above, f"{to.alt_m:g} m MSL")
     for zone in mission.zones:
         if not start_is_allowed(to, zone):
-            yield BadInput(
-                "nothing returns there",
-                where=where(item),
-                item=item,
-                expected=f"a place that keeps zone {zone.id}",
-                got=f"{to.north_m:g} m north, {to.east_m:g} m east, {to.alt_m:g} m MSL",
-            )
+            place = f"{to.north_m:g} m north, {to.east_m:g} m east, {to.alt_m:g} m MSL"
+            yield bad("nothing returns there", f"a place that keeps zone {zone.id}", place)
 
 
 def _found(loss: LinkLoss, simulation: Simulation, instances: int, sensed: bool) -> Iterator[Found]:

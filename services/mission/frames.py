@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from cratous.spec.mission import Frame
+from cratous.spec.mission import Frame, Position, Velocity
 
 if TYPE_CHECKING:
     import numpy as np
@@ -88,6 +88,14 @@ class Projection:
         import pyproj
 
         return float(pyproj.Geod(ellps="WGS84").inv(a[1], a[0], b[1], b[0])[2])
+
+
+def place_and_velocity(p: Position, v: Velocity) -> dict[str, float]:
+    """The fields of a message that say where an aircraft is [m] and how it moves [m/s]."""
+    return {
+        "North": p.north_m, "East": p.east_m, "Altitude": p.alt_m,
+        "VelocityNorth": v.north_m_s, "VelocityEast": v.east_m_s, "VelocityDown": v.down_m_s,
+    }  # fmt: skip
 
 
 def compass(heading_rad: float) -> float:

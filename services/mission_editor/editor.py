@@ -185,7 +185,7 @@ class Editor:
         return from_data(Plan, told["plan"], "plan")
 
     def close(self) -> None:
-        """End what plans."""
+        """Stop the planning process."""
         with self._lock:
             if self._plan is not None:
                 self._plan.end()

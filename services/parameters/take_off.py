@@ -11,7 +11,7 @@ from cratous.spec.mission import GroundedVehicle, Mission, Vehicle
 
 
 def take_off_rows(mission: Mission, vehicle: Vehicle) -> Iterator[Parameter]:
-    """None of a vehicle that starts in the air."""
+    """The parameters of a vehicle's take-off; none for a vehicle that starts in the air."""
     if not isinstance(vehicle, GroundedVehicle):
         return
     speed, faster = vehicle.min_speed_m_s, MAX_ACCELERATION_M_S2

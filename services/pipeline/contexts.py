@@ -186,7 +186,7 @@ class Contexts:
 
 
 def reasons_of(error: CratousError) -> tuple[str, ...]:
-    """An error in the user's terms, one reason each."""
+    """The reasons of an error in the user's terms, one text each."""
     if isinstance(error, NoPlan):
         return tuple(error.reasons)
     problems = getattr(error, "problems", (error,))

@@ -60,7 +60,7 @@ Step = tuple[Coordinated, list[Any]]
 
 
 class AssignmentCoordinatorTaskService:
-    """One coordinator."""
+    """The service of one AssignmentCoordinatorTask."""
 
     subscribes: tuple[str, ...] = (ASKED, TOLD, ANSWER, STATE)
 

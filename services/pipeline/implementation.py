@@ -163,7 +163,7 @@ def _zoom(task: Task, camera: Camera | None, height_m: float) -> list[Any]:
 def loiter_action(
     places: RequestPlaces, task_id: int, hold: Hold, wait: int, speed_m_s: float
 ) -> Any:
-    """The LoiterAction of a wait [ms] before a task."""
+    """The LoiterAction for a wait [ms] before a task."""
     return lmcp.new(
         "LoiterAction",
         AssociatedTaskList=[task_id],

@@ -51,7 +51,7 @@ Said = list[tuple[str, Any, int]]
 def meaning(
     logic: Logic, term: algebra.Term, semantics: str = TIME, done: Iterable[int] = ()
 ) -> list[tuple[str, Any]]:
-    """What a term without `+` says, as (words, formula), each timing for its tasks alone.
+    """The constraints of a term without `+`, as pairs (words, formula); each timing constrains its own tasks alone.
 
     done: tasks that are flown; what was said of them is past.
     """

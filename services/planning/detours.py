@@ -26,7 +26,7 @@ def many_detours(starts: np.ndarray, ends: np.ndarray, zones: Iterable[Zone]) ->
 
 
 def expected(mission: Mission) -> bool:
-    """`many_detours` of the ways from vehicles to tasks and from task to task, by one point of each."""
+    """`many_detours` of the ways from vehicles to tasks and between tasks, each task taken as one of its points."""
     begins = [(v.position.north_m, v.position.east_m) for v in mission.vehicles]
     to = [(p.north_m, p.east_m) for task in mission.tasks for p in task.points[:1]]
     pairs = [(a, b) for a in (*begins, *to) for b in to if a != b]

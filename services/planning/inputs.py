@@ -102,7 +102,7 @@ class Inputs:
 
     @cached_property
     def resolved(self) -> tuple[tuple[Branch, ...], bool]:
-        """The branches, and whether they are all."""
+        """The branches that were found, and whether these are all there are."""
         return stages.branches_of(self.mission, self.fixed)
 
     @property

@@ -42,7 +42,7 @@ class Attached:
         return 0 if self._begun_s is None else int((time.monotonic() - self._begun_s) * 1000)
 
     def messages(self, wait_s: float, until: Callable[[int], bool]) -> Iterator[Entry]:
-        """The messages until `until(ms)` says so; BadInput where nobody listens for wait_s seconds."""
+        """The messages, until `until(ms)` is true. Raises BadInput if no system answers within wait_s seconds."""
         given_up_s, was_there = time.monotonic() + wait_s, False
         try:
             while not until(self.now_ms()):

@@ -127,7 +127,7 @@ class _Numbers:
         self.names, self.at = names, at
 
     def made(self, kind: str, got: list[Any]) -> Any:
-        """Of a node of numbers: a quantity where no signal is in it, else a term; None for a kind that is none."""
+        """The value of an arithmetic node: a quantity if no signal occurs in it, else a term. None if the node is of no numeric kind."""
         if kind == "call":
             return self._called(got[0], got[1:])
         if kind == "negative":

@@ -25,7 +25,8 @@ DRIFT_M_S2 = 0.05
 
 
 class Own(NamedTuple):
-    """estimate: of now; flown: the way of the last while by the inertial unit, oldest first: (time [ms], place, velocity)."""
+    """The vehicle's knowledge of itself. estimate: of now; flown: its recent path by the inertial unit, oldest first: (time [ms],
+    place, velocity)."""
 
     estimate: Estimate
     flown: tuple[tuple[int, Position, Velocity], ...]

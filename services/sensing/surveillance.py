@@ -11,6 +11,7 @@ from cratous.core.avoidance.drift import Off
 from cratous.core.avoidance.manoeuvre import Motion
 from cratous.core.avoidance.prediction import Intruder, Spread
 from cratous.services.icarous.messages import Sensed
+from cratous.services.mission.frames import place_and_velocity
 from cratous.services.sensing import carried
 from cratous.services.sensing.carried import Carried, Sensors
 from cratous.services.sensing.filter import Cov, Estimate, Flown, deviations
@@ -152,12 +153,7 @@ def sensed_state(carrier: Carrier, one: Shown) -> Any:
         TrackID=one.track,
         VehicleID=one.source,
         Time=at_ms,
-        North=p.north_m,
-        East=p.east_m,
-        Altitude=p.alt_m,
-        VelocityNorth=v.north_m_s,
-        VelocityEast=v.east_m_s,
-        VelocityDown=v.down_m_s,
+        **place_and_velocity(p, v),
         HorizontalBound=wide,
         VerticalBound=high,
         HorizontalRateBound=wide_rate,

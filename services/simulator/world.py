@@ -119,7 +119,7 @@ class World:
         return told
 
     def tick(self) -> list[Any]:
-        """One tick; the objects that it tells: events, and states and SessionStatus twice a second."""
+        """Advance by one tick. Returns the objects to send: events at once, states and SessionStatus twice a second."""
         self.time_s += TICK_S
         told: list[Any] = []
         due = TICK_S / STEP_S + self._part

@@ -25,7 +25,7 @@ class Finding(NamedTuple):
 
 
 class Misfit(Exception):
-    """Raised by a part of the model; the replay adds where."""
+    """Raised by a part of the model when the log does not fit it; the replay adds the place in the log."""
 
     def __init__(self, what: str, expected: str, got: str) -> None:
         super().__init__(what)

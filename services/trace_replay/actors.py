@@ -179,7 +179,7 @@ class Actors(Flight):
         self._vehicle(VEHICLE, Commanded(self.now_ms, body))
 
     def restart(self, _event: Event) -> None:
-        """The gate's process starts anew, with what `cratous icarous --epochs` keeps."""
+        """Restart the gate's process, with what `cratous icarous --epochs` has stored."""
         with tempfile.TemporaryDirectory() as folder:
             file = EpochFile(Path(folder) / "epoch", VEHICLE)
             file.keep(self.gate)

@@ -23,6 +23,7 @@ from dataclasses import replace
 from itertools import pairwise, product
 from math import prod
 
+from cratous.spec import constraint_rows as kinds
 from cratous.spec.algebra import (
     ABSOLUTE,
     ALTERNATIVE,
@@ -38,15 +39,7 @@ from cratous.spec.algebra import (
     format_term,
 )
 from cratous.spec.algebra.runs import complete, next_actions, runs
-from cratous.spec.constraint_rows import (
-    AFTER_END,
-    AFTER_START,
-    NOT_AFTER,
-    NOT_BEFORE,
-    WITHIN_END,
-    WITHIN_START,
-    Row,
-)
+from cratous.spec.constraint_rows import Row
 
 __all__ = [
     "bounds_all",
@@ -170,7 +163,7 @@ def _collect(
         if term.op == ALTERNATIVE:
             raise ValueError(f"resolve {said} to one operand first")
         if term.op in (SEQUENTIAL, TILDE):
-            kind = AFTER_END if term.op == SEQUENTIAL else AFTER_START
+            kind = kinds.AFTER_END if term.op == SEQUENTIAL else kinds.AFTER_START
             for before, later in pairwise(term.operands):
                 group = tasks(before)
                 event = _event(term.op, group)
@@ -191,8 +184,8 @@ def _absolute_rows(term: Term, said: str) -> dict[int, tuple[Row, ...]]:
     t1, t2 = term.suffix.t1_ms, term.suffix.t2_ms
     return {
         task: (
-            Row(NOT_BEFORE, task, (), t1, 0, f"{said}: p{task} starts at {t1} ms or later"),
-            Row(NOT_AFTER, task, (), 0, t2, f"{said}: p{task} ends at {t2} ms or earlier"),
+            Row(kinds.NOT_BEFORE, task, (), t1, 0, f"{said}: p{task} starts at {t1} ms or later"),
+            Row(kinds.NOT_AFTER, task, (), 0, t2, f"{said}: p{task} ends at {t2} ms or earlier"),
         )
         for task in tasks(term)
     }
@@ -204,7 +197,9 @@ def _relative_rows(term: Term, said: str) -> dict[int, tuple[Row, ...]]:
         return found
     t1, t2 = term.suffix.t1_ms, term.suffix.t2_ms
     after, within = (
-        (AFTER_END, WITHIN_END) if term.op == SEQUENTIAL else (AFTER_START, WITHIN_START)
+        (kinds.AFTER_END, kinds.WITHIN_END)
+        if term.op == SEQUENTIAL
+        else (kinds.AFTER_START, kinds.WITHIN_START)
     )
     for before, later in pairwise(term.operands):
         group = tasks(before)

@@ -58,10 +58,8 @@ def test_a_search_without_a_space_is_refused(
 def test_found_is_a_mission_that_fails_alone(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    out = loss_found(
-        tmp_path,
-        "name: bare\ngenerator: {kind: head_on}\nseeds: [1, 1]\noptions: [{name: bare, daa: false}]\n",
-    )
+    head_on = "generator: {kind: head_on}\nseeds: [1, 1]\noptions: [{name: bare, daa: false}]\n"
+    out = loss_found(tmp_path, f"name: bare\n{head_on}")
     assert "G2 fails in bare-bare-seed1, after 1 runs" in capsys.readouterr().out
     case = str(out / "found-G2.yaml")
     flags = ["--no-daa", "--allow-unproved", "--json"]

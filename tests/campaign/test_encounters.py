@@ -338,11 +338,9 @@ def test_bad_files_of_states_are_named(
 def test_a_search_finds_an_encounter_and_its_file_shows_it_again(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    out = loss_found(
-        tmp_path,
-        f"{HEAD}generator: {{kind: head_on, ranges: {{time_s: [30, 40]}}}}\nseeds: [5, 6]\n"
-        "options: [{name: bare, daa: false}]\n",
-    )
+    ranges = "{kind: head_on, ranges: {time_s: [30, 40]}}"
+    runs = "seeds: [5, 6]\noptions: [{name: bare, daa: false}]\n"
+    out = loss_found(tmp_path, f"{HEAD}generator: {ranges}\n{runs}")
     assert "trial-bare-seed5, after 1 runs" in capsys.readouterr().out
     case = out / "found-G2.yaml"
     assert "in this encounter (flown without avoidance)" in case.read_text()

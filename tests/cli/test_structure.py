@@ -80,6 +80,13 @@ def test_its_page_names_every_folder(part: str, root: Path) -> None:
     assert [f.name for f in folders if f"`{f.name}/`" not in text] == []
 
 
+@pytest.mark.parametrize("part", ["spec", "judge"])
+def test_its_page_names_every_module(part: str, root: Path) -> None:
+    text = (root / part / "README.md").read_text(encoding="utf-8")
+    modules = [f.name for f in (root / part).glob("*.py") if f.name != "__init__.py"]
+    assert [name for name in modules if f"`{name}`" not in text] == []
+
+
 def test_services_have_no_loose_files(root: Path) -> None:
     assert [file.name for file in (root / "services").glob("*.py")] == ["__init__.py"]
 

@@ -24,35 +24,24 @@ from cratous.services.importing.qgc import read_qgc
 from cratous.services.loading.document import parse_document
 from cratous.services.loading.yaml_mission import loaded
 from cratous.services.mission.frames import Projection
+from cratous.spec import mission as spec
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import (
-    Daa,
-    Frame,
-    Mission,
-    Position,
-    Task,
-    TaskKind,
-    Vehicle,
-    WellClear,
-    Zone,
-    ZoneKind,
-)
 from cratous.spec.mission.plan import Plan, PlanItem
 
 Run = Callable[..., tuple[int, str, str]]
 METRES = st.floats(-5000, 5000, width=32)
 HEIGHTS = st.floats(0, 3000, width=32)
-VEHICLE = Vehicle(1, "one", Position(0, 0, 50), 0, 9, 5, 12, 0.5, 3, True)
+VEHICLE = spec.Vehicle(1, "one", spec.Position(0, 0, 50), 0, 9, 5, 12, 0.5, 3, True)
 
 
-def mission(**values: object) -> Mission:
-    volume = Daa(WellClear(30, 10, 5, 5))
-    base = Mission("made", "", Frame(52, 8.5, 100), (VEHICLE,), (), volume)
+def mission(**values: object) -> spec.Mission:
+    volume = spec.Daa(spec.WellClear(30, 10, 5, 5))
+    base = spec.Mission("made", "", spec.Frame(52, 8.5, 100), (VEHICLE,), (), volume)
     return replace(base, **values)  # type: ignore[arg-type]
 
 
-def points_task(number: int, place: tuple[float, float, float]) -> Task:
-    return Task(number, TaskKind.MUST_FLY, "", (Position(*place),), (1,))
+def points_task(number: int, place: tuple[float, float, float]) -> spec.Task:
+    return spec.Task(number, spec.TaskKind.MUST_FLY, "", (spec.Position(*place),), (1,))
 
 
 @given(st.lists(st.tuples(METRES, METRES, HEIGHTS), min_size=1, max_size=6), st.floats(0.5, 100))
@@ -76,19 +65,19 @@ def test_a_flight_plan_comes_back(places: list[tuple[float, float, float]], spee
 
 @given(
     st.lists(st.tuples(METRES, METRES), min_size=3, max_size=8),
-    st.sampled_from(list(ZoneKind)),
+    st.sampled_from(list(spec.ZoneKind)),
     st.floats(-1000, 100_000),
     st.floats(-1000, 100_000),
 )
 @settings(max_examples=25, deadline=None)
 def test_zones_come_back(
-    corners: list[tuple[float, float]], kind: ZoneKind, floor_m: float, ceiling_m: float
+    corners: list[tuple[float, float]], kind: spec.ZoneKind, floor_m: float, ceiling_m: float
 ) -> None:
-    made = mission(zones=(Zone(4, kind, tuple(corners), floor_m, ceiling_m),))
+    made = mission(zones=(spec.Zone(4, kind, tuple(corners), floor_m, ceiling_m),))
     (text,) = exported(made, "geofence").files.values()
     (fence,) = read_fence_xml(text.encode(), "made").fences
     plane = Projection(made.frame)
-    assert fence.keep_out == (kind is ZoneKind.KEEP_OUT)
+    assert fence.keep_out == (kind is spec.ZoneKind.KEEP_OUT)
     assert fence.floor_m is not None
     assert fence.ceiling_m is not None
     assert fence.floor_m + 100 == pytest.approx(floor_m, abs=1e-6)
@@ -103,7 +92,7 @@ def test_the_example_comes_back_whole(root: Path, tmp_path: Path) -> None:
     """Imported, exported, and imported again with its traffic and parameters: the same mission."""
     folder = root / "examples" / "icarous-files"
 
-    def taken(*files: Path) -> Mission:
+    def taken(*files: Path) -> spec.Mission:
         made = composed(gathered(files, Reading()), Asked("again"))
         return loaded(parse_document(mission_text(made, []), "again"))
 
@@ -129,8 +118,8 @@ def test_the_example_comes_back_whole(root: Path, tmp_path: Path) -> None:
 
 
 def test_a_planned_route_is_written_without_what_lies_on_its_legs() -> None:
-    there = [Position(north, 0, 50) for north in (0, 100, 200)]
-    aside = [Position(200, east, 50) for east in (10, 20)]
+    there = [spec.Position(north, 0, 50) for north in (0, 100, 200)]
+    aside = [spec.Position(200, east, 50) for east in (10, 20)]
     item = PlanItem(1, 1, 1, tuple(there), tuple(aside), None, 11, 0, 9, 0, 9, 20, 1.57)
     plan = Plan("made", (item,), (), (1,), 20, "MINMAX", 1, True)
     made = mission(tasks=(points_task(1, (200, 20, 50)),))

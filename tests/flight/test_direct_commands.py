@@ -83,6 +83,11 @@ class Flown:
         return [(ms, b["Phase"]) for ms, b in self.of("TaskProgress") if b["TaskID"] == task]
 
 
+def until_s(mission: Mission, seconds: int) -> Mission:
+    """The mission with another end of patience: one of whose vehicles holds for ever flies till then."""
+    return replace(mission, simulation=replace(mission.simulation, limit_ms=seconds * 1000))
+
+
 def with_(*changes: Change, base: Mission = CROSSING) -> Mission:
     return replace(base, changes=(*base.changes, *changes))
 
@@ -139,15 +144,15 @@ def test_what_is_commanded_while_it_flies_gives_the_log_of_the_mission_that_says
     now = {change.at_ms: (change,) for change in (HOLD, RESUME)}
     live = Flown(CROSSING, directed=lambda ms: now.get(ms, ()))
     assert live.said == held.said
-    popup = load(EXAMPLES / "popup" / "mission.yaml")
+    popup = until_s(load(EXAMPLES / "popup" / "mission.yaml"), 130)
+    assert max(change.at_ms for change in popup.changes) == 100_000
     here = HoldCommand(20_000, "vehicle_holds", vehicle=1)
     changed = Flown(popup, directed=lambda ms: (here,) if ms == 20_000 else ())
     assert changed.said == Flown(with_(here, base=popup)).said
 
 
 def test_who_never_resumes_leaves_its_task_unserved_and_that_is_said() -> None:
-    short = replace(CROSSING, simulation=replace(CROSSING.simulation, limit_ms=230_000))
-    flown = Flown(with_(HOLD, base=short))
+    flown = Flown(with_(HOLD, base=until_s(CROSSING, 230)))
     assert flown.result.outcome == "limit"
     assert flown.outcomes["G3", "task 1 served"] is Outcome.VIOLATED
     assert flown.outcomes["G3", "task 2 served"] is Outcome.HOLDS
@@ -291,7 +296,7 @@ def test_a_place_where_nobody_can_hold_is_told(
 
 
 def test_a_command_at_the_start_is_obeyed(tmp_path: Path) -> None:
-    flown = Flown(load(_file(tmp_path, 1)))
+    flown = Flown(until_s(load(_file(tmp_path, 1)), 300))
     assert flown.answers()[0][0] == 0
     assert flown.result.outcome in ("limit", "failed")  # nobody has vehicle 2 resume
     assert flown.outcomes["G3", "task 2 served"] is Outcome.VIOLATED

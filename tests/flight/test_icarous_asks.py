@@ -7,21 +7,7 @@ from typing import NamedTuple
 import pytest
 from icarous_tools import ABILITY, PROJECTION, VOLUME, head_on
 
-from cratous.bridge.text_protocol import (
-    FenceDone,
-    FenceVertex,
-    IcarousPlans,
-    Message,
-    RouteEnd,
-    RoutePoint,
-    RouteRequest,
-    RouteStart,
-    SetMode,
-    StartMission,
-    UxasPlans,
-    Waypoint,
-    WaypointReached,
-)
+from cratous.bridge import text_protocol as tp
 from cratous.core.authority.gate import ICAROUS, Gate
 from cratous.core.avoidance.manoeuvre import Motion
 from cratous.core.avoidance.prediction import Intruder
@@ -50,16 +36,16 @@ OWNED = Gate(ICAROUS, 1, False)
 ZONE = Zone(1, ZoneKind.KEEP_OUT, BLOCK, 0.0, 500.0)
 
 
-def told() -> list[Message]:
+def told() -> list[tp.Message]:
     """A way straight through a zone, on which the vehicle is."""
-    lines: list[Message] = [UxasPlans()]
+    lines: list[tp.Message] = [tp.UxasPlans()]
     for k, (north, east) in enumerate(BLOCK):
         place = PROJECTION.to_geodetic(north, east)
-        lines.append(FenceVertex("KEEPOUT", 4, k + 1, *place, 0.0, 500.0, 1))
-    lines.append(FenceDone(1))
+        lines.append(tp.FenceVertex("KEEPOUT", 4, k + 1, *place, 0.0, 500.0, 1))
+    lines.append(tp.FenceDone(1))
     for k, north in enumerate((-1000.0, GOAL.north_m)):
-        lines.append(Waypoint(2, 22.0, *PROJECTION.to_geodetic(north, 0.0), 300.0, k))
-    return [*lines, StartMission(), WaypointReached(0)]
+        lines.append(tp.Waypoint(2, 22.0, *PROJECTION.to_geodetic(north, 0.0), 300.0, k))
+    return [*lines, tp.StartMission(), tp.WaypointReached(0)]
 
 
 class Flight:
@@ -70,45 +56,46 @@ class Flight:
         self.state, self.now_ms = State(), 0
         self.hear(*told())
 
-    def hear(self, *lines: Message) -> None:
+    def hear(self, *lines: tp.Message) -> None:
         for line in lines:
             self.state, _ = self.end.handle(self.state, Line(self.now_ms, line))
 
     def beat(self, *others: Intruder) -> Said:
         """A heartbeat: UxAS is heard, the vehicle senses."""
         self.now_ms += BEAT_MS
-        self.hear(WaypointReached(0))
+        self.hear(tp.WaypointReached(0))
         sensed = Sensed(self.now_ms, MOTION, ABILITY, others, OWNED)
         self.state, out = self.end.handle(self.state, sensed)
         return Said.of(out)
 
-    def asked(self) -> RouteRequest:
+    def asked(self) -> tp.RouteRequest:
         (line,) = self.beat().asked
         return line
 
 
 class Said(NamedTuple):
-    asked: list[RouteRequest]
+    asked: list[tp.RouteRequest]
     texts: list[str]
     wishes: list[Wish]
-    modes: list[SetMode]
+    modes: list[tp.SetMode]
 
     @classmethod
     def of(cls, out: tuple[FromInstance, ...]) -> Said:
         lines = [one.line for one in out if isinstance(one, Up)]
         return cls(
-            [line for line in lines if isinstance(line, RouteRequest)],
+            [line for line in lines if isinstance(line, tp.RouteRequest)],
             [one.resolution for one in out if isinstance(one, Foresees)],
             [one for one in out if isinstance(one, Wish)],
-            [line for line in lines if isinstance(line, SetMode)],
+            [line for line in lines if isinstance(line, tp.SetMode)],
         )
 
 
-def answer(number: int | None, way: tuple[Position, ...]) -> list[Message]:
+def answer(number: int | None, way: tuple[Position, ...]) -> list[tp.Message]:
     points = (
-        RoutePoint(*PROJECTION.to_geodetic(p.north_m, p.east_m), p.alt_m, 22.0, number) for p in way
+        tp.RoutePoint(*PROJECTION.to_geodetic(p.north_m, p.east_m), p.alt_m, 22.0, number)
+        for p in way
     )
-    return [RouteStart(number), *points, RouteEnd(number)]
+    return [tp.RouteStart(number), *points, tp.RouteEnd(number)]
 
 
 def around() -> tuple[Position, ...]:
@@ -134,7 +121,7 @@ def test_the_answer_is_handed_back_onto_by_its_number_once_it_has_been_free_for_
         said = flight.beat()
     (wish,) = said.wishes
     assert wish.reason == f"{UXAS_WAY} (request 1)"
-    assert said.modes == [SetMode("PASSIVE", 2, 1)]
+    assert said.modes == [tp.SetMode("PASSIVE", 2, 1)]
 
 
 def test_one_that_kernels_do_not_permit_is_not_flown() -> None:
@@ -171,7 +158,7 @@ def test_what_is_no_answer(  # each ends in no handback
     flight = Flight()
     number = flight.asked().request
     wrong = answer(99, around())
-    flight.hear(*wrong, RoutePoint(37.0, -76.0, 300.0, 22.0, number), *answer(number, ()))
+    flight.hear(*wrong, tp.RoutePoint(37.0, -76.0, 300.0, 22.0, number), *answer(number, ()))
     texts = flight.beat().texts
     assert {NOT_ASKED, NO_WAY} <= set(texts)
     assert texts.count(NOT_ASKED) == 1
@@ -183,11 +170,11 @@ def test_what_is_no_answer(  # each ends in no handback
 
 def test_nothing_is_asked_unless_uxas_plans_live_or_where_the_own_way_is_free() -> None:
     flight = Flight()
-    flight.hear(IcarousPlans())
+    flight.hear(tp.IcarousPlans())
     assert not any(flight.beat().asked for _ in range(6))
-    flight.hear(UxasPlans())
+    flight.hear(tp.UxasPlans())
     assert flight.beat().asked
     free = Flight()
     free.state = State()
-    free.hear(*(line for line in told() if not isinstance(line, FenceVertex | FenceDone)))
+    free.hear(*(line for line in told() if not isinstance(line, tp.FenceVertex | tp.FenceDone)))
     assert not any(free.beat().asked for _ in range(6))

@@ -13,19 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from icarous_tools import ABILITY, NORTH, PROJECTION, VOLUME, head_on
 
-from cratous.bridge.text_protocol import (
-    FenceDone,
-    FenceVertex,
-    HardReset,
-    Heartbeat,
-    Message,
-    SetMode,
-    SetVelocity,
-    SoftReset,
-    StartMission,
-    Waypoint,
-    WaypointReached,
-)
+from cratous.bridge import text_protocol as tp
 from cratous.core.authority.cycle import Cycle, Cycled, gate_wished, patience
 from cratous.core.authority.gate import ICAROUS, UXAS, Gate, gate_accepts, gate_after
 from cratous.core.avoidance.prediction import Intruder
@@ -54,25 +42,25 @@ NEAR = (head_on(1800.0),)
 """So near that everybody acts at once."""
 
 
-def waypoints(*places: Position) -> list[Message]:
-    out: list[Message] = []
+def waypoints(*places: Position) -> list[tp.Message]:
+    out: list[tp.Message] = []
     for k, p in enumerate(places):
         lat, lon = PROJECTION.to_geodetic(p.north_m, p.east_m)
-        out.append(Waypoint(len(places), 22.0, lat, lon, p.alt_m, k))
-    return [*out, StartMission()]
+        out.append(tp.Waypoint(len(places), 22.0, lat, lon, p.alt_m, k))
+    return [*out, tp.StartMission()]
 
 
-def vertices(count: int) -> list[FenceVertex]:
-    out: list[FenceVertex] = []
+def vertices(count: int) -> list[tp.FenceVertex]:
+    out: list[tp.FenceVertex] = []
     for k in range(count):
         lat, lon = PROJECTION.to_geodetic(
             500 * math.cos(2 * math.pi * k / count), 500 * math.sin(2 * math.pi * k / count)
         )
-        out.append(FenceVertex("KEEPOUT", count, k + 1, lat, lon, 0.0, 500.0, 1))
+        out.append(tp.FenceVertex("KEEPOUT", count, k + 1, lat, lon, 0.0, 500.0, 1))
     return out
 
 
-def heard(told: Told, *lines: Message, now_ms: int = 0) -> Told:
+def heard(told: Told, *lines: tp.Message, now_ms: int = 0) -> Told:
     for line in lines:
         told = hear(told, line, PROJECTION, now_ms)
     return told
@@ -82,7 +70,7 @@ def test_inbox_takes_waypoints_only_when_started() -> None:
     lines = waypoints(Position(0, 0, 300), Position(900, 0, 300))
     told = heard(Told(), *lines[:-1])
     assert told.waypoints == ()
-    told = heard(told, lines[-1], WaypointReached(0), now_ms=500)
+    told = heard(told, lines[-1], tp.WaypointReached(0), now_ms=500)
     assert len(told.waypoints) == 2
     assert (told.next_index, told.heard_ms) == (1, 500)
 
@@ -100,19 +88,19 @@ def test_a_plan_that_lost_its_tail_is_not_in_force() -> None:
 
 
 def test_a_zone_counts_only_when_it_is_whole() -> None:
-    told = heard(Told(), *vertices(5), FenceDone(1))
+    told = heard(Told(), *vertices(5), tp.FenceDone(1))
     assert [len(z.vertices) for z in told.zones] == [5]
     broken = [v for k, v in enumerate(vertices(5)) if k != 3]
-    assert heard(Told(), *broken, FenceDone(1)).zones == ()
+    assert heard(Told(), *broken, tp.FenceDone(1)).zones == ()
     # as many vertices as the total, and yet not the zone that was sent
     one, two, three, four, five = vertices(5)
     other = [replace(four, zone=2), replace(four, fence="KEEPIN"), replace(four, total=6)]
     other += [replace(four, floor_m=9.0), replace(four, ceiling_m=9.0), replace(four, vertex=3)]
     for wrong in other:
-        assert heard(Told(), one, two, three, wrong, five, FenceDone(1)).zones == ()
-    assert heard(Told(), one, three, two, four, five, FenceDone(1)).zones == ()
-    assert heard(Told(), *vertices(5), FenceDone(2)).zones == ()
-    assert [z.id for z in heard(Told(), *vertices(5), FenceDone()).zones] == [1]
+        assert heard(Told(), one, two, three, wrong, five, tp.FenceDone(1)).zones == ()
+    assert heard(Told(), one, three, two, four, five, tp.FenceDone(1)).zones == ()
+    assert heard(Told(), *vertices(5), tp.FenceDone(2)).zones == ()
+    assert [z.id for z in heard(Told(), *vertices(5), tp.FenceDone()).zones] == [1]
 
 
 # ---- the step ------------------------------------------------------------------------------------
@@ -133,12 +121,12 @@ def after(*messages: ToInstance, state: State = State()) -> tuple[State, list[An
 
 
 def told_way() -> tuple[Line, ...]:
-    return tuple(Line(0, line) for line in (*waypoints(*WAY), WaypointReached(0)))
+    return tuple(Line(0, line) for line in (*waypoints(*WAY), tp.WaypointReached(0)))
 
 
 def started() -> State:
     state, out = after(*told_way(), sensed(0, FREE))
-    assert out == [Up(2, Heartbeat(1, 0.0))]
+    assert out == [Up(2, tp.Heartbeat(1, 0.0))]
     return state
 
 
@@ -150,7 +138,7 @@ def acts(out: list[Any]) -> list[int]:
     return [wish.act for wish in of(out, Wish)]
 
 
-def beats(first: int, count: int, gate: Gate, *lines: Message) -> list[ToInstance]:
+def beats(first: int, count: int, gate: Gate, *lines: tp.Message) -> list[ToInstance]:
     """Heartbeats from a number on, each after some lines."""
     out: list[ToInstance] = []
     for k in range(first, first + count):
@@ -160,14 +148,14 @@ def beats(first: int, count: int, gate: Gate, *lines: Message) -> list[ToInstanc
 
 
 ALL: tuple[ToInstance, ...] = (
-    *(Line(0, line) for line in (*vertices(4), FenceDone(1), HardReset())),
+    *(Line(0, line) for line in (*vertices(4), tp.FenceDone(1), tp.HardReset())),
     *told_way(),
     sensed(0, FREE),
     sensed(500, FREE, NEAR),
-    Line(600, SoftReset(45.0, -121.0, 300.0)),
-    *beats(2, 6, OWNED, SoftReset()),
+    Line(600, tp.SoftReset(45.0, -121.0, 300.0)),
+    *beats(2, 6, OWNED, tp.SoftReset()),
     sensed(4000, OFFERED, NEAR),
-    *beats(9, 6, Gate(ICAROUS, 3, False), SoftReset()),
+    *beats(9, 6, Gate(ICAROUS, 3, False), tp.SoftReset()),
     sensed(8000, Gate(UXAS, 4, False)),
     sensed(8500, Gate(UXAS, 4, False), NEAR),
 )
@@ -217,30 +205,30 @@ def test_cycle_of_takeover_offer_and_handback() -> None:
     assert (foresees.intruder_id, steer.epoch) == (9, 1)
     assert [type(message) for message in out] == [Wish, Foresees, Steer, Up, Up, Up]
     up = [message.line for message in of(out, Up)]
-    assert up[0] == SetMode("ACTIVE", 1)
-    assert isinstance(up[1], SetVelocity)
-    assert up[2] == Heartbeat(2, 0.5)
-    state, out = after(*beats(2, 3, OWNED, SoftReset()), state=state)
+    assert up[0] == tp.SetMode("ACTIVE", 1)
+    assert isinstance(up[1], tp.SetVelocity)
+    assert up[2] == tp.Heartbeat(2, 0.5)
+    state, out = after(*beats(2, 3, OWNED, tp.SoftReset()), state=state)
     assert (acts(out), state.cycle.mode) == ([], AVOID)
     assert of(out, Steer)[0].epoch == 1
-    state, out = after(*beats(5, 1, OWNED, SoftReset()), state=state)
+    state, out = after(*beats(5, 1, OWNED, tp.SoftReset()), state=state)
     assert (acts(out), state.cycle.mode) == ([OFFER], HANDBACK)
-    assert of(out, Up)[0].line == SetMode("PASSIVE", 2)
+    assert of(out, Up)[0].line == tp.SetMode("PASSIVE", 2)
     assert of(out, Steer)[0].epoch == 2
     state, out = after(sensed(3000, Gate(UXAS, 2, False)), state=state)
     assert (state.cycle, out) == (
         Cycle(MONITOR, 0, True, 3000, False, 0),
-        [Up(2, Heartbeat(7, 3.0))],
+        [Up(2, tp.Heartbeat(7, 3.0))],
     )
     assert (state.held, state.threats) == (None, ())
 
 
 def test_an_offer_is_withdrawn_when_a_conflict_comes_up() -> None:
-    state, _ = after(sensed(500, FREE, NEAR), *beats(2, 4, OWNED, SoftReset()), state=started())
+    state, _ = after(sensed(500, FREE, NEAR), *beats(2, 4, OWNED, tp.SoftReset()), state=started())
     assert state.cycle.mode == HANDBACK
     state, out = after(sensed(3000, OFFERED, (head_on(1500.0),)), state=state)
     assert (acts(out), state.cycle.mode) == ([WITHDRAW], AVOID)
-    assert of(out, Up)[0].line == SetMode("ACTIVE", 3)
+    assert of(out, Up)[0].line == tp.SetMode("ACTIVE", 3)
     assert of(out, Steer)[0].epoch == 3
     assert of(out, Foresees)[0].resolution.startswith("offer withdrawn; heading")
     # told also where the manoeuvre is the one flown already, but then not twice
@@ -258,7 +246,7 @@ def test_without_the_link_it_flies_on_and_offers_nothing() -> None:
         assert acts(out) == []
         assert len(of(out, Steer)) == 1
     # any line will do to count as heard, and the offer comes at once
-    _, out = after(*beats(40, 1, OWNED, SoftReset()), state=state)
+    _, out = after(*beats(40, 1, OWNED, tp.SoftReset()), state=state)
     assert acts(out) == [OFFER]
 
 
@@ -280,7 +268,7 @@ def test_an_instance_that_was_started_anew_in_command_flies_on() -> None:
 
 def test_a_takeover_makes_for_the_waypoint_that_is_next() -> None:
     """Not for one that is told to be reached, though it lies ahead."""
-    state, _ = after(Line(0, WaypointReached(1)), sensed(500, FREE, NEAR), state=started())
+    state, _ = after(Line(0, tp.WaypointReached(1)), sensed(500, FREE, NEAR), state=started())
     assert (state.cycle.mode, state.goal) == (AVOID, 2)
 
 
@@ -304,14 +292,14 @@ def test_a_goal_beyond_the_end_is_the_end() -> None:
 
 
 def test_a_zone_ahead_off_the_path_is_a_reason_to_take_over() -> None:
-    state, _ = after(*(Line(0, line) for line in (*vertices(12), FenceDone(1))))
+    state, _ = after(*(Line(0, line) for line in (*vertices(12), tp.FenceDone(1))))
     south = NORTH._replace(position=Position(-800.0, 0.0, 300.0))
     state, out = after(Sensed(500, south, ABILITY, (), FREE), state=state)
     (wish,) = of(out, Wish)
     assert (wish.act, wish.intruder_id) == (TAKE_OVER, 0)
     assert wish.reason.startswith("zone: loss predicted in ")
     away = south._replace(heading_rad=math.pi)
-    state, _ = after(*(Line(0, line) for line in (*vertices(12), FenceDone(1))))
+    state, _ = after(*(Line(0, line) for line in (*vertices(12), tp.FenceDone(1))))
     assert acts(after(Sensed(500, away, ABILITY, (), FREE), state=state)[1]) == []
 
 
@@ -333,7 +321,7 @@ def test_it_steers_exactly_while_its_gate_lets_it(
     for k, (traffic, answers, speaks, distance) in enumerate(history[:14], 1):
         there = (head_on(distance),) if traffic else ()
         if speaks:
-            state, out = after(Line(BEAT_MS * k, SoftReset()), state=state)
+            state, out = after(Line(BEAT_MS * k, tp.SoftReset()), state=state)
             assert out == []
         relapses = state.cycle.relapses
         state, out = after(sensed(BEAT_MS * k, gate, there), state=state)
@@ -347,7 +335,7 @@ def test_it_steers_exactly_while_its_gate_lets_it(
         assert len(steers) == (gate.owner == ICAROUS)
         assert all(gate_accepts(gate, ICAROUS, steer.epoch) for steer in steers)
         assert (state.cycle.mode == HANDBACK) == gate.offered
-        assert out[-1] == Up(2, Heartbeat(k + 1, BEAT_MS * k / 1000))
+        assert out[-1] == Up(2, tp.Heartbeat(k + 1, BEAT_MS * k / 1000))
         if answers:
             gate = gate_after(gate, UXAS, gate.epoch)
 

@@ -12,20 +12,9 @@ import pytest
 from flight_tools import flown, meeting, of_type, plain_steps, told_to_icarous, with_deadline
 
 from cratous.bridge import lmcp
+from cratous.bridge import text_protocol as tp
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.loopback import Bridge
-from cratous.bridge.text_protocol import (
-    FenceDone,
-    Heartbeat,
-    Message,
-    SetMode,
-    SetVelocity,
-    SoftReset,
-    StartMission,
-    VelocityOfAnother,
-    WayOfAnother,
-    WaypointReached,
-)
 from cratous.core.authority.gate import ICAROUS, UXAS, Gate
 from cratous.core.authority.link_end import Linked
 from cratous.services.bus import Bus
@@ -54,11 +43,11 @@ ALL: tuple[messages.ToLinkEnd, ...] = (
     messages.Flown(1, 110.0),
     messages.Beat(0, AIRCRAFT),
     messages.GateIs(1, Gate(ICAROUS, 1, False)),
-    messages.Heard(1, 500, SetMode("ACTIVE", 1)),
+    messages.Heard(1, 500, tp.SetMode("ACTIVE", 1)),
     messages.Left(1, WAY[1]),
-    messages.Heard(1, 500, Heartbeat(sequence=1, time_s=0.5)),
+    messages.Heard(1, 500, tp.Heartbeat(sequence=1, time_s=0.5)),
     messages.GateIs(1, Gate(ICAROUS, 2, True)),
-    messages.Heard(1, 900, SetMode("PASSIVE", 2)),
+    messages.Heard(1, 900, tp.SetMode("PASSIVE", 2)),
     messages.Unreadable(2, 900, "what?"),
     messages.ZonesKnown((ZONE, replace(ZONE, id=5))),
     messages.Watch(2500),
@@ -96,8 +85,8 @@ def test_a_vehicle_without_an_instance_is_told_nothing() -> None:
 
 
 TAKEN, OFFERED = Gate(ICAROUS, 1, False), Gate(ICAROUS, 2, True)
-TAKEOVER = (messages.GateIs(1, TAKEN), messages.Heard(1, 500, SetMode("ACTIVE", 1)))
-OFFER = (messages.GateIs(1, OFFERED), messages.Heard(1, 900, SetMode("PASSIVE", 2)))
+TAKEOVER = (messages.GateIs(1, TAKEN), messages.Heard(1, 500, tp.SetMode("ACTIVE", 1)))
+OFFER = (messages.GateIs(1, OFFERED), messages.Heard(1, 900, tp.SetMode("PASSIVE", 2)))
 
 
 def test_a_takeover_suspends_and_an_offer_is_taken_once() -> None:
@@ -108,7 +97,7 @@ def test_a_takeover_suspends_and_an_offer_is_taken_once() -> None:
     assert out == [messages.TakeBack(1, 900, TAKE_BACK, 2)]
     assert after(OFFER[1], state=state) == (state, [])
     before = state.peer(1)
-    state, out = after(messages.Heard(1, 900, SetMode("ACTIVE", 1)), state=state)
+    state, out = after(messages.Heard(1, 900, tp.SetMode("ACTIVE", 1)), state=state)
     (said,) = out
     assert "epoch 1 is overtaken by one of epoch 2" in said.body.Note
     assert state.peer(1) == before
@@ -118,26 +107,28 @@ def test_an_offer_is_taken_also_where_the_takeover_was_not_heard() -> None:
     """Every SETMOD of the takeover was lost: UxAS takes the offer because it hears of it, not unheard."""
     state, _ = END.handle(State(), messages.Connected(0, (1,)))
     state, _ = END.handle(state, messages.GateIs(1, Gate(ICAROUS, 2, True)))
-    state, out = END.handle(state, messages.Heard(1, 500, SetMode("PASSIVE", 2)))
+    state, out = END.handle(state, messages.Heard(1, 500, tp.SetMode("PASSIVE", 2)))
     assert [(m.vehicle_id, m.epoch, m.act) for m in out if isinstance(m, messages.TakeBack)] == [
         (1, 2, TAKE_BACK)
     ]
-    _, out = END.handle(state, messages.Heard(1, 1000, SetMode("PASSIVE", 2)))
+    _, out = END.handle(state, messages.Heard(1, 1000, tp.SetMode("PASSIVE", 2)))
     assert not [m for m in out if isinstance(m, messages.TakeBack)]
     # where nothing is offered there is nothing to take
     state, _ = END.handle(State(), messages.Connected(0, (1,)))
     state, _ = END.handle(state, messages.GateIs(1, Gate(UXAS, 2, False)))
-    _, out = END.handle(state, messages.Heard(1, 500, SetMode("PASSIVE", 2)))
+    _, out = END.handle(state, messages.Heard(1, 500, tp.SetMode("PASSIVE", 2)))
     assert not [m for m in out if isinstance(m, messages.TakeBack)]
 
 
 def test_a_mode_without_an_epoch_is_of_the_present_one() -> None:
     state, out = after(
-        *ALL[:2], messages.GateIs(1, TAKEN), messages.Heard(1, 500, SetMode("ACTIVE", None))
+        *ALL[:2], messages.GateIs(1, TAKEN), messages.Heard(1, 500, tp.SetMode("ACTIVE", None))
     )
     assert out == [messages.Suspend(1, 500, SUSPEND)]
     _, out = after(
-        messages.GateIs(1, OFFERED), messages.Heard(1, 900, SetMode("PASSIVE", None)), state=state
+        messages.GateIs(1, OFFERED),
+        messages.Heard(1, 900, tp.SetMode("PASSIVE", None)),
+        state=state,
     )
     assert out == [messages.TakeBack(1, 900, TAKE_BACK, 2)]
 
@@ -155,7 +146,7 @@ def test_a_mode_without_an_epoch_is_of_the_present_one() -> None:
 )
 def test_a_mode_that_cannot_be_true_is_refused(mode: str, epoch: int | None, reason: str) -> None:
     state, _ = after(*ALL[:2], *TAKEOVER, *OFFER)
-    again, (said,) = after(messages.Heard(1, 1000, SetMode(mode, epoch)), state=state)
+    again, (said,) = after(messages.Heard(1, 1000, tp.SetMode(mode, epoch)), state=state)
     assert type(said.body).__name__ == "ModeRefused"
     assert (said.body.Epoch, said.body.GateEpoch) == (2 if epoch is None else epoch, 2)
     assert reason in said.body.Reason
@@ -181,11 +172,11 @@ def test_a_mode_that_is_refused_or_says_nothing_new_is_no_sign_of_life(
 def test_waypoints_are_told_and_reached_once() -> None:
     state, out = after(*ALL[:3])
     to_other, down = out
-    assert [type(line) for line in to_other.lines] == [WayOfAnother] * len(WAY)
-    assert isinstance(down.lines[0], SoftReset)
-    assert isinstance(down.lines[-1], StartMission)
+    assert [type(line) for line in to_other.lines] == [tp.WayOfAnother] * len(WAY)
+    assert isinstance(down.lines[0], tp.SoftReset)
+    assert isinstance(down.lines[-1], tp.StartMission)
     state, out = after(messages.Flown(1, 110.0), state=state)
-    assert out == [messages.Down(1, (WaypointReached(0), WaypointReached(1)))]
+    assert out == [messages.Down(1, (tp.WaypointReached(0), tp.WaypointReached(1)))]
     assert after(messages.Flown(1, 110.0), state=state) == (state, [])
     # a place before those that are told to be reached takes nothing back
     assert after(messages.Flown(1, 20.0), state=state) == (state, [])
@@ -193,22 +184,22 @@ def test_waypoints_are_told_and_reached_once() -> None:
 
 def test_how_a_vehicle_flies_is_told_to_the_others() -> None:
     """Its way; that it is over, as ICAROUS takes it; to which velocity it is steered; that this is over; its way again."""
-    steers = messages.Heard(1, 500, SetVelocity(20.0, -5.0, 0.0))
+    steers = messages.Heard(1, 500, tp.SetVelocity(20.0, -5.0, 0.0))
     state, _ = after(*ALL[:2])
-    heard = list[Message]()
+    heard = list[tp.Message]()
     for message in (*ALL[2:7], steers, steers, *ALL[9:11], ALL[2]):
         state, out = END.handle(state, message)
         heard += [
             x for m in out if isinstance(m, messages.Down) and m.vehicle_id == 2 for x in m.lines
         ]
-    others = [line for line in heard if isinstance(line, WayOfAnother | VelocityOfAnother)]
+    others = [line for line in heard if isinstance(line, tp.WayOfAnother | tp.VelocityOfAnother)]
     assert {line.vehicle_id for line in others} == {1}
-    told = [line.total if isinstance(line, WayOfAnother) else line for line in others]
-    assert told == [3, 3, 3, 0, VelocityOfAnother(1, 20.0, -5.0, 0.0), 0, 3, 3, 3]
+    told = [line.total if isinstance(line, tp.WayOfAnother) else line for line in others]
+    assert told == [3, 3, 3, 0, tp.VelocityOfAnother(1, 20.0, -5.0, 0.0), 0, 3, 3, 3]
     _, out = END.handle(state, messages.Connected(900, (2,)))
     assert (
         sum(
-            isinstance(x, WayOfAnother)
+            isinstance(x, tp.WayOfAnother)
             for m in out
             if isinstance(m, messages.Down)
             for x in m.lines
@@ -255,12 +246,12 @@ def test_the_kernel_of_signs_decides_who_is_alive(monkeypatch: pytest.MonkeyPatc
 
 
 def sending(
-    monkeypatch: pytest.MonkeyPatch, change: Callable[[int, Message], tuple[Message, ...]]
+    monkeypatch: pytest.MonkeyPatch, change: Callable[[int, tp.Message], tuple[tp.Message, ...]]
 ) -> None:
     """Put in the place of each line that goes up what `change` makes of it, by its number."""
     send, count = Bridge.to_uxas, itertools.count()
 
-    def changed(bridge: Bridge, vehicle_id: int, message: Message) -> bool:
+    def changed(bridge: Bridge, vehicle_id: int, message: tp.Message) -> bool:
         return all(send(bridge, vehicle_id, m) for m in change(next(count), message))
 
     monkeypatch.setattr(Bridge, "to_uxas", changed)
@@ -273,8 +264,8 @@ def test_a_forged_mode_takes_no_authority(
     counted, and told with the verdict of G4."""
     right, log = undisturbed
     states = repr(of_type(log, "TruthState"))
-    forged = (SetMode("ACTIVE", 10**14), SetMode("PASSIVE", 10**14))
-    sending(monkeypatch, lambda _, m: (*forged, m) if isinstance(m, Heartbeat) else (m,))
+    forged = (tp.SetMode("ACTIVE", 10**14), tp.SetMode("PASSIVE", 10**14))
+    sending(monkeypatch, lambda _, m: (*forged, m) if isinstance(m, tp.Heartbeat) else (m,))
     mission = meeting()
     plan, bus, log = make_plan(mission), Bus(lmcp.full_names), list[Any]()
     monitor = Monitor(mission, plan)
@@ -294,10 +285,10 @@ def test_a_forged_mode_takes_no_authority(
 @pytest.mark.parametrize("lost", ["ACTIVE", "PASSIVE"])
 def test_a_mode_that_is_lost_is_said_again(monkeypatch: pytest.MonkeyPatch, lost: str) -> None:
     """The first line of a takeover, or of an offer, never arrives: UxAS acts a heartbeat later."""
-    dropped = list[Message]()
+    dropped = list[tp.Message]()
 
-    def losing(_: int, message: Message) -> tuple[Message, ...]:
-        if isinstance(message, SetMode) and message.mode == lost and not dropped:
+    def losing(_: int, message: tp.Message) -> tuple[tp.Message, ...]:
+        if isinstance(message, tp.SetMode) and message.mode == lost and not dropped:
             dropped.append(message)
             return ()
         return (message,)
@@ -340,8 +331,8 @@ def test_icarous_is_told_the_way_of_another_plan(monkeypatch: pytest.MonkeyPatch
     result, _ = flown(mission, plan)
     assert result.replans == 1
     told = [message for vehicle, message in heard if vehicle == 1]
-    first = next(k for k, m in enumerate(told) if isinstance(m, WaypointReached))
-    assert sum(isinstance(m, StartMission) for m in told[:first]) == 2
+    first = next(k for k, m in enumerate(told) if isinstance(m, tp.WaypointReached))
+    assert sum(isinstance(m, tp.StartMission) for m in told[:first]) == 2
 
 
 def test_a_zone_that_is_known_from_the_start_binds_everybody(
@@ -353,7 +344,7 @@ def test_a_zone_that_is_known_from_the_start_binds_everybody(
     later, there = replace(far, id=5), Simulation(limit_ms=2000)
     both = (Change(0, ZONE_APPEARS, zone=far), Change(1000, ZONE_APPEARS, zone=later))
     flown(replace(meeting(), traffic=(), changes=both, simulation=there))
-    assert [m.zone for _, m in told if isinstance(m, FenceDone)] == [1, 2]
+    assert [m.zone for _, m in told if isinstance(m, tp.FenceDone)] == [1, 2]
 
 
 def test_a_state_survives_a_restart() -> None:
@@ -368,11 +359,11 @@ def test_that_a_vehicle_is_steered_is_over_for_the_others_as_its_icarous_is_not_
     event: messages.ToLinkEnd,
 ) -> None:
     """Nobody steers it there any more, or nobody knows."""
-    steers = messages.Heard(1, 500, SetVelocity(20.0, -5.0, 0.0))
+    steers = messages.Heard(1, 500, tp.SetVelocity(20.0, -5.0, 0.0))
     state, _ = after(*ALL[:2], *ALL[2:7], steers)
     state, out = END.handle(state, event)
     told = [x for m in out if isinstance(m, messages.Down) and m.vehicle_id == 2 for x in m.lines]
-    assert told == [WayOfAnother(1, 0, 0.0, 0.0, 0.0, 0)]
+    assert told == [tp.WayOfAnother(1, 0, 0.0, 0.0, 0.0, 0)]
     again = END.handle(state, messages.Connected(9500, (2,)))[1]
     lines = [x for m in again if isinstance(m, messages.Down) for x in m.lines]
-    assert not [x for x in lines if isinstance(x, VelocityOfAnother | WayOfAnother)]
+    assert not [x for x in lines if isinstance(x, tp.VelocityOfAnother | tp.WayOfAnother)]

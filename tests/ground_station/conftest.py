@@ -11,7 +11,7 @@ EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 CROSSING, POPUP = (EXAMPLES / name / "mission.yaml" for name in ("crossing", "popup"))
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def crossing(fly_once: Callable[[Path], Path]) -> Path:
     """The results of a flight in which ICAROUS takes over vehicle 2 and hands it back."""
     return fly_once(CROSSING)

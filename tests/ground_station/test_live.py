@@ -23,6 +23,14 @@ CROSSING = Path("examples/crossing/mission.yaml")
 pytestmark = pytest.mark.slow
 
 
+@pytest.fixture(scope="module")
+def standing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """A flight that stands at its begin, for tests that all leave it there."""
+    with flying(CROSSING, tmp_path_factory.mktemp("standing") / "live", ROOT) as served:
+        assert served.until("paused", "failed", "lost")["state"] == "paused"
+        yield served
+
+
 @pytest.fixture
 def live(tmp_path: Path) -> Iterator[Served]:
     with flying(CROSSING, tmp_path / "live", ROOT) as served:
@@ -98,27 +106,27 @@ def test_it_stands_until_it_is_told_to_fly_and_after_a_step(live: Served) -> Non
     assert live.told()["next"] > before
 
 
-def test_a_command_needs_the_token_of_the_address(live: Served) -> None:
+def test_a_command_needs_the_token_of_the_address(standing: Served) -> None:
     body = b'{"do": "play"}'
-    for token in ("", "x", live.token[:-1], live.token + "x"):
-        got = live.sent("a", body, X_Cratous_Token=token)
+    for token in ("", "x", standing.token[:-1], standing.token + "x"):
+        got = standing.sent("a", body, X_Cratous_Token=token)
         assert got.status == 403
         assert "token" in got.data()["error"]
-    assert live.token not in ask(live.port, "/").body.decode()
-    assert live.token not in ask(live.port, "/recording.json").body.decode()
-    assert live.told()["status"]["state"] == "paused"
+    assert standing.token not in ask(standing.port, "/").body.decode()
+    assert standing.token not in ask(standing.port, "/recording.json").body.decode()
+    assert standing.told()["status"]["state"] == "paused"
 
 
-def test_a_command_comes_from_the_page_itself(live: Served) -> None:
+def test_a_command_comes_from_the_page_itself(standing: Served) -> None:
     body = b'{"do": "play"}'
-    for origin in ("", "null", "http://evil.example", f"http://localhost:{live.port}"):
-        assert live.sent("a", body, Origin=origin).status == 403
-    assert live.sent("a", body, Host="evil.example").status == 421
-    assert live.sent("a", body, Content_Type="text/plain").status == 415
-    assert live.sent("a", body, Content_Length="-1").status == 413
-    assert live.sent("a", body, Content_Length="1001").status == 413
-    assert ask(live.port, "/command").status == 404
-    assert live.told()["status"]["state"] == "paused"
+    for origin in ("", "null", "http://evil.example", f"http://localhost:{standing.port}"):
+        assert standing.sent("a", body, Origin=origin).status == 403
+    assert standing.sent("a", body, Host="evil.example").status == 421
+    assert standing.sent("a", body, Content_Type="text/plain").status == 415
+    assert standing.sent("a", body, Content_Length="-1").status == 413
+    assert standing.sent("a", body, Content_Length="1001").status == 413
+    assert ask(standing.port, "/command").status == 404
+    assert standing.told()["status"]["state"] == "paused"
 
 
 @pytest.mark.parametrize(
@@ -129,11 +137,11 @@ def test_a_command_comes_from_the_page_itself(live: Served) -> None:
         b'{"do": "rate", "rate": [1]}', b'{"do": "rate", "rate": NaN}',
     ],
 )  # fmt: skip
-def test_what_is_no_command_is_refused_and_changes_nothing(live: Served, body: bytes) -> None:
-    got = live.sent("a", body)
+def test_what_is_no_command_is_refused_and_changes_nothing(standing: Served, body: bytes) -> None:
+    got = standing.sent("a", body)
     assert got.status == 400
     assert got.data()["error"]
-    assert live.told()["status"]["state"] == "paused"
+    assert standing.told()["status"]["state"] == "paused"
 
 
 def test_a_second_page_is_told_and_may_take_the_command(live: Served) -> None:
@@ -150,9 +158,9 @@ def test_a_second_page_is_told_and_may_take_the_command(live: Served) -> None:
 
 
 @pytest.mark.parametrize("first", ["x", "-1", "9" * 10, "²"])
-def test_an_update_that_is_no_number_is_refused(live: Served, first: str) -> None:
+def test_an_update_that_is_no_number_is_refused(standing: Served, first: str) -> None:
     quoted = first.encode().decode("latin-1").replace("Â", "%C2").replace("\xb2", "%B2")
-    assert ask(live.port, f"/live.json?from={quoted}").status == 400
+    assert ask(standing.port, f"/live.json?from={quoted}").status == 400
 
 
 def test_a_flight_that_is_stopped_leaves_nothing(live: Served, tmp_path: Path) -> None:

@@ -23,7 +23,7 @@ from cratous.services.ground_station.verdicts import NO_REPORT, OTHER_LOG
 from cratous.spec.errors import BadInput
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def port(crossing: Path) -> Iterator[int]:
     with serving(crossing) as (_, port):
         yield port

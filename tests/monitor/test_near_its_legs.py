@@ -57,14 +57,19 @@ def at_zone(*zones: Zone) -> Mission:
     return replace(ALONE, zones=zones)
 
 
+def beside_the_zone(log: Log) -> int:
+    """The first state of the vehicle there."""
+    return next(
+        k for k, one in enumerate(log)
+        if one.topic.endswith("TruthState") and one.body.North > 2500.0
+    )  # fmt: skip
+
+
 def aside(**off: float) -> Callable[[Log], None]:
     """The vehicle is elsewhere at one sample beside the zone."""
 
     def change(log: Log) -> None:
-        k = next(
-            k for k, one in enumerate(log)
-            if one.topic.endswith("TruthState") and one.body.North > 2500.0
-        )  # fmt: skip
+        k = beside_the_zone(log)
         body = log[k].body
         log[k] = other(log[k], **{key: getattr(body, key) + by for key, by in off.items()})
 
@@ -117,10 +122,7 @@ def test_a_zone_that_is_above_is_kept() -> None:
 
 def test_what_is_not_seen_is_not_said_to_be_near() -> None:
     def change(log: Log) -> None:
-        k = next(
-            k for k, one in enumerate(log)
-            if one.topic.endswith("TruthState") and one.body.North > 2500.0
-        )  # fmt: skip
+        k = beside_the_zone(log)
         del log[k]
 
     found = seen(at_zone(zone(100.0)), change)
@@ -173,10 +175,7 @@ def test_what_was_flown_until_a_command_is_held_against_the_one_before() -> None
     last: list[float] = []
 
     def change(log: Log) -> None:
-        k = next(
-            k for k, one in enumerate(log)
-            if one.topic.endswith("TruthState") and one.body.North > 2500.0
-        )  # fmt: skip
+        k = beside_the_zone(log)
         body = log[k].body
         log[k] = other(log[k], East=body.East - 21.0)
         command = log[at(log, "GatedCommand", VehicleID=1)]
@@ -193,10 +192,7 @@ def test_a_command_between_two_samples_leaves_what_is_flown_between_them_not_obs
     """Where the vehicle was when the path changed is not in the log."""
 
     def change(log: Log) -> None:
-        k = next(
-            k for k, one in enumerate(log)
-            if one.topic.endswith("TruthState") and one.body.North > 2500.0
-        )  # fmt: skip
+        k = beside_the_zone(log)
         command = log[at(log, "GatedCommand", VehicleID=1)]
         log.insert(k, replace(command, time_ms=log[k].time_ms - 100))
 

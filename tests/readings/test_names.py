@@ -23,6 +23,15 @@ from cratous.proofs.engine.symbolic import SymReal
 from cratous.spec.errors import BadInput
 
 PACKAGE = "names_of_two"
+BOTH = """
+def clamp(x: float) -> float:
+    return x + TWICE[0] if x < LIMIT else LIMIT
+
+def made(x: float) -> float:
+    s = State(x, 1)
+    return s.first - s.last
+"""
+"""Functions of either module, on its own constants and records."""
 FILES = {
     "near": """
         LIMIT = 1000
@@ -31,13 +40,6 @@ FILES = {
         class State(NamedTuple):
             first: float
             last: float
-
-        def clamp(x: float) -> float:
-            return x + TWICE[0] if x < LIMIT else LIMIT
-
-        def made(x: float) -> float:
-            s = State(x, 1)
-            return s.first - s.last
 
         @kernel(implements="a.b")
         def share(x: float, y: float) -> float:
@@ -63,13 +65,6 @@ FILES = {
         class State(NamedTuple):
             last: float
             first: float
-
-        def clamp(x: float) -> float:
-            return x + TWICE[0] if x < LIMIT else LIMIT
-
-        def made(x: float) -> float:
-            s = State(x, 1)
-            return s.first - s.last
 
         def total(x: float) -> float:
             found = 0.0
@@ -101,7 +96,7 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[M
     (folder / "__init__.py").write_text("")
     for name, text in FILES.items():
         lines = [line.removeprefix(" " * 8) for line in text.splitlines()]
-        (folder / f"{name}.py").write_text("\n".join([HEAD, *lines, ""]))
+        (folder / f"{name}.py").write_text("\n".join([HEAD, *lines, BOTH]))
     monkeypatch.syspath_prepend(tmp_path)
     before = dict(REGISTRY)
     yield tuple(importlib.import_module(f"{PACKAGE}.{name}") for name in FILES)

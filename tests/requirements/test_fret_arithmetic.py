@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from requirement_tools import alike_at_once
 
 from cratous.services.requirements import fret, fret_definitions, language
 from cratous.services.requirements.arithmetic import sources
@@ -158,15 +159,9 @@ def test_a_long_trace_is_judged_the_same_at_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     spec = of("(G (absReal(preReal(0.0, x) - x) <= y / 2.0))")
-    trace = tmp_path / "t.csv"
     rows = [f"{k % 7},{k % 4}" for k in range(60)]
-    trace.write_text("x,y\n" + "\n".join([*rows[:9], ",1", *rows[9:]]) + "\n")
-    one_by_one = watch(spec, trace, []).outcomes
-    monkeypatch.setattr("cratous.services.requirements.watch.is_worth", lambda *_: True)
-    monkeypatch.setattr("cratous.core.readings.machine.compiled.machine", lambda loop: loop)
-    at_once = watch(spec, trace).outcomes
-    assert [vars(one) for one in at_once] == [vars(one) for one in one_by_one]
-    assert one_by_one[0].unknown == 2
+    rows = ["x,y", *rows[:9], ",1", *rows[9:]]
+    assert alike_at_once(spec, tmp_path / "t.csv", rows, monkeypatch).unknown == 2
 
 
 def defined(name: str, text: str, kind: str = "boolean") -> dict[str, str]:

@@ -11,12 +11,13 @@ from typing import Any, NamedTuple
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from requirement_tools import alike_at_once
 
 from cratous.services.requirements import fret, language
 from cratous.services.requirements.arithmetic import sources
 from cratous.services.requirements.fretish import NoForm, sentence
 from cratous.services.requirements.specification import NotRead, Specification
-from cratous.services.requirements.watch import Watch, watch
+from cratous.services.requirements.watch import Watch
 
 INPUTS = [
     *({"variable_name": n, "idType": "Input", "dataType": "double"} for n in "xy"),
@@ -207,15 +208,9 @@ def test_what_is_unknown_stays_so_as_long_as_it_is_looked_at() -> None:
 
 def test_at_once_is_as_one_by_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     spec = over("(G (y <= held))", held=("double", HELD))
-    trace = tmp_path / "t.csv"
     rows = [f"{k % 7},{k % 4},{k % 3 // 2}" for k in range(60)]
-    trace.write_text("x,y,b\n" + "\n".join([*rows[:9], "1,,1", *rows[9:]]) + "\n")
-    one_by_one = watch(spec, trace, []).outcomes
-    monkeypatch.setattr("cratous.services.requirements.watch.is_worth", lambda *_: True)
-    monkeypatch.setattr("cratous.core.readings.machine.compiled.machine", lambda loop: loop)
-    at_once = watch(spec, trace).outcomes
-    assert [vars(one) for one in at_once] == [vars(one) for one in one_by_one]
-    assert one_by_one[0].violated
+    rows = ["x,y,b", *rows[:9], "1,,1", *rows[9:]]
+    assert alike_at_once(spec, tmp_path / "t.csv", rows, monkeypatch).violated
 
 
 def test_it_has_no_sentence_and_none_where_samples_have_times(tmp_path: Path) -> None:

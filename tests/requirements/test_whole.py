@@ -12,19 +12,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from cratous.core.readings.machine import compiled
+from cratous.services.requirements import formula as form
 from cratous.services.requirements import watch, whole
 from cratous.services.requirements.evaluation import Evaluation
-from cratous.services.requirements.formula import (
-    MAX_TIME,
-    Always,
-    Bounded,
-    Formula,
-    Join,
-    Not,
-    Reaches,
-    iff,
-    once,
-)
 from cratous.services.requirements.outcome import Outcome
 from cratous.services.requirements.specification import Requirement, Signal, Specification
 from cratous.services.requirements.watch import Watch
@@ -33,17 +23,17 @@ from cratous.spec.errors import BadInput
 SIDES = st.sampled_from(("x", "y", 0.0, 1.0))
 NAMES = st.sampled_from(("x", "y"))
 LEAVES = (
-    st.builds(Reaches, NAMES, SIDES)
-    | st.builds(Reaches, SIDES, NAMES)
-    | st.sampled_from((Always(0), Always(2)))
+    st.builds(form.Reaches, NAMES, SIDES)
+    | st.builds(form.Reaches, SIDES, NAMES)
+    | st.sampled_from((form.Always(0), form.Always(2)))
 )
 FORMULAS = st.recursive(
     LEAVES,
     lambda inner: st.one_of(
-        st.builds(Not, inner),
-        st.builds(Join, inner, inner, st.booleans()),
-        st.builds(iff, inner, inner),
-        st.builds(lambda p, q, low, more, past: Bounded(p, q, low, low + more, past),
+        st.builds(form.Not, inner),
+        st.builds(form.Join, inner, inner, st.booleans()),
+        st.builds(form.iff, inner, inner),
+        st.builds(lambda p, q, low, more, past: form.Bounded(p, q, low, low + more, past),
                   inner, inner, st.integers(0, 3), st.integers(0, 4), st.booleans()),
     ),
     max_leaves=9,
@@ -70,7 +60,7 @@ def samples(rows: list[tuple[int, Any, Any]]) -> list[tuple[int, dict[str, float
     return found
 
 
-def both_ways(formula: Formula, rows: list[tuple[int, Any, Any]]) -> tuple[Outcome, Outcome]:
+def both_ways(formula: form.Formula, rows: list[tuple[int, Any, Any]]) -> tuple[Outcome, Outcome]:
     spec = Specification(SIGNALS, (Requirement("A", "", formula),))
     one_by_one, at_once = Watch(spec), Watch(spec)
     for time, row in samples(rows):
@@ -86,24 +76,30 @@ def both_ways(formula: Formula, rows: list[tuple[int, Any, Any]]) -> tuple[Outco
 @settings(max_examples=300, deadline=None)
 @given(formula=FORMULAS, rows=ROWS)
 @example(
-    formula=Bounded(
-        Bounded(Always(2), Reaches("x", 1.0), 0, 4, False), Reaches("y", 1.0), 0, 2, False
+    formula=form.Bounded(
+        form.Bounded(form.Always(2), form.Reaches("x", 1.0), 0, 4, False),
+        form.Reaches("y", 1.0),
+        0,
+        2,
+        False,
     ),
     rows=[(1, 0.0, 1.0), (1, 0.0, 0.0), (1, 0.0, 1.0), (1, 1.0, None), (1, 0.0, 0.0)],
 )
 @example(  # violated first at a sample that is as the one before, by comparisons that are not made again
-    formula=Join(
-        Join(Reaches("x", 1.0), Reaches("y", 1.0), True),
-        Not(Bounded(Always(2), Reaches("y", 0.0), 1, 5, True)),
+    formula=form.Join(
+        form.Join(form.Reaches("x", 1.0), form.Reaches("y", 1.0), True),
+        form.Not(form.Bounded(form.Always(2), form.Reaches("y", 0.0), 1, 5, True)),
         False,
     ),
     rows=[(1, 0.0, 0.0), (1, 0.0, 0.0)],
 )
 @example(  # a part that one with time and one without read
-    formula=iff(Reaches("x", 1.0), once(Reaches("y", 1.0), 0, 9)),
+    formula=form.iff(form.Reaches("x", 1.0), form.once(form.Reaches("y", 1.0), 0, 9)),
     rows=[(1, 0.0, 0.0), (1, 0.0, 0.0), (1, 1.0, 0.0)],
 )
-def test_any_formula_over_any_trace(formula: Formula, rows: list[tuple[int, Any, Any]]) -> None:
+def test_any_formula_over_any_trace(
+    formula: form.Formula, rows: list[tuple[int, Any, Any]]
+) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(compiled, "machine", plainly)
         one_by_one, at_once = both_ways(formula, rows)
@@ -113,7 +109,7 @@ def test_any_formula_over_any_trace(formula: Formula, rows: list[tuple[int, Any,
 @settings(max_examples=200, deadline=None)
 @given(formula=FORMULAS, rows=ROWS)
 def test_each_sample_is_decided_when_it_is_one_by_one(
-    formula: Formula, rows: list[tuple[int, Any, Any]]
+    formula: form.Formula, rows: list[tuple[int, Any, Any]]
 ) -> None:
     evaluation, wanted = Evaluation(formula), {}
     for k, (time, row) in enumerate(samples(rows)):
@@ -135,13 +131,13 @@ def test_machine_code_says_the_same_and_is_used_where_it_is_worth_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Every loop, through the monitor of a trace."""
-    x, y = Reaches("x", 1.0), Reaches("y", 1.0)
-    a = Join(
-        Bounded(x, Not(Reaches("y", 2.0)), 1, 3, True),
-        Bounded(Not(Reaches("x", 1.5)), y, 1, 4, False),
+    x, y = form.Reaches("x", 1.0), form.Reaches("y", 1.0)
+    a = form.Join(
+        form.Bounded(x, form.Not(form.Reaches("y", 2.0)), 1, 3, True),
+        form.Bounded(form.Not(form.Reaches("x", 1.5)), y, 1, 4, False),
         False,
     )
-    b = Join(Reaches("x", 0.0), Reaches("y", 0.0), True)
+    b = form.Join(form.Reaches("x", 0.0), form.Reaches("y", 0.0), True)
     spec = Specification(
         {name: Signal("float") for name in "xy"}, (Requirement("A", "", a), Requirement("B", "", b))
     )
@@ -165,13 +161,13 @@ def test_machine_code_says_the_same_and_is_used_where_it_is_worth_it(
     assert min((m.least, m.at) for m in second.margins) == (-1.0, 400)
 
 
-@pytest.mark.parametrize("later", [7, 6, MAX_TIME + 1, 2**63])
+@pytest.mark.parametrize("later", [7, 6, form.MAX_TIME + 1, 2**63])
 def test_times_that_do_not_rise_are_refused_at_once_as_one_by_one(
     later: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(whole, "WORTH", 0)
     monkeypatch.setattr(compiled, "machine", plainly)
-    spec = Specification(SIGNALS, (Requirement("A", "", Reaches("x", 1.0)),))
+    spec = Specification(SIGNALS, (Requirement("A", "", form.Reaches("x", 1.0)),))
     row: dict[str, float | None] = {"x": 1.0}
     one_by_one = Watch(spec)
     one_by_one.sample(7, row)
@@ -183,7 +179,7 @@ def test_times_that_do_not_rise_are_refused_at_once_as_one_by_one(
 
 
 def test_a_trace_longer_than_is_kept_goes_on_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    spec = Specification(SIGNALS, (Requirement("A", "", Reaches("x", 1.0)),))
+    spec = Specification(SIGNALS, (Requirement("A", "", form.Reaches("x", 1.0)),))
     rows = samples([(1, k % 3 / 1.0, None) for k in range(50)])
     wanted = Watch(spec)
     for time, row in rows:

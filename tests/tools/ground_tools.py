@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import importlib.util
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import pytest
 from judge_tools import Message, write
 
 from cratous.bridge import lmcp
@@ -14,9 +16,11 @@ from cratous.judge import judge
 from cratous.services.bus import Bus
 from cratous.services.flight.loop import fly
 from cratous.services.flight.result import FlightResult
+from cratous.services.loading import load
 from cratous.services.logs.records import to_data
 from cratous.services.monitor import Monitor
 from cratous.services.pipeline.plan import make_plan
+from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import Verdict
 
@@ -54,6 +58,13 @@ def flown_of(mission: Mission) -> Flown:
     bus, log = Bus(lmcp.full_names), list[Any]()
     bus.tap(log.append)
     return Flown(mission, log, fly(mission, make_plan(mission), bus))
+
+
+def refusal(path: Path, check: Callable[[Mission], object]) -> str:
+    """What a check of a mission file says that it refuses."""
+    with pytest.raises(BadInput) as caught:
+        check(load(path))
+    return str(caught.value)
 
 
 def assert_in_the_guide(root: Path, tool: str) -> None:

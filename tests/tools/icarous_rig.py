@@ -5,14 +5,18 @@ from __future__ import annotations
 import contextlib
 import socket
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 from bridge_flight import Aircraft
 from uxas_tools import process, until, write_cfg
 
+from cratous.bridge import lmcp
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.text_protocol.handshake import ClientHandshake
 from cratous.services.bus import Envelope
+from cratous.services.monitor.authority import AuthorityWatch
+from cratous.spec.mission.guarantees import Verdict
 
 SERVICE = "IcarousCommunicationService"
 
@@ -91,6 +95,18 @@ class Rig:
 
     def got(self, kind: str) -> list[Any]:
         return [e.body for e in self.sent if type(e.body).__name__ == kind and e.source == SERVICE]
+
+    def authority(self) -> Verdict:
+        """What the monitor says of the authority over vehicle 1, from what was published."""
+        ours = SimpleNamespace(vehicles=[SimpleNamespace(id=1, protected=True)])
+        watch = AuthorityWatch(ours)  # type: ignore[arg-type]
+        for envelope in self.sent:
+            kind = type(envelope.body).__name__
+            if kind in ("GateState", "GatedCommand", "ModeRefused"):
+                watch.message(kind, envelope.body, envelope.time_ms)
+        watch.end(lmcp.new("MissionEnd", Time=3000), {})
+        (verdict,) = watch.verdicts()
+        return verdict
 
 
 def state(vehicle: int, north: float = 0.0, now_ms: int = 1000) -> Any:

@@ -9,15 +9,7 @@ import pytest
 from uxas_tools import process, write_cfg
 
 from cratous.bridge import lmcp
-
-PIPELINE = (
-    "TaskManagerService",
-    "AutomationRequestValidatorService",
-    "RoutePlannerVisibilityService",
-    "RouteAggregatorService",
-    "AssignmentTreeBranchBoundService",
-    "PlanBuilderService",
-)
+from cratous.services.loading.uxas_cfg import PIPELINE
 
 
 def place(latitude: float, longitude: float = 0.0) -> Any:

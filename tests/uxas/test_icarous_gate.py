@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from bridge_flight import PLANE, TASK, Aircraft, way
 from icarous_rig import Rig, state
 
-from cratous.bridge import lmcp
 from cratous.bridge import text_protocol as tp
-from cratous.services.monitor.authority import AuthorityWatch
 from cratous.spec.mission.guarantees import Outcome
 
 SERVICE = "IcarousCommunicationService"
@@ -41,14 +38,7 @@ def test_the_commands_at_its_gate_tell_the_story_of_authority(
     meanwhile = [("UxAS", 1)] if during else []
     assert senders == [("UxAS", 0), ("ICAROUS", 1), *meanwhile, ("UxAS", 2)]
     assert [c.Command for c in rig.got("GatedCommand")][-1] == rig.got("MissionCommand")[-1]
-    ours = SimpleNamespace(vehicles=[SimpleNamespace(id=1, protected=True)])
-    watch = AuthorityWatch(ours)  # type: ignore[arg-type]
-    for envelope in rig.sent:
-        kind = type(envelope.body).__name__
-        if kind in ("GateState", "GatedCommand", "ModeRefused"):
-            watch.message(kind, envelope.body, envelope.time_ms)
-    watch.end(lmcp.new("MissionEnd", Time=3000), {})
-    (verdict,) = watch.verdicts()
+    verdict = rig.authority()
     assert verdict.outcome is (Outcome.VIOLATED if during else Outcome.HOLDS), verdict.note
     assert ("without authority" if during else "1 takeover, each handed back") in verdict.note
 

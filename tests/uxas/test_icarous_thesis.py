@@ -6,21 +6,8 @@ import math
 from pathlib import Path
 from typing import Any
 
+import bridge_flight as flight
 import pytest
-from bridge_flight import (
-    BEAT_MS,
-    STEP_S,
-    TASK,
-    WAY,
-    Aircraft,
-    Simulator,
-    command,
-    configuration,
-    icarous,
-    mission_file,
-    said,
-    way,
-)
 from icarous_rig import Rig, state
 
 from cratous.bridge import text_protocol as tp
@@ -36,9 +23,9 @@ SERVICE = "IcarousCommunicationService"  # named here for the table of services
 THESIS = tp.Dialect.THESIS
 
 
-def aircraft() -> tuple[Aircraft, Aircraft]:
+def aircraft() -> tuple[flight.Aircraft, flight.Aircraft]:
     """The vehicle of the mission, and one that meets it."""
-    return Aircraft(1, -300.0, 0.0, 0.0), Aircraft(90, 2000.0, 2300.0, 270.0)
+    return flight.Aircraft(1, -300.0, 0.0, 0.0), flight.Aircraft(90, 2000.0, 2300.0, 270.0)
 
 
 @pytest.mark.shows(SERVICE, "Dialect")
@@ -46,7 +33,7 @@ def test_what_the_thesis_s_peer_is_told(tmp_path: Path, opened: list[Any]) -> No
     """A plan of 121 waypoints goes in one, counted from 1, with its total on each line; no epochs."""
     rig = Rig(tmp_path, 'NumberOfUAVs="1" Dialect="thesis"', opened)
     one = rig.fake(dialect=THESIS)
-    rig.tell(state(1), way(*((100.0 * k, 0.0) for k in range(1, 121))))
+    rig.tell(state(1), flight.way(*((100.0 * k, 0.0) for k in range(1, 121))))
     rig.until(lambda: one.all(tp.OwnPosition) or rig.tell(state(1)))
     assert {w.total for w in one.all(tp.Waypoint)} == {121}
     assert [w.index for w in one.all(tp.Waypoint)] == list(range(121))
@@ -73,11 +60,11 @@ def test_takeover_avoidance_handback_and_the_mission_is_done(
     where = address(f"tcp://127.0.0.1:{rig.port}", ("tcp",))
     port = TextPort(where, server=False, dialect=THESIS)
     opened.append(port)
-    end = IcarousEnd(craft_of(mission_file(tmp_path), 1, THESIS))
+    end = IcarousEnd(craft_of(flight.mission_file(tmp_path), 1, THESIS))
     pilot = Program(end, port, lambda severity, text: notes.append(f"{severity} {text}"))
     own, other = aircraft()
-    rig.tell(way(*WAY))
-    own.told(way(*WAY))
+    rig.tell(flight.way(*flight.WAY))
+    own.told(flight.way(*flight.WAY))
     now_ms, nearest_m, read = 0, math.inf, 0
 
     def settled() -> bool:
@@ -95,20 +82,20 @@ def test_takeover_avoidance_handback_and_the_mission_is_done(
             kind = type(envelope.body).__name__
             if envelope.source == SERVICE and kind in ("MissionCommand", "VehicleActionCommand"):
                 own.told(envelope.body)
-        for _ in range(round(BEAT_MS / 1000 / STEP_S)):
+        for _ in range(round(flight.BEAT_MS / 1000 / flight.STEP_S)):
             own.step()
             other.step()
             p, q = own.air.position, other.air.position
             nearest_m = min(nearest_m, math.hypot(p.north_m - q.north_m, p.east_m - q.east_m))
-        now_ms += BEAT_MS
+        now_ms += flight.BEAT_MS
         if 4 in own.passed:
             break
     assert {1, 2, 3, 4} <= set(own.passed), (own.passed, notes)
     assert nearest_m > 150.0
     assert [change.Owner.name for change in rig.got("AuthorityChange")] == ["ICAROUS", "UxAS"]
     assert len(rig.got("VehicleActionCommand")) > 3
-    assert [p.TaskID for p in rig.got("TaskPause")] == [TASK]
-    assert [r.TaskID for r in rig.got("TaskResume")] == [TASK]
+    assert [p.TaskID for p in rig.got("TaskPause")] == [flight.TASK]
+    assert [r.TaskID for r in rig.got("TaskResume")] == [flight.TASK]
     assert port.counts.refused == rig.service.port.counts.refused == {}
     assert not [text for text in notes if "refused" in text], notes
     assert not [line for line in rig.said if "refused" in line], list(rig.said)
@@ -119,25 +106,25 @@ def test_the_command_speaks_it_and_another_dialect_is_refused_on_both_ends(
     tmp_path: Path, opened: list[Any]
 ) -> None:
     more = 'NumberOfUAVs="1" VehicleIDs="1" Dialect="thesis"'
-    cfg, sim_port, ics_port = configuration(tmp_path, more)
-    with command(tmp_path, "uxas", "-cfgPath", str(cfg)):
-        with icarous(tmp_path, ics_port, "--wait", "3", "--log", "wrong") as wrong:
+    cfg, sim_port, ics_port = flight.configuration(tmp_path, more)
+    with flight.command(tmp_path, "uxas", "-cfgPath", str(cfg)):
+        with flight.icarous(tmp_path, ics_port, "--wait", "3", "--log", "wrong") as wrong:
             assert wrong.wait(120) == 3
         reason = "line of another dialect: thesis is spoken here"
-        assert f"the other end refuses: {reason}" in said(tmp_path)
+        assert f"the other end refuses: {reason}" in flight.said(tmp_path)
         (told,) = tmp_path.glob("said_uxas_*")
         assert reason in told.read_text()
-        with icarous(tmp_path, ics_port, "--thesis") as pilot:
+        with flight.icarous(tmp_path, ics_port, "--thesis") as pilot:
             own, other = aircraft()
-            sim = Simulator(sim_port, own, other)
+            sim = flight.Simulator(sim_port, own, other)
             opened.append(sim)
-            sim.client.send(way(*WAY), 1, 1)
-            own.told(way(*WAY))
+            sim.client.send(flight.way(*flight.WAY), 1, 1)
+            own.told(flight.way(*flight.WAY))
             for _ in range(150):  # ICAROUS says nothing until it takes over
                 sim.beat(0.1)
                 if own.steered:
                     break
-            assert own.steered, said(tmp_path)
+            assert own.steered, flight.said(tmp_path)
             pilot.terminate()
             assert pilot.wait(20) == 0
 
@@ -146,6 +133,6 @@ def test_the_command_speaks_it_and_another_dialect_is_refused_on_both_ends(
 def test_one_dialect_at_a_time(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], other: str
 ) -> None:
-    words = ["--mission", str(mission_file(tmp_path)), "--vehicle", "1", "--thesis", other]
+    words = ["--mission", str(flight.mission_file(tmp_path)), "--vehicle", "1", "--thesis", other]
     assert main(["icarous", "--connect", "127.0.0.1:9", *words]) == 2
     assert "one of --plain, --original, --thesis and --v2" in capsys.readouterr().err

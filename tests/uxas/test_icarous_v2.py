@@ -5,18 +5,15 @@ from __future__ import annotations
 import contextlib
 import socket
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from bridge_flight import way
 from icarous_rig import Rig, state
 
-from cratous.bridge import lmcp
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.text_protocol.keys import new_keys
 from cratous.bridge.text_protocol.sealed import DAMAGED, FORGED, REPLAYED, Seal, SealedClient
-from cratous.services.monitor.authority import AuthorityWatch
 from cratous.spec.mission.guarantees import Outcome
 
 SERVICE = "IcarousCommunicationService"
@@ -59,16 +56,21 @@ def rig(tmp_path: Path, opened: list[Any], monkeypatch: pytest.MonkeyPatch) -> R
     return Rig(tmp_path, f'{MORE} Dialect="v2"', opened)
 
 
+def greeted(rig: Rig) -> tuple[Sealed, Seal]:
+    """The instance, once its first mode is believed, and a stranger who seals with another key and the same count."""
+    one = Sealed(rig)
+    one.say(tp.SetMode("PASSIVE", 0))
+    rig.until(lambda: rig.process.bus.state(SERVICE).fresh == frozenset())
+    return one, Seal(1, b"k" * 32, b"k" * 32, sent=one.seal.sent)
+
+
 def refused(rig: Rig) -> dict[str, int]:
     return dict(rig.service.port.counts.refused)
 
 
 @pytest.mark.shows(SERVICE, "Dialect")
 def test_a_forged_mode_moves_no_gate_and_is_counted_where_authority_is_judged(rig: Rig) -> None:
-    one = Sealed(rig)
-    one.say(tp.SetMode("PASSIVE", 0))
-    rig.until(lambda: rig.process.bus.state(SERVICE).fresh == frozenset())
-    stranger = Seal(1, b"k" * 32, b"k" * 32, sent=one.seal.sent)
+    one, stranger = greeted(rig)
     taken = tp.encode(tp.SetMode("ACTIVE", 1))
     one.sock.sendall(taken)  # as it would be believed without keys
     one.sock.sendall(stranger.wrap(taken, 1000))
@@ -86,24 +88,14 @@ def test_a_forged_mode_moves_no_gate_and_is_counted_where_authority_is_judged(ri
     one.sock.sendall(genuine)
     rig.until(lambda: refused(rig).get(REPLAYED) == 1)
     assert len(rig.got("AuthorityChange")) == changes, "a recorded packet takes nothing"
-    ours = SimpleNamespace(vehicles=[SimpleNamespace(id=1, protected=True)])
-    watch = AuthorityWatch(ours)  # type: ignore[arg-type]
-    for envelope in rig.sent:
-        kind = type(envelope.body).__name__
-        if kind in ("GateState", "GatedCommand", "ModeRefused"):
-            watch.message(kind, envelope.body, envelope.time_ms)
-    watch.end(lmcp.new("MissionEnd", Time=3000), {})
-    (verdict,) = watch.verdicts()
+    verdict = rig.authority()
     assert verdict.outcome is Outcome.HOLDS, verdict.note
     assert "1 modes refused" in verdict.note
 
 
 @pytest.mark.shows(SERVICE, "Dialect")
 def test_many_forged_modes_are_told_seldom_and_counted_all(rig: Rig) -> None:
-    one = Sealed(rig)
-    one.say(tp.SetMode("PASSIVE", 0))
-    rig.until(lambda: rig.process.bus.state(SERVICE).fresh == frozenset())
-    stranger = Seal(1, b"k" * 32, b"k" * 32, sent=one.seal.sent)
+    one, stranger = greeted(rig)
     for k in range(100):
         one.sock.sendall(stranger.wrap(tp.encode(tp.SetMode("ACTIVE", k)), 1000))
     rig.until(lambda: refused(rig) == {FORGED: 100})

@@ -2,12 +2,7 @@
 if the gate lets it and offers exactly if an offer is open; so every velocity that it sends passes its gate,
 and when UxAS has taken an offer the instance lets go at the next heartbeat."""
 
-from cratous.core.authority.cycle import (
-    cycle_begun,
-    cycle_flown,
-    cycle_watched,
-    gate_wished,
-)
+from cratous.core.authority.cycle import cycle_begun, cycle_flown, cycle_watched, gate_wished
 from cratous.core.authority.gate import Gate, gate_accepts, gate_after
 from cratous.proofs.claim import Claim
 from cratous.proofs.methods.command import any_cycle, any_times

@@ -9,23 +9,19 @@ from cratous.core.authority.take_off import (
     departure_takes,
 )
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.command import any_departure
+from cratous.proofs.methods.command import (
+    any_departure,
+    any_other,
+    heartbeat_as_defined,
+    takes_and_goes_as_defined,
+)
 from cratous.spec.authority import take_off
 
 
 def claim(c: Claim) -> None:
     before, seen = any_departure(c)
-    stepped = c.use(departure_step, before, *seen)
-    c.show(c.define(take_off.is_after_heartbeat, before, *seen, stepped), "a heartbeat")
-    other = DepartureStep(
-        Departure(c.integer("other_mode"), c.integer("other_since")), c.integer("other_act")
-    )
-    told = c.define(take_off.is_after_heartbeat, before, *seen, other)
-    c.show(c.implies(told, c.same(other, stepped)), "and it can be no other: never two modes")
+    meant, other = take_off.is_after_heartbeat, any_other(c, DepartureStep, Departure)
+    stepped = heartbeat_as_defined(c, departure_step, meant, (before, *seen), other)
     c.show(c.define(take_off.is_mode, stepped.departure.mode), "it is one of the four")
-
-    reason = c.boolean("reason")
-    takes = c.define(take_off.must_fly, before, reason)
-    c.show(c.same(c.use(departure_takes, before, reason), takes), "why ICAROUS has the vehicle")
-    goes = c.define(take_off.may_go_back, before, reason)
-    c.show(c.same(c.use(departure_lets_go, before, reason), goes), "when it may go to UxAS")
+    takes, goes = (departure_takes, take_off.must_fly), (departure_lets_go, take_off.may_go_back)
+    takes_and_goes_as_defined(c, before, takes, goes, "when it may go to UxAS")

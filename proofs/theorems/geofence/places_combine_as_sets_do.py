@@ -3,14 +3,7 @@ for the open parts and for the closed parts; layers of altitudes are as they are
 
 from typing import Any
 
-from cratous.core.geofence.regions import (
-    both_places,
-    either_place,
-    layer_place,
-    narrowed_place,
-    outside_place,
-    widened_place,
-)
+from cratous.core.geofence import regions
 from cratous.proofs.claim import Claim
 from cratous.spec import geofence
 
@@ -35,11 +28,11 @@ def claim(c: Claim) -> None:
         ]
         return made[0], made[1]
 
-    shows(c.use(both_places, one, other), each(geofence.intersection), "intersection")
-    shows(c.use(either_place, one, other), each(geofence.union), "union")
+    shows(c.use(regions.both_places, one, other), each(geofence.intersection), "intersection")
+    shows(c.use(regions.either_place, one, other), each(geofence.union), "union")
     turned = [c.define(geofence.complement, c.define(part, one)) for part in (closed, open_)]
-    shows(c.use(outside_place, one), (turned[0], turned[1]), "complement")
-    layer = c.use(layer_place, alt, floor, ceiling)
+    shows(c.use(regions.outside_place, one), (turned[0], turned[1]), "complement")
+    layer = c.use(regions.layer_place, alt, floor, ceiling)
     shows(
         layer,
         (
@@ -54,9 +47,9 @@ def claim(c: Claim) -> None:
         c.define(geofence.widened, c.define(part, one), so_near)
         for part, so_near in zip((open_, closed), near, strict=True)
     ]
-    shows(c.use(widened_place, one, other), (wide[0], wide[1]), "widened")
+    shows(c.use(regions.widened_place, one, other), (wide[0], wide[1]), "widened")
     narrow = [
         c.define(geofence.narrowed, c.define(part, one), so_near)
         for part, so_near in zip((open_, closed), near[::-1], strict=True)
     ]
-    shows(c.use(narrowed_place, one, other), (narrow[0], narrow[1]), "narrowed")
+    shows(c.use(regions.narrowed_place, one, other), (narrow[0], narrow[1]), "narrowed")

@@ -7,12 +7,7 @@ expires, as a surprise or another manoeuvre makes it do at once."""
 from typing import Any
 
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.happenings import (
-    Asked,
-    after_happening,
-    any_happening,
-    each_happening,
-)
+from cratous.proofs.methods.happenings import Asked, after_happening, any_happening, each_happening
 from cratous.proofs.methods.runs import Beside, Items, along_items
 from cratous.proofs.methods.vehicles import any_vehicle, first_vehicle
 from cratous.spec.permit import encounter as meeting

@@ -7,13 +7,7 @@ which knows of the zone, expires, as a surprise or another manoeuvre makes it do
 from typing import Any
 
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.fences import (
-    after_turn,
-    any_fencing,
-    any_turn,
-    each_turn,
-    no_fencing,
-)
+from cratous.proofs.methods.fences import after_turn, any_fencing, any_turn, each_turn, no_fencing
 from cratous.proofs.methods.happenings import Asked
 from cratous.proofs.methods.runs import Beside, Items, along_items
 from cratous.spec.authority import gate as authority
