@@ -27,6 +27,8 @@ def unit_of(message: str, path: str) -> str:
         return ""  # a type that only the log knows
     units = ""
     for part in path.split("."):
+        if part.isdecimal():
+            continue  # of a list
         fields = _fields(series, name)
         field = fields.get(part)
         if field is None:
@@ -34,6 +36,8 @@ def unit_of(message: str, path: str) -> str:
                 "the message type has no such field", item=f"{message}.{path}",
                 expected=", ".join(fields) or "nothing below it", got=part,
             )  # fmt: skip
+        if field.kind == "any":
+            return ""  # what the message bears there, it alone says
         units = field.units
         series, _, name = field.type.partition("/") if field.kind == "struct" else ("", "", "")
     return NAMES.get(units.lower(), "")

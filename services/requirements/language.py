@@ -146,14 +146,18 @@ class _Reader:
         (kind,) = [t for t in item.children if getattr(t, "type", "") in ("UNIT", "BOOL")]
         subs = {str(t.data): t for t in item.children if hasattr(t, "data")}
         origin: tuple[str, tuple[tuple[str, str], ...], str] = ("", (), "")
+        word = ""
         if "origin" in subs:
-            origin = _origin(subs["origin"].children[0])
+            place, *words = subs["origin"].children
+            origin, word = _origin(place), str(words[0]) if words else ""
+            if word and kind.type != "BOOL":
+                raise Wrong("that a field is a word is true or false", words[0].start_pos, "bool")
         hold = self._duration(subs["hold"].children[0]) if "hold" in subs else 0
         for name in names:
             if str(name) in self.signals:
                 raise Wrong("a signal is declared twice", name.start_pos, got=str(name))
             of, unit = ("bool", "") if kind.type == "BOOL" else ("float", str(kind))
-            self.signals[str(name)] = Signal(of, unit, *origin, hold_ns=hold)
+            self.signals[str(name)] = Signal(of, unit, *origin, hold_ns=hold, word=word)
 
     def _requirement(self, item: Any) -> None:
         name = item.children[0]

@@ -27,8 +27,10 @@ SAYS = {
     "cut": "the connection was lost, and messages with it",
     "silent": "nothing came any more before the watch ended",
     "refused": "bytes came that are no message",
+    "left out": "bytes came too fast to be looked at",
+    "unsealed": "lines came that no key here authenticates: whoever reaches the bridge may have said them",
 }
-NOT_WHOLE = ("order", "open", "lost", "cut", "silent", "refused")
+NOT_WHOLE = ("order", "open", "lost", "cut", "silent", "refused", "left out")
 """Where one of these was found nothing holds, since more could be known."""
 
 

@@ -48,7 +48,7 @@ class Signal:
 
     message, field: the message type and the field that give it in a log, with what the message's other
     fields must be; hold_ns: how long a value counts after its sample (0: at its sample alone); made: of what it is
-    calculated, None: it stands in the trace.
+    calculated, None: it stands in the trace; word: it is whether the field is this word.
     """
 
     kind: str
@@ -58,6 +58,7 @@ class Signal:
     field: str = ""
     hold_ns: int = 0
     made: Term | None = None
+    word: str = ""
 
 
 @dataclass(frozen=True)

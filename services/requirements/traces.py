@@ -88,7 +88,7 @@ def wanted_of(spec: Specification, names: Iterable[str]) -> dict[str, Signal]:
             expected = f"signal {name}: {signal.unit or 'bool'} from TYPE[FIELD=VALUE].FIELD"
             raise BadInput("nothing says where a log has this signal", item=name, expected=expected)
         unit = unit_of(signal.message, signal.field)
-        if unit and signal.unit != unit:
+        if not signal.word and unit and signal.unit != unit:
             what = "the field has another unit" if signal.unit else "the field is no bool"
             raise BadInput(what, item=name, expected=unit, got=signal.unit or "bool")
     return wanted
@@ -114,7 +114,7 @@ def rows_of_messages(
 ) -> Iterator[Row]:
     """The rows of messages in the order of their times; those of one instant are one row.
 
-    unread: is told of a message that cannot be decoded, and it is left out; without it BadInput is raised.
+    unread: is told of a message that cannot be decoded or has no such fields, and it is left out; without it BadInput is raised.
     """
     for time_ms, parts in groupby(_of_messages(entries, wanted, unread), key=itemgetter(0)):
         row: dict[str, float | None] = {}
@@ -135,16 +135,16 @@ def _of_messages(
             continue
         try:
             data = to_data(entry)
+            found = {
+                name: _field(data, signal, name, entry)
+                for name, signal in mine.items()
+                if all(_chosen(data, field, value, entry) for field, value in signal.chosen)
+            }
         except BadInput:
             if unread is None:
                 raise
             unread(entry)
             continue
-        found = {
-            name: _field(data, signal, name, entry)
-            for name, signal in mine.items()
-            if all(_chosen(data, field, value, entry) for field, value in signal.chosen)
-        }
         if found:
             yield entry.time_ms, found
 
@@ -154,7 +154,16 @@ def _is(topic: str, wanted: str) -> bool:
 
 
 def _at(data: Any, path: str, entry: Entry) -> Any:
+    """The field; None where a list is shorter, or what stands in it is of a type without the field."""
+    listed = False
     for part in path.split("."):
+        if isinstance(data, list) and part.isdecimal():
+            if int(part) >= len(data):
+                return None
+            data, listed = data[int(part)], True
+            continue
+        if listed and (not isinstance(data, dict) or part not in data):
+            return None
         if not isinstance(data, dict) or part not in data:
             known = ", ".join(k for k in data if k != "$type") if isinstance(data, dict) else "none"
             raise BadInput(
@@ -176,6 +185,13 @@ def _field(data: Any, signal: Signal, name: str, entry: Entry) -> float | None:
     value = _at(data, signal.field, entry)
     if value is None:
         return None
+    if signal.word:
+        if not isinstance(value, str):
+            raise BadInput(
+                "the field is no word", where=entry.place, item=name, expected=signal.word,
+                got=str(value)[:40],
+            )  # fmt: skip
+        return float(value == signal.word)
     if isinstance(value, bool) != (signal.kind == "bool") or not isinstance(value, int | float):
         expected = "true or false" if signal.kind == "bool" else "a number"
         raise BadInput(
