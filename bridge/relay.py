@@ -88,7 +88,8 @@ class Way:
 
     def __init__(self, source: socket.socket, sink: socket.socket, kind: int) -> None:
         self.source, self.sink, self.kind = source, sink, kind
-        self.held, self.tail = bytearray(), b""
+        self.held, self.tail, self._since_s = bytearray(), b"", 0.0
+        self._has_lines = False
         self.ended = self.shut = self.full = False
         self.head = b""
 
@@ -99,8 +100,8 @@ class Way:
         return max(0, READ - unread - len(self.held) - len(self.tail))
 
     def read(self) -> bytes:
-        """What has come; what a read has cut in a line waits for the rest, since the original's client dies of half a
-        line. ConnectionError where the end is none."""
+        """What has come; half a line waits a moment for the rest, since the original's client dies of one. OSError where
+        the connection is broken."""
         room = self.room
         self.full = room == 0
         if self.full or self.ended:
@@ -108,20 +109,22 @@ class Way:
         try:
             data = self.source.recv(room)
         except BlockingIOError:
-            self.pour_tail()
-            return b""
-        if not data:
-            self.ended = True
-            self.pour_tail()
+            if self.tail and time.monotonic() - self._since_s > AGAIN_MS / 1000:
+                self._pour_tail()
             return b""
         whole = self.tail + data
-        cut = whole.rfind(b"\n") + 1 if len(data) == room else len(whole)
-        self.held += whole[: cut or len(whole)]
-        self.tail = whole[cut:] if cut else b""
+        cut = whole.rfind(b"\n") + 1
+        self._has_lines |= cut > 0
+        if not self._has_lines:
+            cut = len(whole)
+        self.held += whole[:cut]
+        self.tail, self._since_s = whole[cut:], time.monotonic()
+        self.ended = not data
+        if self.ended or len(self.tail) > READ // 2:
+            self._pour_tail()
         return data
 
-    def pour_tail(self) -> None:
-        """Nothing more has come with it."""
+    def _pour_tail(self) -> None:
         self.held += self.tail
         self.tail = b""
 

@@ -112,6 +112,7 @@ class _Reader:
         self.signals: dict[str, Signal] = {}
         self.requirements: list[Requirement] = []
         self.period_ns = self.gap_ns = 0
+        self.begins_with_all = False
 
     def specification(self, tree: Any) -> Specification:
         # signals may be declared after what uses them
@@ -129,14 +130,16 @@ class _Reader:
         if not self.requirements:
             raise Wrong("there is no requirement", len(self.text.rstrip()), "requirement ID: ...")
         return Specification(
-            self.signals, tuple(self.requirements), True, self.gap_ns, self.period_ns
-        )
+            self.signals, tuple(self.requirements), True, self.gap_ns, self.period_ns,
+            self.begins_with_all,
+        )  # fmt: skip
 
     def _trace(self, item: Any) -> None:
         at = _offset(item)
         if self.period_ns:
             raise Wrong("the trace is described twice", at)
-        times = [self._duration(one) for one in item.children]
+        self.begins_with_all = item.children[-1].data == "begins"
+        times = [self._duration(one) for one in item.children if one.data != "begins"]
         self.period_ns, self.gap_ns = times[0], times[-1] if len(times) > 1 else 0
         if not self.period_ns or (self.gap_ns and self.gap_ns < self.period_ns):
             raise Wrong("these are no times between samples", at, "0 < every <= gap")

@@ -67,7 +67,7 @@ class Specification:
 
     timed: samples bear times, and bounds are times [ns]; else both count samples. gap_ns: samples that
     are further apart leave unknown what lies between them; 0: nothing is said of it. period_ns: of the
-    samples, for the lint; 0: not told.
+    samples, for the lint; 0: not told. begins_with_all: the first sample is that at which every signal has had a value.
     """
 
     signals: dict[str, Signal]
@@ -75,6 +75,7 @@ class Specification:
     timed: bool = False
     gap_ns: int = 0
     period_ns: int = 0
+    begins_with_all: bool = False
 
     @property
     def types(self) -> dict[str, str]:

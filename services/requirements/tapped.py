@@ -118,7 +118,7 @@ class Tapped:
                 poll = zmq.Poller()
                 for handle, flags in self._tap.handles() if stands else ():
                     poll.register(handle, flags)
-                poll.poll(POLL_S * 1000)
+                poll.poll(int(POLL_S * 1000))
                 for one in self._tap.step():
                     yield from self._copied(one)
                 if self._begun_ns is None and is_due(given_up_s, time.monotonic()):

@@ -18,7 +18,7 @@ from cratous.services.logs.entry import Entry, to_data
 from cratous.services.logs.source import doubts as doubts_of_log
 from cratous.services.logs.source import open_log
 from cratous.services.requirements.csv_trace import Cells, rows_of
-from cratous.services.requirements.field_units import unit_of
+from cratous.services.requirements.field_units import refuse_no_word, unit_of
 from cratous.services.requirements.formula import MAX_TIME
 from cratous.services.requirements.sampling import Row
 from cratous.services.requirements.specification import Signal, Specification
@@ -88,7 +88,9 @@ def wanted_of(spec: Specification, names: Iterable[str]) -> dict[str, Signal]:
             expected = f"signal {name}: {signal.unit or 'bool'} from TYPE[FIELD=VALUE].FIELD"
             raise BadInput("nothing says where a log has this signal", item=name, expected=expected)
         unit = unit_of(signal.message, signal.field)
-        if not signal.word and unit and signal.unit != unit:
+        if signal.word:
+            refuse_no_word(signal.message, signal.field, signal.word, name)
+        elif unit and signal.unit != unit:
             what = "the field has another unit" if signal.unit else "the field is no bool"
             raise BadInput(what, item=name, expected=unit, got=signal.unit or "bool")
     return wanted

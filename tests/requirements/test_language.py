@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -104,6 +105,7 @@ def test_what_does_not_fit_is_refused_with_its_place(text, what, column):
         ("trace every 2 s gap 1 s signal a: bool requirement R: a", "these are no times between samples"),
         ("trace every 1 s trace every 1 s signal a: bool requirement R: a", "the trace is described twice"),
         ("signal a: m from T[ID].x requirement R: a >= 1 m", "this chooses no message"),
+        ("signal a: m from T[].x is up requirement R: a >= 1 m", "that a field is a word is true or false"),
         ("", "this cannot stand here"),
     ],
 )  # fmt: skip
@@ -301,6 +303,52 @@ def test_signals_of_a_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert "fast - 26 m/s: least -5 m/s at 0 s, greatest 1 m/s at 1.5 s" in out
 
 
+def test_a_word_of_a_field_is_a_truth_value(tmp_path: Path) -> None:
+    with LogWriter(tmp_path / "log.sqlite") as log:
+        for n, mode in enumerate(("Waypoint", "Waypoint", "Loiter")):
+            log.tap(_envelope(n, 500 * n, cmasi.AirVehicleState(ID=1, Mode=mode)))
+    text = "signal on_way: bool from AirVehicleState[ID=1].Mode is Waypoint\nrequirement R: on_way"
+    (one,) = watch(read(text), tmp_path / "log.sqlite").outcomes
+    assert (one.holds, one.violated, one.first_violated) == (2, 1, 10**9)
+
+
+def test_a_field_in_a_list_is_that_of_its_place(tmp_path: Path) -> None:
+    """A list that is shorter, or has something without the field there, brings no value."""
+    from cratous.bridge import lmcp
+
+    def told(actions: list[object]) -> object:
+        body = lmcp.new("VehicleActionCommand", VehicleID=1, VehicleActionList=actions)
+        return lmcp.new("GatedCommand", VehicleID=1, Command=body)
+
+    fast = cmasi.FlightDirectorAction(Speed=30.0)
+    bodies = [told([fast]), told([]), told([cmasi.GoToWaypointAction()]), told([fast])]
+    with LogWriter(tmp_path / "log.sqlite") as log:
+        for n, body in enumerate(bodies):
+            log.tap(replace(_envelope(n, 500 * n, body), topic="cratous.GatedCommand"))
+    path = "GatedCommand[VehicleID=1].Command.VehicleActionList.0.Speed"
+    text = f"signal speed: m/s from {path}\nrequirement R: speed >= 30 m/s"
+    (one,) = watch(read(text), tmp_path / "log.sqlite").outcomes
+    assert (one.holds, one.unknown) == (2, 2)
+
+
+def test_a_trace_may_begin_with_all_its_signals(tmp_path: Path) -> None:
+    text = "trace every 1 s gap 9 s begins with all\nsignal x, y: m hold 9 s\n"
+    rows = "time_s,x,y\n1,5,\n0,6,\n2,,1\n3,,\n"
+    found = _watched(tmp_path, text + "requirement R: x >= 5 m and y <= 1 m", rows)
+    (one,) = found.outcomes
+    # the row that came out of order is none, so nothing holds; x is that of 1 s
+    assert (one.holds, one.violated, one.unknown, one.verdict) == (2, 0, 0, "unknown")
+    assert [(f.kind, f.count, f.first_ns) for f in found.findings] == [
+        ("before", 1, 10**9), ("order", 1, 0),
+    ]  # fmt: skip
+    whole = rows.replace("0,6,\n", "")
+    found = _watched(tmp_path, text + "requirement R: x >= 5 m and y <= 1 m", whole)
+    assert found.outcomes[0].verdict == "holds"
+    never = _watched(tmp_path, text + "requirement R: x >= 5 m and y <= 1 m", "time_s,x,y\n1,5,\n")
+    assert never.outcomes[0].verdict == "unknown"
+    assert {f.kind for f in never.findings} == {"before", "never"}
+
+
 def test_of_a_log_that_is_not_whole_nothing_holds(tmp_path: Path) -> None:
     import sqlite3
 
@@ -345,6 +393,8 @@ def test_a_log_that_was_changed_is_refused(tmp_path: Path) -> None:
         ("1 from AirVehicleState[ID=1].Location", "the field is of another kind"),
         ("m from Sent[].x", "the log has no message of this type"),
         ("m", "nothing says where a log has this signal"),
+        ("bool from AirVehicleState[ID=1].Mode is Wayponit", "the field is never this word"),
+        ("bool from AirVehicleState[ID=1].Groundspeed is Waypoint", "the field is never this word"),
     ],
 )  # fmt: skip
 def test_what_a_log_does_not_have(tmp_path: Path, signal: str, what: str) -> None:
