@@ -51,6 +51,7 @@ def attach(
     from cratous.bridge.port import is_due
     from cratous.core import ledger
     from cratous.services.certify.blame_own import own_blame
+    from cratous.services.cli.live_table import shown, table_of
     from cratous.services.cli.monitor_requirements import Judged, print_result, read
     from cratous.services.logs.store import Gap, LogStore
     from cratous.services.requirements.lint import lint
@@ -100,6 +101,9 @@ def attach(
             messages = _recorded(messages, stores[0])
         rows = rows_of_messages(
             messages, wanted, lambda entry: find("refused", entry.time_ms * 10**6)
+        )
+        stack.enter_context(
+            shown(lambda: table_of(watch, attached.seq, attached.now_ms()), not as_json)
         )
         for _ in watch.rows(rows):
             for event, one in watch.news:
