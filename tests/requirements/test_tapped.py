@@ -196,7 +196,10 @@ def test_hostile_lines_end_no_watch_and_nothing_holds(bridges, requirements, cap
     [
         ("m/s from AirVehicleState[ID=1].Airspeed", "no line of the bridge tells this field"),
         ("m from TruthState[VehicleID=1].North", "no line of the bridge gives this message"),
-        ("bool from AirVehicleState[ID=1].Mode is Loiter", "no line of the bridge tells this field"),
+        (
+            "bool from AirVehicleState[ID=1].Mode is Loiter",
+            "no line of the bridge tells this field",
+        ),
     ],
 )
 def test_a_signal_that_no_line_tells_is_refused_before_anything_is_tapped(
