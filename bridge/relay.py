@@ -25,7 +25,7 @@ OPENED, NEAR, FAR, CLOSED, LOST, BARRED = range(1, 7)
 READ = 32_768
 """Most that one end is given beyond what its program has read: the original's client dies of twice as much."""
 MOST_COPIED = 16 << 20
-MOST_CONNECTIONS = 64
+MOST_CONNECTIONS = 256
 CONNECTS_S, AGAIN_MS = 10.0, 20
 SEALED = b"CRATOUS-2"
 _END_HARD = struct.pack("ii", 1, 0)

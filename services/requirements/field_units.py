@@ -16,6 +16,15 @@ NAMES = {
 }  # fmt: skip
 
 
+def is_known(message: str) -> bool:
+    """Whether the models have a message type of this name."""
+    try:
+        model.resolve(message)
+    except BadInput:
+        return False
+    return True
+
+
 def unit_of(message: str, path: str) -> str:
     """The unit of a field, by a path of names from a message type; "" where the models do not say.
 

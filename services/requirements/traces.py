@@ -18,7 +18,7 @@ from cratous.services.logs.entry import Entry, to_data
 from cratous.services.logs.source import doubts as doubts_of_log
 from cratous.services.logs.source import open_log
 from cratous.services.requirements.csv_trace import Cells, rows_of
-from cratous.services.requirements.field_units import refuse_no_word, unit_of
+from cratous.services.requirements.field_units import is_known, refuse_no_word, unit_of
 from cratous.services.requirements.formula import MAX_TIME
 from cratous.services.requirements.sampling import Row
 from cratous.services.requirements.specification import Signal, Specification
@@ -100,7 +100,8 @@ def _of_log(trace: Path, wanted: Mapping[str, Signal]) -> Iterator[Row]:
     source = open_log(trace)
     known = {topic.topic for topic in source.topics()}
     for name, signal in wanted.items():
-        if not any(_is(topic, signal.message) for topic in known):
+        # one that the models have may just never come: then its requirements are unknown
+        if not is_known(signal.message) and not any(_is(one, signal.message) for one in known):
             got = ", ".join(sorted(topic.rpartition(".")[2] for topic in known))
             raise BadInput(
                 "the log has no message of this type", where=str(trace), item=name,

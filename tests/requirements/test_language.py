@@ -303,6 +303,27 @@ def test_signals_of_a_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert "fast - 26 m/s: least -5 m/s at 0 s, greatest 1 m/s at 1.5 s" in out
 
 
+def test_a_message_that_never_comes_leaves_its_requirements_unknown(tmp_path: Path) -> None:
+    text = (
+        f"signal high: m from {FROM.format(1, 'Location.Altitude')}\n"
+        "signal alive: bool from BridgeStatus[VehicleID=1].Alive\n"
+        "requirement HIGH: high >= 100 m\nrequirement LINK: alive\n"
+    )
+    found = watch(read(text), _log(tmp_path))
+    assert [one.verdict for one in found.outcomes] == ["holds", "unknown"]
+    assert [f.text for f in found.findings] == ["alive: no value ever came"]
+
+
+@pytest.mark.parametrize("name", ["requirements", "guarantees"])
+def test_the_examples_hold_on_the_flight_that_they_are_of(name, root, fly_once) -> None:
+    folder = root / "examples" / "crossing"
+    log = fly_once(folder / "mission.yaml") / "log.sqlite"
+    found = watch(read((folder / f"{name}.req").read_text()), log)
+    wanted = {"holds"} if name == "guarantees" else {"holds", "undecided"}
+    assert {one.verdict for one in found.outcomes} == wanted
+    assert found.findings == ()
+
+
 def test_a_word_of_a_field_is_a_truth_value(tmp_path: Path) -> None:
     with LogWriter(tmp_path / "log.sqlite") as log:
         for n, mode in enumerate(("Waypoint", "Waypoint", "Loiter")):
