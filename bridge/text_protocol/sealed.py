@@ -21,6 +21,7 @@ import re
 import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from cratous.bridge.text_protocol.handshake import Handshake
 from cratous.bridge.text_protocol.parser import MAX_LINE, WireError
@@ -52,6 +53,36 @@ def proof(key: bytes, who: str, vehicle_id: int, nonces: tuple[bytes, bytes]) ->
     """The HMAC-SHA256 of who speaks, for which vehicle, in which connection, as hexadecimal digits."""
     text = b",".join((NAME, who.encode(), b"%d" % vehicle_id, *nonces))
     return hmac.new(key, text, "sha256").hexdigest().encode()
+
+
+def direction_keys(key: bytes, vehicle_id: int, nonces: tuple[bytes, bytes]) -> list[bytes]:
+    """The keys by which ICAROUS and UxAS seal what they say in one connection, in this order."""
+    return [bytes.fromhex(proof(key, w, vehicle_id, nonces).decode()) for w in ("up", "down")]
+
+
+def line_in(packet: bytes) -> bytes | None:
+    """The line of a packet, without its newline, of which nothing but the checksum is judged; None if it is damaged."""
+    match = _PACKET.match(packet)
+    if match is None:
+        return None
+    head, body = b",".join(match.groups()[:4]), packet[match.end() :]
+    return body if b"%08x" % _crc(head, body) == match[5] else None
+
+
+class Opening(NamedTuple):
+    """What the lines 1 and 2 of an opening say. proved: by ICAROUS."""
+
+    vehicle_id: int
+    nonces: tuple[bytes, bytes]
+    proved: bytes
+
+
+def opening_of(first: bytes, second: bytes) -> Opening | None:
+    """The opening of a connection by its first two lines, UxAS's and ICAROUS's; None if they are none."""
+    uxas, icarous = _FIRST.match(first), _SECOND.match(second)
+    if uxas is None or icarous is None:
+        return None
+    return Opening(int(icarous[1]), (uxas[1], icarous[2]), icarous[3])
 
 
 @dataclass
@@ -162,7 +193,7 @@ class SealedHandshake(Handshake):
         return None
 
     def _sealed(self, up: bool, key: bytes, vehicle_id: int, nonces: tuple[bytes, bytes]) -> None:
-        keys = [bytes.fromhex(proof(key, w, vehicle_id, nonces).decode()) for w in ("up", "down")]
+        keys = direction_keys(key, vehicle_id, nonces)
         out, back = keys if up else reversed(keys)
         self.seal, self.done = Seal(vehicle_id, out, back), True
 

@@ -173,8 +173,7 @@ def _compared(report: dict[str, Any], left: Container[str], former: bool) -> dic
 
 def log_faults(log: Path, written: dict[str, Any]) -> list[str]:
     """What shows that the log is not as it was written, or not the one that the report is about."""
-    meta = read_meta(log)
-    mission, plan = subject(log)
+    subject(log)
     with SqliteLog(log) as source:
         digest, closing = source.digest(), source.closing()
         ended = source.old or closing is not None
@@ -186,10 +185,17 @@ def log_faults(log: Path, written: dict[str, Any]) -> list[str]:
     of_report = written.get("log")
     stated = of_report.get("digest") if isinstance(of_report, dict) else None
     found += differences(stated, digest, "log.digest")
+    # where something is found nothing can be relied on any more
+    return found or not_as_flown(log)
+
+
+def not_as_flown(log: Path) -> list[str]:
+    """What shows that the mission or the plan in the log's meta is not the one of its messages."""
+    meta = read_meta(log)
+    mission, plan = subject(log)
+    found = []
     if "mission_hash" in meta and meta["mission_hash"] != mission_hash(mission):
-        found.append(f"{LOG_NAME}: meta.mission is not the mission that was flown")
-    if found:
-        return found  # nothing can be relied on any more
+        return [f"{LOG_NAME}: meta.mission is not the mission that was flown"]
     accepted = next((row for row in read_log(log) if row.topic == ACCEPTED), None)
     if accepted is not None and json.loads(accepted.body)["PlanHash"] != plan_hash(plan):
         found.append(f"{LOG_NAME}: meta.plan is not the plan that was accepted")

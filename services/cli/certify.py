@@ -52,7 +52,11 @@ def certify(
 ) -> int:
     """Judge a finished flight again from its log and compare with all that is written of it.
 
-    FOLDER is an output folder of `cratous run`. The log's digest, the plan check and the monitor
+    FOLDER may be a LOG alone, whole or cut: then its report is made, with its pages, in the folder of -o; of a log
+    that is not whole nothing in flight holds. A certificate of a plan (certificate.json) is checked as by
+    `cratous certify-plan`.
+
+    Else FOLDER is an output folder of `cratous run`. The log's digest, the plan check and the monitor
     are made again; every entry of report.json, report.html, map.svg and manifest.json is held
     against what they give and against what the log recorded. What could not be checked is listed.
     Nothing is written, unless with --rewrite: what is made from report.json is then made anew, if
@@ -82,6 +86,17 @@ def certify(
     Exit codes: as of the flight if the report is confirmed (0, 1 or 3); 1 if it is not, with the
     differences named, or if something is missing in a trace; 2 bad input.
     """
+    if folder.is_file():
+        if rewrite or trace or any(value for name, value in views.items() if name != "out"):
+            raise click.UsageError("of a file alone no views are made: name a folder of results")
+        if folder.suffix == ".json":
+            from cratous.services.cli.certify_plan import certify_plan
+
+            code: int = click.get_current_context().invoke(
+                certify_plan, file=folder, as_json=as_json
+            )
+            return code
+        return _of_log(folder, views["out"], requirements, as_json)
     asked = Asked(**views)
     key = checked(asked)
     if asked.verify:
@@ -154,4 +169,35 @@ def certify(
         say(f"of an earlier run, not confirmed now: {name}", err=True)
     if not found:
         say(f"report: {folder / 'report.html'}")
+    return code
+
+
+def _of_log(log: Path, out: Path | None, requirements: tuple[Path, ...], as_json: bool) -> int:
+    """The report of a log alone."""
+    from cratous.services.certify.from_log import write_from_log
+    from cratous.services.cli.progress import waiting
+    from cratous.services.cli.show import requirement_table, say
+    from cratous.spec.errors import BadInput
+
+    if out is None:
+        raise BadInput("a report of a log alone needs a folder", item="-o", expected="-o DIR")
+    with waiting("judging the messages of the log", as_json):
+        made = write_from_log(log, out, own_files(requirements))
+    report = made.report
+    code = int(report["exit_code"])
+    if as_json:
+        data = {
+            "verdict": report["verdict"],
+            "digest": report["log"]["digest"],
+            "not_checked": made.unchecked,
+            "exit_code": code,
+        }
+        click.echo(json.dumps(data, indent=1))
+        return code
+    requirement_table(report["requirements"])
+    for line in own_lines(report):
+        say(line)
+    for text in made.unchecked:
+        say(f"not checked: {text}")
+    say(f"report: {out / 'report.html'}")
     return code

@@ -28,7 +28,18 @@ from cratous.spec.mission.guarantees import Outcome, exit_code
     "--attach",
     metavar="ADDRESS",
     help="Watch a running system instead of a LOG: HOST:PORT of a TCP bridge of UxAS, or of AMASE; "
-    "zmq://HOST:PORT of what a ZeroMQ bridge publishes.",
+    "zmq://HOST:PORT of what a ZeroMQ bridge publishes; cratous://HOST:PORT: a tap on a CRATOUS bridge.",
+)
+@click.option(
+    "--listen",
+    metavar="HOST:PORT",
+    help="Of a tap: where those connect that would have connected to the address.",
+)
+@click.option(
+    "--keys",
+    type=click.Path(path_type=Path),
+    metavar="FOLDER",
+    help="Of a tap: vehicle_ID.key, by which lines of v2 are authenticated. [environment: CRATOUS_BRIDGE_KEY_ID]",
 )
 @click.option("--seconds", type=Number(0, min_open=True), help="With --attach: end after so many.")
 @click.option(
@@ -68,7 +79,7 @@ def monitor(
 
     With --attach, hold what a running system tells against such requirements, until Ctrl-C: a line
     (with --json a JSON object) when one is violated or unknown for the first time, all verdicts at the
-    end. Nothing is sent to it.
+    end. Nothing is sent to it. A tap relays a CRATOUS bridge byte for byte, in a process of its own, and reads along.
 
     With --model, replay all that concerns authority over the vehicles (takeovers, handbacks, commands
     at the gate, heartbeats) through the steps that are proved together; the first event that is none

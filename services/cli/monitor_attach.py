@@ -8,7 +8,7 @@ import shlex
 import shutil
 import signal
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -18,42 +18,50 @@ import click
 from cratous.spec.errors import BadInput
 
 if TYPE_CHECKING:
+    from cratous.bridge.port import Report
     from cratous.services.logs.entry import Entry
     from cratous.services.logs.store import LogStore
+    from cratous.services.requirements.attached import Attached
     from cratous.services.requirements.outcome import Outcome
+    from cratous.services.requirements.tapped import Tapped
 
 WAIT_S = 60.0
 """So long nobody may listen at the address."""
+TAP_WAIT_S = 600.0
+"""So long nobody may connect to a tap: who will may have to check its proofs first."""
+TAP = "cratous://"
 
 
 class Live(NamedTuple):
-    """What is asked for beside the verdicts. seconds: None until it is ended; metrics: a port, None for none."""
+    """What is asked for beside the verdicts. seconds: None until it is ended; metrics: a port, None for none; listen, keys:
+    of a tap, where its clients come, and where the keys of vehicles lie."""
 
     seconds: float | None
     keep: Path | None
     metrics: int | None
     on_violation: str
+    listen: str | None = None
+    keys: Path | None = None
 
 
 def attach(
     address: str, requirements: Path, live: Live, as_json: bool, allow_unproved: bool
 ) -> int:
     """Watch until the time is over or a signal ends it; the exit code."""
-    from cratous.bridge.port import address as read_address
     from cratous.bridge.port import is_due
     from cratous.core import ledger
     from cratous.services.certify.blame_own import own_blame
+    from cratous.services.cli.live_table import shown, table_of
     from cratous.services.cli.monitor_requirements import Judged, print_result, read
     from cratous.services.logs.store import Gap, LogStore
-    from cratous.services.requirements.attached import Attached
     from cratous.services.requirements.lint import lint
     from cratous.services.requirements.metrics import served, text_of
-    from cratous.services.requirements.sampling import SAYS
+    from cratous.services.requirements.sampling import NOT_WHOLE, SAYS
+    from cratous.services.requirements.tapped import refuse_untold
     from cratous.services.requirements.traces import rows_of_messages, wanted_of
     from cratous.services.requirements.watch import Watch
 
-    text = address if "://" in address else f"tcp://{address}"
-    where = read_address(text, ("tcp", "zmq"), item="--attach")
+    open_source = _tap(address, live) if address.startswith(TAP) else _peer(address, live)
     spec = read(requirements)
     if not spec.timed:
         raise BadInput(
@@ -64,16 +72,18 @@ def attach(
     remarks = lint(spec)
     watch = Watch(spec)
     wanted = wanted_of(spec, watch.needed)
+    if address.startswith(TAP):
+        refuse_untold(wanted)
     stores: list[LogStore] = []
 
     def find(kind: str, time_ns: int) -> None:
         watch.sampling.find(kind, "", time_ns)
-        for store in stores:
+        for store in stores if kind in NOT_WHOLE else ():
             now_ms = time_ns // 10**6
             # how many are missing is not known
             store.keep_gap(Gap(store.count, 1, now_ms, now_ms, SAYS[kind]))
 
-    attached = Attached(where, lambda _severity, said: click.echo(said, err=True), find)
+    attached, wait_s = open_source(lambda _severity, said: click.echo(said, err=True), find)
     stopping: list[int] = []
     limit_ms = None if live.seconds is None else live.seconds * 1000
     with ExitStack() as stack:
@@ -84,13 +94,16 @@ def attach(
             port = stack.enter_context(served(live.metrics, lambda: text_of(watch, attached.seq)))
             click.echo(f"metrics: http://127.0.0.1:{port}/metrics", err=True)
         messages = attached.messages(
-            WAIT_S, lambda now_ms: bool(stopping) or is_due(limit_ms, now_ms)
+            wait_s, lambda now_ms: bool(stopping) or is_due(limit_ms, now_ms)
         )
         if live.keep is not None:
-            stores.append(stack.enter_context(LogStore(live.keep, origin=where.text)))
+            stores.append(stack.enter_context(LogStore(live.keep, origin=address)))
             messages = _recorded(messages, stores[0])
         rows = rows_of_messages(
             messages, wanted, lambda entry: find("refused", entry.time_ms * 10**6)
+        )
+        stack.enter_context(
+            shown(lambda: table_of(watch, attached.seq, attached.now_ms()), not as_json)
         )
         for _ in watch.rows(rows):
             for event, one in watch.news:
@@ -100,9 +113,67 @@ def attach(
             watch.news.clear()
         if watch.sampling.is_late(attached.now_ms() * 10**6):
             find("silent", watch.sampling.last)
+    for line in attached.left():
+        click.echo(line, err=True)
     found = watch.result()
     blame = own_blame(found.outcomes, spec, None)
     return print_result(Judged(True, found, remarks, blame), standing, as_json)
+
+
+Find = Callable[[str, int], None]
+Open = Callable[["Report", Find], tuple["Attached | Tapped", float]]
+
+
+def _peer(address: str, live: Live) -> Open:
+    """What to open to listen to a peer, and how long it may not be there."""
+    from cratous.bridge.port import address as read_address
+
+    text = address if "://" in address else f"tcp://{address}"
+    where = read_address(text, ("tcp", "zmq"), item="--attach")
+    if live.listen is not None or live.keys is not None:
+        name = "--keys" if live.listen is None else "--listen"
+        raise BadInput(f"{name} is of a tap", expected=f"--attach {TAP}HOST:PORT", got=address)
+
+    def opened(report: Report, find: Find) -> tuple[Attached | Tapped, float]:
+        from cratous.services.requirements.attached import Attached
+
+        return Attached(where, report, find), WAIT_S
+
+    return opened
+
+
+def _tap(address: str, live: Live) -> Open:
+    """The same for a tap, and how long nobody may come."""
+    from cratous.bridge.port import address as read_address
+
+    if live.listen is None:
+        raise BadInput(
+            "a tap needs a place where clients connect", item="--listen", expected="HOST:PORT"
+        )
+    if live.keys is not None and not live.keys.is_dir():
+        raise BadInput("there is no such folder", item="--keys", got=str(live.keys))
+    leads_to = read_address("tcp://" + address.removeprefix(TAP), ("tcp",), item="--attach")
+    listens = read_address(f"tcp://{live.listen}", ("tcp",), item="--listen", free=True)
+
+    def opened(report: Report, find: Find) -> tuple[Attached | Tapped, float]:
+        from cratous.bridge.tap import Tap
+        from cratous.services.requirements.tapped import Tapped
+
+        tap = Tap(listens, leads_to)
+        here = f"tap: clients connect to {tap.bound[0]}:{tap.bound[1]}"
+        click.echo(f"{here}, which leads to {leads_to.host}:{leads_to.port}", err=True)
+        return Tapped(tap, lambda vehicle: _key(vehicle, live.keys), report, find), TAP_WAIT_S
+
+    return opened
+
+
+def _key(vehicle: int, folder: Path | None) -> bytes | None:
+    from cratous.bridge.text_protocol.keys import key_of
+
+    try:
+        return key_of(vehicle, folder)
+    except BadInput:
+        return None
 
 
 def _recorded(messages: Iterator[Entry], store: LogStore) -> Iterator[Entry]:

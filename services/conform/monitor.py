@@ -1,7 +1,7 @@
 """Verdicts of R2U2 against ours: `NAME.r2u2-verdicts.json.gz`, and suites of R2U2 with their oracles.
 
-Of `NAME.r2u2-verdicts.json.gz` the trace is `NAME.csv.gz` and the requirements are `formulas.c2po` beside it;
-of a suite `suites/NAME.json` they lie in `../c2po`, `../trace` and `../oracle`. A case is one requirement over
+Of `NAME.r2u2-verdicts.json.gz` the trace is `NAME.csv.gz` and the requirements are `formulas.c2po` beside it; a
+trace that is named with its verdicts is judged with them. Of a suite `suites/NAME.json` they lie in `../c2po`, `../trace` and `../oracle`. A case is one requirement over
 one trace: every verdict that R2U2 gives of a sample of the trace must be ours too. One that we give and R2U2
 does not is no difference, since ours come at the earliest sample. R2U2 takes numbers as equal that differ by
 at most 1e-5: a difference that vanishes when they are made equal is a knife edge.
@@ -25,6 +25,7 @@ from cratous.spec.files.limits import CONFIG_BYTES, integer_of, json_of
 from cratous.spec.files.text_file import lines_of, text_of
 
 VERDICTS = ".r2u2-verdicts.json.gz"
+TRACE = ".csv.gz"
 WORDS = {"F": 0, "T": 2}
 LETTERS = "F?T"
 OPEN = "?"
@@ -38,11 +39,14 @@ def cases(file: Path) -> Iterator[tuple[int, dict[str, Any]]]:
     """(number, case) for each requirement of a file of verdicts or of a suite."""
     if file.name.endswith(VERDICTS):
         name = file.name.removesuffix(VERDICTS)
-        beside = (file.with_name("formulas.c2po"), file.with_name(f"{name}.csv.gz"))
+        beside = (file.with_name("formulas.c2po"), file.with_name(f"{name}{TRACE}"))
         found = _object(json_of("".join(line for _, line in lines_of(file)), str(file)), str(file))
         rows = [(name, requirement, told) for requirement, told in found.items()]
     elif file.suffix == ".json":
         yield from _suite(file)
+        return
+    elif file.name.endswith(TRACE) and _with_verdicts(file).is_file():
+        yield 1, {"id": file.name.removesuffix(TRACE), "trace": True}
         return
     else:
         expected = f"NAME{VERDICTS} or suites/NAME.json"
@@ -52,6 +56,11 @@ def cases(file: Path) -> Iterator[tuple[int, dict[str, Any]]]:
             raise BadInput("verdicts are T, F or ?", where=str(file), item=requirement)
         verdicts = {time: WORDS[letter] for time, letter in enumerate(told) if letter != OPEN}
         yield number, _case(f"{name} {requirement}", requirement, beside, verdicts)
+
+
+def _with_verdicts(trace: Path) -> Path:
+    """Where the verdicts of a trace lie."""
+    return trace.with_name(trace.name.removesuffix(TRACE) + VERDICTS)
 
 
 def _object(value: Any, where: str) -> dict[str, Any]:
@@ -141,6 +150,8 @@ def _trace(file: Path) -> Trace | None:
 
 def judge(case: dict[str, Any]) -> Result:
     """Ours against R2U2's, of one requirement over one trace."""
+    if case.get("trace"):
+        return not_covered(case["id"], f"a trace: it is judged with its verdicts, NAME{VERDICTS}")
     spec_file, trace_file = case["files"]
     spec = _specification(spec_file)
     found = [

@@ -26,6 +26,8 @@ from cratous.spec.files.printable import printable
 
 WIDTH, HEIGHT, EDGE, FOOT = 595.28, 841.89, 34.0, 30.0
 ROOM = WIDTH - 2 * EDGE - 12  # a frame of reportlab has 6 points of its own on each side
+HIGH = HEIGHT - 160.0
+"""A row that is higher than this [points] fits no page beside the head of its table."""
 OWN_PAGES = 2
 COLOURS = {"holds": GOOD, "violated": BAD, "unknown": "#9a6700", "excused": "#9a6700"}
 PLAIN = {"→": "->", "≤": "<=", "≥": ">=", "−": "-", "≠": "!="}
@@ -150,10 +152,15 @@ class _Maker:
             [Paragraph(_cell(text), self.number if k in part.numbers else self.cell) for k, text in enumerate(row)]
             for row in part.rows
         ]  # fmt: skip
-        # a row that is higher than a page is split inside
+        widths = [ROOM * share / whole for share in part.shares]
+        # only a row that is higher than a page is split inside: the head stands again above its rest, wherever that is
+        tall = any(
+            cell.wrap(width, HIGH)[1] > HIGH
+            for row in rows
+            for cell, width in zip(row, widths, strict=True)
+        )
         table = LongTable(
-            [head, *rows], colWidths=[ROOM * share / whole for share in part.shares], repeatRows=1,
-            splitByRow=1, splitInRow=1, hAlign="LEFT",
+            [head, *rows], colWidths=widths, repeatRows=1, splitByRow=1, splitInRow=int(tall), hAlign="LEFT",
         )  # fmt: skip
         style = [("VALIGN", (0, 0), (-1, -1), "TOP"), ("LINEBELOW", (0, 0), (-1, -1), 0.4, RULE)]
         style += [("RIGHTPADDING", (k, 0), (k, -1), 9) for k in part.numbers]

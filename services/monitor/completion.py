@@ -1,7 +1,7 @@
 """G3: every task that is asked for was flown to its end and served; what search sensors really saw.
 
-A search is judged by the footprints that its vehicle's own states tell, not by true positions: where some of these are
-missing it may hold all the same. A state that is missing itself can only lower what was seen.
+A search is judged by the footprints that its vehicle's own states tell. Where true positions of whoever did it are
+missing nothing says that it was there, so it is not said to be served.
 """
 
 from __future__ import annotations
@@ -178,7 +178,7 @@ class CompletionWatch:
         if missed and (doing.too_near or (ended and not short)):
             note = missed
         if unseen and outcome is Outcome.UNKNOWN:
-            note = unseen
+            note = unseen if covered is None else f"{unseen}; else: {note}"
         evidence = None
         if outcome is Outcome.VIOLATED:
             could, evidence = prospects(self._mission, self._kinds[task], seen.end_ms, self._down)
@@ -211,11 +211,9 @@ class CompletionWatch:
         return (*([seen] if seen is not None else []), *map(qualified, [*asked, service_verdict]))
 
     def _unseen(self, number: int) -> str:
-        """What was not seen of the flight of a complete task that is judged by places, as no search without a standoff
-        is; empty if nothing."""
-        task, doing = self._kinds[number], self._tasks[number]
-        by_place = task.standoff_m or task.kind in (TaskKind.MUST_FLY, TaskKind.LOITER)
-        if not by_place or doing.complete_ms is None:
+        """What was not seen of the flight of a complete task; empty if nothing."""
+        doing = self._tasks[number]
+        if doing.complete_ms is None:
             return ""
         span, ending = (doing.began_ms, doing.complete_ms), Ending(doing.complete_ms, over=True)
         gaps = (self._presence.unseen(v, span, ending) for v in sorted(doing.flown_by))

@@ -64,6 +64,10 @@ class Attached:
         finally:
             self._port.close()
 
+    def left(self) -> list[str]:
+        """What goes on after the watch, in words: nothing."""
+        return []
+
     def _sleep(self) -> None:
         poll = zmq.Poller()
         for handle, _ in self._port.handles():

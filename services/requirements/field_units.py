@@ -16,17 +16,47 @@ NAMES = {
 }  # fmt: skip
 
 
+def is_known(message: str) -> bool:
+    """Whether the models have a message type of this name."""
+    try:
+        model.resolve(message)
+    except BadInput:
+        return False
+    return True
+
+
 def unit_of(message: str, path: str) -> str:
     """The unit of a field, by a path of names from a message type; "" where the models do not say.
 
     Raises BadInput for a path that a known type does not have.
     """
+    field = _field(message, path)
+    return "" if field is None else NAMES.get(field.units.lower(), "")
+
+
+def refuse_no_word(message: str, path: str, word: str, item: str) -> None:
+    """BadInput if the models say that a field is never this word."""
+    field = _field(message, path)
+    if field is None or field.kind == "string":
+        return
+    words: tuple[str, ...] = ()
+    if field.kind == "enum":
+        series, _, name = field.type.partition("/")
+        words = tuple(model.load(series).enums[name])
+    if word not in words:
+        expected = ", ".join(words) or "a field that is a word"
+        raise BadInput("the field is never this word", item=item, expected=expected, got=word)
+
+
+def _field(message: str, path: str) -> model.Field | None:
     try:
         series, name = model.resolve(message)
     except BadInput:
-        return ""  # a type that only the log knows
-    units = ""
+        return None  # a type that only the log knows
+    field: model.Field | None = None
     for part in path.split("."):
+        if part.isdecimal():
+            continue  # of a list
         fields = _fields(series, name)
         field = fields.get(part)
         if field is None:
@@ -34,9 +64,10 @@ def unit_of(message: str, path: str) -> str:
                 "the message type has no such field", item=f"{message}.{path}",
                 expected=", ".join(fields) or "nothing below it", got=part,
             )  # fmt: skip
-        units = field.units
+        if field.kind == "any":
+            return None  # what the message bears there, it alone says
         series, _, name = field.type.partition("/") if field.kind == "struct" else ("", "", "")
-    return NAMES.get(units.lower(), "")
+    return field
 
 
 def _fields(series: str, name: str) -> dict[str, model.Field]:

@@ -112,6 +112,7 @@ class _Reader:
         self.signals: dict[str, Signal] = {}
         self.requirements: list[Requirement] = []
         self.period_ns = self.gap_ns = 0
+        self.begins_with_all = False
 
     def specification(self, tree: Any) -> Specification:
         # signals may be declared after what uses them
@@ -129,14 +130,16 @@ class _Reader:
         if not self.requirements:
             raise Wrong("there is no requirement", len(self.text.rstrip()), "requirement ID: ...")
         return Specification(
-            self.signals, tuple(self.requirements), True, self.gap_ns, self.period_ns
-        )
+            self.signals, tuple(self.requirements), True, self.gap_ns, self.period_ns,
+            self.begins_with_all,
+        )  # fmt: skip
 
     def _trace(self, item: Any) -> None:
         at = _offset(item)
         if self.period_ns:
             raise Wrong("the trace is described twice", at)
-        times = [self._duration(one) for one in item.children]
+        self.begins_with_all = item.children[-1].data == "begins"
+        times = [self._duration(one) for one in item.children if one.data != "begins"]
         self.period_ns, self.gap_ns = times[0], times[-1] if len(times) > 1 else 0
         if not self.period_ns or (self.gap_ns and self.gap_ns < self.period_ns):
             raise Wrong("these are no times between samples", at, "0 < every <= gap")
@@ -146,14 +149,18 @@ class _Reader:
         (kind,) = [t for t in item.children if getattr(t, "type", "") in ("UNIT", "BOOL")]
         subs = {str(t.data): t for t in item.children if hasattr(t, "data")}
         origin: tuple[str, tuple[tuple[str, str], ...], str] = ("", (), "")
+        word = ""
         if "origin" in subs:
-            origin = _origin(subs["origin"].children[0])
+            place, *words = subs["origin"].children
+            origin, word = _origin(place), str(words[0]) if words else ""
+            if word and kind.type != "BOOL":
+                raise Wrong("that a field is a word is true or false", words[0].start_pos, "bool")
         hold = self._duration(subs["hold"].children[0]) if "hold" in subs else 0
         for name in names:
             if str(name) in self.signals:
                 raise Wrong("a signal is declared twice", name.start_pos, got=str(name))
             of, unit = ("bool", "") if kind.type == "BOOL" else ("float", str(kind))
-            self.signals[str(name)] = Signal(of, unit, *origin, hold_ns=hold)
+            self.signals[str(name)] = Signal(of, unit, *origin, hold_ns=hold, word=word)
 
     def _requirement(self, item: Any) -> None:
         name = item.children[0]

@@ -20,6 +20,7 @@ Row = tuple[int, Mapping[str, float | None]]
 SAYS = {
     "gap": "samples are further apart than the trace says",
     "order": "a sample is not later than the one before, and was left out",
+    "before": "samples before every signal had come are not judged",
     "missing": "a sample has no value",
     "stale": "the newest value is older than it is held",
     "never": "no value ever came",
@@ -27,8 +28,10 @@ SAYS = {
     "cut": "the connection was lost, and messages with it",
     "silent": "nothing came any more before the watch ended",
     "refused": "bytes came that are no message",
+    "left out": "bytes came too fast to be looked at",
+    "unsealed": "lines came that no key here authenticates: whoever reaches the bridge may have said them",
 }
-NOT_WHOLE = ("order", "open", "lost", "cut", "silent", "refused")
+NOT_WHOLE = ("order", "open", "lost", "cut", "silent", "refused", "left out")
 """Where one of these was found nothing holds, since more could be known."""
 
 
@@ -58,6 +61,7 @@ class Sampling:
         self.held: dict[str, tuple[int, float | None]] = {}
         self.seen: set[str] = set()
         self.last = -1
+        self.has_begun, self._before = not spec.begins_with_all, -1
         self._found: dict[tuple[str, str], Finding] = {}
 
     @property
@@ -76,9 +80,17 @@ class Sampling:
     def samples(self, rows: Iterable[Row]) -> Iterator[tuple[int, Sample]]:
         """The samples of the rows, with times that rise."""
         for time, row in rows:
-            if time <= self.last:
+            if time <= max(self.last, self._before):
                 self.find("order", "", time)
                 continue
+            if not self.has_begun:
+                for name in row.keys() & self.signals.keys():
+                    self._value(name, time, row)
+                if len(self.seen) < len(self.signals):
+                    self.find("before", "", time)
+                    self._before = time
+                    continue
+                self.has_begun = True
             if self.is_late(time):
                 self.find("gap", "", self.last)
                 # when the next one was due nothing is known

@@ -48,7 +48,7 @@ class Signal:
 
     message, field: the message type and the field that give it in a log, with what the message's other
     fields must be; hold_ns: how long a value counts after its sample (0: at its sample alone); made: of what it is
-    calculated, None: it stands in the trace.
+    calculated, None: it stands in the trace; word: it is whether the field is this word.
     """
 
     kind: str
@@ -58,6 +58,7 @@ class Signal:
     field: str = ""
     hold_ns: int = 0
     made: Term | None = None
+    word: str = ""
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,7 @@ class Specification:
 
     timed: samples bear times, and bounds are times [ns]; else both count samples. gap_ns: samples that
     are further apart leave unknown what lies between them; 0: nothing is said of it. period_ns: of the
-    samples, for the lint; 0: not told.
+    samples, for the lint; 0: not told. begins_with_all: the first sample is that at which every signal has had a value.
     """
 
     signals: dict[str, Signal]
@@ -74,6 +75,7 @@ class Specification:
     timed: bool = False
     gap_ns: int = 0
     period_ns: int = 0
+    begins_with_all: bool = False
 
     @property
     def types(self) -> dict[str, str]:

@@ -18,7 +18,7 @@ from cratous.services.logs.entry import Entry, to_data
 from cratous.services.logs.source import doubts as doubts_of_log
 from cratous.services.logs.source import open_log
 from cratous.services.requirements.csv_trace import Cells, rows_of
-from cratous.services.requirements.field_units import unit_of
+from cratous.services.requirements.field_units import is_known, refuse_no_word, unit_of
 from cratous.services.requirements.formula import MAX_TIME
 from cratous.services.requirements.sampling import Row
 from cratous.services.requirements.specification import Signal, Specification
@@ -88,7 +88,9 @@ def wanted_of(spec: Specification, names: Iterable[str]) -> dict[str, Signal]:
             expected = f"signal {name}: {signal.unit or 'bool'} from TYPE[FIELD=VALUE].FIELD"
             raise BadInput("nothing says where a log has this signal", item=name, expected=expected)
         unit = unit_of(signal.message, signal.field)
-        if unit and signal.unit != unit:
+        if signal.word:
+            refuse_no_word(signal.message, signal.field, signal.word, name)
+        elif unit and signal.unit != unit:
             what = "the field has another unit" if signal.unit else "the field is no bool"
             raise BadInput(what, item=name, expected=unit, got=signal.unit or "bool")
     return wanted
@@ -98,7 +100,8 @@ def _of_log(trace: Path, wanted: Mapping[str, Signal]) -> Iterator[Row]:
     source = open_log(trace)
     known = {topic.topic for topic in source.topics()}
     for name, signal in wanted.items():
-        if not any(_is(topic, signal.message) for topic in known):
+        # one that the models have may just never come: then its requirements are unknown
+        if not is_known(signal.message) and not any(_is(one, signal.message) for one in known):
             got = ", ".join(sorted(topic.rpartition(".")[2] for topic in known))
             raise BadInput(
                 "the log has no message of this type", where=str(trace), item=name,
@@ -114,7 +117,7 @@ def rows_of_messages(
 ) -> Iterator[Row]:
     """The rows of messages in the order of their times; those of one instant are one row.
 
-    unread: is told of a message that cannot be decoded, and it is left out; without it BadInput is raised.
+    unread: is told of a message that cannot be decoded or has no such fields, and it is left out; without it BadInput is raised.
     """
     for time_ms, parts in groupby(_of_messages(entries, wanted, unread), key=itemgetter(0)):
         row: dict[str, float | None] = {}
@@ -135,16 +138,16 @@ def _of_messages(
             continue
         try:
             data = to_data(entry)
+            found = {
+                name: _field(data, signal, name, entry)
+                for name, signal in mine.items()
+                if all(_chosen(data, field, value, entry) for field, value in signal.chosen)
+            }
         except BadInput:
             if unread is None:
                 raise
             unread(entry)
             continue
-        found = {
-            name: _field(data, signal, name, entry)
-            for name, signal in mine.items()
-            if all(_chosen(data, field, value, entry) for field, value in signal.chosen)
-        }
         if found:
             yield entry.time_ms, found
 
@@ -154,7 +157,16 @@ def _is(topic: str, wanted: str) -> bool:
 
 
 def _at(data: Any, path: str, entry: Entry) -> Any:
+    """The field; None where a list is shorter, or what stands in it is of a type without the field."""
+    listed = False
     for part in path.split("."):
+        if isinstance(data, list) and part.isdecimal():
+            if int(part) >= len(data):
+                return None
+            data, listed = data[int(part)], True
+            continue
+        if listed and (not isinstance(data, dict) or part not in data):
+            return None
         if not isinstance(data, dict) or part not in data:
             known = ", ".join(k for k in data if k != "$type") if isinstance(data, dict) else "none"
             raise BadInput(
@@ -176,6 +188,13 @@ def _field(data: Any, signal: Signal, name: str, entry: Entry) -> float | None:
     value = _at(data, signal.field, entry)
     if value is None:
         return None
+    if signal.word:
+        if not isinstance(value, str):
+            raise BadInput(
+                "the field is no word", where=entry.place, item=name, expected=signal.word,
+                got=str(value)[:40],
+            )  # fmt: skip
+        return float(value == signal.word)
     if isinstance(value, bool) != (signal.kind == "bool") or not isinstance(value, int | float):
         expected = "true or false" if signal.kind == "bool" else "a number"
         raise BadInput(

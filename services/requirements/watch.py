@@ -137,7 +137,7 @@ class Watch:
         """What can be said where the trace ends here."""
         for outcome in self.outcomes:
             outcome.undecided = self.count - outcome.holds - outcome.violated - outcome.unknown
-            outcome.whole = self.sampling.is_whole
+            outcome.whole = self.sampling.is_whole and self.sampling.has_begun
         findings = tuple(self.sampling.findings) if self.spec.timed else ()
         return Watched(tuple(self.outcomes), findings)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -180,6 +181,25 @@ def test_a_fault_is_noticed(flown: Flown, tmp_path: Path, fault: str) -> None:
     found = judge(with_monitor(log))
     assert verdicts(found)[item] == "violated"
     assert [d.line() for d in found.disagreements] == []
+
+
+def test_where_it_was_is_not_known_nothing_was_served(flown: Flown, tmp_path: Path) -> None:
+    """Footprints alone do not say that the vehicle was there: monitor and judge both say so."""
+    log = edited(
+        flown("crossing") / "log.sqlite",
+        tmp_path / "log.sqlite",
+        without(lambda m: m.kind == "TruthState" and 90_000 <= m.body["Time"] <= 110_000),
+    )
+    folder = with_monitor(log)
+    found = judge(folder)
+    rows = json.loads((folder / "report.json").read_text())["constraints"]
+    (row,) = [r for r in rows if r["item"] == "task 1 served"]
+    assert (row["verdict"], verdicts(found)["task 1 served"]) == ("unknown", "unknown")
+    assert "aircraft 1 was not observed from 89." in row["note"]
+    assert "covered 100.00 %" in row["note"]
+    # the other one began later
+    assert verdicts(found)["task 2 served"] == "holds"
+    assert not found.differences
 
 
 def test_of_a_protocol_without_heartbeats_both_say_unknown(flown: Flown, tmp_path: Path) -> None:

@@ -217,6 +217,41 @@ def test_it_serves_counts_and_ends_with_its_verdicts_at_a_signal(peers, requirem
     assert "FLOOR (never low) [hazardous]: holds" in out
 
 
+def test_on_a_terminal_it_shows_a_table_while_it_watches(peers, requirements):
+    import pty
+    import select
+
+    peer = peers([_state(300), _state(150)] + [_state(300)] * 150)
+    main_end, its_end = pty.openpty()
+    words = [sys.executable, "-m", "cratous", "monitor", "--attach", f"127.0.0.1:{peer.port}"]
+    words += ["--requirements", str(requirements), "--seconds", "3"]
+    environment = {**os.environ, "TERM": "xterm", "COLUMNS": "140", "LINES": "40"}
+    with subprocess.Popen(
+        words, stdout=its_end, stderr=its_end, cwd=ROOT, env=environment
+    ) as process:
+        os.close(its_end)
+        said, deadline = b"", time.monotonic() + 60
+        while time.monotonic() < deadline:
+            if not select.select([main_end], [], [], 1.0)[0]:
+                continue
+            try:
+                data = os.read(main_end, 65536)
+            except OSError:
+                break
+            if not data:
+                break
+            said += data
+    os.close(main_end)
+    assert process.returncode == 1
+    text = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", said.decode())
+    live, _, end = text.partition("FLOOR (never low) [hazardous]: holds; samples")
+    assert re.search(r"FLOOR \[hazardous\] +│ holds so far", live)
+    assert re.search(r"SINKS \[minor\] +│ violated +│ +\d+ +│ 1 ", live)
+    assert "altitude - 200 m = -50 m at" in live
+    assert "SINKS [minor]: violated at " in live, "the event stands above the table"
+    assert "so far" not in end
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [

@@ -190,6 +190,21 @@ def test_verdicts_of_r2u2(shared: Path):
     assert report.checks > 20_000
 
 
+def test_a_trace_that_is_named_with_its_verdicts_is_judged_once(tmp_path: Path, capsys):
+    import gzip
+
+    (tmp_path / "formulas.c2po").write_text(HEAD + "name: F[0,1] a;")
+    trace, told = tmp_path / "t.csv.gz", tmp_path / "t.r2u2-verdicts.json.gz"
+    for file, text in ((trace, "a\n0\n1\n1\n"), (told, '{"name": "TT?"}')):
+        with gzip.open(file, "wt") as stream:
+            stream.write(text)
+    assert main(["conform", "monitor", str(trace), str(told)]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == "1 passed, 0 failed"
+    assert main(["conform", "monitor", str(trace)]) == 3, "nothing was judged"
+    told.unlink()
+    assert main(["conform", "monitor", str(trace)]) == 2, "without verdicts it is no case at all"
+
+
 def test_another_verdict_fails(tmp_path: Path):
     import gzip
 

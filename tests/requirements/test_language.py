@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import itertools
-import json
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cratous.bridge.lmcp.messages import cmasi
-from cratous.services.cli import main
-from cratous.services.logs.log import LogWriter
 from cratous.services.requirements.formula import Bounded, Reaches
 from cratous.services.requirements.language import read
 from cratous.services.requirements.sampling import Sampling
@@ -104,6 +100,7 @@ def test_what_does_not_fit_is_refused_with_its_place(text, what, column):
         ("trace every 2 s gap 1 s signal a: bool requirement R: a", "these are no times between samples"),
         ("trace every 1 s trace every 1 s signal a: bool requirement R: a", "the trace is described twice"),
         ("signal a: m from T[ID].x requirement R: a >= 1 m", "this chooses no message"),
+        ("signal a: m from T[].x is up requirement R: a >= 1 m", "that a field is a word is true or false"),
         ("", "this cannot stand here"),
     ],
 )  # fmt: skip
@@ -253,102 +250,19 @@ def test_samples_rise_and_every_gap_has_an_unknown_one(rows, gap, data):
             assert row["x"] == (1.0 if known else None)
 
 
-# -- logs ------------------------------------------------------------------------------------
-def _log(folder: Path) -> Path:
-    with LogWriter(folder / "log.sqlite") as log:
-        for n in range(8):
-            state = cmasi.AirVehicleState(ID=1 + n % 2, Groundspeed=20.0 + n)
-            state.Location = cmasi.Location3D(Altitude=100.0 * (1 + n % 2))
-            log.tap(_envelope(n, 500 * (n // 2), state))
-    return folder / "log.sqlite"
-
-
-def _envelope(seq, time_ms, body):
-    from cratous.services.bus import Envelope
-
-    return Envelope(seq, time_ms, "sim", "afrl.cmasi.AirVehicleState", body)
-
-
-FROM = "AirVehicleState[ID={}].{}"
-
-
-def test_signals_of_a_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    log = _log(tmp_path)
-    file = tmp_path / "r.req"
-    file.write_text(
-        "trace every 500 ms gap 600 ms\n"
-        f"signal one: m from {FROM.format(1, 'Location.Altitude')} hold 1 s\n"
-        f"signal two: m from {FROM.format(2, 'Location.Altitude')} hold 1 s\n"
-        f"signal fast: m/s from {FROM.format(2, 'Groundspeed')}\n"
-        'requirement HIGHER "two above one" source "plan 3": two > one\n'
-        "requirement SLOW: fast <= 26 m/s\n"
-    )
-    assert main(["monitor", str(log), "--requirements", str(file), "--json"]) == 1
-    data = json.loads(capsys.readouterr().out)
-    higher, slow = data["requirements"]
-    assert (higher["verdict"], higher["holds"]) == ("holds", 4)
-    assert higher["margins"][0]["least"] == -100
-    assert (slow["verdict"], slow["first_violated_s"], slow["decided_at_s"]) == (
-        "violated",
-        1.5,
-        1.5,
-    )
-    assert data["findings"] == []
-    assert main(["monitor", str(log), "--requirements", str(file), "--verdicts"]) == 1
-    out = capsys.readouterr().out
-    assert "SLOW:1.5,F" in out
-    assert "HIGHER (two above one): holds" in out
-    assert "fast - 26 m/s: least -5 m/s at 0 s, greatest 1 m/s at 1.5 s" in out
-
-
-def test_of_a_log_that_is_not_whole_nothing_holds(tmp_path: Path) -> None:
-    import sqlite3
-
-    spec = read(
-        f"signal one: m from {FROM.format(1, 'Location.Altitude')} hold 1 s\nrequirement R: one > 0 m"
-    )
-    log = _log(tmp_path)
-    assert watch(spec, log).outcomes[0].verdict == "holds"
-    with sqlite3.connect(log) as base:
-        base.execute("DELETE FROM closing")
-    found = watch(spec, log)
-    assert (found.outcomes[0].verdict, [f.kind for f in found.findings]) == ("unknown", ["open"])
-    with sqlite3.connect(log) as base:
-        base.execute("DELETE FROM messages WHERE seq = 3")
-    found = watch(spec, log)
-    assert (found.outcomes[0].verdict, [f.kind for f in found.findings]) == (
-        "unknown",
-        ["open", "lost"],
-    )
-
-
-def test_a_log_that_was_changed_is_refused(tmp_path: Path) -> None:
-    import sqlite3
-
-    log = _log(tmp_path)
-    with sqlite3.connect(log) as base:
-        base.execute("UPDATE messages SET body = replace(body, '100.0', '900.0')")
-    spec = read(
-        f"signal one: m from {FROM.format(1, 'Location.Altitude')} hold 1 s\nrequirement R: one > 0 m"
-    )
-    with pytest.raises(BadInput):
-        watch(spec, log)
-
-
-@pytest.mark.parametrize(
-    ("signal", "what"),
-    [
-        ("ft from AirVehicleState[ID=1].Location.Altitude", "the field has another unit"),
-        ("bool from AirVehicleState[ID=1].Groundspeed", "the field is no bool"),
-        ("m from AirVehicleState[ID=1].Nothing", "the message type has no such field"),
-        ("m from AirVehicleState[Nobody=1].Location.Altitude", "the message has no such field"),
-        ("1 from AirVehicleState[ID=1].Location", "the field is of another kind"),
-        ("m from Sent[].x", "the log has no message of this type"),
-        ("m", "nothing says where a log has this signal"),
-    ],
-)  # fmt: skip
-def test_what_a_log_does_not_have(tmp_path: Path, signal: str, what: str) -> None:
-    atom = "q" if signal.startswith("bool") else f"q >= 0 {signal.split()[0]}"
-    with pytest.raises(BadInput) as told:
-        watch(read(f"signal q: {signal}\nrequirement R: {atom}"), _log(tmp_path))
-    assert told.value.what == what
+def test_a_trace_may_begin_with_all_its_signals(tmp_path: Path) -> None:
+    text = "trace every 1 s gap 9 s begins with all\nsignal x, y: m hold 9 s\n"
+    rows = "time_s,x,y\n1,5,\n0,6,\n2,,1\n3,,\n"
+    found = _watched(tmp_path, text + "requirement R: x >= 5 m and y <= 1 m", rows)
+    (one,) = found.outcomes
+    # the row that came out of order is none, so nothing holds; x is that of 1 s
+    assert (one.holds, one.violated, one.unknown, one.verdict) == (2, 0, 0, "unknown")
+    assert [(f.kind, f.count, f.first_ns) for f in found.findings] == [
+        ("before", 1, 10**9), ("order", 1, 0),
+    ]  # fmt: skip
+    whole = rows.replace("0,6,\n", "")
+    found = _watched(tmp_path, text + "requirement R: x >= 5 m and y <= 1 m", whole)
+    assert found.outcomes[0].verdict == "holds"
+    never = _watched(tmp_path, text + "requirement R: x >= 5 m and y <= 1 m", "time_s,x,y\n1,5,\n")
+    assert never.outcomes[0].verdict == "unknown"
+    assert {f.kind for f in never.findings} == {"before", "never"}

@@ -1,0 +1,286 @@
+"""A relay between the clients of a program that listens and that program: byte for byte, with a copy for who watches.
+
+A process of its own, so that the watcher cannot slow what it watches. What the watcher does not take is left out of
+the copy and counted; the relay waits for nobody but the two ends themselves. When the watcher is gone no new client is taken,
+and it ends with the last connection. What comes is not looked at, but for the opening of v2 where nothing else may pass.
+"""
+
+from __future__ import annotations
+
+import select
+import signal
+import socket
+import struct
+import sys
+import time
+from collections import deque
+from contextlib import suppress
+
+from cratous.bridge.unread import unread_by_peer
+
+RECORD = struct.Struct("!BIQI")
+"""A record of the copy: kind, connection, CLOCK_MONOTONIC [ns], and how many bytes follow."""
+OPENED, NEAR, FAR, CLOSED, LOST, BARRED = range(1, 7)
+"""A client has come; bytes of it; bytes of the program; it has ended; bytes were left out here; it may not pass."""
+READ = 32_768
+"""Most that one end is given beyond what its program has read: the original's client dies of twice as much."""
+MOST_COPIED = 16 << 20
+MOST_CONNECTIONS = 256
+CONNECTS_S, AGAIN_MS = 10.0, 20
+SEALED = b"CRATOUS-2"
+_END_HARD = struct.pack("ii", 1, 0)
+
+
+class Copy:
+    """What goes to the watcher; it is never waited for."""
+
+    def __init__(self, sock: socket.socket | None) -> None:
+        self.sock = sock
+        self.out = bytearray()
+        self._lost = 0
+        if sock is not None:
+            sock.setblocking(False)
+
+    def put(self, kind: int, connection: int, data: bytes = b"") -> None:
+        """One record, or bytes more that are left out."""
+        if self.sock is None:
+            return
+        small = kind not in (NEAR, FAR)
+        if not small and (self._lost or len(self.out) + len(data) > MOST_COPIED):
+            self._lost += len(data)
+            return
+        self.out += RECORD.pack(kind, connection, time.monotonic_ns(), len(data)) + data
+
+    def step(self) -> None:
+        """Hand over what the watcher takes."""
+        if self.sock is None:
+            return
+        try:
+            if not self.sock.recv(1, socket.MSG_DONTWAIT):
+                self.close()
+                return
+        except BlockingIOError:
+            pass
+        except OSError:
+            self.close()
+            return
+        if self._lost and len(self.out) < MOST_COPIED // 2:
+            lost, self._lost = self._lost, 0
+            self.put(LOST, 0, struct.pack("!Q", lost))
+        while self.out:
+            try:
+                del self.out[: self.sock.send(self.out[: 1 << 18], socket.MSG_NOSIGNAL)]
+            except BlockingIOError:
+                return
+            except OSError:
+                self.close()
+                return
+
+    def close(self) -> None:
+        """The watcher is gone."""
+        if self.sock is not None:
+            self.sock.close()
+        self.sock, self.out = None, bytearray()
+
+
+class Way:
+    """One direction of a connection."""
+
+    def __init__(self, source: socket.socket, sink: socket.socket, kind: int) -> None:
+        self.source, self.sink, self.kind = source, sink, kind
+        self.held, self.tail, self._since_s = bytearray(), b"", 0.0
+        self._has_lines = False
+        self.ended = self.shut = self.full = False
+        self.head = b""
+
+    @property
+    def room(self) -> int:
+        """How much may be read now."""
+        unread = unread_by_peer(self.sink) or 0
+        return max(0, READ - unread - len(self.held) - len(self.tail))
+
+    def read(self) -> bytes:
+        """What has come; half a line waits a moment for the rest, since the original's client dies of one. OSError where
+        the connection is broken."""
+        room = self.room
+        self.full = room == 0
+        if self.full or self.ended:
+            return b""
+        try:
+            data = self.source.recv(room)
+        except BlockingIOError:
+            if self.tail and time.monotonic() - self._since_s > AGAIN_MS / 1000:
+                self._pour_tail()
+            return b""
+        whole = self.tail + data
+        cut = whole.rfind(b"\n") + 1
+        self._has_lines |= cut > 0
+        if not self._has_lines:
+            cut = len(whole)
+        self.held += whole[:cut]
+        self.tail, self._since_s = whole[cut:], time.monotonic()
+        self.ended = not data
+        if self.ended or len(self.tail) > READ // 2:
+            self._pour_tail()
+        return data
+
+    def _pour_tail(self) -> None:
+        self.held += self.tail
+        self.tail = b""
+
+    def write(self) -> None:
+        """Hand on what the sink takes, and the end behind it."""
+        while self.held:
+            try:
+                del self.held[: self.sink.send(self.held, socket.MSG_NOSIGNAL)]
+            except BlockingIOError:
+                return
+        if self.ended and not self.shut:
+            self.shut = True
+            with suppress(OSError):
+                self.sink.shutdown(socket.SHUT_WR)
+
+
+class Pair:
+    """A client and the connection that was made for it."""
+
+    def __init__(self, number: int, near: socket.socket, far: socket.socket, plain: bool) -> None:
+        self.number, self.near, self.far, self.plain = number, near, far, plain
+        self.ways = (Way(far, near, FAR), Way(near, far, NEAR))
+        self.connecting, self.until_s = True, time.monotonic() + CONNECTS_S
+        for one in (near, far):
+            one.setblocking(False)
+            one.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+
+    def step(self, copy: Copy, ready: set[int]) -> bool:
+        """Move bytes; False where the connection is over. ready: what `poll` has told of."""
+        if self.connecting and not self._connected():
+            return self.until_s > time.monotonic() and self.near.fileno() >= 0
+        try:
+            for way in self.ways:
+                again = way.full or way.tail or way.source.fileno() in ready
+                if again and (data := way.read()):
+                    if not self._may_pass(way, data):
+                        copy.put(BARRED, self.number)
+                        self.close(hard=True)
+                        return False
+                    copy.put(way.kind, self.number, data)
+                way.write()
+        except OSError:
+            self.close(hard=True)
+            return False
+        return not all(way.shut for way in self.ways)
+
+    def _connected(self) -> bool:
+        if not select.select([], [self.far], [], 0)[1]:
+            return False
+        if self.far.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR):
+            self.close(hard=True)
+            return False
+        self.connecting = False
+        return True
+
+    def _may_pass(self, way: Way, data: bytes) -> bool:
+        if self.plain or len(way.head) >= len(SEALED):
+            return True
+        way.head = (way.head + data)[: len(SEALED)]
+        return SEALED.startswith(way.head)
+
+    def close(self, hard: bool = False) -> None:
+        """End both; hard: as one that was broken."""
+        for one in (self.near, self.far):
+            if hard and one.fileno() >= 0:
+                with suppress(OSError):
+                    one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, _END_HARD)
+            one.close()
+
+
+class Relay:
+    """Takes clients at a listener to where another program listens."""
+
+    def __init__(
+        self, listener: socket.socket, watcher: socket.socket, to: tuple[str, int], plain: bool
+    ) -> None:
+        """plain: also what is not v2 may pass."""
+        self.listener: socket.socket | None = listener
+        self.copy, self._to, self._plain = Copy(watcher), to, plain
+        self.pairs: dict[int, Pair] = {}
+        self._waiting: deque[socket.socket] = deque()
+        self._count = 0
+        listener.setblocking(False)
+
+    def run(self) -> None:
+        """Until the watcher and all connections are gone."""
+        while self.copy.sock is not None or self.pairs:
+            ready = self._wait()
+            self._accept()
+            for number, pair in list(self.pairs.items()):
+                if not pair.step(self.copy, ready):
+                    pair.close()
+                    del self.pairs[number]
+                    self.copy.put(CLOSED, number)
+            self.copy.step()
+            if self.copy.sock is None and self.listener is not None:
+                self.listener.close()
+                self.listener = None
+                for one in self._waiting:
+                    one.close()
+                self._waiting.clear()
+
+    def _accept(self) -> None:
+        while self.listener is not None:
+            try:
+                near, _ = self.listener.accept()
+            except OSError:
+                break
+            self._waiting.append(near)
+        # one after the other, so that the program meets them in the order in which they came
+        while self._waiting and not any(pair.connecting for pair in self.pairs.values()):
+            near = self._waiting.popleft()
+            if len(self.pairs) >= MOST_CONNECTIONS:
+                near.close()
+                continue
+            self._count += 1
+            family = socket.AF_INET6 if ":" in self._to[0] else socket.AF_INET
+            far = socket.socket(family, socket.SOCK_STREAM)
+            self.pairs[self._count] = Pair(self._count, near, far, self._plain)
+            far.connect_ex(self._to)
+            self.copy.put(OPENED, self._count)
+
+    def _wait(self) -> set[int]:
+        masks: dict[int, int] = {}
+
+        def add(sock: socket.socket | None, mask: int) -> None:
+            if sock is not None and sock.fileno() >= 0:
+                masks[sock.fileno()] = masks.get(sock.fileno(), 0) | mask
+
+        timeout_ms: int | None = None
+        add(self.listener, select.POLLIN)
+        add(self.copy.sock, select.POLLIN | (select.POLLOUT if self.copy.out else 0))
+        for pair in self.pairs.values():
+            if pair.connecting:
+                add(pair.far, select.POLLOUT)
+                timeout_ms = 1000
+                continue
+            for way in pair.ways:
+                if way.full or way.tail:
+                    timeout_ms = AGAIN_MS
+                if not (way.full or way.ended):
+                    add(way.source, select.POLLIN)
+                if way.held:
+                    add(way.sink, select.POLLOUT)
+        poll = select.poll()
+        for fd, mask in masks.items():
+            poll.register(fd, mask)
+        return {fd for fd, _ in poll.poll(timeout_ms)}
+
+
+def main(words: list[str]) -> None:
+    """LISTENER and WATCHER, as file descriptors, HOST, PORT, and `plain` or `sealed`."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the watcher
+    listener, watcher = (socket.socket(fileno=int(word)) for word in words[:2])
+    Relay(listener, watcher, (words[2], int(words[3])), words[4] == "plain").run()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,106 @@
+"""A tap on a CRATOUS bridge: clients connect here, and a relay of its own process takes them to where they would have gone.
+
+What both ends say goes through byte for byte (`relay`), whether it is looked at here or not; here comes a copy.
+"""
+
+from __future__ import annotations
+
+import os
+import socket
+import struct
+import subprocess
+import sys
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import zmq
+
+from cratous.bridge.link import Listener
+from cratous.bridge.port import Address
+from cratous.bridge.relay import LOST, RECORD
+from cratous.spec.errors import BadInput
+
+_READ = 1 << 18
+
+
+class Copied(NamedTuple):
+    """A record of the relay's copy, see `relay`. time_ns: when it passed, CLOCK_MONOTONIC; lost: of LOST, the bytes."""
+
+    kind: int
+    connection: int
+    time_ns: int
+    data: bytes
+    lost: int = 0
+
+
+class Tap:
+    """The relay, and what it copies."""
+
+    def __init__(self, listens: Address, leads_to: Address) -> None:
+        """BadInput if it cannot listen, or nobody knows the other address. Beyond loopback v2 alone passes."""
+        self._part = b""
+        where = _resolved(leads_to)
+        host = "0.0.0.0" if listens.everywhere else listens.host
+        self._listener = Listener(host, listens.port)
+        self.bound = self._listener.address
+        self._ours, theirs = socket.socketpair()
+        handles = (self._listener.fileno(), theirs.fileno())
+        words = [*map(str, handles), where[0], str(where[1])]
+        words.append("plain" if listens.loopback else "sealed")
+        # it goes on with what is connected when the watch ends, so Ctrl-C is not for it
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "cratous.bridge.relay", *words],
+            pass_fds=handles,
+            stdin=subprocess.DEVNULL,
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+            start_new_session=True,
+        )
+        theirs.close()
+        self._listener.close()
+        self._ours.setblocking(False)
+
+    @property
+    def stands(self) -> bool:
+        """Whether the relay is there."""
+        return self.process.poll() is None
+
+    def handles(self) -> list[tuple[Any, int]]:
+        """What to poll."""
+        return [(self._ours.fileno(), zmq.POLLIN)] if self._ours.fileno() >= 0 else []
+
+    def step(self) -> Iterator[Copied]:
+        """What has been copied since, in the order in which it passed."""
+        try:
+            while data := self._ours.recv(_READ):
+                self._part += data
+                yield from self._records()
+        except (BlockingIOError, ConnectionError):
+            pass
+
+    def _records(self) -> Iterator[Copied]:
+        at = 0
+        while at + RECORD.size <= len(self._part):
+            kind, connection, time_ns, count = RECORD.unpack_from(self._part, at)
+            if at + RECORD.size + count > len(self._part):
+                break
+            data = self._part[at + RECORD.size : at + RECORD.size + count]
+            at += RECORD.size + count
+            lost = struct.unpack("!Q", data)[0] if kind == LOST else 0
+            yield Copied(kind, connection, time_ns, data, lost)
+        self._part = self._part[at:]
+
+    def close(self) -> None:
+        """End the watch: no new client is taken, what is connected is relayed to its end."""
+        self._ours.close()
+
+
+def _resolved(where: Address) -> tuple[str, int]:
+    try:
+        found = socket.getaddrinfo(where.host, where.port, type=socket.SOCK_STREAM)
+    except OSError as error:
+        raise BadInput(
+            "nobody knows this host", where=where.text, expected="a name or an address",
+            got=error.strerror or str(error),
+        ) from None  # fmt: skip
+    host, port = found[0][4][:2]
+    return str(host), int(port)

@@ -1,0 +1,92 @@
+"""The report on a flight of which the log alone is left, whole or not: of one that is not, nothing in flight holds."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from cratous.core.files.whole_file import write_atomically
+from cratous.services.certify.flight_record import flown_of
+from cratous.services.certify.own_again import together
+from cratous.services.certify.rejudge import not_as_flown, subject, watch
+from cratous.services.certify.report import Judged, build_report, report_text, write_report
+from cratous.services.certify.verdicts import constraint_rows, plan_rows
+from cratous.services.logs.log import read_meta
+from cratous.services.logs.source import DOUBTS, doubts
+from cratous.services.mission.wind import known_at
+from cratous.services.requirements.own_files import OwnFile
+from cratous.services.results.names import LOG_NAME, OWN, REPORT_NAME
+from cratous.spec.errors import BadInput
+from cratous.spec.mission.guarantees import Outcome
+
+
+class FromLog(NamedTuple):
+    """The report, and what of it the log does not tell, with the reason."""
+
+    report: dict[str, Any]
+    unchecked: list[str]
+
+
+def report_of(log: Path, own: Sequence[OwnFile] = ()) -> FromLog:
+    """The report as the log gives it. BadInput where the log is none of a flight, or not what its writer left."""
+    from cratous.services.monitor.plan_check import check_plan
+
+    doubted = [DOUBTS[one] for one in doubts(log)]
+    wrong = not_as_flown(log)
+    if wrong:
+        raise BadInput(wrong[0].partition(": ")[2], where=str(log))
+    mission, plan = subject(log)
+    meta = read_meta(log)
+    flown, silent, of_proofs, _ = flown_of(meta, {}, str(log))
+    unchecked = [f"{key}: {why}" for key, why in sorted(silent.items())]
+    if of_proofs:
+        unchecked.append(
+            "proofs: they are those of the ledger today, which is another than at the flight"
+        )
+    flown = replace(flown, own=together((), meta, own))
+    given = [file.named for file in flown.own]
+    unchecked += [
+        f"{OWN}: the flight was flown with {one.get('file')}, which is not given"
+        for one in meta.get(OWN, ())
+        if one not in given
+    ]
+    watched = watch(log)
+    rows = [_doubted(row, doubted) for row in constraint_rows(watched.verdicts, "flight")]
+    rows += plan_rows(check_plan(known_at(mission, 0), plan))
+    report = build_report(
+        mission, plan, Judged(rows, watched.assumptions, watched.commands), log, flown
+    )
+    said = [f"{one[0].upper()}{one[1:]}: nothing in flight holds." for one in doubted]
+    report["limits"] = [*said, *report["limits"]]
+    if plan.certificate:
+        unchecked.append("certificate: it is not in the log")
+    return FromLog(json.loads(report_text(report)), unchecked)
+
+
+def _doubted(row: dict[str, Any], doubted: Sequence[str]) -> dict[str, Any]:
+    """A row of a log that is not whole: what seemed to hold is unknown."""
+    if not doubted or row["verdict"] != Outcome.HOLDS:
+        return row
+    return {**row, "verdict": str(Outcome.UNKNOWN), "note": f"{doubted[0]}; else: {row['note']}"}
+
+
+def write_from_log(log: Path, folder: Path, own: Sequence[OwnFile] = ()) -> FromLog:
+    """Make the folder of results of a log: the log, the report, and its pages; BadInput where one is there already."""
+    if (folder / REPORT_NAME).exists():
+        raise BadInput(
+            "there is a report already", where=str(folder / REPORT_NAME), expected="another folder: -o DIR"
+        )  # fmt: skip
+    made = report_of(log, own)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if log.resolve() != (folder / LOG_NAME).resolve():
+            write_atomically(folder / LOG_NAME, log.read_bytes(), "the log")
+    except OSError as error:
+        raise BadInput(
+            "cannot be written", where=str(folder), got=error.strerror or str(error)
+        ) from None
+    write_report(made.report, folder)
+    return made

@@ -1,0 +1,76 @@
+"""The table of a watch on a terminal, while it runs: what each requirement has come to so far."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from cratous.spec.files.printable import printable
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from cratous.services.requirements.outcome import Outcome
+    from cratous.services.requirements.watch import Watch
+
+PER_SECOND = 2
+COLOURS = {"violated": "red", "unknown": "yellow", "holds so far": "green"}
+HEAD = ("requirement", "so far", "holds", "violated", "unknown", "nearest to its bound")
+
+
+def so_far(one: Outcome) -> str:
+    """What a requirement has come to; it holds at the end alone."""
+    if one.violated:
+        return "violated"
+    if one.unknown:
+        return "unknown"
+    return "holds so far" if one.holds else "no verdict yet"
+
+
+def nearest(one: Outcome) -> str:
+    """The comparison whose sides came nearest to each other, and when."""
+    found = []
+    for margin in one.margins:
+        ends = ((margin.least, margin.at), (margin.greatest, margin.greatest_at))
+        found += [(abs(value), value, at, margin) for value, at in ends if at >= 0]
+    if not found:
+        return "-"
+    _, value, at, margin = min(found, key=lambda each: each[0])
+    unit = "" if margin.unit == "1" else f" {margin.unit}"
+    right = margin.right if isinstance(margin.right, str) else f"{margin.right:g}{unit}"
+    return f"{margin.left} - {right} = {value:.4g}{unit} at {at / 1e9:.1f} s"
+
+
+def table_of(watch: Watch, messages: int, now_ms: int) -> Table:
+    """One row a requirement; below it how much has come, and what is wrong with it."""
+    from rich.markup import escape
+    from rich.table import Table
+
+    wrong = sum(one.count for one in watch.sampling.findings)
+    caption = f"{now_ms / 1000:.1f} s, {messages} messages, {watch.count} samples, {wrong} findings"
+    drawn = Table(*HEAD, header_style="bold", caption=caption)
+    for one in watch.outcomes:
+        word = so_far(one)
+        severity = f" [{one.requirement.severity}]" if one.requirement.severity else ""
+        counts = (f"{getattr(one, name)}" for name in ("holds", "violated", "unknown"))
+        drawn.add_row(
+            escape(printable(one.name + severity)),
+            f"[{COLOURS.get(word, 'white')}]{word}[/]",
+            *counts,
+            escape(nearest(one)),
+        )
+    return drawn
+
+
+@contextmanager
+def shown(table: Callable[[], Table], wanted: bool) -> Iterator[None]:
+    """Keep the table on the terminal in here, where standard output is one; what is printed stands above it."""
+    if not (wanted and sys.stdout.isatty()):
+        yield
+        return
+    from rich.live import Live
+
+    with Live(get_renderable=table, refresh_per_second=PER_SECOND, transient=True):
+        yield

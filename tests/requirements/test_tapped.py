@@ -1,0 +1,243 @@
+"""`cratous monitor --attach cratous://...`: the lines of a CRATOUS bridge held against requirements while they pass."""
+
+from __future__ import annotations
+
+import json
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cratous.bridge import text_protocol as tp
+from cratous.bridge.link import Link
+from cratous.bridge.port import Address
+from cratous.bridge.text_connection import Opened
+from cratous.bridge.text_port import TextPort
+from cratous.bridge.text_protocol.dialects import Dialect
+from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET
+from cratous.bridge.text_protocol.keys import Keys
+from cratous.services.cli import main
+
+REQUIREMENTS = """trace every 100 ms gap 2 s begins with all
+signal altitude: m from AirVehicleState[ID=3].Location.Altitude hold 5 s
+signal climb: m/s from AirVehicleState[ID=3].VerticalSpeed hold 5 s
+signal intruder: m from AirVehicleState[ID=9].Location.Altitude hold 5 s
+signal has: bool from AuthorityChange[VehicleID=3].Owner is ICAROUS hold 1 h
+signal steered: m/s from GatedCommand[VehicleID=3].Command.VehicleActionList.0.Speed hold 1 h
+signal beat: 1 from Heartbeat[VehicleID=3, Direction=Up].Sequence hold 5 s
+requirement FLOOR severity hazardous: altitude >= 90 m and intruder >= 90 m
+requirement CLIMBS: climb > 0 m/s
+requirement HAS: has
+requirement STEERED: steered <= 25 m/s and beat >= 1
+"""
+KEY = {3: b"k" * 32}
+
+
+def _position(altitude_m: float) -> tp.OwnPosition:
+    return tp.OwnPosition(1.0, 37.1, -76.4, altitude_m, altitude_m, 22.0, 0.0, -1.5, vehicle_id=3)
+
+
+DOWN = [
+    tp.Traffic("TRAFFIC", 37.2, -76.3, 310.0, -20.0, 1.5, 0.0, 9),
+    *(_position(altitude_m) for altitude_m in (300.0, 80.0, 300.0)),
+]
+UP = [tp.SetMode("ACTIVE", 1), tp.SetVelocity(15.0, 20.0, 0.0), tp.Heartbeat(7, 1.0)]
+
+
+def _free() -> int:
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        port: int = probe.getsockname()[1]
+        return port
+
+
+class Bridge:
+    """UxAS's end and ICAROUS's, of which one speaks through the tap; each says its lines in turn."""
+
+    def __init__(self, secret: str | Keys, dialect: Dialect, raw: bytes) -> None:
+        self.port, self.tap = _free(), _free()
+        self.heard: dict[bool, list[Any]] = {True: [], False: []}
+        self._dialect, self._raw, self._over = dialect, raw, threading.Event()
+        at = Address("tcp", "127.0.0.1", self.port, "")
+        self._uxas = TextPort(at, server=True, secret=secret, dialect=dialect)
+        self._icarous = TextPort(at, server=False, secret=secret, dialect=dialect)
+        self._thread = threading.Thread(target=self._talk, daemon=True)
+        self._thread.start()
+
+    def _talk(self) -> None:
+        there = Address("tcp", "127.0.0.1", self.tap, "")
+        opened: dict[bool, int] = {}
+        said, dialled, looked_s = 0, False, 0.0
+        while not self._over.wait(0.02):
+            now_s = time.monotonic()
+            if not dialled and now_s - looked_s > 0.2:
+                looked_s = now_s
+                self._icarous.dial(now_s, there)
+                dialled = True
+            for up, port in ((False, self._icarous), (True, self._uxas)):
+                for came in port.step(now_s):
+                    if isinstance(came.what, Opened):
+                        opened[not up] = came.key
+                        if not up and self._dialect.ours:
+                            port.send(came.key, tp.Hello(3))
+                    elif isinstance(came.what, tp.Message):
+                        self.heard[up].append(came.what)
+                    elif not opened:
+                        dialled = False  # the tap is not there yet
+            if len(opened) == 2 and said < 4:
+                if said == 1 and self._raw:
+                    link: Link = self._icarous._connections[opened[True]].link
+                    link.send(self._raw)
+                self._uxas.send(opened[False], DOWN[said])
+                if said < len(UP):
+                    self._icarous.send(opened[True], UP[said])
+                said += 1
+
+    def close(self) -> None:
+        self._over.set()
+        self._thread.join(10)
+        self._uxas.close()
+        self._icarous.close()
+
+
+@pytest.fixture
+def bridges() -> Iterator[Callable[..., Bridge]]:
+    made: list[Bridge] = []
+
+    def bridge(
+        secret: str | Keys = DEFAULT_SECRET, dialect: Dialect = Dialect.CRATOUS, raw: bytes = b""
+    ) -> Bridge:
+        made.append(Bridge(secret, dialect, raw))
+        return made[-1]
+
+    yield bridge
+    for one in made:
+        one.close()
+
+
+@pytest.fixture
+def requirements(tmp_path: Path) -> Path:
+    file = tmp_path / "r.req"
+    file.write_text(REQUIREMENTS)
+    return file
+
+
+def _watch(bridge: Bridge, requirements: Path, *more: str) -> int:
+    words = ["monitor", "--attach", f"cratous://127.0.0.1:{bridge.port}"]
+    words += ["--listen", f"127.0.0.1:{bridge.tap}", "--requirements", str(requirements)]
+    return main([*words, "--seconds", "1.2", "--json", *more])
+
+
+def _result(out: str) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(out[out.index("\n{\n") + 1 :])
+    return found
+
+
+def _verdicts(result: dict[str, Any]) -> dict[str, str]:
+    return {one["name"]: one["verdict"] for one in result["requirements"]}
+
+
+@pytest.mark.parametrize("kind", ["plain", "v2 with its key", "v2 without"])
+def test_lines_are_judged_as_they_pass_and_as_the_log_is(
+    kind, bridges, requirements, tmp_path, capsys
+):
+    bridge = bridges(DEFAULT_SECRET if kind == "plain" else Keys(KEY))
+    log, keys = tmp_path / "kept.sqlite", tmp_path / "keys"
+    keys.mkdir()
+    (keys / "vehicle_3.key").write_text(KEY[3].hex())
+    given = ["--keys", str(keys)] if kind == "v2 with its key" else []
+    assert _watch(bridge, requirements, "--keep", str(log), *given) == 1
+    said = capsys.readouterr()
+    live = _result(said.out)
+    assert _verdicts(live) == {
+        "FLOOR": "violated", "CLIMBS": "holds", "HAS": "holds", "STEERED": "holds",
+    }  # fmt: skip
+    kinds = {one["kind"] for one in live["findings"]}
+    assert ("unsealed" in kinds) == (kind != "v2 with its key")
+    assert ("not authenticated" in said.err) == (kind != "v2 with its key")
+    # both ends have heard all that the other one said
+    assert [m for m in bridge.heard[True] if not isinstance(m, tp.Hello)] == UP
+    assert bridge.heard[False] == DOWN
+    assert main(["monitor", str(log), "--requirements", str(requirements), "--json"]) == 1
+    assert json.loads(capsys.readouterr().out)["requirements"] == live["requirements"]
+    assert main(["log", "filter", str(log), "--json"]) == 0
+    assert ("not authenticated" in capsys.readouterr().out) == (kind != "v2 with its key")
+
+
+def test_of_the_original_the_vehicle_is_that_of_its_position(bridges, tmp_path, capsys):
+    bridge, file = bridges(dialect=Dialect.ORIGINAL), tmp_path / "r.req"
+    head = REQUIREMENTS[: REQUIREMENTS.index("signal beat")]
+    file.write_text(
+        head + "requirement FLOOR: altitude >= 90 m\nrequirement STEERED: steered <= 20 m/s\n"
+    )
+    assert _watch(bridge, file) == 1
+    assert _verdicts(_result(capsys.readouterr().out)) == {
+        "FLOOR": "violated",
+        "STEERED": "violated",
+    }
+
+
+def test_hostile_lines_end_no_watch_and_nothing_holds(bridges, requirements, capsys):
+    raw = b"SETMOD,type_ACTIVE_,epochnan,\n\xff\xfe\x00\nSETVEL,north1e400,\n" + b"A" * 9000 + b"\n"
+    assert _watch(bridges(raw=raw), requirements) == 1
+    said = capsys.readouterr()
+    live = _result(said.out)
+    assert _verdicts(live) == {
+        "FLOOR": "violated", "CLIMBS": "unknown", "HAS": "unknown", "STEERED": "unknown",
+    }  # fmt: skip
+    assert "refused" in {one["kind"] for one in live["findings"]}
+
+
+@pytest.mark.parametrize(
+    ("signal", "said"),
+    [
+        ("m/s from AirVehicleState[ID=1].Airspeed", "no line of the bridge tells this field"),
+        ("m from TruthState[VehicleID=1].North", "no line of the bridge gives this message"),
+        (
+            "bool from AirVehicleState[ID=1].Mode is Loiter",
+            "no line of the bridge tells this field",
+        ),
+    ],
+)
+def test_a_signal_that_no_line_tells_is_refused_before_anything_is_tapped(
+    signal, said, tmp_path, capsys
+):
+    file = tmp_path / "r.req"
+    kind = signal.partition(" ")[0]
+    formula = "x" if kind == "bool" else f"x >= 1 {kind}"
+    file.write_text(f"trace every 1 s\nsignal x: {signal}\nrequirement R: {formula}\n")
+    words = ["monitor", "--attach", "cratous://127.0.0.1:1", "--listen", "127.0.0.1:0"]
+    assert main([*words, "--requirements", str(file)]) == 2
+    assert said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--attach", "cratous://127.0.0.1:1"], "--listen"),
+        (["--attach", "cratous://nobody", "--listen", "127.0.0.1:0"], "--attach"),
+        (["--attach", "cratous://127.0.0.1:1", "--listen", "nonsense"], "--listen"),
+        (["--attach", "127.0.0.1:1", "--listen", "127.0.0.1:0"], "--listen is of a tap"),
+        (["--attach", "127.0.0.1:1", "--keys", "x"], "--keys is of a tap"),
+        (
+            ["--attach", "cratous://127.0.0.1:1", "--listen", "127.0.0.1:0", "--keys", "no-such"],
+            "there is no such folder",
+        ),
+        (["log.sqlite", "--listen", "127.0.0.1:0"], "--listen needs --attach"),
+    ],
+)
+def test_what_does_not_fit_is_bad_input(words, said, requirements, capsys):
+    assert main(["monitor", *words, "--requirements", str(requirements)]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_that_nobody_comes_is_said(requirements, monkeypatch, capsys):
+    from cratous.services.cli import monitor_attach
+
+    monkeypatch.setattr(monitor_attach, "TAP_WAIT_S", 0.3)
+    words = ["monitor", "--attach", f"cratous://127.0.0.1:{_free()}", "--listen", "127.0.0.1:0"]
+    assert main([*words, "--requirements", str(requirements)]) == 2
+    assert "nobody has connected to the tap" in capsys.readouterr().err
