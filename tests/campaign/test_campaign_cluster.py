@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
-import re
 import signal
-import subprocess
-import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 from campaign_child import FUNCTION, written
+from cluster_tools import cluster
 
 from cratous.services.campaign.campaign import Conduct, Course
 from cratous.services.campaign.definition import load_campaign
@@ -31,33 +27,6 @@ VARIED = "seeds: [1, 10]\nvary: [{item: 'vehicles[0].speed_m_s', range: [10, 40]
 @pytest.fixture(autouse=True)
 def _child(monkeypatch: pytest.MonkeyPatch, root: Path) -> None:
     monkeypatch.setenv("PYTHONPATH", f"{root / 'tests' / 'children'}:{root / 'src'}")
-
-
-@contextlib.contextmanager
-def process(*arguments: str) -> Iterator[subprocess.Popen[str]]:
-    """A process of dask, ended at the end."""
-    command = [sys.executable, "-m", "dask", *arguments]
-    one = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-    try:
-        yield one
-    finally:
-        one.kill()
-        one.wait()
-
-
-@contextlib.contextmanager
-def cluster(workers: int) -> Iterator[tuple[str, list[subprocess.Popen[str]]]]:
-    """The address of a scheduler; it and its workers."""
-    with contextlib.ExitStack() as stack:
-        head = stack.enter_context(
-            process("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")
-        )
-        assert head.stderr is not None
-        said = (re.search(r"(tcp://127\.0\.0\.1:\d+)", line) for line in head.stderr)
-        address = next(match[1] for match in said if match)
-        worker = ("worker", address, "--host", "127.0.0.1", "--nthreads", "1", "--no-nanny",
-                  "--no-dashboard")  # fmt: skip
-        yield address, [head, *(stack.enter_context(process(*worker)) for _ in range(workers))]
 
 
 def conduct(file: Path, folder: Path, engine: Any, watch: Any = None) -> tuple[str, Course]:
