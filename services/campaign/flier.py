@@ -143,9 +143,11 @@ def main(function: str, memory_mb: int) -> None:
     module, _, name = function.partition(":")
     fly = getattr(importlib.import_module(module), name)
     tasks: queue.Queue[bytes] = queue.Queue()
+    # a fork that closes it would wait for the thread that reads it
+    asked, sys.stdin = sys.stdin, None  # type: ignore[assignment]
 
     def read() -> None:
-        for line in sys.stdin.buffer:
+        for line in asked.buffer:
             tasks.put(line)
         os._exit(0)  # whoever asked is gone, so nobody waits for what is being flown
 
