@@ -128,7 +128,7 @@ def test_a_worker_of_another_version_flies_nothing(tmp_path: Path) -> None:
     campaign = load_campaign(written(tmp_path, {"plain": f"die {tmp_path}/flown"}, ""), None, ())
     with cluster(1) as (address, _), engine(1, address) as made, Store(tmp_path / "out") as store:
         one = Conduct(campaign, store, FUNCTION, "0" * 64, False)
-        with pytest.raises(Refused, match="a worker of tcp://.* has another version"):
+        with pytest.raises(Refused, match=r"a worker of tcp://.* has another version"):
             one.fly(made, Course(1), lambda _text: None)
         assert all(store.result(run.id) is None for run in one.runs())
     assert not (tmp_path / "flown").exists()
