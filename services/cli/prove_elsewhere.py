@@ -11,6 +11,7 @@ from typing import Any
 import click
 
 from cratous.services.cli.progress import Bar
+from cratous.services.cli.stopping import heed
 from cratous.spec.errors import BadInput, CratousError
 
 FUNCTION = "cratous.services.cli.prove_elsewhere:answered"
@@ -111,6 +112,7 @@ def _asked(names: list[str], home: Any, scheduler: str, folder: Path, bar: Any) 
 
     with engine(1, scheduler) as made:
         for answer in made(feed):
+            heed()
             if answer is None:
                 continue
             name = answer.task["id"]
