@@ -31,31 +31,21 @@ from cratous.services.cli.encounter_flight import fly_run
 
 CAMPAIGNS = {
     "separation": (
-        "separation",
         "G2",
         "generator: {kind: converging, ranges: {time_s: [35, 50]}}\n"
         "options: [{name: narrow, set: {daa.buffer: 1.02}}]\n",
     ),
     "zone": (
-        "zone",
         "G1",
         "generator: {kind: converging, zones_beside: 2,\n"
         "            ranges: {time_s: [30, 50], zone_gap_m: [2, 25], zone_place: [-0.7, 0]}}\nduration_s: 50\n",
     ),
-    "rare_zone": (
-        "zone",
-        "G1",
-        "generator: {kind: converging, zones_beside: 1,\n"
-        "            ranges: {time_s: [30, 50], zone_gap_m: [2, 600], zone_place: [-0.7, 0]}}\nduration_s: 50\n",
-    ),
     "waypoint": (
-        "waypoint",
         "G3",
         "generator: {kind: random, intruders: 0, bends: 45,\n"
         "            ranges: {time_s: [290, 300], bend_m: [-150, 150]}}\nduration_s: 600\n",
     ),
 }
-"""By name: the fault, the requirement that it breaks, the campaign; in `rare_zone` few zones are near enough."""
 APART = 1_000_000
 """Between the first seeds of two starts."""
 
@@ -68,7 +58,7 @@ def campaign(fault: str, start: int) -> Campaign:
     """The campaign of a fault, with the seeds of a start."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "campaign.yaml"
-        file.write_text(f"name: {fault}\nkind: encounters\nseeds: [1, 2]\n{CAMPAIGNS[fault][2]}")
+        file.write_text(f"name: {fault}\nkind: encounters\nseeds: [1, 2]\n{CAMPAIGNS[fault][1]}")
         found = load_campaign(file, None, ())
     return replace(found, seeds=range(1 + start * APART, (start + 1) * APART))
 
@@ -82,13 +72,13 @@ def is_found(row: Row, requirement: str) -> bool:
 
 def flown(runs: Iterable[Run], fault: str, requirement: str) -> list[Row]:
     """The rows of runs, with the fault."""
-    with seeded(CAMPAIGNS[fault][0]):
+    with seeded(fault):
         return [row_of(run, fly_run(run.decides), (requirement,)) for run in runs]
 
 
 def sampled(fault: str, start: int, most: int) -> int:
     """After how many seeds it is found; most + 1 if it is not."""
-    requirement, runs = CAMPAIGNS[fault][1], runs_of(campaign(fault, start), "", True)
+    requirement, runs = CAMPAIGNS[fault][0], runs_of(campaign(fault, start), "", True)
     size = 1 if fault == "separation" else BATCH
     for count in range(0, most, size):
         rows = flown(islice(runs, size), fault, requirement)
@@ -100,7 +90,7 @@ def sampled(fault: str, start: int, most: int) -> int:
 
 def searched(fault: str, start: int, most: int) -> int:
     """After how many runs of a search, whole batches, it is found; most + 1 if it is not."""
-    requirement, count = CAMPAIGNS[fault][1], 0
+    requirement, count = CAMPAIGNS[fault][0], 0
 
     def fly(runs: Iterable[Run]) -> list[Row]:
         nonlocal count

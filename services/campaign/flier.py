@@ -131,6 +131,7 @@ class Flier:
 
 def main(function: str, memory_mb: int) -> None:
     """What the process does: say the version, then answer each line until there is none."""
+    import gc
     import importlib
     import queue
     import threading
@@ -153,6 +154,7 @@ def main(function: str, memory_mb: int) -> None:
 
     _say(answers, {"version": version_digest()})
     threading.Thread(target=read, daemon=True).start()
+    gc.set_threshold(20_000, 5, 10)  # as in a command that flies alone
     while True:
         task = json.loads(tasks.get())
         try:
@@ -162,6 +164,11 @@ def main(function: str, memory_mb: int) -> None:
         except OSError as error:
             answer = {"lost": f"the machine failed it: {error.strerror or error}"}
         _say(answers, answer)
+        if (
+            not gc.get_freeze_count()
+        ):  # what the first has loaded stays: nobody looks for garbage in it again
+            gc.collect()
+            gc.freeze()
 
 
 def _say(answers: Any, data: dict[str, Any]) -> None:
