@@ -145,7 +145,7 @@ def main(function: str, memory_mb: int) -> None:
     fly = getattr(importlib.import_module(module), name)
     tasks: queue.Queue[bytes] = queue.Queue()
     # a fork that closes it would wait for the thread that reads it
-    asked, sys.stdin = sys.stdin, None  # type: ignore[assignment]
+    asked, sys.stdin = sys.stdin, None
 
     def read() -> None:
         for line in asked.buffer:
@@ -167,7 +167,6 @@ def main(function: str, memory_mb: int) -> None:
         if (
             not gc.get_freeze_count()
         ):  # what the first has loaded stays: nobody looks for garbage in it again
-            gc.collect()
             gc.freeze()
 
 
