@@ -155,6 +155,7 @@ def main(function: str, memory_mb: int) -> None:
     _say(answers, {"version": version_digest()})
     threading.Thread(target=read, daemon=True).start()
     gc.set_threshold(20_000, 5, 10)  # as in a command that flies alone
+    loading = True
     while True:
         task = json.loads(tasks.get())
         try:
@@ -164,10 +165,9 @@ def main(function: str, memory_mb: int) -> None:
         except OSError as error:
             answer = {"lost": f"the machine failed it: {error.strerror or error}"}
         _say(answers, answer)
-        if (
-            not gc.get_freeze_count()
-        ):  # what the first has loaded stays: nobody looks for garbage in it again
+        if loading:  # what the first has loaded stays: nobody looks for garbage in it again
             gc.freeze()
+            loading = False
 
 
 def _say(answers: Any, data: dict[str, Any]) -> None:
