@@ -12,7 +12,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from cratous.judge import mission_file, separation, zones
-from cratous.judge.fields import Node, is_plain
+from cratous.judge.fields import FARTHEST, MOST, Node
 from cratous.judge.log import Log, State
 from cratous.judge.mission import Mission, Point
 from cratous.judge.plane import squared_distance
@@ -35,17 +35,33 @@ def judge_encounter(file: Path, states: States, reached: Mapping[int, int]) -> l
         raise BadInput("nobody was seen", where=str(file), expected="states of an aircraft")
     log = Log(file)
     for name, told in states.items():
-        log.states[name] = [_state(state) for state in Node(told, str(file), f"states[{name}]")]
+        log.states[name] = list(_read(Node(told, str(file), f"states[{name}]")))
     log.ends = [(max(s.time_ms for found in log.states.values() for s in found), "")]
     flown = tracks(mission, log)
     found = [*zones.rows(mission, flown), *separation.rows(mission, flown)]
     return [*found, *_points(mission, flown, reached)]
 
 
+def _read(told: Node) -> Iterator[State]:
+    """The states in a list; those of plain numbers, nearly all, without a place for each number."""
+    if type(told.data) is not list:
+        raise told.wrong("a list")
+    for k, state in enumerate(told.data):
+        yield _plain(state) or _state(Node(state, told.where, k, told))
+
+
+def _plain(state: object) -> State | None:
+    """A state of a whole number and six doubles that `real` takes as they are; None where that is not certain."""
+    if type(state) is not list or len(state) != len(State._fields):
+        return None
+    time, *values = state
+    if type(time) is not int or abs(time) >= MOST or set(map(type, values)) != {float}:
+        return None
+    # also of NaN the comparison is false
+    return State._make(state) if sum(map(abs, values)) <= FARTHEST else None
+
+
 def _state(data: Node) -> State:
-    plain = data.data
-    if type(plain) is list and len(plain) == len(State._fields) and all(map(is_plain, plain[1:])):
-        return State(Node(plain[0], data.where, 0, data).whole, *plain[1:])
     values = list(data)
     if len(values) != len(State._fields):
         raise data.wrong("time [ms], position and velocity")

@@ -201,11 +201,12 @@ def _watch(one: Track, two: Track, volume: Volume, grounds: set[int]) -> Pair:
     pair = Pair()
     place = {time: k for k, time in enumerate(two.times)}
     a, b = one.states, two.states
+    measured = -1  # up to which state of one, as the end of the leg before
     for i in range(len(a) - 1):
         j = place.get(a[i].time_ms)
         if j is None:
             continue
-        if a[i].time_ms not in grounds:
+        if i != measured and a[i].time_ms not in grounds:
             _measure(pair, a[i], b[j], volume)
         if j + 1 == len(b) or b[j + 1].time_ms != a[i + 1].time_ms:
             continue
@@ -215,6 +216,7 @@ def _watch(one: Track, two: Track, volume: Volume, grounds: set[int]) -> Pair:
         pair.checks += 1
         legs = a[i], a[i + 1], b[j], b[j + 1]
         _measure(pair, a[i + 1], b[j + 1], volume)
+        measured = i + 1
         if a[i].time_ms in one.unknown or a[i].time_ms in two.unknown:
             lost = _lost_at(a[i], b[j], volume) or _lost_at(a[i + 1], b[j + 1], volume)
         else:

@@ -133,10 +133,13 @@ def _led(before: State, after: State) -> bool:
     begun, north, east, up, to_north, to_east, upwards = before
     time, there_north, there_east, there_up, *_ = after
     dt = (time - begun) / 1000
-    off = max(
+    off = (
         abs(north + to_north * dt - there_north),
         abs(east + to_east * dt - there_east),
         abs(up + upwards * dt - there_up),
     )
+    if off[0] <= APART_M and off[1] <= APART_M and off[2] <= APART_M:
+        return True
     places = (north, east, up, there_north, there_east, there_up)
-    return off <= APART_M + 1e-12 * max(map(abs, places)) and math.isfinite(off)
+    most = max(off)
+    return most <= APART_M + 1e-12 * max(map(abs, places)) and math.isfinite(most)

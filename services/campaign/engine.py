@@ -43,7 +43,7 @@ def refuse_other_version(answer: dict[str, Any], who: str) -> None:
     if "other version" in answer:
         raise Refused(
             f"{who} has another version ({answer['other version'][:12]}): results of two versions are "
-            "not mixed; what is stored stays, and the same command flies what this version has not flown"
+            "not mixed; what is stored stays, and the same command does what this version has not done"
         )
 
 

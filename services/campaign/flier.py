@@ -131,6 +131,7 @@ class Flier:
 
 def main(function: str, memory_mb: int) -> None:
     """What the process does: say the version, then answer each line until there is none."""
+    import gc
     import importlib
     import queue
     import threading
@@ -143,14 +144,18 @@ def main(function: str, memory_mb: int) -> None:
     module, _, name = function.partition(":")
     fly = getattr(importlib.import_module(module), name)
     tasks: queue.Queue[bytes] = queue.Queue()
+    # a fork that closes it would wait for the thread that reads it
+    asked, sys.stdin = sys.stdin, None
 
     def read() -> None:
-        for line in sys.stdin.buffer:
+        for line in asked.buffer:
             tasks.put(line)
         os._exit(0)  # whoever asked is gone, so nobody waits for what is being flown
 
     _say(answers, {"version": version_digest()})
     threading.Thread(target=read, daemon=True).start()
+    gc.set_threshold(20_000, 5, 10)  # as in a command that flies alone
+    loading = True
     while True:
         task = json.loads(tasks.get())
         try:
@@ -160,6 +165,9 @@ def main(function: str, memory_mb: int) -> None:
         except OSError as error:
             answer = {"lost": f"the machine failed it: {error.strerror or error}"}
         _say(answers, answer)
+        if loading:  # what the first has loaded stays: nobody looks for garbage in it again
+            gc.freeze()
+            loading = False
 
 
 def _say(answers: Any, data: dict[str, Any]) -> None:

@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 
 import click
 
+from cratous.services.cli.stopping import heed
 from cratous.spec.files.printable import printable
 
 T = TypeVar("T")
@@ -109,8 +110,13 @@ def waiting(what: str, quiet: bool = False) -> Iterator[Waiting]:
 
 
 def passing(tell: Callable[[str], None]) -> Callable[[str], None]:
-    """Tells lines as what is done now: none of them stays."""
-    return lambda text: tell(f"\r{text}")
+    """Tells lines as what is done now: none of them stays. Raises `Stopped` if a signal has asked to end."""
+
+    def told(text: str) -> None:
+        heed()
+        tell(f"\r{text}")
+
+    return told
 
 
 class Bar:

@@ -15,6 +15,7 @@ import click
 from cratous.core.files.whole_file import write_atomically
 from cratous.services.cli.progress import Bar
 from cratous.services.cli.prove_checks import mutation, second_solver
+from cratous.services.cli.prove_elsewhere import ask, refuse_what_vouches
 from cratous.services.cli.prove_self_test import self_test as tried
 from cratous.spec.errors import BadInput
 
@@ -100,13 +101,14 @@ def _refuse(problems: list[str]) -> None:
 
 
 class Output(NamedTuple):
-    """What is printed and written where, and in how many processes."""
+    """What is printed and written where, in how many processes, and which cluster is asked first."""
 
     as_json: bool
     junit: Path | None
     sarif: Path | None
     smt2_folder: Path | None
     jobs: int | None
+    scheduler: str | None
     verbose: bool
 
 
@@ -145,6 +147,11 @@ class Output(NamedTuple):
 )
 @click.option("--jobs", type=click.IntRange(1), help="Processes; by default one for each core.")
 @click.option(
+    "--scheduler",
+    metavar="ADDRESS",
+    help="Have workers of dask.distributed prove first; what vouches is asked here all the same.",
+)
+@click.option(
     "-v",
     "--verbose",
     is_flag=True,
@@ -169,10 +176,13 @@ def prove(
     structural hash from the cache ($CRATOUS_CACHE), and where no file has changed nothing is even
     lifted; CI proves from an empty one.
 
+    With --scheduler workers of a cluster prove first and tell what they find. It proves nothing here:
+    with --only or --changed such theorems are told apart, and a ledger is written of what was asked here.
+
     Example: cratous prove --only 'well*' -v
 
     Exit code: 0 everything proved, 1 something refuted, not decided or contradicted, 2 bad input:
-    a theorem or kernel that no proof could be bound to.
+    a theorem or kernel that no proof could be bound to, 3 something is said to be proved elsewhere alone.
     """
     from cratous.core import ledger as gate
     from cratous.core.files.private_cache import private_cache
@@ -189,10 +199,18 @@ def prove(
     from cratous.proofs.lint import decisions
     from cratous.proofs.phases import REST, SECOND, Phases, TimedCache
 
-    as_json, junit, sarif, smt2_folder, jobs, verbose = Output(**output)
+    as_json, junit, sarif, smt2_folder, jobs, scheduler, verbose = Output(**output)
     # thousands of syntax trees live to the end: looking for garbage in them is a third of a warm run
     gc.set_threshold(200_000, 20, 100)
     begun = time.monotonic()
+    if scheduler is not None:
+        refuse_what_vouches(
+            not only and not changed,
+            {
+                "--recheck": recheck, "--mutate": mutate, "--self-test": self_test, "--junit": junit,
+                "--sarif": sarif, "--smt2": smt2_folder,
+            },
+        )  # fmt: skip
     if self_test:
         if only or changed or check or recheck or new or mutate or package_name:
             raise BadInput("--self-test goes with no other choice", item="cratous prove")
@@ -231,6 +249,11 @@ def prove(
     workers = jobs or ledger.jobs_default()
     store, phases = TimedCache(cache.standard().folder), Phases(since=begun)
     recall = Recall(private_cache() / "theorems", home)
+    said: list[str] = []
+    if scheduler is not None:
+        unknown = [name for name in names if recall.get(name) is None]
+        said = ask(unknown, home, scheduler, whole=whole, jobs=workers, quiet=as_json)
+        names = [name for name in names if name not in said]
     # each theorem is stated once, for both solvers
     write = again.writer(again.read(), again=not new) if recheck else None
     remembered = Remembered(private_cache() / "remembered", home)
@@ -257,6 +280,9 @@ def prove(
     if not as_json:
         for theorem in theorems:
             _show(theorem, verbose, judged.statements.get(theorem.name, ""))
+        for name in said:
+            mark = click.style("elsewhere ", fg="yellow")
+            click.echo(f"{mark} {name}: workers say it is proved; it was not asked here")
     outputs: list[tuple[Path | None, Callable[[list[str]], str]]] = [
         (junit, lambda found: report_formats.junit(theorems, found)),
         (sarif, lambda found: report_formats.sarif(theorems, found, home)),
@@ -282,17 +308,17 @@ def prove(
     proved = sum(t.proved for t in theorems)
     statuses: dict[str, int] = {}
     if whole and judged.binds and not problems:
-        said = ledger.text(inventory, home, judged.grounds, judged.statements)
-        statuses = _statuses(said)
+        record = ledger.text(inventory, home, judged.grounds, judged.statements)
+        statuses = _statuses(record)
         if check:
-            differing = records.differing(said, home.records, provenance=False)
+            differing = records.differing(record, home.records, provenance=False)
             if differing:
                 problems.append(
                     f"the ledger differs from these proofs in {', '.join(differing)}: "
                     "run `cratous prove`"
                 )
         else:
-            records.write(said, home.records)
+            records.write(record, home.records)
     for path, make in outputs:
         if path is not None:
             report_formats.write(path, make(problems))
@@ -314,6 +340,7 @@ def prove(
             "problems": problems,
             "dead_paths": dead,
             "assumptions": assumed,
+            "said_elsewhere": said,
             "solver": gate.solver_version(),
             "seconds": round(time.monotonic() - begun, 2),
             "parts": {part: round(taken, 2) for part, taken in phases.seconds.items()},
@@ -353,3 +380,5 @@ def prove(
     survives = mutate and not data["mutation"]["holds"]
     if proved < len(theorems) or problems or contradicted or survives:
         sys.exit(1)
+    if said:
+        sys.exit(3)

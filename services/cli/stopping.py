@@ -10,6 +10,8 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 STOPS = (signal.SIGTERM, signal.SIGHUP)
+_asked: list[int] = []
+"""The signal that has asked the command of this process to end."""
 
 
 class Stopped(SystemExit):
@@ -29,6 +31,15 @@ def stop_behind(error: BaseException | None) -> Stopped | None:
     while error is not None and not isinstance(error, Stopped):
         error = error.__context__
     return error
+
+
+def heed() -> None:
+    """Raise `Stopped` once more if a signal has asked to end and the command still works.
+
+    Where libraries run that catch whatever comes up in them (dask, say), the first may have been lost.
+    """
+    if _asked:
+        raise Stopped(_asked[0])
 
 
 @contextmanager
@@ -61,15 +72,20 @@ def stoppable() -> Iterator[None]:
             return
         for other in STOPS:  # once is enough: nothing disturbs the cleaning
             signal.signal(other, signal.SIG_IGN)
+        _asked.append(number)
         raise Stopped(number)
 
     before = {n: signal.getsignal(n) for n in STOPS}
     ours = [n for n in STOPS if before[n] is signal.SIG_DFL]
+    if ours:  # else within another such block
+        _asked.clear()
     for number in ours:
         signal.signal(number, stop)
     try:
         yield
     finally:
+        if ours:
+            _asked.clear()
         for number in ours:
             with suppress(ValueError):
                 signal.signal(number, signal.SIG_DFL)

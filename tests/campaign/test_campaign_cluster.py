@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
-import re
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+import time
 from pathlib import Path
 from typing import Any
 
 import pytest
 from campaign_child import FUNCTION, written
+from campaign_tools import stored
+from cluster_tools import cluster
 
 from cratous.services.campaign.campaign import Conduct, Course
 from cratous.services.campaign.definition import load_campaign
@@ -21,43 +21,24 @@ from cratous.services.campaign.engine import engine
 from cratous.services.campaign.identity import version_digest
 from cratous.services.campaign.store import Store
 from cratous.services.campaign.summary import build, text_of
-from cratous.spec.errors import BadInput
+from cratous.spec.errors import BadInput, Refused
 
 pytest.importorskip("distributed")
 pytestmark = pytest.mark.slow
+CLIENT = """
+import sys
+from pathlib import Path
+sys.path[:0] = [sys.argv[1], str(Path(sys.argv[1]).parent / "tools")]
+import test_campaign_cluster as t
+with t.engine(1, sys.argv[4]) as made:
+    t.conduct(Path(sys.argv[2]), Path(sys.argv[3]), made)
+"""
 VARIED = "seeds: [1, 10]\nvary: [{item: 'vehicles[0].speed_m_s', range: [10, 40]}]\n"
 
 
 @pytest.fixture(autouse=True)
 def _child(monkeypatch: pytest.MonkeyPatch, root: Path) -> None:
     monkeypatch.setenv("PYTHONPATH", f"{root / 'tests' / 'children'}:{root / 'src'}")
-
-
-@contextlib.contextmanager
-def process(*arguments: str) -> Iterator[subprocess.Popen[str]]:
-    """A process of dask, ended at the end."""
-    command = [sys.executable, "-m", "dask", *arguments]
-    one = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-    try:
-        yield one
-    finally:
-        one.kill()
-        one.wait()
-
-
-@contextlib.contextmanager
-def cluster(workers: int) -> Iterator[tuple[str, list[subprocess.Popen[str]]]]:
-    """The address of a scheduler; it and its workers."""
-    with contextlib.ExitStack() as stack:
-        head = stack.enter_context(
-            process("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")
-        )
-        assert head.stderr is not None
-        said = (re.search(r"(tcp://127\.0\.0\.1:\d+)", line) for line in head.stderr)
-        address = next(match[1] for match in said if match)
-        worker = ("worker", address, "--host", "127.0.0.1", "--nthreads", "1", "--no-nanny",
-                  "--no-dashboard")  # fmt: skip
-        yield address, [head, *(stack.enter_context(process(*worker)) for _ in range(workers))]
 
 
 def conduct(file: Path, folder: Path, engine: Any, watch: Any = None) -> tuple[str, Course]:
@@ -95,7 +76,7 @@ def test_a_killed_worker_costs_an_attempt_and_no_byte(tmp_path: Path) -> None:
 
 
 @pytest.mark.long
-def test_the_scheduler_gone_leaves_what_is_stored(tmp_path: Path) -> None:
+def test_a_scheduler_that_is_gone_and_begun_again_changes_no_byte(tmp_path: Path) -> None:
     file = written(tmp_path, {"plain": "sleep"}, VARIED)
     killed: list[int] = []
     with cluster(1) as (address, processes):
@@ -111,12 +92,46 @@ def test_the_scheduler_gone_leaves_what_is_stored(tmp_path: Path) -> None:
 
         with pytest.raises(BadInput, match="scheduler is gone"):
             campaign()
+    port = int(address.rpartition(":")[2])
+    with cluster(1, port=port) as (again, _), engine(1, again) as made:
+        assert again == address
+        text, course = conduct(file, tmp_path / "out", made)
     with engine(1, None) as alone:
-        text, course = conduct(file, tmp_path / "out", alone)
         expected, _ = conduct(file, tmp_path / "new", alone)
     assert 2 <= course.stored < 10
     assert course.stored + course.flown == 10
     assert text == expected
+
+
+@pytest.mark.long
+def test_a_client_that_is_killed_comes_back_to_the_same_cluster(tmp_path: Path) -> None:
+    file, folder = written(tmp_path, {"plain": "sleep"}, VARIED), tmp_path / "out"
+    with cluster(2) as (address, _):
+        command = [sys.executable, "-c", CLIENT, str(Path(__file__).parent), str(file), str(folder)]
+        client = subprocess.Popen([*command, address])
+        until = time.monotonic() + 120
+        while stored(folder) < 3 and time.monotonic() < until:
+            time.sleep(0.05)
+        client.kill()
+        client.wait()
+        kept = stored(folder, beside=False)
+        with engine(1, address) as made:
+            text, course = conduct(file, folder, made)
+    with engine(1, None) as alone:
+        expected, _ = conduct(file, tmp_path / "new", alone)
+    assert 2 <= kept < 10
+    assert (course.stored, course.flown) == (kept, 10 - kept)
+    assert text == expected
+
+
+def test_a_worker_of_another_version_flies_nothing(tmp_path: Path) -> None:
+    campaign = load_campaign(written(tmp_path, {"plain": f"die {tmp_path}/flown"}, ""), None, ())
+    with cluster(1) as (address, _), engine(1, address) as made, Store(tmp_path / "out") as store:
+        one = Conduct(campaign, store, FUNCTION, "0" * 64, False)
+        with pytest.raises(Refused, match=r"a worker of tcp://.* has another version"):
+            one.fly(made, Course(1), lambda _text: None)
+        assert all(store.result(run.id) is None for run in one.runs())
+    assert not (tmp_path / "flown").exists()
 
 
 def test_no_scheduler_is_bad_input() -> None:

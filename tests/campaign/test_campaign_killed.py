@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import sqlite3
 import subprocess
 import sys
 import time
@@ -12,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from campaign_child import FUNCTION, written
+from campaign_tools import stored
 
 from cratous.services.campaign.campaign import Conduct, Course
 from cratous.services.campaign.definition import load_campaign
@@ -24,7 +24,7 @@ VARIED = "seeds: [1, 12]\nvary: [{item: 'vehicles[0].speed_m_s', range: [10, 40]
 PROGRAM = """
 import sys
 from pathlib import Path
-sys.path.insert(0, sys.argv[3])
+sys.path[:0] = [sys.argv[3], str(Path(sys.argv[3]).parent / "tools")]
 import test_campaign_killed as t
 print(t.conduct(Path(sys.argv[1]), Path(sys.argv[2])))
 """
@@ -39,16 +39,6 @@ def conduct(file: Path, folder: Path) -> tuple[int, int, str]:
         one.fly(engine, course, lambda _text: None)
         text = text_of(build(campaign, list(one.rows()), "v"))
     return course.stored, course.flown, text
-
-
-def stored(folder: Path, beside: bool = True) -> int:
-    """How many runs are on disk; beside: while the campaign that writes them holds its lock."""
-    how = "?mode=ro&immutable=1" if beside else ""
-    try:
-        database = sqlite3.connect(f"file:{folder / 'runs.sqlite'}{how}", uri=True)
-        return int(database.execute("SELECT count(*) FROM runs").fetchone()[0])
-    except sqlite3.Error:
-        return 0
 
 
 def children(pid: int) -> list[int]:

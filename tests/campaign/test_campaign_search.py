@@ -65,7 +65,7 @@ def to_the_right(task: dict[str, Any]) -> dict[str, Any]:
 
 def test_sides_are_searched_as_numbers_are() -> None:
     counts, generator = [], {"kind": "converging", "zones_beside": 1}
-    for start in range(5):
+    for start in range(10):
         seeds = range(1 + 1000 * start, 2 + 1000 * start)
         campaign = Campaign("made", generator=generator, seeds=seeds)
         found = Search(campaign, "G2", "v", False).run(Flights(to_the_right), 200)

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from campaign_child import written
 
 from cratous.services import cli
 from cratous.services.campaign import engine
@@ -89,3 +94,31 @@ def test_an_error_of_closing_hides_neither_a_stop_nor_a_result(
     else:
         flown()
     assert (client.asked, cluster.asked) == (["cancel", "close"], ["close"])
+
+
+def test_a_stop_that_a_library_has_swallowed_ends_the_campaign_all_the_same(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    looks = 0
+
+    @contextmanager
+    def swallowing(*_: Any) -> Iterator[engine.Engine]:
+        def made(_feed: engine.Feed) -> Iterator[engine.Answer | None]:
+            nonlocal looks
+            try:
+                os.kill(os.getpid(), signal.SIGTERM)
+                signal.pause()
+            except BaseException:
+                looks = 0
+            while looks < 5:
+                looks += 1
+                yield None
+
+        yield made
+
+    monkeypatch.setattr(engine, "engine", swallowing)
+    file = written(tmp_path, {"plain": ""}, "")
+    assert cli.main(["campaign", str(file), "--allow-unproved", "-o", str(tmp_path / "out")]) == 143
+    assert looks == 1, "at the next look"
+    assert "cratous: stopped (SIGTERM)\n" in capsys.readouterr().err
+    assert not (tmp_path / "out" / "campaign.json").exists()

@@ -10,27 +10,17 @@ import sys
 from pathlib import Path
 
 import pytest
+from guide_package import written
 from ledger_tools import restored
 
 from cratous.core import ledger
 
-FILE = re.compile(r"^`([\w/]+\.py)`\n```python\n(.*?)^```", re.S | re.M)
 COMMAND = re.compile(r"^```console\n\$ (.*?)\n```\n```\n(.*?)```", re.S | re.M)
 
 
 @pytest.fixture
 def package(root: Path, tmp_path: Path) -> Path:
     return written(root, tmp_path)
-
-
-def written(root: Path, folder: Path) -> Path:
-    """The page's files, in an empty folder outside of the repository."""
-    text = (root / "docs" / "guides" / "own-kernel.md").read_text(encoding="utf-8")
-    for name, body in FILE.findall(text):
-        file = folder / name
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(body, encoding="utf-8")
-    return folder
 
 
 def _run(
