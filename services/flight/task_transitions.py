@@ -236,8 +236,9 @@ def circling(
         what = f"vehicle {vid} has nothing left to fly"
         told = NO_WAY_OUT if last.kept else NO_CIRCLE
         out.append(Say(mission_change(state.now_ms, what, told), NAME))
-    slower = last.speed_m_s is not None and last.speed_m_s != chain.speed_m_s
-    return replace(chain, speed_m_s=last.speed_m_s) if slower else chain, last.track
+    if last.speed_m_s is None or last.speed_m_s == chain.speed_m_s:
+        return chain, last.track
+    return replace(chain, speed_m_s=last.speed_m_s), last.track
 
 
 def fail(config: Config, state: State, task_id: int, why: str, out: Out) -> State:
