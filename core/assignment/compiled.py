@@ -19,9 +19,12 @@ SMALL_TASKS, SMALL_MOVES = 3, 120
 
 def machine_for(instance: Any, function: Callable[..., Any]) -> Callable[..., Any]:
     """The function as CPython runs it for a small instance, else compiled; both say the same."""
-    if instance.tasks > SMALL_TASKS or instance.may.size > SMALL_MOVES:
-        return machine(function)
-    return _plainly(function)
+    return _plainly(function) if is_small(instance) else machine(function)
+
+
+def is_small(instance: Any) -> bool:
+    """Whether CPython goes over an instance, for which nothing is compiled."""
+    return bool(instance.tasks <= SMALL_TASKS and instance.may.size <= SMALL_MOVES)
 
 
 PASS_MOST = 10_000

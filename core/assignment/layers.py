@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from cratous.core.assignment.compiled import (
     FIRST_NODES,
     is_brief,
+    is_small,
     machine_after,
     machine_for,
     machine_for_pass,
@@ -94,10 +96,41 @@ def look_ahead(instance: Instance) -> Ahead:
 def shortest(instance: Instance, may: np.ndarray) -> np.ndarray:
     """The shortest ways with any stops at options that `may` allows, asked of every stop."""
     i = instance
+    known = _FOUND.of(i.travel, i.duration, may) if is_small(i) else None
+    if known is not None:
+        return known
     reach: np.ndarray = machine_for(i, shortest_ways)(i.travel, i.duration, may)
     if not machine_for(i, ways_hold)(reach, i.travel, i.duration, may):
         raise RuntimeError("a way with stops is shorter than the shortest way that was found")
+    if is_small(i):
+        _FOUND.put((i.travel, i.duration, may), reach)
     return reach
+
+
+class _Found:
+    """The shortest ways found last, by all that they depend on: a planner asks many questions about the same ways."""
+
+    def __init__(self, most: int) -> None:
+        self._most = most
+        self._ways: dict[tuple[Any, ...], np.ndarray] = {}
+
+    def of(self, *given: np.ndarray) -> np.ndarray | None:
+        """Those of the same travel, durations and options, if they are known."""
+        found = self._ways.get(_key(given))
+        return None if found is None else found.copy()
+
+    def put(self, given: tuple[np.ndarray, ...], ways: np.ndarray) -> None:
+        """Those that were found and hold; the oldest go."""
+        while len(self._ways) >= self._most:
+            del self._ways[next(iter(self._ways))]
+        self._ways[_key(given)] = ways.copy()
+
+
+def _key(given: tuple[np.ndarray, ...]) -> tuple[Any, ...]:
+    return tuple((array.shape, array.tobytes()) for array in given)
+
+
+_FOUND = _Found(64)
 
 
 def tables(instance: Instance, ahead: Ahead, limit: int) -> Tables:

@@ -91,10 +91,12 @@ def shortest_ways(travel: np.ndarray, duration: np.ndarray, may: np.ndarray) -> 
                     reach[v, a, k] = 1 << 40
         for m in range(options):
             if may[v, m]:
+                onward = reach[v, m]
                 for a in range(options + 1):
-                    via = reach[v, a, m] + duration[m]
+                    ways = reach[v, a]
+                    via = int(ways[m] + duration[m])
                     for b in range(options):
-                        reach[v, a, b] = least_of(reach[v, a, b], True, via + reach[v, m, b])
+                        ways[b] = least_of(ways[b], True, via + onward[b])
     return reach
 
 
@@ -109,11 +111,12 @@ def ways_hold(reach: np.ndarray, travel: np.ndarray, duration: np.ndarray, may: 
                     return False
         for m in range(options):
             if may[v, m]:
+                onward, stay = reach[v, m], int(duration[m])
                 for a in range(options + 1):
+                    ways = reach[v, a]
+                    first = int(ways[m])
                     for b in range(options):
-                        if not no_shortcut(
-                            reach[v, a, b], reach[v, a, m], duration[m], reach[v, m, b]
-                        ):
+                        if not no_shortcut(ways[b], first, stay, onward[b]):
                             return False
     return True
 

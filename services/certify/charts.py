@@ -13,6 +13,8 @@ from typing import Any, NamedTuple
 from cratous.services.certify.picture import nice_step
 
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 480.0, 176.0, 62.0, 12.0, 12.0, 26.0
+TICK = 34.0
+"""The text of a tick reaches so far to the right of its middle at most, in letters for a narrow screen too."""
 FEW = 6
 """So many pairs are drawn, the nearest ones; a table with all would hide them."""
 
@@ -140,7 +142,8 @@ def _axes(report: dict[str, Any], low: float, high: float, step: float) -> dict[
             for k in range(round((high - low) / step) + 1)
         ],
         "times": [
-            {"x": xy(1000 * k * every, low)[0], "text": f"{k * every:g} s"}
+            {"x": x, "text_x": min(x, WIDTH - TICK), "text": f"{k * every:g} s"}
             for k in range(floor(end_s / every) + 1)
+            for x, _ in [xy(1000 * k * every, low)]
         ],
     }  # fmt: skip

@@ -79,6 +79,7 @@ def render(report: dict[str, Any]) -> str:
     text: str = _environment().get_template("report.html").render(
         r=report, map=map_view(report), time=time_view(report), near=separation_view(report),
         high=altitude_view(report), rows_of=_rows_of(report),
+        late_zones=sum(bool(c.get("zone")) for c in report["mission"].get("changes", ())),
         gantt=_gantt(report), tree=_tree(report), losses=losses(report), names=_names(report),
         own=own_requirements(report), chains=chains(report), statuses=statuses(report["proofs"]), repeats=repeats(report),
     )  # fmt: skip

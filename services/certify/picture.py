@@ -10,6 +10,8 @@ from math import cos, floor, log10, pi, sin
 from typing import Any
 
 MAP_WIDTH, MAP_HEIGHT, MAP_EDGE, MAP_FOOT = 640.0, 504.0, 40.0, 24.0
+LETTER = (10.0, 19.0)
+"""How wide and how high a letter is at most, on a narrow screen."""
 BAR_LEFT, BAR_WIDTH, BAR_ROW = 110.0, 590.0, 46.0
 
 
@@ -72,6 +74,10 @@ def map_view(report: dict[str, Any]) -> dict[str, Any]:
     sites = mission.get("daa", {}).get("link_loss", {}).get("sites", ())
     shown += [(site["north_m"], site["east_m"]) for site in sites]
     scale = Scale(shown)
+    tasks = [_task(task, scale) for task in mission["tasks"]]
+    taken: list[Box] = []
+    for task in tasks:
+        task["said"] = _beside(task["x"], task["y"], f"p{task['id']}", taken)
     return {
         "width": MAP_WIDTH,
         "height": MAP_HEIGHT,
@@ -83,11 +89,12 @@ def map_view(report: dict[str, Any]) -> dict[str, Any]:
                 "from_s": from_s,
                 "until_s": ends.get(zone["id"]),
                 "at": scale.xy(*zone["vertices"][0]),
+                "said": _said(zone, from_s, ends.get(zone["id"]), scale, taken),
             }
             for zone, from_s in zones
         ],
         "sites": [{"name": site["name"], **_hold(site, scale)} for site in sites],
-        "tasks": [_task(task, scale) for task in mission["tasks"]],
+        "tasks": tasks,
         "footprints": [
             {
                 "color": ours.index(f["vehicle"]) % 6,
@@ -120,6 +127,54 @@ def map_view(report: dict[str, Any]) -> dict[str, Any]:
         "starts": [_start(vehicle, k % 6, scale) for k, vehicle in enumerate(mission["vehicles"])],
         "bar": _scale_bar(scale.factor),
     }
+
+
+Box = tuple[float, float, float, float]
+
+
+def _box(x: float, y: float, text: str) -> Box:
+    """What a text covers, in the letters of a narrow screen: left, top, right, bottom."""
+    return x, y - LETTER[1], x + LETTER[0] * len(text), y + 0.25 * LETTER[1]
+
+
+def _beside(x: float, y: float, text: str, taken: list[Box]) -> dict[str, Any]:
+    """A text beside a point, at the side where it is over no other text; taken: what they cover, with this one added."""
+    left = x - 13 - LETTER[0] * len(text)
+    sides = [(x + 13, y - 9), (x + 13, y + 22), (left, y - 9), (left, y + 22)]
+    boxes = [_box(*side, text) for side in sides]
+    k = next((k for k in range(4) if not any(_overlap(boxes[k], box) for box in taken)), 0)
+    taken.append(boxes[k])
+    return {"text": text, "x": round(sides[k][0], 1), "y": round(sides[k][1], 1)}
+
+
+def _said(
+    zone: dict[str, Any],
+    from_s: float | None,
+    until_s: float | None,
+    scale: Scale,
+    taken: list[Box],
+) -> dict[str, Any] | None:
+    """When a zone appears or ends, as a text above or below it, on the sheet and over no other text; None of one that
+    is always there. taken: what texts cover, with this one added."""
+    if from_s is None and until_s is None:
+        return None
+    text = f"zone {zone['id']}"
+    text += "" if from_s is None else f", from {from_s:g} s"
+    text += "" if until_s is None else f", until {until_s:g} s"
+    corners = [scale.xy(*corner) for corner in zone["vertices"]]
+    left, high, low = (f(c[k] for c in corners) for f, k in ((min, 0), (min, 1), (max, 1)))
+    x = max(4.0, min(left, MAP_WIDTH - 4 - LETTER[0] * len(text)))
+    step = LETTER[1] + 4
+    places = [y for k in range(8) for y in (high - 6 - k * step, low + LETTER[1] + k * step)]
+    free = [y for y in places if not any(_overlap(_box(x, y, text), box) for box in taken)]
+    y = next((y for y in free if LETTER[1] < y < MAP_HEIGHT - 4), places[0])
+    taken.append(_box(x, y, text))
+    return {"text": text, "x": round(x, 1), "y": round(y, 1)}
+
+
+def _overlap(one: Box, other: Box) -> bool:
+    apart = one[2] <= other[0] or other[2] <= one[0] or one[3] <= other[1] or other[3] <= one[1]
+    return not apart
 
 
 def _inside(places: list[tuple[float, float]], scale: Scale) -> list[tuple[float, float]]:

@@ -78,7 +78,9 @@ def held_again(config: Config, state: State, chain: Chain, now_ms: int, out: Out
     assert chain.holds is not None
     ways, air = config.ways(state.zones), state.air(chain.vehicle.id)
     found = into(ways, chain, air, chain.holds)
-    track = found.track or circling(config, state, chain, 0.0, out)
+    track = found.track
+    if track is None:
+        chain, track = circling(config, state, chain, 0.0, out)
     return chain.enter(Phase.DONE, track, now_ms)
 
 

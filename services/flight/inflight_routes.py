@@ -21,9 +21,12 @@ from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.dynamics import AirState, turn_radius_m
 from cratous.services.flight.rejoining import Router
 from cratous.services.flight.remaining_path import join_in_transit, last_lap, leaving_m
+from cratous.services.mission.escapes import escapes
+from cratous.services.mission.zones import distance_m
 from cratous.services.planning.leaving import WayOut, entered, way_out
 from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.plan import PlanItem, Pose
+from cratous.spec.records import replace
 
 
 class Back(NamedTuple):
@@ -36,17 +39,20 @@ class Back(NamedTuple):
 
 class Last(NamedTuple):
     """Where a vehicle circles at the end of its chain, and whether its circle, and the way there, keep
-    the zones."""
+    the zones. speed_m_s: to fly it at, None: as it is."""
 
     track: Track
     kept: bool
     way_kept: bool = True
+    speed_m_s: float | None = None
 
 
 AWAY = (3.0, 6.0, 12.0, 24.0)
 """So far away a place to circle is looked for, in turn radii,"""
 BEARINGS = 12
 """in so many directions."""
+ROOM_M = 10.0
+"""So far from zones is far enough for a way that turns as tightly as a vehicle can [m]."""
 
 
 class Ways:
@@ -132,8 +138,9 @@ class Ways:
     def _near(self, chain: Chain, state: AirState, pose: Pose) -> Last:
         """A way to the nearest place found where a circle keeps the zones, and a lap there.
 
-        If no way there keeps them, the direct one whose legs that break a zone are shortest together, each
-        counted whole; without a place a circle at the pose that breaks one.
+        If no way there keeps them, a turn as tight as it can; if none of these does, of them and the direct ones
+        the one whose legs that break a zone are shortest together, each counted whole; without a place a
+        circle at the pose that breaks one.
         """
         across: list[tuple[float, float, Track]] = []
         for place, lap in self._places(chain, pose):
@@ -145,9 +152,35 @@ class Ways:
             broken_m, way_m = (sum(math.dist(*leg) for leg in g) for g in (bad, pairwise(direct)))
             # to ten metres: a place that is far away is no better for a metre less
             across.append((round(broken_m, -1), way_m, Track((*direct, *lap))))
-        if across:
-            return Last(min(across, key=lambda one: one[:2])[2], True, way_kept=False)
+        least = min(across, key=lambda one: one[:2], default=None)
+        tight = None if entered(state.position, self.zones) else self._tight(chain, state)
+        if tight is not None and (least is None or tight[0] <= least[0]):
+            return tight[1]
+        if least is not None:
+            return Last(least[2], True, way_kept=False)
         return Last(chains.final_loiter(pose, _radius_m(chain), 0.0, 0.0, ()), False)
+
+    def _tight(self, chain: Chain, state: AirState) -> tuple[float, Last] | None:
+        """A way that turns as tightly as the vehicle can, straight on and into a circle that keeps the zones, and the
+        length of it that breaks one [m]: none if one does, and of these the first with room, or with most of it;
+        otherwise the least. None where no circle was found."""
+        tried = escapes(state.pose, state.speed_m_s, chain.vehicle, self.zones, self.dt_s)
+        best, best_m = None, -1.0
+        for way in sorted(tried, key=lambda one: (round(one.broken_m, 3), one.length_m)):
+            if best is not None and way.broken_m > 0:
+                break
+            radius_m = _radius_m(replace(chain, speed_m_s=way.speed_m_s))
+            hold = chains.tangent_hold(way.end, radius_m, self.zones)
+            if hold is None:
+                continue
+            track = Track((*way.points, *chains.lap_points(hold, way.points[-1])[1:]))
+            found = way.broken_m, Last(track, True, way.broken_m == 0, way.speed_m_s)
+            room_m = min(distance_m(track.points, zone) for zone in self.zones)
+            if way.broken_m > 0 or room_m >= ROOM_M:
+                return found
+            if room_m > best_m:
+                best, best_m = found, room_m
+        return best
 
     def _places(self, chain: Chain, pose: Pose) -> Iterator[tuple[Pose, tuple[Position, ...]]]:
         """Places about a pose where a circle keeps the zones, nearest first, with the rest of the lap."""

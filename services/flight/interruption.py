@@ -141,9 +141,8 @@ def flown_back(
     elif act == FAIL_TASK and chain.item is not None:
         state = fail(config, state.put(chain), chain.item.task_id, NO_WAY, out)
     elif back is None:
-        state = state.put(
-            chain.enter(chain.phase, circling(config, state, chain, 0.0, out), now_ms)
-        )
+        chain, track = circling(config, state, chain, 0.0, out)
+        state = state.put(chain.enter(chain.phase, track, now_ms))
     else:
         entered = chain.enter(chain.phase, back.track, now_ms)
         if chain.phase is Phase.TASK:

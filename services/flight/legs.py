@@ -61,7 +61,7 @@ def _blocked(chain: Chain, under_ms: int) -> str:
 
 
 def _circle_here(config: Config, state: State, chain: Chain, out: Out) -> State:
-    track = circling(config, state, chain, 0.0, out)
+    chain, track = circling(config, state, chain, 0.0, out)
     chain = chain.enter(chain.phase, track, state.now_ms)
     state = state.put(replace(chain, leg=chain.leg.begun_anew(state.now_ms)))
     return route(state, chain.vehicle.id, out)

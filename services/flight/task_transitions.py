@@ -221,19 +221,24 @@ def _loiter(config: Config, state: State, chain: Chain, at_ms: int, out: Out) ->
     others = any(c.item is not None for c in state.chains if c.vehicle.id != vid)
     daa = state.mission.daa
     layer = 1.5 * daa.buffer * daa.well_clear.zthr_m * finished
-    track = circling(config, state, chain, layer if others else 0.0, out)
+    chain, track = circling(config, state, chain, layer if others else 0.0, out)
     return replace(state.put(chain.enter(Phase.DONE, track, at_ms)), finished=finished)
 
 
-def circling(config: Config, state: State, chain: Chain, layer_m: float, out: Out) -> Track:
-    """A vehicle's track with nothing left to fly, raised by a layer. If that breaks a zone, it is said."""
+def circling(
+    config: Config, state: State, chain: Chain, layer_m: float, out: Out
+) -> tuple[Chain, Track]:
+    """A vehicle's track with nothing left to fly, raised by a layer, and its chain at the speed for that. If it
+    breaks a zone, it is said."""
     vid = chain.vehicle.id
     last = config.ways(state.zones).last(chain, state.from_where(vid), layer_m)
     if not (last.kept and last.way_kept):
         what = f"vehicle {vid} has nothing left to fly"
         told = NO_WAY_OUT if last.kept else NO_CIRCLE
         out.append(Say(mission_change(state.now_ms, what, told), NAME))
-    return last.track
+    if last.speed_m_s is None or last.speed_m_s == chain.speed_m_s:
+        return chain, last.track
+    return replace(chain, speed_m_s=last.speed_m_s), last.track
 
 
 def fail(config: Config, state: State, task_id: int, why: str, out: Out) -> State:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from math import atan2, hypot
 from typing import Any
 
 from cratous.core.algebra.steps import Ran, in_order
@@ -11,7 +12,9 @@ from cratous.core.kernel import qualified
 from cratous.core.schedule.choice import as_asked
 from cratous.core.schedule.rows import eligible, runs_forward
 from cratous.services.mission.known_zones import Bound, zones_of
+from cratous.services.mission.wind import in_wind, wind_at
 from cratous.services.mission.zones import deciding, distance_m, exact_leg_ok, margin_m
+from cratous.services.monitor.avoidable import Appeared, avoidable
 from cratous.services.monitor.observation import Ending, Presence
 from cratous.services.monitor.relations import branch_rows, by_term, is_choice
 from cratous.services.monitor.required_rows import (
@@ -25,6 +28,7 @@ from cratous.spec.constraint_rows import AFTER_END, AFTER_START, Row
 from cratous.spec.mission import Mission, Position, Zone, ZoneKind
 from cratous.spec.mission.changes import requested_ms
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
+from cratous.spec.mission.plan import Pose
 
 ACTIVE, COMPLETE, FAILED = "Active", "Complete", "Failed"
 WAITS = {AFTER_END: 1, AFTER_START: 2}
@@ -35,7 +39,8 @@ WAITS = {AFTER_END: 1, AFTER_START: 2}
 class Fence:
     """What has been seen of one vehicle and one zone. first, last: the positions of the vehicle's track
     between which it was held to the zone; over: the zone appeared where the vehicle had no right to be; left_ms:
-    since when the vehicle has kept it; again_ms: when it broke it again."""
+    since when the vehicle has kept it; again_ms: when it broke it again; appeared: how the vehicle flew when the zone
+    appeared, None of one that was there from the start; could: what of it could have been kept, once it is asked."""
 
     first: int
     last: int
@@ -44,6 +49,8 @@ class Fence:
     over: bool = False
     left_ms: int | None = None
     again_ms: int | None = None
+    appeared: Appeared | None = None
+    could: tuple[str, dict[str, Any]] | None = None
 
     def words(self, kind: ZoneKind, so_far: bool) -> str:
         """How a zone of a kind was broken; so_far: as it happens, when what comes of it is not known."""
@@ -102,6 +109,8 @@ class ConstraintWatch:
                     continue
                 zone, last = bound.zone, len(track) - 1
                 fence = self._fences.setdefault((vehicle, zone.id), Fence(last - 1, last))
+                if not fence.checks and zone not in self._mission.zones:
+                    fence.appeared = self._appeared(track, before[vehicle])
                 fence.last = last
                 fence.checks += 1
                 self._leg(vehicle, (p, q), bound, before[vehicle].time_ms)
@@ -114,11 +123,32 @@ class ConstraintWatch:
             fence.left_ms = at_ms
         elif not clear and fence.broken_ms is None:
             fence.broken_ms = at_ms
-            late, first = zone not in self._mission.zones, fence.checks == 1
+            late, first = fence.appeared is not None, fence.checks == 1
             fence.over = late and first and not exact_leg_ok(leg[0], leg[0], zone)
             self.violations.append(self._fence_verdict(vehicle, zone, fence, so_far=True))
         elif not clear and fence.left_ms is not None and fence.again_ms is None:
             fence.again_ms = at_ms
+
+    def _appeared(self, track: list[Position], now: Sample) -> Appeared:
+        """How a vehicle flies at the beginning of the last leg of its track: as it came there, or goes on at its start."""
+        a, b = track[-3:-1] if len(track) > 2 else track[-2:]
+        north, east = b.north_m - a.north_m, b.east_m - a.east_m
+        heading = now.heading_rad if north == east == 0 else atan2(east, north)
+        speed = hypot(north, east) / (self._mission.simulation.step_ms / 1000)
+        return Appeared(now.time_ms, Pose(*now.position, heading), speed)
+
+    def _could_keep(self, number: int, zone: Zone, fence: Fence) -> tuple[str, dict[str, Any]]:
+        """What of a zone that appeared before a vehicle could have been kept."""
+        assert fence.appeared is not None
+        if fence.could is None:
+            at_ms = fence.appeared.at_ms
+            vehicle = next(v for v in self._mission.vehicles if v.id == number)
+            able = in_wind(vehicle, wind_at(self._mission, at_ms)) or vehicle
+            step_ms = self._mission.simulation.step_ms
+            known = zones_of(self._mission, at_ms + step_ms)
+            bound = [one.zone for one in known if one.binds(at_ms)]
+            fence.could = avoidable(fence.appeared, able, zone, bound, step_ms / 1000)
+        return fence.could
 
     def _fence_verdict(
         self, vehicle: int, zone: Zone, fence: Fence, unseen: str = "", so_far: bool = False
@@ -126,9 +156,12 @@ class ConstraintWatch:
         broken = fence.broken_ms is not None
         distance = distance_m(self._tracks[vehicle][fence.first : fence.last + 1], zone)
         note = f"{fence.checks} flown legs"
-        outcome = Outcome.HOLDS
+        outcome, evidence = Outcome.HOLDS, None
         if broken:
             note, outcome = fence.words(zone.kind, so_far), Outcome.VIOLATED
+            if fence.appeared is not None and not fence.over and not so_far:
+                could, evidence = self._could_keep(vehicle, zone, fence)
+                note = f"{note}; {could}"
         elif unseen:
             note, outcome = f"{note}; {unseen}", Outcome.UNKNOWN
         return Verdict(
@@ -143,6 +176,7 @@ class ConstraintWatch:
             unit="m",
             checks=fence.checks,
             method="leg_ok: locate, meets_boundary",
+            evidence=evidence,
             kernels=deciding(zone),
         )
 

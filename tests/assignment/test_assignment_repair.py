@@ -6,8 +6,10 @@ import random
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
+from cratous.core.assignment import layers
 from cratous.core.assignment.anytime import greedy, timed
 from cratous.core.assignment.instance import Instance
 from cratous.core.assignment.lower_bounds import least_until, shortest_ways, ways_hold
@@ -77,6 +79,47 @@ def test_a_way_with_a_stop_that_is_shorter_is_noticed() -> None:
     longer = reach.copy()
     longer[1, 2, 3] += 10_000
     assert not ways_hold(longer, i.travel, i.duration, i.may)
+
+
+def test_the_same_ways_are_gone_over_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    gone_over = []
+
+    def counted(instance: object, function: object) -> object:
+        gone_over.append(function)
+        return function
+
+    monkeypatch.setattr(layers, "machine_for", counted)
+    monkeypatch.setattr(layers, "_FOUND", layers._Found(2))
+    i = arrays_of(problem(3, 2))
+    first = layers.shortest(i, i.may)
+    asked = len(gone_over)
+    assert asked == 2
+    again = layers.shortest(i._replace(due=i.due + 1), i.may)
+    assert len(gone_over) == asked
+    assert (first == again).all()
+    # what one does with its ways is not seen by the next
+    again[:] = 0
+    assert (layers.shortest(i, i.may) == first).all()
+    # another way, duration or option is another question
+    for k, other in enumerate(
+        (i._replace(travel=i.travel + 1), i._replace(duration=i.duration + 1)), 1
+    ):
+        layers.shortest(other, other.may)
+        assert len(gone_over) == asked + 2 * k
+    fewer = np.zeros_like(i.may)
+    assert (layers.shortest(i, fewer) == 1 << 40).all()
+    # two are kept, the oldest is gone
+    before = len(gone_over)
+    layers.shortest(i, i.may)
+    assert len(gone_over) == before + 2
+
+
+def test_ways_of_large_assignments_are_not_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    kept = layers._Found(2)
+    monkeypatch.setattr(layers, "_FOUND", kept)
+    i = arrays_of(problem(5, 2))
+    layers.shortest(i, i.may)
+    assert kept._ways == {}
 
 
 def test_vehicles_without_work_are_no_bound() -> None:

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from cratous.services.certify.charts import FEW, altitude_view, separation_view
 from cratous.services.certify.differences import differences, text_difference
 from cratous.services.certify.html import margin, render, seconds
-from cratous.services.certify.picture import map_view, time_view
+from cratous.services.certify.picture import LETTER, map_view, time_view
 from cratous.services.certify.report import ends_of
 from cratous.services.certify.timeline import bars, read_flight
 from cratous.services.certify.verdicts import constraint_rows, requirement_rows
@@ -287,6 +287,50 @@ def test_the_map_keeps_one_scale_and_north_up() -> None:
     assert abs(view["bar"]["length"] / metres - (x1 - x0) / 200) < 1e-2
 
 
+def test_texts_of_the_map_are_on_it_and_over_no_other() -> None:
+    whole = report()
+    place = whole["mission"]["tasks"][0]["points"][0]
+    whole["mission"]["tasks"] = [
+        {"id": k, "label": "t", "points": [{**place, "north_m": 2.0 * k}], "radius_m": 0.0}
+        for k in (5, 6, 7)
+    ]
+    east = max(v["position"]["east_m"] for v in whole["mission"]["vehicles"]) + 390.0
+    whole["mission"]["changes"] = [
+        {"at_ms": 1000 * k, "zone": {"id": 100 + k, "kind": "keep_out", "vertices": corners}}
+        for k, corners in enumerate(
+            [[[9, east], [19, east], [9, east + 9]]] * 3 + [[[1, 1], [9, 1], [1, 9]]] * 3
+        )
+    ]
+    view = map_view(whole)
+    said = [t["said"] for t in view["tasks"]] + [z["said"] for z in view["zones"] if z["said"]]
+    assert len(said) == 9
+    boxes = [
+        (t["x"], t["y"] - LETTER[1], t["x"] + LETTER[0] * len(t["text"]), t["y"]) for t in said
+    ]
+    for k, (left, high, right, low) in enumerate(boxes):
+        assert left >= 0, said[k]
+        assert right <= view["width"], said[k]
+        assert 0 <= high < low <= view["height"], said[k]
+        for other in boxes[:k]:
+            apart = right <= other[0] or other[2] <= left or low <= other[1] or other[3] <= high
+            assert apart, said[k]
+    assert view["zones"][1]["said"]["text"] == "zone 100, from 0 s"
+    assert view["zones"][0]["said"] is None, "one that is always there needs no words"
+    assert "1 zone and 6 that appear," in render(whole)
+
+
+def test_the_last_tick_is_on_the_sheet() -> None:
+    whole = report()
+    whole["flight"]["end_ms"] = 300_100
+    view = altitude_view(whole)
+    assert view is not None
+    last = view["times"][-1]
+    assert last["text"] == "300 s"
+    assert last["x"] > view["width"] - 20, "the rule is where the instant is"
+    half_m = LETTER[0] * len(last["text"]) / 2
+    assert last["text_x"] + half_m <= view["width"]
+
+
 def test_time_line_and_separation() -> None:
     view = time_view(report())
     assert all(bar["x"] >= 110 and bar["x"] + bar["width"] <= 700.2 for bar in view["bars"])
@@ -344,6 +388,7 @@ def test_paper_has_the_answer_and_the_inventory_only_when_asked_for() -> None:
     sheet = page.xpath("//style")[0].text.partition("@media print")[2]
     assert ".by-need { display: none; }" in sheet
     assert ".screen { display: none; }" in sheet
+    assert "#flight" not in sheet, "what follows the answer begins where there is room"
     assumed = page.xpath("//h2[@id='assumptions']/following::table[1]//tr[td]")
     assert [row.get("class") for row in assumed] == [None, "screen"], "broken ones are printed"
     assert ".by-need:target, .by-need:has(:target) { display: block;" in sheet

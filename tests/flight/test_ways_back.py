@@ -178,9 +178,9 @@ def test_who_ends_where_no_circle_keeps_the_zones_goes_where_one_does() -> None:
 def test_who_is_caught_among_zones_crosses_them_to_a_free_circle() -> None:
     """Walls on both sides of HERE and ahead: no turn back keeps them, circles would break them for ever."""
     spans = (
-        (1500.0, 2400.0, 100.0, 200.0),
-        (1500.0, 2400.0, 400.0, 500.0),
-        (2080.0, 2180.0, 100.0, 500.0),
+        (1500.0, 2400.0, 170.0, 270.0),
+        (1500.0, 2400.0, 330.0, 430.0),
+        (2080.0, 2180.0, 170.0, 430.0),
     )
     walls = tuple(
         Zone(k, ZoneKind.KEEP_OUT, ((s, w), (s, e), (n, e), (n, w)), 0.0, 1000.0)
@@ -232,7 +232,7 @@ def test_a_place_beyond_a_zone_is_not_where_the_vehicle_is() -> None:
 
 
 def test_who_can_circle_nowhere_says_so() -> None:
-    cage = box(ZoneKind.KEEP_IN, 1950.0, 2050.0, 1000.0)
+    cage = box(ZoneKind.KEEP_IN, 1990.0, 2010.0, 1000.0)
     state, said = ended_at_here((cage,))
     (told,) = of_type(said, "MissionChange")
     assert told.Consequence == task_transitions.NO_CIRCLE

@@ -107,7 +107,27 @@ def test_a_zone_that_appears_over_a_vehicle_is_told_as_that_and_when_it_was_left
     )
     # ahead of the vehicle it is entered
     ahead = [truth(1, 0, 0, 0), truth(1, 250, 5, 0), truth(1, 500, 20, 0)]
-    assert watch(of, [*ahead, *done(500)])[item].note == "entered at 0.25 s"
+    row = watch(of, [*ahead, *done(500)])[item]
+    told = "entered at 0.25 s; when it appeared at 0.25 s it was 5 m away: none of "
+    assert row.note.startswith(told)
+    assert row.evidence is not None
+    assert (row.evidence["away_m"], row.evidence["way_kept"]) == (5.0, None)
+    # of a zone that was there from the start nothing is said of when it appeared
+    row = watch(mission(zones=(zone,)), [*ahead, *done(500)])[item]
+    assert (row.note, row.evidence) == ("entered at 0.25 s", None)
+
+
+def test_a_zone_that_appears_far_ahead_and_is_entered_could_have_been_kept():
+    corners = ((900.0, -500.0), (1900.0, -500.0), (1900.0, 500.0), (900.0, 500.0))
+    zone = Zone(7, ZoneKind.KEEP_OUT, corners, 0.0, 500.0)
+    of = mission(zones=(), changes=(Change(250, changes.ZONE, zone=zone),))
+    flight = [truth(1, 250 * k, 5.0 * k, 0) for k in range(200)]
+    row = watch(of, [*flight, *done(199 * 250)])["G1:zone: keep_out 7, flight of vehicle 1"]
+    assert row.outcome is Outcome.VIOLATED
+    assert row.note.startswith("entered at 44.75 s; when it appeared at 0.25 s it was 895 m away: ")
+    assert row.note.endswith("would have kept the zones")
+    assert row.evidence is not None
+    assert row.evidence["way_kept"] in row.note
 
 
 def test_a_zone_to_keep_in_is_left_not_entered():
