@@ -328,6 +328,14 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
             raise  # not the theorem's doing
         said = str(error) or f"it raises {type(error).__name__}"
         raise BadInput(f"the theorem cannot be stated: {said}", where=slip or where) from error
+    symbolic = [v.function for v in claim.visits if not definition_subset.on_numbers(v)]
+    for function in dict.fromkeys([*symbolic, *claim.stubs]):
+        if refused := definition_subset.refusals(function):
+            raise BadInput(
+                f"the theorem cannot be stated: {refused[0]}",
+                where=position(function),
+                expected="what the subset has (see docs/guides/own-kernel.md)",
+            )
     wrong = {n for f in {v.function for v in claim.visits} if ours(f) for n in altered(f)}
     if wrong:
         raise BadInput(
@@ -335,14 +343,6 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
             where=where,
             expected="functions as their files say (remove __pycache__)",
         )
-    symbolic = [v.function for v in claim.visits if not definition_subset.on_numbers(v)]
-    for function in dict.fromkeys([*symbolic, *claim.stubs]):
-        if refused := definition_subset.outside(function):
-            raise BadInput(
-                f"the theorem cannot be stated: {refused[0]}",
-                where=position(function),
-                expected="what the subset has (see docs/guides/own-kernel.md)",
-            )
     used: list[Any] = [run.function for run in claim.runs if run.role == "kernel"]
     for function in [*used, *claim.folds]:
         if entry_of(function) is None:
