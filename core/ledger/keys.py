@@ -46,9 +46,9 @@ class Keys:
         if not home.product:
             packages[home.name], parts[home.name] = home.root, ("",)
         self.tree = Tree(packages, parts, edits)
-        self._product = _PRODUCT[0] if _PRODUCT else None
-        if self._product is not None and not self.tree.take_over(self._product.tree):
-            self._product = None
+        taken = bool(_PRODUCT) and self.tree.take_over(_PRODUCT[0].tree)
+        self._as_before = taken and home.product
+        self._product = _PRODUCT[0] if taken and not home.product else None
         self._files = {one: theorems(one) for one in (home, PRODUCT)}
         self.names = frozenset(theorem_names(home, self._files))
         self._theorems: dict[str, tuple[str, tuple[str, ...]] | None] = {}
@@ -267,7 +267,7 @@ class Keys:
             "readings": self.readings.digest,
             "flags": compiler(),
         }
-        if self.home.product and not self.tree.edits and self._product is None:
+        if self.home.product and not self.tree.edits and not self._as_before:
             _PRODUCT[:] = [self]
         return found
 
