@@ -26,6 +26,7 @@ from cratous.core.kernel.sources import ROOT, digest
 from cratous.proofs import second_solver
 from cratous.proofs.engine import prover, worker_processes
 from cratous.proofs.engine.claim import Claim
+from cratous.proofs.engine.cpu_limit import of_the_user
 from cratous.proofs.engine.smtlib import Seen
 from cratous.proofs.mutation.keys import Store
 from cratous.proofs.second_solver import Asker, Way
@@ -181,7 +182,10 @@ def _stored(job: _Job, store: Store, solver: str, asker: Asker) -> tuple[str, st
     kept = store.get(key) or store.get(none)
     if kept is not None:
         return kept["verdict"], kept["logic"], 0.0
-    verdict, logic, seconds = _ask(job, asker)
+    try:
+        verdict, logic, seconds = _ask(job, asker)
+    except second_solver.Stopped:
+        return NO_ANSWER, "", 0.0  # kept nowhere: its time was not used up
     found = {"verdict": verdict, "logic": logic}
     store.put(none if verdict == NO_ANSWER else key, found)
     return verdict, logic, seconds
@@ -230,6 +234,12 @@ def recheck(
     `again`, is asked first in the way that answered then. store: where answers are kept between
     runs; by default nowhere. texts: what `written` has made of theorems while they were proved.
     """
+    if of_the_user() <= second_solver.CPU_SECONDS:
+        raise BadInput(
+            "the second solver has not its time: CPU time is limited (ulimit -t)",
+            expected=f"more than {second_solver.CPU_SECONDS} s",
+            got=f"{of_the_user():.0f} s",
+        )
     solver = version()
     kept = store or Store(None)
     before = _said(record)

@@ -4,11 +4,20 @@ from __future__ import annotations
 
 import multiprocessing
 import resource
+import signal
 import time
 from multiprocessing.connection import Connection
 from typing import Any
 
+from cratous.proofs.engine.cpu_limit import of_the_user, what_ended
+
 CPU_SECONDS = 5
+
+
+class Stopped(RuntimeError):
+    """The process that was asked did not end by the limit that it was given here."""
+
+
 Way = tuple[str, dict[str, str]]
 """How it is asked: the logic, and options."""
 
@@ -54,7 +63,9 @@ def _answer(questions: Connection, asking: Connection) -> None:
             return
         used = time.process_time()
         _, most = resource.getrlimit(resource.RLIMIT_CPU)
-        resource.setrlimit(resource.RLIMIT_CPU, (int(used) + CPU_SECONDS, most))
+        latest = int(used) + CPU_SECONDS
+        soft = latest if most == resource.RLIM_INFINITY else min(latest, most)
+        resource.setrlimit(resource.RLIMIT_CPU, (soft, most))
         questions.send((solve(text, *way), time.process_time() - used))
 
 
@@ -65,8 +76,11 @@ class Asker:
         self._pipe: Connection | None = None
         self._process: Any = None
 
-    def ask(self, text: str, way: Way) -> tuple[str, float]:
-        """sat, unsat or unknown, and the CPU seconds that it took."""
+    def ask(self, text: str, way: Way, *, again: bool = True) -> tuple[str, float]:
+        """sat, unsat or unknown, and the CPU seconds that it took.
+
+        Raises Stopped where something else than CPU_SECONDS ended the question.
+        """
         if self._pipe is None:
             fork = multiprocessing.get_context("fork")
             self._pipe, there = fork.Pipe()
@@ -77,13 +91,21 @@ class Asker:
             self._pipe.send((text, way))
             answer: tuple[str, float] = self._pipe.recv()
         except (EOFError, OSError):
-            self.end()
+            code = self.end()
+            if code == -signal.SIGKILL and again:
+                # all of its questions together: a new process has its time anew
+                return self.ask(text, way, again=False)
+            if code == -signal.SIGKILL or of_the_user() < CPU_SECONDS:
+                raise Stopped(what_ended(code, CPU_SECONDS)) from None
             return "unknown", float(CPU_SECONDS)
         return answer
 
-    def end(self) -> None:
-        """Nobody asks any more."""
-        if self._pipe is not None:
-            self._pipe.close()
-            self._process.join()
-            self._pipe = None
+    def end(self) -> int | None:
+        """Nobody asks any more; the exit code of the process that was asked."""
+        if self._pipe is None:
+            return None
+        self._pipe.close()
+        self._process.join()
+        self._pipe = None
+        code: int | None = self._process.exitcode
+        return code

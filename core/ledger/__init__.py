@@ -78,8 +78,15 @@ def _top(entry: Entry) -> str:
 def load_all(home: Home = PRODUCT) -> dict[str, Entry]:
     """Import every module that may hold kernels; the registered ones of this home, by name.
 
-    Raises BadInput for a module of another package that cannot be imported.
+    Raises BadInput for a module of another package that cannot be imported, and for one whose file is not
+    what Python runs.
     """
+    for file in home.shadowed():
+        raise BadInput(
+            "this file is not what Python runs: a folder or machine code of its name is beside it",
+            where=file.relative_to(home.root.parent).as_posix(),
+            expected="one of the two",
+        )
     for name in home.modules():
         try:
             importlib.import_module(name)

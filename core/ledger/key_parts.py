@@ -45,7 +45,7 @@ REMEMBERS = (
     "proofs.engine.cache.Cache",
     "proofs.engine.counterexample.story",
     "proofs.engine.counterexample.telling",
-    "proofs.engine.prover._slip",
+    "proofs.engine.statement_errors.slip_in",
     "proofs.ledger.proof_recall.Recall",
 )
 """What only prints or remembers: a prover with an empty cache decides the same without it."""

@@ -27,9 +27,10 @@ from cratous.core.ledger.key_parts import (
 from cratous.core.ledger.lookup_exceptions import EXCUSED
 from cratous.core.ledger.module_trees import Place, Tree
 from cratous.core.ledger.package_home import PRODUCT, Home, theorem_home, theorem_names, theorems
+from cratous.core.ledger.syntax_text import ANYTHING
 
-_PRODUCT: list[Tree] = []
-"""The product's tree, once its keys were asked for: what its names mean is not looked up again."""
+_PRODUCT: list[Keys] = []
+"""The product's, once they were asked for: what its names mean is not looked up again, nor walked again."""
 
 
 class Keys:
@@ -45,8 +46,9 @@ class Keys:
         if not home.product:
             packages[home.name], parts[home.name] = home.root, ("",)
         self.tree = Tree(packages, parts, edits)
-        if _PRODUCT:
-            self.tree.take_over(_PRODUCT[0])
+        taken = bool(_PRODUCT) and self.tree.take_over(_PRODUCT[0].tree)
+        self._as_before = taken and home.product
+        self._product = _PRODUCT[0] if taken and not home.product else None
         self._files = {one: theorems(one) for one in (home, PRODUCT)}
         self.names = frozenset(theorem_names(home, self._files))
         self._theorems: dict[str, tuple[str, tuple[str, ...]] | None] = {}
@@ -83,12 +85,22 @@ class Keys:
     @functools.cached_property
     def readings(self) -> Walk:
         """The walk over the readings and the gate."""
+        if self._product is not None and self._walked(self._product.readings):
+            return self._product.readings
         return walk(self.tree, self._roots(READINGS), excused=EXCUSED)
 
     @functools.cached_property
     def prover(self) -> Walk:
         """The walk over the prover, up to the readings and what only remembers."""
+        same = self._product is not None and self.readings is self._product.readings
+        if self._product is not None and same and self._walked(self._product.prover):
+            return self._product.prover
         return self.deciding(PROVER)
+
+    def _walked(self, done: Walk) -> bool:
+        """A walk over the product's definitions would be the same with this home's beside them."""
+        anything = any(asks & ANYTHING for asks in done.asks.values())
+        return not anything and self.tree.walks_as(done.places)
 
     def asking(self, roots: Iterable[str]) -> Walk:
         """The walk over code that puts questions, up to what only remembers."""
@@ -255,8 +267,8 @@ class Keys:
             "readings": self.readings.digest,
             "flags": compiler(),
         }
-        if self.home.product and not self.tree.edits:
-            _PRODUCT[:] = [self.tree]
+        if self.home.product and not self.tree.edits and not self._as_before:
+            _PRODUCT[:] = [self]
         return found
 
     def of(

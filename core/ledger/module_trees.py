@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from cratous.core.ledger.tables import Table, Unit, table
@@ -42,6 +42,7 @@ class Tree:
         self._circles: set[tuple[str, tuple[str, ...]]] = set()
         self._found: dict[str, str | None] = {}
         self._folders: dict[str, bool] = {}
+        self._before: Tree | None = None
         self.open_classes: dict[Place, bool] = {}
         self.asked: set[str] = set()
         """The modules and folders that were looked for."""
@@ -69,7 +70,18 @@ class Tree:
         if same:
             self._meant |= other._meant
             self._imported |= other._imported
+            self._before = other
         return same
+
+    def walks_as(self, places: Iterable[Place]) -> bool:
+        """A walk of the tree that was taken over, which met these places, would be the same here.
+
+        Unless loose statements of the other packages change what is there.
+        """
+        before = self._before
+        return before is not None and all(
+            self._changes.get(place) == before._changes.get(place) for place in places
+        )
 
     @property
     def outside(self) -> frozenset[str]:
@@ -99,7 +111,7 @@ class Tree:
         inside = os.path.join(base, "__init__.py")
         if not parts:
             return inside if os.path.isfile(inside) else None
-        for name in (f"{base}.py", inside):
+        for name in (inside, f"{base}.py"):  # of the two, Python runs the folder
             if os.path.isfile(name) or (self.edits and Path(name) in self.edits):
                 return name
         return None
@@ -251,13 +263,18 @@ class Tree:
     def _changes(self) -> dict[Place, tuple[Place, ...]]:
         """Units of other modules that a module's loose statements mention, so may change."""
         found: dict[Place, list[Place]] = {}
+        known: frozenset[str] = frozenset()
+        if self._before is not None:  # each of its names means the same here
+            known = frozenset(self._before.every_module)
+            found = {place: list(some) for place, some in self._before._changes.items()}
         for module in self.every_module:
-            one = self.table(module)
+            one = self.table(module) if module not in known else None
             for number in one.loose if one is not None else ():
                 for target in self._mentioned((module, number)):
                     if target[0] != module:
                         found.setdefault(target, []).append((module, number))
-        return {place: tuple(some) for place, some in found.items()}
+        # in the order of the modules, whoever looked them up
+        return {p: tuple(sorted(some, key=lambda one: one[0])) for p, some in found.items()}
 
     def _mentioned(self, place: Place) -> set[Place]:
         seen: set[Place] = set()

@@ -6,6 +6,7 @@ import importlib
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 
 from cratous.core.kernel.sources import ROOT, add_package
@@ -46,6 +47,16 @@ class Home:
             parts = file.relative_to(self.root).with_suffix("").parts
             if parts[0] != "theorems" and parts[-1] not in ("__init__", "__main__"):
                 yield ".".join((self.name, *parts))
+
+    def shadowed(self) -> Iterator[Path]:
+        """Files of modules that Python does not run: a folder or machine code of their name is beside them."""
+        folder = self.root / "core" if self.product else self.root
+        for around, folders, names in os.walk(folder):
+            modules = [name.removesuffix(".py") for name in sorted(names) if name.endswith(".py")]
+            for stem in modules:
+                package = stem in folders and any(Path(around, stem).glob("__init__.*"))
+                if package or any(f"{stem}{end}" in names for end in EXTENSION_SUFFIXES):
+                    yield Path(around, f"{stem}.py")
 
     def module(self, theorem: Path) -> str:
         """The module that the file of a theorem is."""

@@ -3,7 +3,7 @@
 A private folder below the product's cache (`CRATOUS_CACHE`), one small file for each question.
 The name holds the structural hash of the question, the solver's version, the budget and the
 strategy; a file that is damaged, or is about another question, counts as absent. Only answers
-without a model are kept: a counterexample is always found anew.
+without a model are kept: a counterexample is always found anew. Nor is kept what a limit of time ended.
 """
 
 from __future__ import annotations
@@ -34,12 +34,16 @@ def _strategy() -> str:
 
 @dataclass(frozen=True)
 class Answer:
-    """sat, unsat or unknown; effort in solver resources, CPU seconds, the logic that answered."""
+    """sat, unsat or unknown; effort in solver resources, CPU seconds, the logic that answered.
+
+    ended: which limit of time ended the question, where that is why there is no answer.
+    """
 
     result: str
     rlimit: int
     seconds: float
     logic: str
+    ended: str = ""
 
 
 class Cache:
@@ -66,14 +70,17 @@ class Cache:
             answer = Answer(**data)
         except (OSError, ValueError, KeyError, TypeError, AttributeError):
             return None
-        if answer.result not in ("sat", "unsat", "unknown"):
+        if answer.result not in ("sat", "unsat", "unknown") or answer.ended:
             return None
         self.hits += 1
         return answer
 
     def put(self, key: str, rlimit: int, answer: Answer) -> None:
-        """Keep an answer; a folder that cannot be written is no error."""
-        if self.folder is None:
+        """Keep an answer; a folder that cannot be written is no error.
+
+        What a limit of time ended is no answer, and is not kept: with more time there may be one.
+        """
+        if self.folder is None or answer.ended:
             return
         name = self.name(key, rlimit)
         file = self.folder / name[:2] / name

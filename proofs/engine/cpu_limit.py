@@ -13,6 +13,7 @@ import ctypes
 import math
 import os
 import resource
+import signal
 import threading
 import time
 from collections.abc import Iterator
@@ -31,6 +32,29 @@ _MAY_BE_KILLED: set[int] = set()
 
 class OutOfTime(BaseException):
     """The CPU time is used up; not an `Exception`, so that nothing in the block keeps it."""
+
+
+def of_the_user() -> float:
+    """CPU seconds [s] that this process was given from outside (`ulimit -t`); infinity where nothing limits it."""
+    bounds = [b for b in resource.getrlimit(resource.RLIMIT_CPU) if b != resource.RLIM_INFINITY]
+    return min(bounds, default=math.inf)
+
+
+def what_ended(code: int | None, seconds: float = math.inf) -> str:
+    """Which limit ended a process that was forked from this one, in words; code: its exit code.
+
+    seconds: CPU seconds [s] of `ends_within` there.
+    """
+    user = of_the_user()
+    killed = code in (-signal.SIGXCPU, -signal.SIGKILL)
+    if killed and user < math.inf and user <= math.ceil(seconds + GRACE_S):
+        return (
+            f"ended by the limit of CPU time that cratous was started with (ulimit -t {user:.0f})"
+        )
+    if code == -signal.SIGXCPU:
+        spent = "" if seconds == math.inf else f" of {seconds + GRACE_S:.0f} s"
+        return f"ended by the prover's own limit of CPU time{spent}: it heeded no interrupt"
+    return f"its process ended before it answered (exit code {code})"
 
 
 def _throw(thread: int, error: type[BaseException] | None) -> None:

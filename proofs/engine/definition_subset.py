@@ -195,6 +195,14 @@ def outside(function: Callable[..., Any]) -> tuple[Finding, ...]:
     return () if of_theorems(function) else tuple(check(function))
 
 
+def refusals(function: Callable[..., Any]) -> list[str]:
+    """What of a definition the subset does not have; where its file has none of it, that."""
+    try:
+        return list(map(str, outside(function)))
+    except TypeError:
+        return [f"the code that runs is not its file's: {qualified(function)}"]
+
+
 def of_theorems(function: Callable[..., Any]) -> bool:
     """A function of a theorem's file, or a method of proof of the product."""
     package, _, home = str(function.__module__).partition(".")

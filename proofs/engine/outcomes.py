@@ -19,7 +19,8 @@ class Outcome:
     """What the solver said of one obligation: proved, refuted, unknown; the effort it took.
 
     key: structural hash of the obligation; counterexample: the values of a refutation by name;
-    story: the same in the user's terms; seconds: CPU, not in the ledger.
+    story: the same in the user's terms; seconds: CPU, not in the ledger; ended: which limit of time ended
+    the question, where that is why it is unknown.
     """
 
     obligation: Owed
@@ -30,6 +31,7 @@ class Outcome:
     key: str = ""
     story: tuple[str, ...] = ()
     seconds: float = 0.0
+    ended: str = ""
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,6 @@ from __future__ import annotations
 import functools
 import sys
 import time
-import traceback
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -35,6 +34,7 @@ from cratous.proofs.engine.obligation_hash import Hasher
 from cratous.proofs.engine.outcomes import Outcome, Owed, Ran, restored
 from cratous.proofs.engine.smtlib import Seen, logic_of, question, smt2, sorts
 from cratous.proofs.engine.solver_order import check, solvers
+from cratous.proofs.engine.statement_errors import raised_there, slip_in
 from cratous.proofs.engine.theorem_files import FOLDER, find, load_claim, load_lemma, theorem_files
 from cratous.spec.errors import BadInput
 
@@ -57,7 +57,8 @@ class Theorem:
 
     paths: of every kernel that it is about, which paths some values reach under the premises; varied:
     how the arguments of every use of a kernel, in order, vary under them (see `reachable_paths`); ran: what came
-    of running it on numbers, None where it was not run.
+    of running it on numbers, None where it was not run; ended: which limits of time ended questions about
+    its premises, paths and arguments.
     """
 
     name: str
@@ -71,6 +72,7 @@ class Theorem:
     paths: tuple[tuple[str, tuple[bool, ...]], ...] = ()
     varied: tuple[tuple[str, str], ...] = ()
     ran: Ran | None = None
+    ended: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self._key is not _KEY:
@@ -137,11 +139,15 @@ def restore(data: dict[str, Any]) -> Theorem:
 
 @dataclass(frozen=True)
 class _Memory:
-    """What the questions of one theorem share: answers, hashes of terms, kinds of values in them."""
+    """What the questions of one theorem share: answers, hashes of terms, kinds of values in them.
+
+    ended: which limits of time ended questions about premises, paths and arguments.
+    """
 
     cache: Cache
     hasher: Hasher = field(default_factory=Hasher)
     seen: Seen = field(default_factory=dict)
+    ended: list[str] = field(default_factory=list)
 
 
 def _solvers(
@@ -166,15 +172,16 @@ def _ask(
     # translated in order into an empty context, terms get the same numbers wherever this runs
     terms = [term.translate(context) for term in given]
     begun = time.process_time()
-    spent, result, logic, model = 0, "unknown", "ALL", None
+    spent, result, logic, model, ended = 0, "unknown", "ALL", None, ""
     for name, solver, effort in _solvers(given, context, rlimit, seen):
         solver.add(*terms)
         said = check(solver, context, effort)
         result, logic, spent = said.result, name, spent + said.spent
         if result != "unknown":
-            model = solver.model() if result == "sat" else None
+            model, ended = (solver.model() if result == "sat" else None), ""
             break
-    answer = Answer(result, spent, round(time.process_time() - begun, 3), logic)
+        ended = said.ended or ended
+    answer = Answer(result, spent, round(time.process_time() - begun, 3), logic, ended)
     return answer, model, context
 
 
@@ -198,9 +205,8 @@ def _decide(claim: Claim, obligation: Obligation, rlimit: int, memory: _Memory) 
             lines = story(claim, model)
     status = {"unsat": "proved", "sat": "refuted"}.get(answer.result, "unknown")
     owed = Owed(obligation.kind, obligation.text)
-    return Outcome(
-        owed, status, answer.rlimit, answer.logic, example, key, tuple(lines), answer.seconds
-    )
+    rest = (tuple(lines), answer.seconds, answer.ended)
+    return Outcome(owed, status, answer.rlimit, answer.logic, example, key, *rest)
 
 
 def _premises(claim: Claim, rlimit: int, memory: _Memory) -> str:
@@ -249,7 +255,7 @@ def prove(
     def possible(terms: list[z3.BoolRef]) -> str:
         return _satisfiable(terms, min(rlimit, PATH_RLIMIT), memory)
 
-    return Theorem(
+    theorem = Theorem(
         name,
         sentence,
         tuple(claim.kernels),
@@ -261,6 +267,7 @@ def prove(
         reachable_paths.paths(claim, possible),
         reachable_paths.varied(claim, possible),
     )
+    return replace(theorem, ended=tuple(memory.ended), _key=_KEY)
 
 
 def _satisfiable(terms: list[z3.BoolRef], rlimit: int, memory: _Memory) -> str:
@@ -269,6 +276,8 @@ def _satisfiable(terms: list[z3.BoolRef], rlimit: int, memory: _Memory) -> str:
     if answer is None:
         answer, *_ = _ask(terms, rlimit, memory.seen)
         memory.cache.put(key, rlimit, answer)
+        if answer.ended and answer.ended not in memory.ended:
+            memory.ended.append(answer.ended)
     return answer.result
 
 
@@ -314,13 +323,14 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
                 expected="less in one kernel: split it, and do not look into the part (c.opaque)",
                 got=f"more than {sys.getrecursionlimit()} levels",
             ) from error
-        slip = _slip(error, folder)
-        if not slip and not isinstance(error, THEIRS):
+        slip = slip_in(error, folder)
+        if not slip and not isinstance(error, THEIRS) and not raised_there(error, folder):
             raise  # not the theorem's doing
-        raise BadInput(f"the theorem cannot be stated: {error}", where=slip or where) from error
+        said = str(error) or f"it raises {type(error).__name__}"
+        raise BadInput(f"the theorem cannot be stated: {said}", where=slip or where) from error
     symbolic = [v.function for v in claim.visits if not definition_subset.on_numbers(v)]
     for function in dict.fromkeys([*symbolic, *claim.stubs]):
-        if refused := definition_subset.outside(function):
+        if refused := definition_subset.refusals(function):
             raise BadInput(
                 f"the theorem cannot be stated: {refused[0]}",
                 where=position(function),
@@ -357,15 +367,6 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
             expected="goals that are the same where c.calls(...) is empty",
         )
     return claim, sentence
-
-
-def _slip(error: BaseException, folder: Path) -> str:
-    """Where in the theorem's file, or in a lemma's, the error came up itself; nothing if elsewhere."""
-    frames = [] if error.__traceback__ is None else traceback.extract_tb(error.__traceback__)
-    file = Path(frames[-1].filename) if frames else Path()
-    if file.parent not in (folder, FOLDER):
-        return ""
-    return f"{place(file).partition(':')[0]}:{frames[-1].lineno}"
 
 
 def prove_file(

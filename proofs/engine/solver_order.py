@@ -5,7 +5,8 @@ answer would depend on what else the machine does. Here each way has a share of 
 What z3 does not count as effort (arithmetic on numbers of a million digits) a guard ends, by CPU
 time: the next way is tried, and where none is left the answer is `unknown`. A question that heeds no
 interrupt ends with its process (`cpu_limit.ends_within`); whoever waits for that one has the work done
-again with each question asked in a process of its own (`ask_apart`), whose end is the answer `unknown`.
+again with each question asked in a process of its own (`ask_apart`), whose end is the answer `unknown`,
+with the limit that ended it.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from typing import NamedTuple
 import z3
 
 from cratous.proofs.engine import worker_processes
-from cratous.proofs.engine.cpu_limit import ends_within
+from cratous.proofs.engine.cpu_limit import ends_within, what_ended
 
 ORDERS = (3, 0, 4)
 """Orders of variables for polynomials (z3's numbers), the most promising first."""
@@ -55,10 +56,15 @@ def solvers(
 
 
 class Said(NamedTuple):
-    """`sat`, `unsat` or `unknown`, and the effort that it took (rlimit)."""
+    """`sat`, `unsat` or `unknown`, and the effort that it took (rlimit).
+
+    ended: which limit of time ended the question, in words; the same question may have an answer
+    elsewhere, so nothing keeps this one. Nothing where the solver said it within its effort.
+    """
 
     result: str
     spent: int
+    ended: str = ""
 
 
 def ask_apart() -> None:
@@ -76,8 +82,8 @@ def check(solver: z3.Solver, context: z3.Context, effort: int) -> Said:
     if os.getpid() in _ASKS_APART:
         try:
             said = worker_processes.call(partial(_check, solver, context, effort))
-        except worker_processes.Ended:
-            return Said("unknown", 0)
+        except worker_processes.Ended as error:
+            return Said("unknown", 0, what_ended(error.code, most_cpu_s(effort)))
         if said.result != "sat":
             return said
         # it ends, and a model does not come out of another process
@@ -89,12 +95,13 @@ def _check(solver: z3.Solver, context: z3.Context, effort: int) -> Said:
     before = _effort_so_far(solver)
     seconds = most_cpu_s(effort)
     latest = time.process_time() + seconds
-    done = threading.Event()
+    done, over = threading.Event(), threading.Event()
 
     def watch() -> None:
         # again until it has come through: between two steps of the solver an interrupt is lost
         while not done.wait(LOOK_S):
             if time.process_time() > latest:
+                over.set()
                 context.interrupt()
 
     watcher = threading.Thread(target=watch, daemon=True)
@@ -106,7 +113,9 @@ def _check(solver: z3.Solver, context: z3.Context, effort: int) -> Said:
         done.set()
         # it must not interrupt the next question
         watcher.join()
-    return Said(result, max(0, _effort_so_far(solver) - before))
+    late = result == "unknown" and over.is_set()
+    ended = f"interrupted after {seconds:.0f} s of CPU, the prover's own limit" if late else ""
+    return Said(result, max(0, _effort_so_far(solver) - before), ended)
 
 
 def _effort_so_far(solver: z3.Solver) -> int:

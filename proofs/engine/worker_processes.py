@@ -22,6 +22,7 @@ class Ended(RuntimeError):
     """A process ended without a result."""
 
     def __init__(self, code: int | None) -> None:
+        self.code = code
         self.out_of_time = code == -signal.SIGXCPU
         why = "its CPU time was used up" if self.out_of_time else f"code {code}"
         super().__init__(f"a process ended without a result: {why}")

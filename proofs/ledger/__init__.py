@@ -8,6 +8,7 @@ they are spread.
 
 from __future__ import annotations
 
+import math
 import multiprocessing
 import os
 import signal
@@ -21,7 +22,7 @@ from typing import Any
 from cratous.core import ledger as gate
 from cratous.core.kernel import REGISTRY, Entry, Fold, checkers, entry_of, supported
 from cratous.core.kernel.names import short
-from cratous.core.kernel.sources import altered, position, reached
+from cratous.core.kernel.sources import altered, place, position, reached
 from cratous.core.ledger.meant_folds import other_parts
 from cratous.core.ledger.meant_names import replaced
 from cratous.core.ledger.package_home import PRODUCT, Home
@@ -30,12 +31,13 @@ from cratous.core.ledger.status import Grounds, status_of
 from cratous.proofs.engine import prover, solver_memory
 from cratous.proofs.engine.cache import Cache
 from cratous.proofs.engine.claim import Claim
-from cratous.proofs.engine.cpu_limit import may_be_killed
+from cratous.proofs.engine.cpu_limit import may_be_killed, of_the_user, what_ended
 from cratous.proofs.engine.solver_order import ask_apart
 from cratous.proofs.engine.subset import Finding, lint_all
 from cratous.proofs.ledger.proof_recall import Recall
 from cratous.proofs.running.all import compare_all, told
 from cratous.proofs.running.theorem import Functions, run
+from cratous.spec.errors import BadInput
 
 
 @dataclass(frozen=True)
@@ -113,12 +115,22 @@ def _work(
 def _no_answer(name: str, folder: Path, process: Any, *, again: bool) -> Exception | None:
     """What is said of a theorem whose process ended; None if it is proved again, its questions apart."""
     process.join()
-    if process.exitcode != -signal.SIGXCPU:
-        return RuntimeError(
-            f"the prover of {name} ended without an answer (exit code {process.exitcode})"
+    user = of_the_user()
+    ends = {-signal.SIGXCPU} | ({-signal.SIGKILL} if user < math.inf else set())
+    if process.exitcode not in ends:
+        why = f"ended without an answer (exit code {process.exitcode})"
+        return RuntimeError(f"the prover of {name} {why}")
+    if again:
+        return None
+    if user <= prover.STATE_CPU_S:
+        return BadInput(
+            f"the theorem is not proved: {what_ended(process.exitcode)}",
+            where=place(prover.find(name, folder)),
+            expected="more CPU time for the prover (ulimit -t unlimited)",
+            got=f"{user:.0f} s",
         )
-    # what is proved apart cannot end so, but for its statement
-    return None if again else prover.not_stated(name, folder)
+    # what is proved apart cannot end so otherwise, but for its statement
+    return prover.not_stated(name, folder)
 
 
 def prove_theorems(

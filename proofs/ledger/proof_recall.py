@@ -81,10 +81,11 @@ class Recall:
     def put(self, theorems: Iterable[Theorem]) -> None:
         """Keep those that are proved; a folder that cannot be written is no error.
 
-        A theorem with a lemma whose name cannot be read in any text is not kept.
+        A theorem with a lemma whose name cannot be read in any text is not kept, nor one of which a limit of
+        time ended a question: another run may find more.
         """
         for theorem in theorems:
-            if self.folder is None or not theorem.proved:
+            if self.folder is None or not theorem.proved or theorem.ended:
                 continue
             name = self.key(theorem.name)
             if name is None or not set(theorem.lemmas) <= self.keys.lemmas(theorem.name):

@@ -58,11 +58,13 @@ def failure_text(theorem: Theorem) -> str:
     lines = []
     if theorem.premises != "satisfiable":
         lines.append(f"its premises are {theorem.premises}: nothing follows from them")
+    lines += [f"a question about its premises or paths was {why}" for why in theorem.ended]
     for outcome in theorem.outcomes:
         if outcome.status != "proved":
             lines.append(f"{outcome.status}: {outcome.obligation.kind}: {outcome.obligation.text}")
             if outcome.status == "unknown":
-                lines.append("  the solver gave no answer within its budget, which is no proof")
+                why = outcome.ended or "the solver gave no answer within its budget"
+                lines.append(f"  {why}, which is no proof")
             lines += [f"  {line}" for line in example(outcome)]
     lines += theorem.ran.differences if theorem.ran is not None else ()
     return "\n".join(lines)

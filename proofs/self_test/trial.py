@@ -162,6 +162,9 @@ def attempts(cases: Sequence[Case], jobs: int = 1) -> Iterator[Trial]:
     for some in (plain, [case for case in cases if case.without]):
         if some and some is not plain:
             importlib.import_module("numba")
+        if jobs == 1:  # each has processes of its own anyway
+            yield from map(attempt, some)
+            continue
         tried: Sequence[Callable[[], Trial]] = [partial(attempt, case) for case in some]
         for _, trial in worker_processes.each(tried, jobs):
             yield trial

@@ -32,8 +32,9 @@ class Kept:
         files = {name: self._file(name) for name in names}
         found = {name: _kept(file) for name, file in files.items()}
         rest = [name for name, one in found.items() if one is None]
-        # a few in each process: some take far longer than others
-        parts = [rest[k :: 8 * jobs] for k in range(min(8 * jobs, len(rest)))]
+        # with several at once, a few in each process: some take far longer than others
+        count = min(8 * jobs, len(rest)) if jobs > 1 else min(1, len(rest))
+        parts = [rest[k::count] for k in range(count)]
         tasks = [functools.partial(self._read, part) for part in parts]
         read = {n: one for _, some in worker_processes.each(tasks, jobs) for n, one in some.items()}
         for name, one in read.items():

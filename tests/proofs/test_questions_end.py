@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import resource
+import signal
 import threading
 import time
 from collections.abc import Iterator
@@ -12,8 +14,10 @@ from typing import Any
 import pytest
 import z3
 
-from cratous.proofs import ledger
+from cratous.proofs import ledger, second_solver
 from cratous.proofs.engine import cpu_limit, lift, prover, solver_order, worker_processes
+from cratous.proofs.engine.cache import Answer, Cache
+from cratous.proofs.ledger.proof_recall import Recall
 from cratous.proofs.ledger.report_formats import failure_text
 from cratous.spec.errors import BadInput
 
@@ -140,7 +144,7 @@ def test_the_theorem_of_such_a_question_is_not_proved_and_says_so(
     said = {o.obligation.text: o.status for o in hung.outcomes if o.obligation.kind == "goal"}
     assert said == {"it is above": "proved", "the product is above": "unknown"}
     assert "unknown: goal: the product is above" in failure_text(hung)
-    assert "no answer within its budget, which is no proof" in failure_text(hung)
+    assert "it heeded no interrupt, which is no proof" in failure_text(hung)
 
 
 def test_a_theorem_whose_paths_are_not_found_is_refused(
@@ -150,3 +154,112 @@ def test_a_theorem_whose_paths_are_not_found_is_refused(
     with pytest.raises(BadInput, match="its paths take too long to find") as refused:
         _proved(tmp_path, of_a_margin=PATHS)
     assert refused.value.where.endswith("of_a_margin.py")
+
+
+def _limited(function: Any, seconds: int) -> Any:
+    """What the function gives in a process that was started with `ulimit -t`."""
+
+    def limited() -> Any:
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+        return function()
+
+    return worker_processes.call(limited)
+
+
+def test_a_limit_of_ones_own_is_named_and_not_taken_for_the_provers() -> None:
+    def ask() -> solver_order.Said:
+        solver_order.ask_apart()
+        return solver_order.check(Deaf(), z3.Context(), 1)  # type: ignore[arg-type]
+
+    own = worker_processes.call(ask)
+    assert "the prover's own limit of CPU time" in own.ended
+    assert "ulimit" not in own.ended
+    code = -signal.SIGKILL
+    said = _limited(partial(cpu_limit.what_ended, code, 300.0), 20)
+    assert "ulimit -t 20" in said
+    assert "the prover's own" not in said
+    # killed, and nothing limits CPU time: by whom is not known
+    assert cpu_limit.what_ended(code, 300.0) == (
+        "its process ended before it answered (exit code -9)"
+    )
+
+
+def test_an_interrupted_question_says_so() -> None:
+    class Slow(Deaf):
+        heard = threading.Event()
+
+        def check(self) -> z3.CheckSatResult:
+            while not self.heard.is_set():
+                time.process_time()
+            return z3.unknown
+
+    class Context:
+        def interrupt(self) -> None:
+            Slow.heard.set()
+
+    said = solver_order.check(Slow(), Context(), 1)  # type: ignore[arg-type]
+    assert said.ended.startswith("interrupted after")
+
+
+def test_what_a_limit_ended_is_kept_nowhere(tmp_path: Path) -> None:
+    kept = Cache(tmp_path)
+    kept.put("q", 1, Answer("unknown", 1, 0.1, "ALL", "ended by a limit"))
+    assert kept.get("q", 1) is None
+    kept.put("q", 1, Answer("unknown", 1, 0.1, "ALL"))
+    assert kept.get("q", 1) is not None
+
+
+def test_a_killed_question_is_asked_anew_with_more_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first run is limited, and its cache does not speak for the second."""
+    real = prover._solvers
+
+    def ways(terms: list[Any], *rest: Any) -> Iterator[tuple[str, Any, int]]:
+        hung = "x*y" in str(terms).replace(" ", "")
+        yield from [("ALL", Deaf(), 1)] if hung else real(terms, *rest)
+
+    folder, answers = tmp_path / "theorems", Cache(tmp_path / "answers")
+    folder.mkdir()
+    (folder / "of_a_product.py").write_text(TWO)
+
+    def proved() -> prover.Theorem:
+        (one,) = ledger.prove_theorems(
+            ["of_a_product"], folder=folder, jobs=1, cache=answers, machine=False
+        )
+        return one
+
+    with monkeypatch.context() as patch:
+        patch.setattr(prover, "_solvers", ways)
+        hung = proved()
+    assert not hung.proved
+    assert "the prover's own limit of CPU time" in failure_text(hung)
+    assert proved().proved
+
+
+def test_a_theorem_of_which_a_question_was_ended_is_not_recalled(tmp_path: Path) -> None:
+    (one,) = _proved(tmp_path, a_sign=SHORT)
+    ended = prover.replace(one, ended=("ended by a limit",), _key=prover._KEY)
+    assert ended.proved
+    Recall(tmp_path / "kept").put([ended])
+    assert not (tmp_path / "kept").exists()
+
+
+def test_the_second_solver_tells_its_limit_from_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    def spin(text: str, *way: Any) -> str:
+        while True:
+            time.process_time()
+
+    monkeypatch.setattr(second_solver, "solve", spin)
+    monkeypatch.setattr(second_solver, "CPU_SECONDS", 2)
+
+    def ask() -> tuple[str, float]:
+        asker = second_solver.Asker()
+        try:
+            return asker.ask("", ("ALL", {}))
+        finally:
+            asker.end()
+
+    assert ask() == ("unknown", 2.0)
+    with pytest.raises(second_solver.Stopped, match="ulimit -t 1"):
+        _limited(ask, 1)
