@@ -16,6 +16,7 @@ import time
 from collections import deque
 from contextlib import suppress
 
+from cratous.bridge.port import is_due
 from cratous.bridge.unread import unread_by_peer
 
 RECORD = struct.Struct("!BIQI")
@@ -109,7 +110,7 @@ class Way:
         try:
             data = self.source.recv(room)
         except BlockingIOError:
-            if self.tail and time.monotonic() - self._since_s > AGAIN_MS / 1000:
+            if self.tail and is_due(self._since_s + AGAIN_MS / 1000, time.monotonic()):
                 self._pour_tail()
             return b""
         whole = self.tail + data
@@ -155,7 +156,7 @@ class Pair:
     def step(self, copy: Copy, ready: set[int]) -> bool:
         """Move bytes; False where the connection is over. ready: what `poll` has told of."""
         if self.connecting and not self._connected():
-            return self.until_s > time.monotonic() and self.near.fileno() >= 0
+            return not is_due(self.until_s, time.monotonic()) and self.near.fileno() >= 0
         try:
             for way in self.ways:
                 again = way.full or way.tail or way.source.fileno() in ready

@@ -66,7 +66,7 @@ def line_in(packet: bytes) -> bytes | None:
     if match is None:
         return None
     head, body = b",".join(match.groups()[:4]), packet[match.end() :]
-    return body if b"%08x" % _crc(head, body) == match[5] else None
+    return body if b"%08x" % crc_of(head, body) == match[5] else None
 
 
 class Opening(NamedTuple):

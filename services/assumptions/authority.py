@@ -17,6 +17,11 @@ NUMBERS = {"UxAS": UXAS, "ICAROUS": ICAROUS}
 EXECUTIVE, LINK = "uxas/executive", "uxas/ics"
 
 
+def icarous_has(body: Any) -> bool:
+    """Whether ICAROUS has the vehicle of an `AuthorityChange`."""
+    return has_it(Gate(NUMBERS.get(body.Owner.name, UXAS), body.Epoch, False))
+
+
 def reported(body: Any) -> Gate:
     """The gate of a `GateState`."""
     return Gate(NUMBERS.get(body.Owner.name, UXAS), body.Epoch, body.Offered)

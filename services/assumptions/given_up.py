@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from cratous.core.authority.timeliness import lasted
 from cratous.core.executive.steps import leg_given_up
+from cratous.services.assumptions.authority import icarous_has
 from cratous.services.assumptions.observed import Message, Record
 from cratous.services.mission.leg_bounds import LONGEST_LOOKAHEADS, MOST_TAKEOVERS
 from cratous.spec.mission import GroundedVehicle, Mission
@@ -72,7 +73,7 @@ class GivenUpWatch:
 
     def _changes(self, vid: int, leg: _Leg, message: Message) -> None:
         now_ms = message.time_ms
-        if message.body.Owner.name != "ICAROUS":
+        if not icarous_has(message.body):
             self._time(vid, leg, now_ms)
             leg.under_ms, leg.since_ms = leg.flown_ms(now_ms), None
             return

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cratous.core.authority.timeliness import in_time
+from cratous.services.assumptions.authority import icarous_has
 from cratous.services.assumptions.observed import ANY_LATER, EVERY, Message, Record, gone_ms
 from cratous.spec.mission import Mission
 
@@ -61,7 +62,7 @@ class AwayWatch:
                 (body.VelocityNorth, body.VelocityEast, body.VelocityDown)
             )
         elif message.kind == "AuthorityChange":
-            self._away[body.VehicleID] = body.Owner.name == "ICAROUS"
+            self._away[body.VehicleID] = icarous_has(body)
         elif message.kind == "MissionEnd" and body.Outcome in COUNTED:
             self._ends(message)
 

@@ -17,9 +17,8 @@ from cratous.core.avoidance.prediction import Piece, after
 from cratous.core.kernel import Vec2
 from cratous.core.permit.tubes import disc_within
 from cratous.services.assumptions.authority import (
-    NUMBERS,
     UNTOUCHED,
-    has_it,
+    icarous_has,
     reported,
     sender_of,
 )
@@ -132,7 +131,7 @@ class IntruderWatch:
         kind, now_ms, _, body = message
         if kind == "AuthorityChange" and body.VehicleID in self._instances:
             own = body.VehicleID
-            if not has_it(Gate(NUMBERS.get(body.Owner.name, UXAS), body.Epoch, False)):
+            if not icarous_has(body):
                 self._forget(own, now_ms)
             elif body.IntruderID:
                 # a track of radar has a number of its own

@@ -236,7 +236,7 @@ def circling(
         what = f"vehicle {vid} has nothing left to fly"
         told = NO_WAY_OUT if last.kept else NO_CIRCLE
         out.append(Say(mission_change(state.now_ms, what, told), NAME))
-    if last.speed_m_s is None or last.speed_m_s == chain.speed_m_s:
+    if last.speed_m_s is None:
         return chain, last.track
     return replace(chain, speed_m_s=last.speed_m_s), last.track
 

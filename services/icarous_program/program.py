@@ -200,9 +200,9 @@ class Program:
         except Exception as error:  # one line must not end the avoidance of the next ones
             self._tally.refuse("line that the step fails at", f"{line}: {error!r}")
             return
-        before = self.state.now_ms
+        before = self.state
         self._step(step)
-        if isinstance(line, OwnPosition) and self.state.now_ms != before:
+        if isinstance(line, OwnPosition) and self.state is not before:
             self._told_ms, self._waypoints = round(1000 * line.time_s), self._passed
             if self._alone:
                 self._alone = False
@@ -218,10 +218,10 @@ class Program:
         if not self._alone:
             self._alone = True
             self._report("WARN", f"{now_ms} ms: no POSTN of UxAS; the state is the autopilot's")
-        before = self.state.now_ms
+        before = self.state
         passed, self._waypoints = self._passed - self._waypoints, self._passed
         self._step(self._end.alone(self.state, line, passed))
-        if self.state.now_ms != before:
+        if self.state is not before:
             self._say_directly(line)
 
     def _say_directly(self, line: OwnPosition) -> None:

@@ -43,7 +43,7 @@ class Escape(NamedTuple):
         """What is flown, in words."""
         if not self.turn_rad:
             return "straight on"
-        side = "right" if self.turn_rad > 0 else "left"
+        side = {1.0: "right", -1.0: "left"}[math.copysign(1.0, self.turn_rad)]
         return f"a turn of {abs(math.degrees(self.turn_rad)):.0f} deg to the {side}"
 
 

@@ -31,6 +31,7 @@ CORE_OUTSIDE = {"numpy", "numba"}
 PROOF_COMMANDS = {
     "services/cli/prove.py",
     "services/cli/prove_checks.py",
+    "services/cli/prove_elsewhere.py",
     "services/cli/prove_self_test.py",
     "services/cli/certify.py",
     "services/cli/search_faults.py",

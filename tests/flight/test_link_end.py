@@ -163,7 +163,7 @@ def test_a_mode_that_is_refused_or_says_nothing_new_is_no_sign_of_life(
     state, _ = after(messages.Connected(0, (1,)))
     if alive:
         state, _ = after(messages.GateIs(1, Gate(ICAROUS, 1, False)), state=state)
-    state, _ = after(messages.Heard(1, 2000, SetMode(mode, epoch)), state=state)
+    state, _ = after(messages.Heard(1, 2000, tp.SetMode(mode, epoch)), state=state)
     _, out = after(messages.Watch(2500), state=state)
     told = [m.body.Note for m in out if isinstance(m, messages.Say)]
     assert told == ([] if alive else ["silent since 0 ms"])
