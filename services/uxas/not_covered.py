@@ -2,9 +2,5 @@
 
 from __future__ import annotations
 
-SERVICES = (
-    "RoutePlannerService",
-    "SerialAutomationRequestTestService",
-    "SteeringService",
-)
+SERVICES = ("SteeringService",)
 """Services of UxAS that we do not have; a configuration that names one is warned, or refused if strict."""

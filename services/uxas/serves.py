@@ -16,7 +16,16 @@ from cratous.services.pipeline import (
 )
 from cratous.services.pipeline.validator import AutomationRequestValidatorService
 from cratous.services.roads.service import ROADS, OsmPlannerService
-from cratous.services.uxas import basic_services, batch, diagram, leash, regions, tracker, waypoints
+from cratous.services.uxas import (
+    basic_services,
+    batch,
+    diagram,
+    leash,
+    regions,
+    serial_requests,
+    tracker,
+    waypoints,
+)
 from cratous.services.uxas.daidalus import detection, response
 from cratous.services.uxas.registry import VALIDATOR
 
@@ -38,6 +47,7 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
     "RoutePlannerVisibilityService": (
         planner.RoutePlannerVisibilityService, ("RoutePlanResponse",)
     ),
+    "RoutePlannerService": (planner.RoutePlannerService, ("RoutePlanResponse",)),
     ROADS: (
         OsmPlannerService,
         ("RoutePlanResponse", "EgressRouteResponse", "RoadPointsResponse", "ServiceStatus"),
@@ -85,6 +95,10 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
         response.DaidalusResponse, ("VehicleActionCommand", "MissionCommand", "ServiceStatus")
     ),
     "AutomationDiagramDataService": (diagram.AutomationDiagramDataService, ("ServiceStatus",)),
+    "SerialAutomationRequestTestService": (
+        serial_requests.SerialAutomationRequestTestService,
+        ("AutomationRequest", "ImpactAutomationRequest"),
+    ),
     "SendMessagesService": (basic_services.SendMessagesService, ()),
     "MessageLoggerDataService": (MessageLogger, ()),
     "Test_SimulationTime": (basic_services.SimulationTime, ()),

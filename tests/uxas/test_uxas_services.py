@@ -105,6 +105,28 @@ def test_the_region_is_that_of_all_zones(tmp_path: Path) -> None:
     assert found == [(100, [3], []), (100, [3], [5]), (100, [3], [4, 5]), (100, [3], [4])]
 
 
+def test_a_zone_that_begins_and_ends_at_minus_one_is_taken_out(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, REGION)
+    gone = lmcp.new("KeepOutZone", ZoneID=4, StartTime=-1, EndTime=-1)
+    rig.tell(gone, lmcp.new("KeepOutZone", ZoneID=4), gone, lmcp.new("KeepOutZone", ZoneID=4))
+    assert [r.KeepOutAreas for r in rig.got("OperatingRegion")] == [[4], [], [4]]
+
+
+@pytest.mark.shows(REGION, "AdditionalPadding", "KeepInZone", "KeepOutZone")
+def test_zones_are_padded_by_more_and_each_once(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, REGION, **{REGION: 'AdditionalPadding="25"'})
+    zone = lmcp.new("KeepOutZone", ZoneID=4, Padding=10.0, Label="a")
+    rig.tell(zone, lmcp.new("KeepInZone", ZoneID=5), zone)  # a zone may be told again, as it was
+    padded = [z.Padding for z in rig.got("KeepOutZone") if z.Padding != 10.0]
+    assert padded == [35.0, 35.0]
+    assert [z.Padding for z in rig.got("KeepInZone")] == [0.0, 25.0]
+    rig.tell(zone.copy(Padding=60.0))  # as another service of this kind pads it
+    assert rig.got("KeepOutZone")[-1].Padding == 60.0
+    rig.tell(zone.copy(Label="b"))  # another zone of this id
+    assert [(z.Label, z.Padding) for z in rig.got("KeepOutZone")][-2:] == [("b", 10.0), ("b", 35.0)]
+    assert [r.KeepOutAreas for r in rig.got("OperatingRegion")] == [[4], [4]]
+
+
 @pytest.mark.shows(
     "LoiterLeash",
     "SafeHeadingAction",
