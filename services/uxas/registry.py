@@ -35,6 +35,7 @@ from cratous.services.uxas import (
     regions,
     roads,
     serial_requests,
+    steering,
     tracker,
     waypoints,
 )
@@ -251,6 +252,10 @@ def _routes(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int)
     return planner.RoutePlannerService(contexts_of(host))
 
 
+def _steering(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return steering.SteeringService(name, _vehicle(host, v), steering.steering_of(v))
+
+
 def _pipeline_kind(
     make: Make, attributes: Mapping[str, Attr], ignored: Mapping[str, str] | None = None
 ) -> Kind:
@@ -336,6 +341,7 @@ KINDS: dict[str, Kind] = {
     "BatchSummaryService": Kind(
         {"FastPlan": flag(False)}, _batch, single=True, plans=True, ignored={"FastPlan": _NOT_USED}
     ),
+    "SteeringService": Kind(steering.ATTRIBUTES, _steering),
     "TaskTrackerService": Kind({}, _tracker),
     "IcarousCommunicationService": Kind(
         icarous_settings.ATTRIBUTES, _icarous, single=True, plans=True

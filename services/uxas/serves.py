@@ -23,6 +23,7 @@ from cratous.services.uxas import (
     leash,
     regions,
     serial_requests,
+    steering,
     tracker,
     waypoints,
 )
@@ -79,6 +80,9 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
     "LoiterLeash": (leash.LoiterLeash, ("RoutePlanRequest", "VehicleActionCommand", "ServiceStatus")),
     "BatchSummaryService": (
         batch.BatchSummaryService, ("TaskAutomationRequest", "BatchSummaryResponse")
+    ),
+    "SteeringService": (
+        steering.SteeringService, ("VehicleActionCommand", "SafeHeadingAction", "AirVehicleState")
     ),
     "TaskTrackerService": (tracker.TaskTrackerService, ()),
     "IcarousCommunicationService": (
