@@ -316,15 +316,17 @@ def _unknown(what: str, where: str, item: str, known: Iterable[int], got: int) -
 
 
 def _zones(cast: _Cast, request: Sent, notes: list[str]) -> list[Sent]:
-    """The zones of the request's operating region; the others do not bind."""
+    """The zones of the request's operating region, of region 0 if it names none; the others do not bind."""
     number = request.body.OperatingRegion
     named: list[int] = []
-    if number:
+    if number or number in cast.regions:
         if number not in cast.regions:
             what = f"operating region {number} does not exist"
             raise _unknown(what, request.where, "OperatingRegion", cast.regions, number)
         region = cast.regions[number]
         named = [*region.body.KeepInAreas, *region.body.KeepOutAreas]
+        if not number:  # of all zones that are there, and one may just have been removed
+            named = [zone for zone in named if zone in cast.zones]
         for zone in named:
             if zone not in cast.zones:
                 what = f"zone {zone} of operating region {number} does not exist"

@@ -44,7 +44,7 @@ class RoadFiles:
             pairs = [(roads.nodes[a], roads.nodes[b]) for a, b in roads.legs]
             self._write(self._names.edges, LEGS, _legs(roads, pairs))
 
-    def way(self, roads: Network, points: Sequence[Vec2], search_s: float) -> None:
+    def way(self, roads: Network, points: tuple[Vec2, ...], search_s: float) -> None:
         """A way that was found, and how long that took [s]."""
         if self._names.way and self._ways < FILES_MOST:
             self._ways += 1

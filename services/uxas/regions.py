@@ -1,7 +1,7 @@
 """OperatingRegionStateService: one operating region of all zones that are there.
 
-KeepInZone, KeepOutZone, RemoveZones -> OperatingRegion with the id of the service's entity (1 where
-that is 0), whenever the zones change. A zone that begins and ends at -1 ms is taken out. A WaterZone
+KeepInZone, KeepOutZone, RemoveZones -> OperatingRegion with the id 0, which binds whoever names no region, whenever
+the zones change. A zone that begins and ends at -1 ms is taken out. A WaterZone
 binds no aircraft and is left out. With an additional padding each zone is sent again, padded by so much more.
 """
 
@@ -14,7 +14,7 @@ from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
 
 Zones = dict[int, Any]
-REMOVED_MS = -1
+REGION, REMOVED_MS = 0, -1
 
 
 class OperatingRegionStateService:
@@ -27,9 +27,9 @@ class OperatingRegionStateService:
         "afrl.cmasi.RemoveZones",
     )
 
-    def __init__(self, region: int, padding_m: float = 0.0) -> None:
+    def __init__(self, padding_m: float = 0.0) -> None:
         """padding_m: by how much more each zone is padded [m]."""
-        self._region, self._padding_m = region, padding_m
+        self._padding_m = padding_m
 
     def start(self) -> Zones:
         return {}
@@ -59,7 +59,7 @@ class OperatingRegionStateService:
         zones = _ids(after)
         if zones == _ids(before):
             return after, []
-        return after, [lmcp.new("OperatingRegion", ID=self._region, **zones)]
+        return after, [lmcp.new("OperatingRegion", ID=REGION, **zones)]
 
 
 def _ids(state: Zones) -> dict[str, list[int]]:

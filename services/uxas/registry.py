@@ -207,7 +207,7 @@ def _sensors(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int
 
 
 def _region(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    return regions.OperatingRegionStateService(host.entity_id or 1, v["AdditionalPadding"])
+    return regions.OperatingRegionStateService(v["AdditionalPadding"])
 
 
 def _leash(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:

@@ -209,7 +209,7 @@ class SteeringService:
         common = {
             "Speed": speed, "Altitude": waypoint.Altitude, "AltitudeType": waypoint.AltitudeType
         }  # fmt: skip
-        heading = degrees(course) % 360.0
+        heading = (degrees(course) + 180.0) % 360.0 - 180.0
         if how.leash:
             radius = WIDER * _turn_m(state.configuration)
             region = state.region if how.region is None else how.region

@@ -203,7 +203,7 @@ def test_how_steeply_a_line_is_met(tmp_path: Path) -> None:
     one.at = Vec2(0.0, 400.0)
     one.step()
     heading = one.rig.got("VehicleActionCommand")[0].VehicleActionList[0].Heading
-    assert heading == pytest.approx(360 - 60 / pi * atan(2.0), abs=0.01)
+    assert heading == pytest.approx(-60 / pi * atan(2.0), abs=0.01)
 
 
 def test_a_cycle_of_near_waypoints_and_a_state_without_a_place_have_an_end(tmp_path: Path) -> None:
