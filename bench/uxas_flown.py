@@ -1,6 +1,6 @@
 """An example of OpenUxAS, planned by `cratous uxas` and flown: how well it is tracked, and what its cameras see.
 
-    python bench/uxas_flown.py EXAMPLE [--simulator "COMMAND {scenario}"] [--program /path/to/uxas] [--limit S]
+    python bench/uxas_flown.py EXAMPLE [--simulator "COMMAND {scenario}"] [--program /path/to/uxas] [--limit S] [--ready S]
 
 EXAMPLE is a folder with one configuration and one scenario. The simulator, `cratous sim` at five times real time or
 the command given, has to listen on port 5555, to begin at a line on its input or by itself, and to say footprints in
@@ -210,8 +210,10 @@ def measured(name: str, flight: Flight) -> str:
     )
 
 
-def flown(folder: Path, program: Sequence[str], simulator: str, limit_s: float) -> Flight:
-    """Run one example in a copy of its folder."""
+def flown(
+    folder: Path, program: Sequence[str], simulator: str, limit_s: float, ready_s: float
+) -> Flight:
+    """Run one example in a copy of its folder. ready_s: so long the program has before time begins to go."""
     running: list[subprocess.Popen[Any]] = []
     with tempfile.TemporaryDirectory() as made:
         copy = Path(made) / "example"
@@ -226,7 +228,7 @@ def flown(folder: Path, program: Sequence[str], simulator: str, limit_s: float) 
             _listens(5555)
             running.append(started(program, copy, file.name))
             watch = Watch(running[1:])
-            time.sleep(1.0)
+            time.sleep(ready_s)
             pipe = running[0].stdin
             assert pipe is not None
             pipe.write(b"\n")
@@ -256,9 +258,10 @@ def main() -> int:
     parser.add_argument("--program", help="takes -cfgPath FILE, as uxas; ours without it")
     parser.add_argument("--simulator", default=SIMULATOR, help="{scenario} stands for the file")
     parser.add_argument("--limit", type=float, default=4000.0, help="seconds of flight")
+    parser.add_argument("--ready", type=float, default=1.0, help="seconds before the flight begins")
     given = parser.parse_args()
     program = [os.path.abspath(given.program)] if given.program else OURS
-    flight = flown(given.example, program, given.simulator, given.limit)
+    flight = flown(given.example, program, given.simulator, given.limit, given.ready)
     print(
         "| example | complete | after [s] | off the path: mean, 95th percentile, most [m] | seen |"
     )

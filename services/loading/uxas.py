@@ -10,10 +10,12 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from cratous.services.loading import uxas_parts as parts
 from cratous.services.loading.assignment_attributes import Settings, plans_live, settings_of
 from cratous.services.loading.checks import too_many_instances
+from cratous.services.loading.conditions import kept
 from cratous.services.loading.document import item_key
 from cratous.services.loading.ground import CONFIGURATION, STATE, vehicle_of
 from cratous.services.loading.places import Places
@@ -74,6 +76,7 @@ def mission_of(
     """
     cast = _Cast(cfg, spoken_for or (), spoken_for is not None)
     request = cast.request()
+    cast.keep_conditions(request)
     notes = [*cfg.notes, *cast.notes]
     frame = frame_of(cfg, earlier)
     notes.append(f"terrain is taken as flat at {frame.terrain_m:g} m MSL")
@@ -156,6 +159,7 @@ class _Cast:
         self.zones: dict[int, Sent] = {}
         self.regions: dict[int, Sent] = {}
         self.requests: list[Sent] = []
+        self._conditions: list[list[Any]] = []  # SpeedAltPairs of each request
         self.interests = Interests()
         self.driving: list[int] = []  # that nobody plans for here
         other: list[str] = []
@@ -186,6 +190,7 @@ class _Cast:
 
     def _add_request(self, sent: Sent, kind: str) -> None:
         """A request; one in a wrapper is planned as it is: all vehicles are planned in one place."""
+        self._conditions.append(getattr(sent.body, "OverridePlanningConditions", []))
         if kind in WRAPPED:
             self.notes.append(f"{kind} is planned like an AutomationRequest")
             sent = replace(sent, body=getattr(sent.body, WRAPPED[kind]))
@@ -211,6 +216,13 @@ class _Cast:
                 got="none",
             )
         return self.requests[0]
+
+    def keep_conditions(self, request: Sent) -> None:
+        """Fly as fast and as high as the request says; BadInput if that cannot be."""
+        pairs, tasks = self._conditions[0], request.body.TaskList
+        if pairs:
+            self.configurations = kept(self.configurations, pairs, tasks, request.where)
+            self.notes.append("speeds and altitudes are those of OverridePlanningConditions")
 
 
 def _vehicles(
@@ -304,15 +316,17 @@ def _unknown(what: str, where: str, item: str, known: Iterable[int], got: int) -
 
 
 def _zones(cast: _Cast, request: Sent, notes: list[str]) -> list[Sent]:
-    """The zones of the request's operating region; the others do not bind."""
+    """The zones of the request's operating region, of region 0 if it names none; the others do not bind."""
     number = request.body.OperatingRegion
     named: list[int] = []
-    if number:
+    if number or number in cast.regions:
         if number not in cast.regions:
             what = f"operating region {number} does not exist"
             raise _unknown(what, request.where, "OperatingRegion", cast.regions, number)
         region = cast.regions[number]
         named = [*region.body.KeepInAreas, *region.body.KeepOutAreas]
+        if not number:  # of all zones that are there, and one may just have been removed
+            named = [zone for zone in named if zone in cast.zones]
         for zone in named:
             if zone not in cast.zones:
                 what = f"zone {zone} of operating region {number} does not exist"

@@ -27,6 +27,11 @@ DIRECTIONS = {
 PATTERNS = {"Spiral": Pattern.SPIRAL, "Sector": Pattern.SECTOR, "Sweep": Pattern.SWEEP}
 
 
+AHEAD = View(0.0, radians(-60.0), False)
+"""How a line is looked at from before it, as UxAS does: the path ends as much earlier."""
+STRAIGHT_DOWN_RAD = radians(-85.0)
+
+
 @dataclass(frozen=True)
 class Interests:
     """Points, lines and areas of interest by id, which IMPACT tasks name."""
@@ -197,7 +202,20 @@ def _line(reading: _Reading) -> dict[str, Any]:
         places, item = body.PointList, "PointList"
     points = tuple(reading.point(place, f"{item}[{k}]") for k, place in enumerate(places))
     views = _views(reading, body.UseInertialViewAngles)
+    if views["view"] is None and _looks_ahead(reading):
+        views["views"] = (AHEAD,)
     return {"kind": TaskKind.LINE_SEARCH, "points": points, **views}
+
+
+def _looks_ahead(reading: _Reading) -> bool:
+    """Whether a look ahead along a line will do besides one straight down: no sample distance is asked for, and each
+    vehicle has cameras that can be tilted to both."""
+    return reading.body.GroundSampleDistance == 0 and all(
+        vehicle.cameras
+        and all(c.min_elevation_rad <= STRAIGHT_DOWN_RAD for c in vehicle.cameras)
+        and all(c.max_elevation_rad >= AHEAD.elevation_rad for c in vehicle.cameras)
+        for vehicle in reading.vehicles
+    )
 
 
 def _place(reading: _Reading) -> Position:

@@ -25,6 +25,8 @@ from cratous.services.bus import Envelope, Send
 from cratous.services.pipeline.compositions import composition, is_choice
 from cratous.services.pipeline.contexts import UNIQUE, Contexts
 from cratous.services.pipeline.endings import ENDINGS, newest, request_ended
+from cratous.services.pipeline.ground import is_ground
+from cratous.services.pipeline.planner import straight_costs
 from cratous.spec.errors import CratousError
 
 NAME = "RouteAggregatorService"
@@ -92,9 +94,10 @@ class RouteAggregatorService:
     subscribes: tuple[str, ...] = (UNIQUE, OPTIONS, PLANS, ROUTES, *ENDINGS)
     knows = ("EntityConfiguration", "EntityState")
 
-    def __init__(self, contexts: Contexts, group: str = "") -> None:
-        """group: of the planners that are asked for waypoints, none for all planners."""
-        self._contexts, self._group = contexts, group
+    def __init__(self, contexts: Contexts, group: str = "", fast: bool = False) -> None:
+        """group: of the planners that are asked for waypoints, none for all planners; fast: what ways of vehicles that
+        drive cost is not asked for, but taken as that of straight lines."""
+        self._contexts, self._group, self._fast = contexts, group, fast
 
     def start(self) -> Open:
         return Open(1, {}, ())
@@ -207,9 +210,19 @@ class RouteAggregatorService:
                     IsCostOnlyRequest=True,
                 )
             )
-        block = Block(state.free, tuple(vehicles))
+        asked, block = self._straight(asked, Block(state.free, tuple(vehicles)))
         state = state._replace(free=free_after(state.free, len(vehicles)))
         return state, mine._replace(block=block, ends=tuple(ends)), asked
+
+    def _straight(self, asked: list[Any], block: Block) -> tuple[list[Any], Block]:
+        """Requests that are still to be sent, and the block with the answers to those that are not."""
+        left = []
+        for one in asked:
+            if self._fast and is_ground(self._contexts.world, one.VehicleID):
+                block = block.plus(straight_costs(self._contexts, one))
+            else:
+                left.append(one)
+        return left, block
 
     def _state(self, vehicle: int) -> Any:
         """Where a vehicle is, for requests whose PlanningStates do not say."""
@@ -234,6 +247,11 @@ class RouteAggregatorService:
             )
             for k, vehicle in enumerate(vehicles)
         ]
+        if request.IsCostOnlyRequest:
+            asked, block = self._straight(asked, block)
+        if block.complete:
+            free = free_after(state.free, len(vehicles))
+            return state._replace(free=free), [_reply(request, block)]
         routes = (*state.routes, (request, block))[-AT_ONCE:]
         state = state._replace(free=free_after(state.free, len(vehicles)), routes=routes)
         if self._group and not request.IsCostOnlyRequest:

@@ -5,6 +5,7 @@ Messages have degrees; what was read from the mission stays exact beside them.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from cratous.bridge import lmcp
@@ -53,6 +54,9 @@ class MissionSource:
 
     def hear(self, envelope: Envelope, now_ms: int) -> None:
         """Nothing that comes in messages changes a mission."""
+
+    def conditions(self, request_id: int, pairs: Sequence[Any]) -> None:
+        """Speeds and altitudes are the mission's."""
 
     def asks(self, service: str) -> bool:
         """Nobody: options were held against the mission's zones and cameras, exactly."""

@@ -10,7 +10,7 @@ answers those for costs alone. Routes are those of
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import atan2
+from math import atan2, dist
 from typing import Any
 
 from cratous.bridge import lmcp
@@ -64,18 +64,45 @@ class RoutePlannerVisibilityService:
         return [answered(asked, [refused(c.RouteID, (why,)) for c in asked.body.RouteRequests])]
 
 
+class RoutePlannerService(RoutePlannerVisibilityService):
+    """The planner of older configurations: the same routes, and nothing to set."""
+
+    name = "RoutePlannerService"
+
+
 def answered(asked: Envelope, plans: list[Any]) -> Any:
     """The RoutePlanResponse to a request, for the service that has asked, as the original has it."""
-    body = asked.body
-    answer = lmcp.new(
+    return back(asked, _answer(asked.body, plans))
+
+
+def _answer(request: Any, plans: list[Any]) -> Any:
+    return lmcp.new(
         "RoutePlanResponse",
-        ResponseID=body.RequestID,
-        AssociatedTaskID=body.AssociatedTaskID,
-        VehicleID=body.VehicleID,
-        OperatingRegion=body.OperatingRegion,
+        ResponseID=request.RequestID,
+        AssociatedTaskID=request.AssociatedTaskID,
+        VehicleID=request.VehicleID,
+        OperatingRegion=request.OperatingRegion,
         RouteResponses=plans,
     )
-    return back(asked, answer)
+
+
+def straight_costs(contexts: Contexts, request: Any) -> Any:
+    """The RoutePlanResponse whose costs are those of straight lines, whatever lies between."""
+    try:
+        places, ways = _ways(contexts, request, request.RouteRequests)
+        speed = places.mission.vehicle(request.VehicleID).speed_m_s
+    except CratousError as error:
+        plans = [refused(c.RouteID, reasons_of(error)) for c in request.RouteRequests]
+        return _answer(request, plans)
+    plans = [
+        lmcp.new(
+            "RoutePlan",
+            RouteID=constraint.RouteID,
+            RouteCost=flight_ms(dist(way.start[:2], way.end[:2]), speed),
+        )
+        for constraint, way in zip(request.RouteRequests, ways, strict=True)
+    ]
+    return _answer(request, plans)
 
 
 def back(asked: Envelope, answer: Any) -> Any:

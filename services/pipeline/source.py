@@ -6,6 +6,7 @@ everything else goes by messages.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Protocol
 
 from cratous.services.bus import Envelope
@@ -46,6 +47,9 @@ class Source(Protocol):
 
     def inputs(self, request: Any, where: str) -> Inputs:
         """What a UniqueAutomationRequest means; BadInput or NoPlan if it means nothing."""
+
+    def conditions(self, request_id: int, pairs: Sequence[Any]) -> None:
+        """SpeedAltPairs under which a request is planned that a validator is about to publish."""
 
     def surroundings(self, vehicle: int, region: int) -> RequestPlaces:
         """The frame and zones of a region for one vehicle. BadInput if something is unknown."""

@@ -238,6 +238,8 @@ class AutomationRequestValidatorService:
             PlanningStates=asked.states,
         )
         where = f"{type(asked.body).__name__} (message {asked.seq})"
+        pairs = getattr(asked.body, "OverridePlanningConditions", ())
+        self._contexts.source.conditions(number, pairs)
         context = self._contexts.open(unique, where)
         if not isinstance(context, Context):
             # valid, but planning will fail: those who plan say why

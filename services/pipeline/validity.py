@@ -81,7 +81,7 @@ def things_of(
         known = world.has("task", number) and not lacks and not nobody
         made.append(Thing(TASK, known, number in initialised, False, number, lacks, nobody))
     number = request.OperatingRegion
-    if number:
+    if number:  # region 0 is of whatever zones there are, and need not be known
         region = world.get("region", number)
         made.append(Thing(REGION, region is not None, True, False, number))
         if region is not None:

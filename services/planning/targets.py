@@ -38,14 +38,16 @@ def flown_view(task: Task, made_for: Angles, cameras: Sequence[Camera]) -> View 
     return _nearest(made_for.elevation_rad, made_for.azimuth_rad, brought)
 
 
-def _nearest(elevation_rad: float, azimuth_rad: float, views: Iterable[View | None]) -> View:
-    return min(
-        (view for view in views if view is not None),
-        key=lambda v: (
-            abs(v.elevation_rad - elevation_rad)
-            + abs(math.remainder(v.azimuth_rad - azimuth_rad, 2 * math.pi))
-        ),
-    )
+def _nearest(elevation_rad: float, azimuth_rad: float, views: Iterable[View | None]) -> View | None:
+    """The view with these angles; no view at all is one straight down."""
+
+    def off(view: View | None) -> float:
+        if view is None:
+            return abs(elevation_rad + math.pi / 2)
+        turn = math.remainder(view.azimuth_rad - azimuth_rad, 2 * math.pi)
+        return abs(view.elevation_rad - elevation_rad) + abs(turn)
+
+    return min(views, key=off)
 
 
 def target_from(

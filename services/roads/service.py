@@ -8,7 +8,9 @@ against them by proved kernels before it is driven. Its map does not change, so 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import time
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from typing import Any
 
 from cratous.bridge import lmcp
@@ -25,6 +27,7 @@ from cratous.services.pipeline.places import RequestPlaces
 from cratous.services.pipeline.planner import answered, back, refused
 from cratous.services.pipeline.status import status
 from cratous.services.planning.flyers import flight_ms
+from cratous.services.roads.files import RoadFiles
 from cratous.services.roads.network import (
     OFF_ROAD_MOST_M,
     SAME_M,
@@ -51,9 +54,16 @@ class OsmPlannerService:
     subscribes: tuple[str, ...] = (ROUTES, "GroundPathPlanner", EGRESS, POINTS)
     knows = ("EntityConfiguration",)
 
-    def __init__(self, contexts: Contexts, network: Network | None, lacks: str = "") -> None:
-        """network: of its map; None: it has none, and lacks says why."""
+    def __init__(
+        self,
+        contexts: Contexts,
+        network: Network | None,
+        lacks: str = "",
+        files: RoadFiles | None = None,
+    ) -> None:
+        """network: of its map; None: it has none, and lacks says why; files: where ways are written to."""
         self._contexts, self._network, self._lacks = contexts, network, lacks
+        self._files = files
 
     def start(self) -> None:
         return None
@@ -114,7 +124,7 @@ class OsmPlannerService:
         for one in body.RoadPointsRequests:
             try:
                 ends = self._feet(one.StartLocation, one.EndLocation)
-                points = _way(self._roads, *ends)
+                points = self._timed(partial(_way, self._roads, *ends))
             except CratousError as error:
                 out.append(
                     _warning(f"RoadPointsConstraints {one.RoadPointsID}", body.RequestID, error)
@@ -144,7 +154,9 @@ class OsmPlannerService:
 
     def _plan(self, body: Any, one: Any, places: RequestPlaces, driven: _Driven) -> Any:
         try:
-            way, path = driven.way(*self._feet(one.StartLocation, one.EndLocation))
+            feet = self._feet(one.StartLocation, one.EndLocation)
+            path: list[Position] = []
+            way = self._timed(partial(driven.way, *feet, path))
         except CratousError as error:
             return refused(one.RouteID, reasons_of(error))
         speed = places.mission.vehicle(body.VehicleID).speed_m_s
@@ -152,6 +164,14 @@ class OsmPlannerService:
         if not body.IsCostOnlyRequest:
             plan.Waypoints = places.waypoints(path, 1, speed, ())
         return plan
+
+    def _timed(self, search: Callable[[], tuple[Vec2, ...]]) -> tuple[Vec2, ...]:
+        """What a search finds, written down if files are wanted."""
+        began_s = time.perf_counter()
+        way = search()
+        if self._files is not None:
+            self._files.way(self._roads, way, time.perf_counter() - began_s)
+        return way
 
     def _feet(self, start: Any, end: Any) -> tuple[Foot, Foot]:
         return self._foot(start, "StartLocation"), self._foot(end, "EndLocation")
@@ -185,16 +205,16 @@ class _Driven:
         self._roads, self._places = roads, places
         self._clear: dict[tuple[Vec2, Vec2], bool] = {}
 
-    def way(self, start: Foot, end: Foot) -> tuple[tuple[Vec2, ...], tuple[Position, ...]]:
-        """From place to place along roads, in the map's plane and in the request's; NoPlan if there is none."""
+    def way(self, start: Foot, end: Foot, path: list[Position]) -> tuple[Vec2, ...]:
+        """From place to place along roads in the map's plane; `path` gets it in the request's. NoPlan if there is none."""
         zones = self._places.zones
         points = _way(self._roads, start, end, self._may if zones else None)
         points = _thinned((start.place, *points, end.place))
-        path = self._positions(points)
+        path += self._positions(points)
         bad = first_bad_leg(path, zones)
         if bad is not None:
             raise NoPlan((f"its way to the road, or from it, breaks {name_of(bad[1])}",))
-        return points, path
+        return points
 
     def _may(self, p: Vec2, q: Vec2) -> bool:
         """Whether a leg keeps the zones."""

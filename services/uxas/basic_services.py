@@ -98,6 +98,14 @@ def send_messages(host: Host, entry: Entry, values: dict[str, Any], name: str) -
     return SendMessagesService(name, tuple(planned))
 
 
+def data_of(host: Host, entry: Entry) -> Path:
+    """Where the services of a process write; BadInput if it has no such folder."""
+    folder: Path | None = host.shared.get("data")
+    if folder is None:
+        raise BadInput("no folder to write to", where=entry.where, item=entry.type)
+    return folder
+
+
 def looked_for(host: Host, name: str, where: str, folder: str = ".") -> tuple[Path | None, str]:
     """Where a file is that a configuration names, None: nowhere; and in words where it was looked for.
 

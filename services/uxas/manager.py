@@ -39,7 +39,7 @@ from cratous.services.pipeline.followed import (
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import TASKS, TaskService
 from cratous.services.pipeline.world import World
-from cratous.services.uxas import bridge_kinds, not_covered, registry, user_services
+from cratous.services.uxas import bridge_kinds, registry, user_services
 from cratous.services.uxas.bridge_entry import Given
 from cratous.services.uxas.bridges import CREATE, KILL, Bridge
 from cratous.services.uxas.frame import Host
@@ -361,21 +361,13 @@ def _whole(text: str) -> bool:
 
 
 def _nobody_has(kind: str) -> bool:
-    """True for a service of UxAS that is not covered, and for a name that resembles no known one."""
+    """True for a name that resembles no known one."""
     known = [*registry.KINDS, *TASKS, *FOLLOWED, *bridge_kinds.BRIDGES]
     slip = get_close_matches(kind, known, 1, SLIP) or ":" in kind
-    return user_services.kind_of(kind) is None and (kind in not_covered.SERVICES or not slip)
+    return user_services.kind_of(kind) is None and not slip
 
 
 def _unknown(item: Entry, known: Any) -> BadInput:
-    if item.type in not_covered.SERVICES:  # and not in KINDS
-        return BadInput(
-            f"{item.type} of UxAS is not covered yet",
-            where=item.where,
-            item=f"{item.kind}.Type",
-            expected=f"a configuration without it, or --without {item.type} to leave it out",
-            got=item.type,
-        )
     return BadInput(
         f"unknown {item.kind.lower()} type",
         where=item.where,

@@ -6,11 +6,17 @@ the world as it is when the request comes.
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import Any
 
 from cratous.bridge import lmcp
+from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.core.routing.dubins import pose_after
+from cratous.core.routing.visibility import start_point
 from cratous.services.bus import Envelope
+from cratous.services.loading.conditions import wider
+from cratous.services.loading.ground import drives
 from cratous.services.loading.places import Places
 from cratous.services.loading.uxas import mission_of, surroundings_of
 from cratous.services.loading.uxas_cfg import Configuration, Sent
@@ -46,6 +52,7 @@ class MessageSource:
         self._spoken: dict[int, None] = {}  # tasks whose services have said that they are there
         self._frame: Frame | None = None  # of the newest request
         self._overridden: dict[int, Any] = {}  # requests with conditions of their own, unanswered
+        self._told: dict[int, tuple[Any, ...]] = {}  # conditions by RequestID, of a validator here
 
     @property
     def outside(self) -> Outside:
@@ -76,15 +83,12 @@ class MessageSource:
 
     def inputs(self, request: Any, where: str) -> Inputs:
         """A request as a mission; BadInput says what is wrong with it."""
-        # which of two equal requests it is cannot be told: neither is planned as the other
-        if any(body == request.OriginalRequest for body in self._overridden.values()):
-            raise BadInput(
-                "OverridePlanningConditions are not covered",
-                where=where,
-                item="ImpactAutomationRequest",
-                expected="speeds and altitudes in the configurations",
-            )
-        cfg = self._configuration(Sent(request.OriginalRequest, where, 0))
+        asked = request.OriginalRequest
+        pairs = self._conditions(request, where)
+        if pairs:
+            wrapped = {"TrialRequest": asked, "OverridePlanningConditions": list(pairs)}
+            asked = lmcp.new("ImpactAutomationRequest", **wrapped)
+        cfg = self._configuration(Sent(asked, where, 0))
         mission = mission_of(cfg, str(self._host.config), self._spoken, self._frame)
         self._frame = mission.frame
         for note in mission.notes:
@@ -97,7 +101,42 @@ class MessageSource:
             for k, state in enumerate(request.PlanningStates)
         }
         poses = stages.start_poses(mission, given)
-        return Inputs(mission, {vehicle.id: poses[vehicle.id] for vehicle in mission.vehicles})
+        starts = {vehicle.id: poses[vehicle.id] for vehicle in mission.vehicles}
+        return self._led(Inputs(mission, starts), given)
+
+    def _conditions(self, request: Any, where: str) -> Sequence[Any]:
+        """The OverridePlanningConditions of a request, as the validator of this process has said; BadInput where it
+        is in another one, and the request equals one with conditions: which of the two it is cannot be told."""
+        if request.RequestID in self._told:
+            return self._told[request.RequestID]
+        if any(body == request.OriginalRequest for body in self._overridden.values()):
+            raise BadInput(
+                "OverridePlanningConditions are not covered where the validator is in another process",
+                where=where,
+                item="ImpactAutomationRequest",
+                expected="speeds and altitudes in the configurations",
+            )
+        return ()
+
+    def _led(self, inputs: Inputs, given: Collection[int]) -> Inputs:
+        """With each vehicle as far ahead of where it is as the plan builder says, where zones let it fly there."""
+        lead_m = self._host.shared.get("lead_m", 0.0)
+        if not lead_m:
+            return inputs
+        starts = dict(inputs.starts)
+        for number, pose in inputs.starts.items():
+            ahead = pose_after(pose, 0, lead_m, 1.0)
+            free = first_bad_leg((start_point(pose), start_point(ahead)), inputs.zones) is None
+            if number not in given and not drives(inputs.mission.vehicle(number)) and free:
+                starts[number] = ahead
+        return Inputs(inputs.mission, starts)
+
+    def conditions(self, request_id: int, pairs: Sequence[Any]) -> None:
+        """The validator says under which conditions a request is planned that it is about to publish."""
+        self._told.pop(request_id, None)
+        self._told[request_id] = tuple(pairs)
+        if len(self._told) > MOST_OVERRIDDEN:
+            self._told.pop(next(iter(self._told)))
 
     def foreseen(self) -> Inputs | None:
         """What a request would mean that names every aircraft, the newest tasks of ours and the newest region.
@@ -121,11 +160,11 @@ class MessageSource:
         cfg = self._configuration(Sent(body, "what may be asked for", 0))
         try:
             mission = mission_of(cfg, str(self._host.config), self._spoken, self._frame)
-            poses = stages.start_poses(mission)
+            inputs = self._led(Inputs(mission, stages.start_poses(mission)), ())
         except CratousError:  # whoever asks for it will be told
             return None
         self._frame = mission.frame
-        return Inputs(mission, poses)
+        return inputs
 
     def surroundings(self, vehicle: int, region: int) -> RequestPlaces:
         """The frame and zones of a region for one vehicle. BadInput if something is unknown."""
@@ -148,4 +187,6 @@ class MessageSource:
     def _configuration(self, sent: Sent) -> Configuration:
         root = {k: str(v) for k, v in self._host.root.items() if v}
         services = self._host.shared.get("services", ())
-        return self.world.configuration(self._host.config, root, services, sent)
+        cfg = self.world.configuration(self._host.config, root, services, sent)
+        wider_m = self._host.shared.get("turn_offset_m", 0.0)
+        return wider(cfg, wider_m) if wider_m else cfg

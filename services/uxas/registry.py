@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 from cratous.bridge.text_protocol.handshake import secret_of_environment
@@ -35,6 +34,8 @@ from cratous.services.uxas import (
     leash,
     regions,
     roads,
+    serial_requests,
+    steering,
     tracker,
     waypoints,
 )
@@ -42,7 +43,6 @@ from cratous.services.uxas.daidalus import detection, response
 from cratous.services.uxas.daidalus import parameters as daidalus
 from cratous.services.uxas.frame import Host
 from cratous.services.uxas.message_source import MessageSource
-from cratous.spec.errors import BadInput
 
 Make = Callable[["Host", Entry, dict[str, Any], str, int], Any]
 
@@ -91,6 +91,7 @@ def _validator(host: Host, entry: Entry, v: dict[str, Any], name: str, number: i
 
 def _planner(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
     host.shared["separation_m"] = v["MinimumWaypointSeparation_m"]
+    host.shared["turn_offset_m"] = v["TurnRadiusOffset_m"]
     _by_icarous(host, entry, "UseThisPlanner", not v["UseThisPlanner"])
     return planner.RoutePlannerVisibilityService(contexts_of(host), v["UseThisPlanner"])
 
@@ -108,7 +109,7 @@ def _by_icarous(host: Host, entry: Entry, name: str, wanted: bool) -> None:
 def _aggregator(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
     _by_icarous(host, entry, "UseICAROUSRoutePlanner", v["UseICAROUSRoutePlanner"])
     group = GROUP if v["UseICAROUSRoutePlanner"] else ""
-    return aggregator.RouteAggregatorService(contexts_of(host), group)
+    return aggregator.RouteAggregatorService(contexts_of(host), group, v["FastPlan"])
 
 
 def _assignment(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
@@ -116,7 +117,7 @@ def _assignment(host: Host, entry: Entry, v: dict[str, Any], name: str, number: 
 
 
 def _roads(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    return roads.made(host, entry, contexts_of(host), v["OsmFile"])
+    return roads.made(host, entry, contexts_of(host), v)
 
 
 def _loiter(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
@@ -124,6 +125,7 @@ def _loiter(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int)
 
 
 def _builder(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    host.shared["lead_m"] = v["AssignmentStartPointLead_m"]
     loiter_m = v["DefaultLoiterRadius_m"] if v["AddLoiterToEndOfMission"] else 0.0
     options = builder.Options(v["TurnType"], loiter_m)
     return builder.PlanBuilderService(contexts_of(host), options)
@@ -153,20 +155,13 @@ def _report(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int)
     )
 
 
-def _data(host: Host, entry: Entry) -> Path:
-    folder: Path | None = host.shared.get("data")
-    if folder is None:
-        raise BadInput("no folder to write to", where=entry.where, item=entry.type)
-    return folder
-
-
 def _diagram(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    world, folder = source_of(host).world, _data(host, entry)
+    world, folder = source_of(host).world, basic_services.data_of(host, entry)
     return diagram.AutomationDiagramDataService(name, world, folder, host.entity_id)
 
 
 def _logger(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    folder = _data(host, entry)
+    folder = basic_services.data_of(host, entry)
     (folder / "SavedMessages").mkdir(parents=True, exist_ok=True)
     return MessageLogger.from_parts(
         entry.attributes, entry.children, folder / "SavedMessages", entry.where, name=name
@@ -195,6 +190,7 @@ def _waypoints(host: Host, entry: Entry, v: dict[str, Any], name: str, number: i
         v["LoopBackToFirstTask"],
         v["SetLastWaypointSpeedTo0"],
         v["TurnType"],
+        v["GimbalPayloadId"],
     )
     return waypoints.WaypointPlanManagerService(name, _vehicle(host, v), serving)
 
@@ -211,7 +207,7 @@ def _sensors(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int
 
 
 def _region(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    return regions.OperatingRegionStateService(host.entity_id or 1)
+    return regions.OperatingRegionStateService(v["AdditionalPadding"])
 
 
 def _leash(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
@@ -248,15 +244,25 @@ def _tracker(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int
     return tracker.TaskTrackerService(name, host.log)
 
 
+def _serial(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return serial_requests.SerialAutomationRequestTestService(name, v["MaxResponseTime_ms"])
+
+
+def _routes(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return planner.RoutePlannerService(contexts_of(host))
+
+
+def _steering(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return steering.SteeringService(name, _vehicle(host, v), steering.steering_of(v))
+
+
 def _pipeline_kind(
     make: Make, attributes: Mapping[str, Attr], ignored: Mapping[str, str] | None = None
 ) -> Kind:
     return Kind(attributes, make, (), True, True, ignored or {})
 
 
-_NOT_USED = "it is accepted and not used: routes and plans follow the mission and the vehicle"
-
-_DRAWN = ("MapEdgesFile", "ShortestPathFile", "MetricsFile")
+_NOT_USED = "it is accepted and not used, as in UxAS, which reads it and does nothing with it"
 
 KINDS: dict[str, Kind] = {
     VALIDATOR: Kind({"MaxResponseTime_ms": whole(5000, 1)}, _validator, single=True, plans=True),
@@ -265,31 +271,21 @@ KINDS: dict[str, Kind] = {
         _planner,
         {
             "UseThisPlanner": flag(True),
-            "TurnRadiusOffset_m": number(0.0),
+            "TurnRadiusOffset_m": number(0.0, 0.0, 10_000.0),
             "MinimumWaypointSeparation_m": number(50.0),
             "isRoutAggregator": flag(False),
             "OsmFileName": Attr(),
         },
-        ignored=dict.fromkeys(
-            (
-                "TurnRadiusOffset_m",
-                "isRoutAggregator",
-                "OsmFileName",
-            ),
-            _NOT_USED,
-        ),
+        ignored=dict.fromkeys(("isRoutAggregator", "OsmFileName"), _NOT_USED),
     ),
+    "RoutePlannerService": _pipeline_kind(_routes, {}),
     "OsmPlannerService": _pipeline_kind(
         _roads,
-        dict.fromkeys(("OsmFile", *_DRAWN), Attr()),
-        ignored=dict.fromkeys(
-            _DRAWN, "it is accepted and not used: no file of a search is written"
-        ),
+        dict.fromkeys(("OsmFile", *roads.WRITTEN), Attr()),
     ),
     "RouteAggregatorService": _pipeline_kind(
         _aggregator,
         {"FastPlan": flag(False), "UseICAROUSRoutePlanner": flag(False)},
-        ignored={"FastPlan": _NOT_USED},
     ),
     "AssignmentTreeBranchBoundService": _pipeline_kind(
         _assignment,
@@ -304,12 +300,11 @@ KINDS: dict[str, Kind] = {
     "PlanBuilderService": _pipeline_kind(
         _builder,
         {
-            "AssignmentStartPointLead_m": number(50.0),
+            "AssignmentStartPointLead_m": number(0.0, 0.0, 10_000.0),
             "AddLoiterToEndOfMission": flag(False),
             "DefaultLoiterRadius_m": number(300.0),
             "TurnType": choice("TurnShort", "TurnShort", "FlyOver"),
         },
-        ignored={"AssignmentStartPointLead_m": _NOT_USED},
     ),
     "WaypointPlanManagerService": Kind(
         {
@@ -328,7 +323,6 @@ KINDS: dict[str, Kind] = {
         _waypoints,
         plans=True,
         ignored={
-            "GimbalPayloadId": "it is accepted and not used: plans point the gimbal themselves",
             "param.turnType": "it is accepted and not used, as in UxAS, which reads TurnType",
         },
     ),
@@ -337,10 +331,7 @@ KINDS: dict[str, Kind] = {
         {"ElevationAngles": choice("degree", "degree", "radian")}, _sensors, single=True
     ),
     "OperatingRegionStateService": Kind(
-        {"AdditionalPadding": number(0.0)},
-        _region,
-        single=True,
-        ignored={"AdditionalPadding": "it is accepted and not used: zones bring their own padding"},
+        {"AdditionalPadding": number(0.0, 0.0, 1e6)}, _region, single=True
     ),
     "LoiterLeash": Kind(
         {"VehicleID": whole(-1, -1), "LeadDistance": number(None), "RadiusBuffer": number(0.0)},
@@ -350,6 +341,7 @@ KINDS: dict[str, Kind] = {
     "BatchSummaryService": Kind(
         {"FastPlan": flag(False)}, _batch, single=True, plans=True, ignored={"FastPlan": _NOT_USED}
     ),
+    "SteeringService": Kind(steering.ATTRIBUTES, _steering),
     "TaskTrackerService": Kind({}, _tracker),
     "IcarousCommunicationService": Kind(
         icarous_settings.ATTRIBUTES, _icarous, single=True, plans=True
@@ -368,6 +360,7 @@ KINDS: dict[str, Kind] = {
         _response,
         plans=True,
     ),
+    "SerialAutomationRequestTestService": Kind({"MaxResponseTime_ms": whole(300, 1)}, _serial),
     "SendMessagesService": Kind({"PathToMessageFiles": Attr()}, _messages, ("Message",)),
     "AutomationDiagramDataService": Kind({}, _diagram, single=True),
     "MessageLoggerDataService": Kind(

@@ -16,7 +16,17 @@ from cratous.services.pipeline import (
 )
 from cratous.services.pipeline.validator import AutomationRequestValidatorService
 from cratous.services.roads.service import ROADS, OsmPlannerService
-from cratous.services.uxas import basic_services, batch, diagram, leash, regions, tracker, waypoints
+from cratous.services.uxas import (
+    basic_services,
+    batch,
+    diagram,
+    leash,
+    regions,
+    serial_requests,
+    steering,
+    tracker,
+    waypoints,
+)
 from cratous.services.uxas.daidalus import detection, response
 from cratous.services.uxas.registry import VALIDATOR
 
@@ -38,6 +48,7 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
     "RoutePlannerVisibilityService": (
         planner.RoutePlannerVisibilityService, ("RoutePlanResponse",)
     ),
+    "RoutePlannerService": (planner.RoutePlannerService, ("RoutePlanResponse",)),
     ROADS: (
         OsmPlannerService,
         ("RoutePlanResponse", "EgressRouteResponse", "RoadPointsResponse", "ServiceStatus"),
@@ -70,6 +81,9 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
     "BatchSummaryService": (
         batch.BatchSummaryService, ("TaskAutomationRequest", "BatchSummaryResponse")
     ),
+    "SteeringService": (
+        steering.SteeringService, ("VehicleActionCommand", "SafeHeadingAction", "AirVehicleState")
+    ),
     "TaskTrackerService": (tracker.TaskTrackerService, ()),
     "IcarousCommunicationService": (
         icarous_communication.IcarousCommunicationService,
@@ -85,6 +99,10 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
         response.DaidalusResponse, ("VehicleActionCommand", "MissionCommand", "ServiceStatus")
     ),
     "AutomationDiagramDataService": (diagram.AutomationDiagramDataService, ("ServiceStatus",)),
+    "SerialAutomationRequestTestService": (
+        serial_requests.SerialAutomationRequestTestService,
+        ("AutomationRequest", "ImpactAutomationRequest"),
+    ),
     "SendMessagesService": (basic_services.SendMessagesService, ()),
     "MessageLoggerDataService": (MessageLogger, ()),
     "Test_SimulationTime": (basic_services.SimulationTime, ()),

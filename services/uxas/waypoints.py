@@ -20,6 +20,8 @@ STATES = (
     "afrl.vehicles.GroundVehicleState",
     "afrl.vehicles.SurfaceVehicleState",
 )
+AHEAD_DEG = -60.0
+"""Where a gimbal looks when a mission has ended, above the horizon [deg]."""
 FAR = 2**60
 """The last position of a path without end."""
 
@@ -27,7 +29,8 @@ FAR = 2**60
 class Serving(NamedTuple):
     """How a path is served; to_serve, overlap: waypoints in a segment, and in common with the next.
 
-    radius_m: of loiters at the end of the mission, or of each segment; turn_type: of all waypoints.
+    radius_m: of loiters at the end of the mission, or of each segment; turn_type: of all waypoints; gimbal: payload
+    that looks ahead and down at the end of the mission, below 1: none.
     """
 
     to_serve: int = 100_000
@@ -38,6 +41,7 @@ class Serving(NamedTuple):
     back_to_first_task: bool = False
     stop_at_end: bool = False
     turn_type: str = "TurnShort"
+    gimbal: int = -1
 
 
 class Path(NamedTuple):
@@ -95,6 +99,9 @@ def path_of(command: Any, serving: Serving) -> Path:
             last = last.copy(Speed=0.0)
         if serving.loiter_mission:
             last = _loitering(last, serving.radius_m)
+        if serving.gimbal > 0:
+            ahead = lmcp.new("GimbalAngleAction", PayloadID=serving.gimbal, Elevation=AHEAD_DEG)
+            last = last.copy(VehicleActionList=[*last.VehicleActionList, ahead])
         points[-1] = last
     return Path(command, tuple(points), back_to)
 

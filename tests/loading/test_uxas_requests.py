@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from pathlib import Path
 
@@ -99,3 +100,36 @@ def test_a_mission_file_is_one_request(tmp_path: Path) -> None:
     assert count_requests(path) == 1
     with pytest.raises(BadInput, match="a mission file is one request"):
         load(path, request=2)
+
+
+@shipped
+def test_a_request_in_a_file_is_planned_at_its_own_speed_and_altitude(tmp_path: Path) -> None:
+    folder = tmp_path / "folder"
+    shutil.copytree(TEMPLATE, folder, copy_function=shutil.copyfile)
+    for path in [folder, *folder.rglob("*")]:
+        path.chmod(0o755)
+    file = folder / "MessagesToSend" / "AutomationRequest_a.xml"
+    text = re.sub(
+        r"<OperatingRegion>\s*</", "<OperatingRegion>0</", file.read_text(encoding="utf-8")
+    )
+    (sent,) = lmcp.xml.loads(text.replace("<OperatingRegion/>", ""))
+    plain = load(TEMPLATE).vehicles[0]
+    pair = lmcp.new(
+        "SpeedAltPair",
+        VehicleID=plain.id,
+        Speed=plain.speed_m_s + 1,
+        Altitude=777.0,
+        AltitudeType="MSL",
+    )
+    asked = lmcp.new(
+        "ImpactAutomationRequest", TrialRequest=sent, OverridePlanningConditions=[pair]
+    )
+    file.write_text(lmcp.xml.dumps(asked), encoding="utf-8")
+    mission = load(folder)
+    first = mission.vehicle(plain.id)
+    assert (first.speed_m_s, first.cruise_alt_m) == (plain.speed_m_s + 1, 777.0)
+    assert any("OverridePlanningConditions" in note for note in mission.notes)
+    pair.TaskID = sent.TaskList[0]
+    file.write_text(lmcp.xml.dumps(asked), encoding="utf-8")
+    with pytest.raises(BadInput, match="some tasks at another speed"):
+        load(folder)

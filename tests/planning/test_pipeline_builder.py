@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from pipeline_messages import ended, implementation, unique
-from pipeline_tools import Rig, place, vehicle
+from pipeline_tools import Rig, must_fly, place, request, vehicle
 
 from cratous.bridge import lmcp
 
@@ -119,3 +119,21 @@ def test_the_end_is_loitered_at_and_turns_are_flown_over_if_asked(tmp_path: Path
     assert [len(w.VehicleActionList) for w in command.WaypointList] == [0, 0, 1]
     loiter_action = command.WaypointList[-1].VehicleActionList[0]
     assert (loiter_action.Radius, loiter_action.Duration) == (250.0, -1)
+
+
+@pytest.mark.shows(BUILDER, "AssignmentStartPointLead_m")
+def test_a_plan_may_begin_ahead_of_where_a_vehicle_is_unless_a_zone_lies_there(
+    tmp_path: Path,
+) -> None:
+    box = lmcp.new("Rectangle", CenterPoint=place(0.002), Width=60.0, Height=60.0)
+    zone = lmcp.new("KeepOutZone", ZoneID=8, MaxAltitude=9000.0, Boundary=box)
+    rig = Rig(tmp_path, **{BUILDER: 'AssignmentStartPointLead_m="400"'})
+    rig.tell(*vehicle(1), zone, lmcp.new("OperatingRegion", ID=3, KeepOutAreas=[8]), must_fly(5))
+    for region in (0, 3):
+        rig.tell(request(5, OperatingRegion=region))
+    free, bound = (u.PlanningStates[0].PlanningPosition for u in rig.got("UniqueAutomationRequest"))
+    assert free.Latitude == pytest.approx(400 / 110_574, rel=1e-3)
+    assert bound.Latitude == pytest.approx(0.0, abs=1e-9)
+    first = rig.got("AutomationResponse")[0].MissionCommandList[0].WaypointList[0]
+    assert first.Latitude == pytest.approx(free.Latitude, abs=1e-7)
+    assert all(r.MissionCommandList for r in rig.got("AutomationResponse"))

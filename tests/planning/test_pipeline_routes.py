@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 from pipeline_messages import ended, option, options, planned, unique
-from pipeline_tools import Rig, alone, place, vehicle
+from pipeline_tools import Rig, alone, must_fly, place, vehicle
 
 from cratous.bridge import lmcp
+from cratous.spec.errors import BadInput
 
 AGGREGATOR, PLANNER = "RouteAggregatorService", "RoutePlannerVisibilityService"
 
@@ -148,3 +149,94 @@ def test_any_route_of_a_known_vehicle_is_answered_and_keeps_out_of_zones(tmp_pat
     turned, free_heading = rig.got("RoutePlanResponse")[-1].RouteResponses
     assert turned.RouteCost > free_heading.RouteCost + 1000
     assert free_heading.RouteCost == pytest.approx(straight_ms, abs=2)
+
+
+@pytest.mark.shows("RoutePlannerService", "RoutePlanRequest", "RoutePlanResponse", "AircraftPathPlanner", "OwnRoutePlanner",
+    "EntityConfiguration", "EntityState", "KeepInZone", "KeepOutZone", "OperatingRegion",
+)  # fmt: skip
+def test_the_planner_of_older_configurations_answers_alike(tmp_path: Path) -> None:
+    answers = []
+    for name in (PLANNER, "RoutePlannerService"):
+        (tmp_path / name).mkdir()
+        rig = Rig(tmp_path / name, name)
+        box = lmcp.new("Rectangle", CenterPoint=place(0.02), Width=800.0, Height=800.0)
+        inside = lmcp.new("Rectangle", CenterPoint=place(0.02), Width=9000.0, Height=9000.0)
+        rig.tell(
+            *vehicle(1),
+            lmcp.new("KeepOutZone", ZoneID=8, MaxAltitude=9000.0, Boundary=box),
+            lmcp.new("KeepInZone", ZoneID=9, MaxAltitude=9000.0, Boundary=inside),
+            lmcp.new("OperatingRegion", ID=3, KeepOutAreas=[8], KeepInAreas=[9]),
+        )
+        way = lmcp.new(
+            "RouteConstraints", RouteID=4, StartLocation=place(0), EndLocation=place(0.04)
+        )
+        asked = lmcp.new("RoutePlanRequest", RequestID=9, VehicleID=1, OperatingRegion=3)
+        asked = asked.copy(RouteRequests=[way], IsCostOnlyRequest=False)
+        rig.tell(asked)
+        rig.bus.publish(asked.copy(RequestID=10), "test", address="AircraftPathPlanner")
+        rig.bus.run()
+        rig.tell(lmcp.new("OwnRoutePlanner", Plans=False), asked.copy(RequestID=11))
+        found = rig.got("RoutePlanResponse")
+        assert [one.ResponseID for one in found] == [9, 10], "another one plans by then"
+        answers.append([one.RouteResponses for one in found])
+    assert answers[0] == answers[1]
+
+
+@pytest.mark.shows(PLANNER, "TurnRadiusOffset_m")
+def test_turns_may_be_planned_wider(tmp_path: Path) -> None:
+    costs = []
+    for offset in ("0", "100"):
+        (tmp_path / offset).mkdir()
+        rig = Rig(tmp_path / offset, PLANNER, **{PLANNER: f'TurnRadiusOffset_m="{offset}"'})
+        way = lmcp.new(
+            "RouteConstraints", RouteID=4, StartLocation=place(0), EndLocation=place(0.02),
+            StartHeading=180.0, UseStartHeading=True,
+        )  # fmt: skip
+        rig.tell(*vehicle(1))
+        rig.tell(lmcp.new("RoutePlanRequest", RequestID=9, VehicleID=1, RouteRequests=[way]))
+        costs.append(rig.got("RoutePlanResponse")[0].RouteResponses[0].RouteCost)
+    # about half a circle of a radius that is 110 m wider, less what that brings it nearer
+    assert 8_000 < costs[1] - costs[0] < 1000 * 3.1416 * 110 / 20 + 2000
+    with pytest.raises(BadInput, match="TurnRadiusOffset_m"):
+        Rig(tmp_path, PLANNER, **{PLANNER: 'TurnRadiusOffset_m="-5"'})
+
+
+@pytest.mark.shows(AGGREGATOR, "FastPlan", "RouteRequest", "RouteResponse")
+def test_what_drives_may_cost_what_a_straight_line_costs(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, AGGREGATOR, **{AGGREGATOR: 'FastPlan="TRUE"'})
+    profile = {"NominalSpeed": 10.0, "MaximumSpeed": 20.0}
+    rig.tell(
+        *vehicle(1),
+        lmcp.new("GroundVehicleConfiguration", ID=3, **profile),
+        lmcp.new("GroundVehicleState", ID=3, Location=place(0)),
+    )
+    way = lmcp.new("RouteConstraints", RouteID=4, StartLocation=place(0), EndLocation=place(0.01))
+    asked = lmcp.new("RouteRequest", RequestID=9, VehicleID=[3], RouteRequests=[way])
+    rig.tell(asked.copy(IsCostOnlyRequest=True))
+    assert not rig.got("RoutePlanRequest")
+    (answer,) = rig.got("RouteResponse")
+    cost = answer.Routes[0].RouteResponses[0].RouteCost
+    assert cost == pytest.approx(0.01 * 110_574 / 10 * 1000, rel=1e-3)
+    rig.tell(asked.copy(RequestID=10, VehicleID=[1, 3], IsCostOnlyRequest=True))
+    (flown,) = rig.got("RoutePlanRequest")
+    assert flown.VehicleID == 1, "what flies is planned for as ever"
+    rig.tell(planned(flown, 10))
+    assert [r.VehicleID for r in rig.got("RouteResponse")[1].Routes] == [1, 3]
+    rig.tell(asked.copy(RequestID=11, IsCostOnlyRequest=False))
+    assert rig.got("RoutePlanRequest")[1].VehicleID == 3, "waypoints lead along roads"
+    rig.tell(asked.copy(RequestID=12, VehicleID=[3], OperatingRegion=77, IsCostOnlyRequest=True))
+    assert rig.got("RouteResponse")[2].Routes[0].RouteResponses[0].RouteCost == -1
+
+
+@pytest.mark.shows(AGGREGATOR, "FastPlan", "AssignmentCostMatrix")
+def test_a_matrix_of_what_drives_needs_no_planner(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, AGGREGATOR, **{AGGREGATOR: 'FastPlan="TRUE"'})
+    rig.tell(
+        lmcp.new("GroundVehicleConfiguration", ID=1, NominalSpeed=10.0, MaximumSpeed=20.0),
+        lmcp.new("GroundVehicleState", ID=1, Location=place(0)),
+        must_fly(5),
+        lmcp.new("TaskInitialized", TaskID=5),
+    )
+    rig.tell(unique(3, 5, vehicles=(1,)), options(3, 5, option(5, 1, 1)))
+    (matrix,) = rig.got("AssignmentCostMatrix")
+    assert [row.VehicleID for row in matrix.CostMatrix] == [1]

@@ -220,24 +220,6 @@ def test_a_trial_is_a_sandbox_request_and_gets_its_own_kind_of_response(alone: R
     assert not alone.got("AutomationResponse")
 
 
-def test_conditions_of_a_trial_that_would_not_be_kept_are_answered_by_the_planners(
-    tmp_path: Path,
-) -> None:
-    rig = Rig(tmp_path)
-    pair = lmcp.new("SpeedAltPair", VehicleID=1, Speed=10.0)
-    trial = lmcp.new(
-        "ImpactAutomationRequest",
-        RequestID=70,
-        TrialRequest=request(5),
-        OverridePlanningConditions=[pair],
-    )
-    rig.tell(*vehicle(1), must_fly(5), trial)
-    (response,) = rig.got("ImpactAutomationResponse")
-    assert "OverridePlanningConditions are not covered" in response.TrialResponse.Info[0].Value
-    rig.tell(request(5))  # the same without them
-    assert rig.got("AutomationResponse")[0].MissionCommandList
-
-
 @pytest.mark.shows(NAME, "TaskAutomationRequest", "TaskAutomationResponse")
 def test_a_task_asks_from_states_of_its_own(alone: Rig) -> None:
     start = lmcp.new("Location3D", Latitude=0.5, Longitude=0.25, Altitude=200.0)

@@ -16,7 +16,7 @@ from uxas_tools import write_cfg
 from cratous.bridge import lmcp
 from cratous.core.kernel import Vec2
 from cratous.services.loading.uxas_settings import read
-from cratous.services.roads import osm
+from cratous.services.roads import files, osm
 from cratous.services.roads.network import Network, length_m
 from cratous.services.uxas.logs import Logs
 from cratous.services.uxas.process import Process
@@ -306,3 +306,47 @@ def test_a_map_that_is_missing_is_said_and_one_that_is_none_is_refused(tmp_path:
         Process(read(path, strict=True), Logs("DEBUG", echo=str), virtual=True)
     with pytest.raises(BadInput, match="not a map"):
         driven(tmp_path, ROADS, roads="<gpx/>")
+
+
+@pytest.mark.shows(ROADS, "MapEdgesFile", "ShortestPathFile", "MetricsFile")
+def test_roads_and_ways_are_written_down(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = 'MapEdgesFile="edges.csv" ShortestPathFile="way.csv" MetricsFile="metrics.csv"'
+    osm_file = f'OsmFile="{EXAMPLE / "roads.osm"}"'
+    path = write_cfg(tmp_path, f'<Service Type="{ROADS}" {osm_file} {names}/>')
+    data = tmp_path / "data"
+    one = Process(read(path), Logs("DEBUG", echo=str), data=data, virtual=True)
+    corner = (MIDDLE[0] + 0.006, MIDDLE[1] + 0.0055)
+    points = lmcp.new(
+        "RoadPointsConstraints", RoadPointsID=7, StartLocation=at(*MIDDLE), EndLocation=at(*corner)
+    )
+    for body in (
+        *car(1, *MIDDLE),
+        routes((MIDDLE, corner), IsCostOnlyRequest=False),
+        lmcp.new("RoadPointsRequest", RequestID=2, RoadPointsRequests=[points]),
+    ):
+        one.bus.publish(body, "test")
+    one.bus.run()
+    folder = data / ROADS
+    tables = {
+        p.name: [row.split(",") for row in p.read_text().splitlines()] for p in folder.iterdir()
+    }
+    assert set(tables) == {"edges.csv", "metrics.csv", "way_0001.csv", "way_0002.csv"}
+    assert len(tables["edges.csv"]) == 1 + 2 * 7 * 6
+    way, (head, driven_way, _) = tables["way_0001.csv"], tables["metrics.csv"]
+    length = sum(float(row[4]) for row in way[1:])
+    assert dict(zip(head, driven_way, strict=True))["way_length_m"] == f"{length:.1f}"
+    assert driven_way[:2] == ["49", "84"]
+    assert [float(x) for x in way[1][:2]] == pytest.approx(MIDDLE)
+    assert [float(x) for x in way[-1][2:4]] == pytest.approx(corner)
+    monkeypatch.setattr(files, "FILES_MOST", 2)
+    monkeypatch.setattr(files, "ROWS_MOST", 2)
+    one.bus.publish(routes((MIDDLE, corner)), "test")
+    one.bus.run()
+    assert len(list(folder.iterdir())) == 4
+    for text in ("../edges.csv", "/tmp/edges.csv", "a\\b"):
+        path = write_cfg(tmp_path, f'<Service Type="{ROADS}" {osm_file} MetricsFile="{text}"/>')
+        with pytest.raises(BadInput, match=r"MetricsFile: a file elsewhere"):
+            Process(read(path), Logs("DEBUG", echo=str), data=data, virtual=True)
+    path = write_cfg(tmp_path, f'<Service Type="{ROADS}" {osm_file} MetricsFile="m"/>')
+    with pytest.raises(BadInput, match="no folder to write to"):
+        Process(read(path), Logs("DEBUG", echo=str), virtual=True)

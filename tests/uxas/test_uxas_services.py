@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from pipeline_messages import mission, response
-from pipeline_tools import PIPELINE, Rig, loiter, place, vehicle
+from pipeline_tools import PIPELINE, Rig, loiter, must_fly, place, request, vehicle
 
 from cratous.bridge import lmcp
 
@@ -102,7 +102,46 @@ def test_the_region_is_that_of_all_zones(tmp_path: Path) -> None:
         lmcp.new("RemoveZones", ZoneList=[5, 77]),
     )
     found = [(r.ID, r.KeepInAreas, r.KeepOutAreas) for r in rig.got("OperatingRegion")]
-    assert found == [(100, [3], []), (100, [3], [5]), (100, [3], [4, 5]), (100, [3], [4])]
+    assert found == [(0, [3], []), (0, [3], [5]), (0, [3], [4, 5]), (0, [3], [4])]
+
+
+def test_a_request_without_a_region_keeps_out_of_all_zones_that_are_told(tmp_path: Path) -> None:
+    box = lmcp.new("Rectangle", CenterPoint=place(0.02), Width=800.0, Height=800.0)
+    zone = lmcp.new("KeepOutZone", ZoneID=8, MaxAltitude=9000.0, Boundary=box)
+    farthest = []
+    for names in (PIPELINE, (*PIPELINE, REGION)):
+        (tmp_path / str(len(names))).mkdir()
+        rig = Rig(tmp_path / str(len(names)), *names)
+        rig.tell(*vehicle(1), zone, must_fly(5, 0.04), request(5))
+        (command,) = rig.got("AutomationResponse")[0].MissionCommandList
+        farthest.append(max(abs(w.Longitude) for w in command.WaypointList))
+    assert farthest[0] < 0.001
+    assert farthest[1] > 400 / 111_320
+    rig.tell(lmcp.new("RemoveZones", ZoneList=[8]), request(5))
+    (command,) = rig.got("AutomationResponse")[1].MissionCommandList
+    assert max(abs(w.Longitude) for w in command.WaypointList) < 0.001
+
+
+def test_a_zone_that_begins_and_ends_at_minus_one_is_taken_out(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, REGION)
+    gone = lmcp.new("KeepOutZone", ZoneID=4, StartTime=-1, EndTime=-1)
+    rig.tell(gone, lmcp.new("KeepOutZone", ZoneID=4), gone, lmcp.new("KeepOutZone", ZoneID=4))
+    assert [r.KeepOutAreas for r in rig.got("OperatingRegion")] == [[4], [], [4]]
+
+
+@pytest.mark.shows(REGION, "AdditionalPadding", "KeepInZone", "KeepOutZone")
+def test_zones_are_padded_by_more_and_each_once(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, REGION, **{REGION: 'AdditionalPadding="25"'})
+    zone = lmcp.new("KeepOutZone", ZoneID=4, Padding=10.0, Label="a")
+    rig.tell(zone, lmcp.new("KeepInZone", ZoneID=5), zone)  # a zone may be told again, as it was
+    padded = [z.Padding for z in rig.got("KeepOutZone") if z.Padding != 10.0]
+    assert padded == [35.0, 35.0]
+    assert [z.Padding for z in rig.got("KeepInZone")] == [0.0, 25.0]
+    rig.tell(zone.copy(Padding=60.0))  # as another service of this kind pads it
+    assert rig.got("KeepOutZone")[-1].Padding == 60.0
+    rig.tell(zone.copy(Label="b"))  # another zone of this id
+    assert [(z.Label, z.Padding) for z in rig.got("KeepOutZone")][-2:] == [("b", 10.0), ("b", 35.0)]
+    assert [r.KeepOutAreas for r in rig.got("OperatingRegion")] == [[4], [4]]
 
 
 @pytest.mark.shows(

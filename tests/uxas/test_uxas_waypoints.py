@@ -124,6 +124,20 @@ def test_ends_of_segments_and_of_the_mission(tmp_path: Path) -> None:
     assert (first.WaypointList[-1].Speed, last.WaypointList[-1].Speed) == (20.0, 0.0)
 
 
+@pytest.mark.shows(MANAGER, "GimbalPayloadId")
+@pytest.mark.parametrize("number", [-1, 0, 7])
+def test_a_gimbal_looks_ahead_and_down_when_the_mission_has_ended(
+    tmp_path: Path, number: int
+) -> None:
+    serve = f'GimbalPayloadId="{number}" NumberWaypointsToServe="3" NumberWaypointsOverlap="1"'
+    rig = manager(tmp_path, serve)
+    rig.tell(response(mission(5)), at(3))
+    actions = [w.VehicleActionList for c in rig.got("MissionCommand") for w in c.WaypointList]
+    assert not any(actions[:-1])
+    found = [(type(a).__name__, a.PayloadID, a.Elevation) for a in actions[-1]]
+    assert found == ([("GimbalAngleAction", 7, -60.0)] if number > 0 else [])
+
+
 @pytest.mark.shows(MANAGER, "LoopBackToFirstTask")
 def test_a_mission_may_loop_back_to_its_first_task(tmp_path: Path) -> None:
     rig = manager(tmp_path, 'LoopBackToFirstTask="TRUE"')
