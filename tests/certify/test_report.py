@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cratous.services.certify.charts import FEW, altitude_view, separation_view
-from cratous.services.certify.html import margin, render, seconds
+from cratous.services.certify.html import render
 from cratous.services.certify.picture import LETTER, map_view, time_view
 from cratous.services.certify.report import ends_of
 from cratous.services.certify.timeline import bars, read_flight
@@ -396,9 +396,3 @@ def test_paper_has_the_answer_and_the_inventory_only_when_asked_for() -> None:
     assert titles == ["Requirements", "Reproduce", "Not covered"]
     assert len(answer.xpath(".//svg[@role='img']")) == 3, "map, altitudes, closest approaches"
     assert not re.search(r"\d:\d\d\.\d", text), "times are written one way"
-
-
-def test_words_for_times_and_margins() -> None:
-    assert (seconds(0), seconds(61_240), seconds(None)) == ("0.0 s", "61.2 s", "–")
-    assert margin({"margin": None, "unit": ""}) == "–"
-    assert margin({"margin": 12.3456, "unit": "m"}) == "12.35 m"

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from cratous.core.files.private_cache import private_cache
+from cratous.services.certify.html import margin, seconds
 from cratous.services.certify.templates import KEPT, environment
 
 
@@ -49,3 +50,9 @@ def test_a_folder_that_is_gone_when_a_template_is_to_be_kept_is_no_error(cache: 
     (folder,) = (cache / KEPT).iterdir()
     folder.rmdir()
     assert made.get_template("page").render(value="c") == "a c"
+
+
+def test_words_for_times_and_margins() -> None:
+    assert (seconds(0), seconds(61_240), seconds(None)) == ("0.0 s", "61.2 s", "–")
+    assert margin({"margin": None, "unit": ""}) == "–"
+    assert margin({"margin": 12.3456, "unit": "m"}) == "12.35 m"
