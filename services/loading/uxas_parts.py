@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from math import hypot, isfinite, radians
 from typing import Any
 
@@ -11,10 +11,13 @@ from cratous.services.loading.places import Places, msl
 from cratous.services.loading.polygons import circle, rectangle
 from cratous.services.loading.uxas_cfg import Sent
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import Camera, Position, Vehicle, Zone, ZoneKind
+from cratous.spec.mission import Camera, Position, Vehicle, View, Zone, ZoneKind
 
 DEFAULT_CLIMB_M_S = 5.0
 UNBOUNDED_M = (-1000.0, 100_000.0)
+AHEAD = View(0.0, radians(-60.0), False)
+"""How a line is looked at from before it, as UxAS does: the path ends as much earlier."""
+STRAIGHT_DOWN_RAD = radians(-85.0)
 
 
 def safe_name(text: str) -> str:
@@ -236,3 +239,13 @@ def corners_of(
     if kind == "Rectangle":
         return tuple(rectangle(centre, shape.Width, shape.Height, radians(shape.Rotation)))
     return tuple(circle(centre, shape.Radius, outside=outside))
+
+
+def looks_ahead(vehicles: Iterable[Vehicle]) -> bool:
+    """Whether a look ahead along a line will do besides one straight down: each vehicle has cameras that can be tilted to both."""
+    return all(
+        vehicle.cameras
+        and all(c.min_elevation_rad <= STRAIGHT_DOWN_RAD for c in vehicle.cameras)
+        and all(c.max_elevation_rad >= AHEAD.elevation_rad for c in vehicle.cameras)
+        for vehicle in vehicles
+    )

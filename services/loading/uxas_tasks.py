@@ -9,7 +9,7 @@ from typing import Any
 
 from cratous.services.loading.places import Places
 from cratous.services.loading.uxas_cfg import Sent
-from cratous.services.loading.uxas_parts import corners_of, point
+from cratous.services.loading.uxas_parts import AHEAD, corners_of, looks_ahead, point
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Loiter, Pattern, Position, Task, TaskKind, Vehicle, View
 
@@ -25,11 +25,6 @@ DIRECTIONS = {
     "CounterClockwise": "counter_clockwise",
 }
 PATTERNS = {"Spiral": Pattern.SPIRAL, "Sector": Pattern.SECTOR, "Sweep": Pattern.SWEEP}
-
-
-AHEAD = View(0.0, radians(-60.0), False)
-"""How a line is looked at from before it, as UxAS does: the path ends as much earlier."""
-STRAIGHT_DOWN_RAD = radians(-85.0)
 
 
 @dataclass(frozen=True)
@@ -202,20 +197,10 @@ def _line(reading: _Reading) -> dict[str, Any]:
         places, item = body.PointList, "PointList"
     points = tuple(reading.point(place, f"{item}[{k}]") for k, place in enumerate(places))
     views = _views(reading, body.UseInertialViewAngles)
-    if views["view"] is None and _looks_ahead(reading):
+    asked = reading.body.GroundSampleDistance
+    if views["view"] is None and not asked and looks_ahead(reading.vehicles):
         views["views"] = (AHEAD,)
     return {"kind": TaskKind.LINE_SEARCH, "points": points, **views}
-
-
-def _looks_ahead(reading: _Reading) -> bool:
-    """Whether a look ahead along a line will do besides one straight down: no sample distance is asked for, and each
-    vehicle has cameras that can be tilted to both."""
-    return reading.body.GroundSampleDistance == 0 and all(
-        vehicle.cameras
-        and all(c.min_elevation_rad <= STRAIGHT_DOWN_RAD for c in vehicle.cameras)
-        and all(c.max_elevation_rad >= AHEAD.elevation_rad for c in vehicle.cameras)
-        for vehicle in reading.vehicles
-    )
 
 
 def _place(reading: _Reading) -> Position:
