@@ -15,7 +15,7 @@ from cratous.spec.mission.changes import VEHICLE_HOLDS
 TO_ITEM, SETTLED = ("Transit", "Active"), ("Complete", "Failed")
 LATE_BEATS = 4
 """UxAS hears of a takeover, and of its end, within two heartbeats each."""
-UNHEARD = "LinkLossState"
+UNHEARD, LINKED = "LinkLossState", "Linked"
 
 
 @dataclass
@@ -36,6 +36,7 @@ class GivenUpWatch:
     """On each item as many takeovers, and as much time under ICAROUS, as the executive allows, and no more.
 
     One that stands on the ground at first is not held to its time, nor is one that flies without its link or holds by command.
+    What is taken over without the link UxAS does not hear of, and it counts on no item.
     """
 
     kinds = ("AuthorityChange", "TaskProgress", UNHEARD)
@@ -46,6 +47,7 @@ class GivenUpWatch:
         longest_ms = round(1000 * LONGEST_LOOKAHEADS * mission.daa.lookahead_s)
         self._longest_ms = longest_ms + LATE_BEATS * self._beat_ms
         self._last_ms: dict[int, int] = {}
+        self._alone: set[int] = set()
         ground = {v.id for v in mission.vehicles if isinstance(v, GroundedVehicle)}
         self._spared = ground | {c.vehicle for c in mission.changes if c.kind == VEHICLE_HOLDS}
         waits = "no vehicle was taken over on its way to an item"
@@ -61,6 +63,8 @@ class GivenUpWatch:
             return
         if message.kind == UNHEARD:
             self._spared.add(vid)
+            linked = message.body.Mode.name == LINKED
+            (self._alone.discard if linked else self._alone.add)(vid)
         elif message.kind == "AuthorityChange":
             self._changes(vid, leg, message)
         elif message.body.Phase.name in TO_ITEM and message.body.TaskID != leg.task_id:
@@ -81,7 +85,7 @@ class GivenUpWatch:
         text = f"vehicle {vid} was taken over twice between two heartbeats"
         self._record.check(apart, now_ms, vid, text)
         self._last_ms[vid], leg.since_ms = now_ms, now_ms
-        if not leg.task_id:
+        if not leg.task_id or vid in self._alone:
             return
         given_up = leg_given_up(leg.takeovers, MOST_TAKEOVERS, 0, self._longest_ms)
         leg.takeovers += 1

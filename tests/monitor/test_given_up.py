@@ -84,6 +84,20 @@ def test_who_gives_up_nothing_is_not_held_to_its_time() -> None:
     assert observed(*long[:2], unheard, *long[2:]).state == "held"
 
 
+def test_what_is_taken_over_without_the_link_counts_on_no_item() -> None:
+    def silent(at_ms: int, heard: str = "Linked") -> list[Told]:
+        loss = [(at, "LinkLossState", {"Mode": mode}) for at, mode in ((at_ms, "Return"), (at_ms + 500, heard))]  # fmt: skip
+        return [loss[0], by("ICAROUS", at_ms), loss[1], by("UxAS", at_ms + 1000)]
+
+    often = [*OFTEN, 900_000]
+    losses = [told for at_ms in often for told in silent(at_ms)]
+    assert observed(to_item(0), *losses).state == "not observed"
+    # heard again, it is counted on
+    for times, state in ((OFTEN, "held"), (often, "broken")):
+        all_told = [*losses, *taken(*(at_ms + 5000 for at_ms in times))]
+        assert observed(to_item(0), *sorted(all_told, key=lambda told: told[0])).state == state
+
+
 def test_nothing_is_observed_where_nobody_is_on_the_way_to_an_item() -> None:
     found = observed(*taken(5000))
     assert (found.state, found.note) == (
