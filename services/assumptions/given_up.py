@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from cratous.core.authority.timeliness import lasted
 from cratous.core.executive.steps import leg_given_up
 from cratous.services.assumptions.authority import icarous_has
+from cratous.services.assumptions.link import DeliveryWatch
 from cratous.services.assumptions.observed import Message, Record
 from cratous.services.mission.leg_bounds import LONGEST_LOOKAHEADS, MOST_TAKEOVERS
 from cratous.spec.mission import GroundedVehicle, Mission
@@ -15,7 +16,7 @@ from cratous.spec.mission.changes import VEHICLE_HOLDS
 TO_ITEM, SETTLED = ("Transit", "Active"), ("Complete", "Failed")
 LATE_BEATS = 4
 """UxAS hears of a takeover, and of its end, within two heartbeats each."""
-UNHEARD, LINKED = "LinkLossState", "Linked"
+UNHEARD, LINKED, BEAT = "LinkLossState", "Linked", "Heartbeat"
 
 
 @dataclass
@@ -36,10 +37,11 @@ class GivenUpWatch:
     """On each item as many takeovers, and as much time under ICAROUS, as the executive allows, and no more.
 
     One that stands on the ground at first is not held to its time, nor is one that flies without its link or holds by command.
-    What is taken over without the link UxAS does not hear of, and it counts on no item.
+    What is taken over without the link UxAS does not hear of, and it counts on no item. Where lines of ICAROUS came late,
+    or not, UxAS knew less than is seen here: more than is allowed is then not observed.
     """
 
-    kinds = ("AuthorityChange", "TaskProgress", UNHEARD)
+    kinds = ("AuthorityChange", "TaskProgress", UNHEARD, BEAT)
 
     def __init__(self, mission: Mission) -> None:
         self._legs = {v: _Leg() for v in mission.instances}
@@ -48,6 +50,7 @@ class GivenUpWatch:
         self._longest_ms = longest_ms + LATE_BEATS * self._beat_ms
         self._last_ms: dict[int, int] = {}
         self._alone: set[int] = set()
+        self._delivery = DeliveryWatch(mission)
         ground = {v.id for v in mission.vehicles if isinstance(v, GroundedVehicle)}
         self._spared = ground | {c.vehicle for c in mission.changes if c.kind == VEHICLE_HOLDS}
         waits = "no vehicle was taken over on its way to an item"
@@ -56,6 +59,9 @@ class GivenUpWatch:
     def message(self, message: Message) -> None:
         """Who flies a vehicle, and to which item."""
         if message.kind not in self.kinds:
+            return
+        if message.kind == BEAT:
+            self._delivery.message(message)
             return
         vid, now_ms = message.body.VehicleID, message.time_ms
         leg = self._legs.get(vid)
@@ -91,7 +97,7 @@ class GivenUpWatch:
         leg.takeovers += 1
         self._record.see(leg.takeovers)
         text = f"takeover {leg.takeovers} of vehicle {vid} on its way to task {leg.task_id}"
-        self._record.check(not given_up, now_ms, vid, text)
+        self._allowed(not given_up, now_ms, vid, text)
 
     def _time(self, vid: int, leg: _Leg, now_ms: int) -> None:
         """Whether ICAROUS has flown for too long on an item that is left now."""
@@ -100,7 +106,17 @@ class GivenUpWatch:
         flown_ms = leg.flown_ms(now_ms)
         given_up = leg_given_up(0, MOST_TAKEOVERS, flown_ms, self._longest_ms)
         text = f"vehicle {vid} was flown for {flown_ms / 1000:g} s by ICAROUS on its way to task {leg.task_id}"
-        self._record.check(not given_up, now_ms, vid, text)
+        self._allowed(not given_up, now_ms, vid, text)
+
+    def _allowed(self, holds: bool, now_ms: int, vid: int, text: str) -> None:
+        """What the executive allows by what it has heard."""
+        if not holds:
+            self._delivery.end(now_ms)
+        (delivery,) = self._delivery.records().values()
+        if holds or delivery.broken is None:
+            self._record.check(holds, now_ms, vid, text)
+        elif not self._record.gaps:
+            self._record.gaps.append(f"{text}, and UxAS heard of it late: {delivery.broken.text}")
 
     def end(self, at_ms: int) -> None:
         """Those who are on their way still are held to their time, too."""
