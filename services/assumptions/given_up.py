@@ -36,7 +36,8 @@ class _Leg:
 class GivenUpWatch:
     """On each item as many takeovers, and as much time under ICAROUS, as the executive allows, and no more.
 
-    One that stands on the ground at first is not held to its time, nor is one that flies without its link or holds by command.
+    One that stands on the ground at first is not held to its time, nor is one that flies without its link; one that holds by
+    command is held to neither: while it holds no item is given up.
     What is taken over without the link UxAS does not hear of, and it counts on no item. Where lines of ICAROUS came late,
     or not, UxAS knew less than is seen here: more than is allowed is then not observed.
     """
@@ -52,7 +53,8 @@ class GivenUpWatch:
         self._alone: set[int] = set()
         self._delivery = DeliveryWatch(mission)
         ground = {v.id for v in mission.vehicles if isinstance(v, GroundedVehicle)}
-        self._spared = ground | {c.vehicle for c in mission.changes if c.kind == VEHICLE_HOLDS}
+        self._holders = {c.vehicle for c in mission.changes if c.kind == VEHICLE_HOLDS}
+        self._spared = ground | self._holders
         waits = "no vehicle was taken over on its way to an item"
         self._record = Record("takeovers", MOST_TAKEOVERS + 1, (leg_given_up, lasted), waits=waits)
 
@@ -91,7 +93,7 @@ class GivenUpWatch:
         text = f"vehicle {vid} was taken over twice between two heartbeats"
         self._record.check(apart, now_ms, vid, text)
         self._last_ms[vid], leg.since_ms = now_ms, now_ms
-        if not leg.task_id or vid in self._alone:
+        if not leg.task_id or vid in self._alone or vid in self._holders:
             return
         given_up = leg_given_up(leg.takeovers, MOST_TAKEOVERS, 0, self._longest_ms)
         leg.takeovers += 1

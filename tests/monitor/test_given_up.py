@@ -89,7 +89,8 @@ def test_who_gives_up_nothing_is_not_held_to_its_time() -> None:
     holds = replace(MISSION, changes=(Change(5000, VEHICLE_HOLDS, vehicle=1),))
     unheard = (2000, "LinkLossState", {})
     assert observed(*long).state == "broken"
-    assert observed(*long, mission=holds).state == "held"
+    assert observed(*long, mission=holds).state == "not observed"
+    assert observed(to_item(0), *taken(*OFTEN, 900_000), mission=holds).state == "not observed"
     assert observed(*long[:2], unheard, *long[2:]).state == "held"
 
 
