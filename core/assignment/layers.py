@@ -125,12 +125,21 @@ class _Found:
             del self._ways[next(iter(self._ways))]
         self._ways[_key(given)] = ways.copy()
 
+    def forget_all(self) -> None:
+        """None is known any more."""
+        self._ways.clear()
+
 
 def _key(given: tuple[np.ndarray, ...]) -> tuple[Any, ...]:
     return tuple((array.shape, array.tobytes()) for array in given)
 
 
 _FOUND = _Found(64)
+
+
+def forget() -> None:
+    """What is found from here on follows from the questions from here on, and so does how often a kernel is asked."""
+    _FOUND.forget_all()
 
 
 def tables(instance: Instance, ahead: Ahead, limit: int) -> Tables:

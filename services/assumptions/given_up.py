@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from cratous.core.authority.timeliness import lasted
 from cratous.core.executive.steps import leg_given_up
 from cratous.services.assumptions.authority import icarous_has
+from cratous.services.assumptions.link import DeliveryWatch
 from cratous.services.assumptions.observed import Message, Record
 from cratous.services.mission.leg_bounds import LONGEST_LOOKAHEADS, MOST_TAKEOVERS
 from cratous.spec.mission import GroundedVehicle, Mission
@@ -15,7 +16,7 @@ from cratous.spec.mission.changes import VEHICLE_HOLDS
 TO_ITEM, SETTLED = ("Transit", "Active"), ("Complete", "Failed")
 LATE_BEATS = 4
 """UxAS hears of a takeover, and of its end, within two heartbeats each."""
-UNHEARD = "LinkLossState"
+UNHEARD, LINKED, BEAT = "LinkLossState", "Linked", "Heartbeat"
 
 
 @dataclass
@@ -35,10 +36,13 @@ class _Leg:
 class GivenUpWatch:
     """On each item as many takeovers, and as much time under ICAROUS, as the executive allows, and no more.
 
-    One that stands on the ground at first is not held to its time, nor is one that flies without its link or holds by command.
+    One that stands on the ground at first is not held to its time, nor is one that flies without its link; one that holds by
+    command is held to neither: while it holds no item is given up.
+    What is taken over without the link UxAS does not hear of, and it counts on no item. Where lines of ICAROUS came late,
+    or not, UxAS knew less than is seen here: more than is allowed is then not observed.
     """
 
-    kinds = ("AuthorityChange", "TaskProgress", UNHEARD)
+    kinds = ("AuthorityChange", "TaskProgress", UNHEARD, BEAT)
 
     def __init__(self, mission: Mission) -> None:
         self._legs = {v: _Leg() for v in mission.instances}
@@ -46,8 +50,11 @@ class GivenUpWatch:
         longest_ms = round(1000 * LONGEST_LOOKAHEADS * mission.daa.lookahead_s)
         self._longest_ms = longest_ms + LATE_BEATS * self._beat_ms
         self._last_ms: dict[int, int] = {}
+        self._alone: set[int] = set()
+        self._delivery = DeliveryWatch(mission)
         ground = {v.id for v in mission.vehicles if isinstance(v, GroundedVehicle)}
-        self._spared = ground | {c.vehicle for c in mission.changes if c.kind == VEHICLE_HOLDS}
+        self._holders = {c.vehicle for c in mission.changes if c.kind == VEHICLE_HOLDS}
+        self._spared = ground | self._holders
         waits = "no vehicle was taken over on its way to an item"
         self._record = Record("takeovers", MOST_TAKEOVERS + 1, (leg_given_up, lasted), waits=waits)
 
@@ -55,12 +62,17 @@ class GivenUpWatch:
         """Who flies a vehicle, and to which item."""
         if message.kind not in self.kinds:
             return
+        if message.kind == BEAT:
+            self._delivery.message(message)
+            return
         vid, now_ms = message.body.VehicleID, message.time_ms
         leg = self._legs.get(vid)
         if leg is None:
             return
         if message.kind == UNHEARD:
             self._spared.add(vid)
+            linked = message.body.Mode.name == LINKED
+            (self._alone.discard if linked else self._alone.add)(vid)
         elif message.kind == "AuthorityChange":
             self._changes(vid, leg, message)
         elif message.body.Phase.name in TO_ITEM and message.body.TaskID != leg.task_id:
@@ -81,13 +93,13 @@ class GivenUpWatch:
         text = f"vehicle {vid} was taken over twice between two heartbeats"
         self._record.check(apart, now_ms, vid, text)
         self._last_ms[vid], leg.since_ms = now_ms, now_ms
-        if not leg.task_id:
+        if not leg.task_id or vid in self._alone or vid in self._holders:
             return
         given_up = leg_given_up(leg.takeovers, MOST_TAKEOVERS, 0, self._longest_ms)
         leg.takeovers += 1
         self._record.see(leg.takeovers)
         text = f"takeover {leg.takeovers} of vehicle {vid} on its way to task {leg.task_id}"
-        self._record.check(not given_up, now_ms, vid, text)
+        self._allowed(not given_up, now_ms, vid, text)
 
     def _time(self, vid: int, leg: _Leg, now_ms: int) -> None:
         """Whether ICAROUS has flown for too long on an item that is left now."""
@@ -96,7 +108,17 @@ class GivenUpWatch:
         flown_ms = leg.flown_ms(now_ms)
         given_up = leg_given_up(0, MOST_TAKEOVERS, flown_ms, self._longest_ms)
         text = f"vehicle {vid} was flown for {flown_ms / 1000:g} s by ICAROUS on its way to task {leg.task_id}"
-        self._record.check(not given_up, now_ms, vid, text)
+        self._allowed(not given_up, now_ms, vid, text)
+
+    def _allowed(self, holds: bool, now_ms: int, vid: int, text: str) -> None:
+        """What the executive allows by what it has heard."""
+        if not holds:
+            self._delivery.end(now_ms)
+        (delivery,) = self._delivery.records().values()
+        if holds or delivery.broken is None:
+            self._record.check(holds, now_ms, vid, text)
+        elif not self._record.gaps:
+            self._record.gaps.append(f"{text}, and UxAS heard of it late: {delivery.broken.text}")
 
     def end(self, at_ms: int) -> None:
         """Those who are on their way still are held to their time, too."""

@@ -113,8 +113,8 @@ def _parts(function: Any) -> set[str]:
 def counted() -> Iterator[Calls]:
     """Count all entries inside; ask for the result (`Calls.data`) after it.
 
-    How much has been done with a loop is forgotten at the beginning: whether it is compiled follows
-    from this work alone. Raises BadInput where entries are being counted already.
+    How much has been done with a loop is forgotten at the beginning, and what was found by work before: what is
+    compiled, and what is asked, follows from this work alone. Raises BadInput where entries are being counted already.
     """
     if not _counting.acquire(blocking=False):
         raise BadInput(
@@ -122,6 +122,9 @@ def counted() -> Iterator[Calls]:
         )
     try:
         ledger.load_all()  # what is registered later has no entry that counts
+        from cratous.core.assignment import layers
+
+        layers.forget()
         calls = Calls()
         with contextlib.ExitStack() as stack:
             stack.enter_context(tiered.by_work_alone())

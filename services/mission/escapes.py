@@ -68,7 +68,9 @@ def escapes(
     start: Pose, speed_m_s: float, vehicle: Vehicle, zones: Sequence[Zone], dt_s: float
 ) -> Iterator[Escape]:
     """All ways tried from a pose at a speed over the ground. vehicle: as it is able in the wind; zones: to keep, without
-    padding; dt_s: a step of the flight [s]."""
+    padding; dt_s: a step of the flight [s]. One that stands has none."""
+    if not speed_m_s > 0:
+        return
     here = _Flown(start, speed_m_s, (Position(start.north_m, start.east_m, start.alt_m),))
     slow_m_s = min(speed_m_s, vehicle.min_speed_m_s)
     for wanted in dict.fromkeys((speed_m_s, slow_m_s)):

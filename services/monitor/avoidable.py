@@ -23,6 +23,8 @@ TRIED = (
     "turns to either side as tight as it can, as fast as it was or slowing down, then straight on "
     "and into a circle"
 )
+NEVER = 2.0
+"""So many times its fastest speed no vehicle flies: positions that say so are none to try ways from."""
 
 
 class Appeared(NamedTuple):
@@ -41,23 +43,22 @@ def avoidable(
     here = Position(*seen.pose[:3])
     kept = [one for one in zones if exact_leg_ok(here, here, one)]
     away_m = distance_m((here,), zone)
+    text = f"when it appeared at {seen.at_ms / 1000:.2f} s it was {away_m:.0f} m away"
+    data: dict[str, Any] = {"appeared_ms": seen.at_ms, "away_m": round(away_m, 2)}
+    if not 0 < seen.speed_m_s <= NEVER * vehicle.max_speed_m_s:
+        moved = f"flew at {seen.speed_m_s:.0f} m/s" if seen.speed_m_s else "did not move"
+        return f"{text} and {moved}: no way was tried from there", data
     tried, found = 0, None
     for way in escapes(seen.pose, seen.speed_m_s, vehicle, kept, dt_s):
         tried += 1
         if way.broken_m == 0 and _keeps(way, vehicle, kept):
             found = way
             break
-    text = f"when it appeared at {seen.at_ms / 1000:.2f} s it was {away_m:.0f} m away: "
     if found is None:
-        text += f"none of {tried} ways tried from there keeps the zones ({TRIED})"
+        text += f": none of {tried} ways tried from there keeps the zones ({TRIED})"
     else:
-        text += f"{found.words} and a circle would have kept the zones"
-    data = {
-        "appeared_ms": seen.at_ms,
-        "away_m": round(away_m, 2),
-        "ways_tried": tried,
-        "way_kept": None if found is None else found.words,
-    }
+        text += f": {found.words} and a circle would have kept the zones"
+    data |= {"ways_tried": tried, "way_kept": None if found is None else found.words}
     return text, data
 
 

@@ -8,6 +8,7 @@ from math import atan2, hypot
 from typing import Any
 
 from cratous.core.algebra.steps import Ran, in_order
+from cratous.core.authority.timeliness import in_time
 from cratous.core.kernel import qualified
 from cratous.core.schedule.choice import as_asked
 from cratous.core.schedule.rows import eligible, runs_forward
@@ -40,7 +41,7 @@ class Fence:
     """What has been seen of one vehicle and one zone. first, last: the positions of the vehicle's track
     between which it was held to the zone; over: the zone appeared where the vehicle had no right to be; left_ms:
     since when the vehicle has kept it; again_ms: when it broke it again; appeared: how the vehicle flew when the zone
-    appeared, None of one that was there from the start; could: what of it could have been kept, once it is asked."""
+    appeared, None of one that was there from the start, and where it was not seen then; could: what of it could have been kept, once it is asked."""
 
     first: int
     last: int
@@ -84,6 +85,7 @@ class ConstraintWatch:
         self._failed: set[int] = set()
         self._fences: dict[tuple[int, int], Fence] = {}
         self._tracks: dict[int, list[Position]] = {}
+        self._came: dict[int, tuple[Sample, Sample]] = {}  # the last leg that was seen of each
         self.violations: list[Verdict] = []
 
     def progress(self, body: Any) -> None:
@@ -101,7 +103,8 @@ class ConstraintWatch:
     def step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
         """Check the leg of every protected vehicle of ours against every zone that is known."""
         for vehicle in sorted(self._protected & before.keys() & after.keys()):
-            p, q = before[vehicle].position, after[vehicle].position
+            here = before[vehicle], after[vehicle]
+            p, q = here[0].position, here[1].position
             track = self._tracks.setdefault(vehicle, [p])
             track.append(q)
             for bound in zones_of(self._mission, after[vehicle].time_ms):
@@ -109,11 +112,14 @@ class ConstraintWatch:
                     continue
                 zone, last = bound.zone, len(track) - 1
                 fence = self._fences.setdefault((vehicle, zone.id), Fence(last - 1, last))
-                if not fence.checks and zone not in self._mission.zones:
-                    fence.appeared = self._appeared(track, before[vehicle])
+                at_once = in_time(bound.since_ms, here[0].time_ms, 0)
+                if not fence.checks and at_once and zone not in self._mission.zones:
+                    came = self._came.get(vehicle, here)
+                    fence.appeared = _appeared(came if came[1] == here[0] else here, here[0])
                 fence.last = last
                 fence.checks += 1
                 self._leg(vehicle, (p, q), bound, before[vehicle].time_ms)
+            self._came[vehicle] = here
 
     def _leg(self, vehicle: int, leg: tuple[Position, Position], bound: Bound, at_ms: int) -> None:
         """One flown leg, begun at an instant, against a zone."""
@@ -128,14 +134,6 @@ class ConstraintWatch:
             self.violations.append(self._fence_verdict(vehicle, zone, fence, so_far=True))
         elif not clear and fence.left_ms is not None and fence.again_ms is None:
             fence.again_ms = at_ms
-
-    def _appeared(self, track: list[Position], now: Sample) -> Appeared:
-        """How a vehicle flies at the beginning of the last leg of its track: as it came there, or goes on at its start."""
-        a, b = track[-3:-1] if len(track) > 2 else track[-2:]
-        north, east = b.north_m - a.north_m, b.east_m - a.east_m
-        heading = now.heading_rad if north == east == 0 else atan2(east, north)
-        speed = hypot(north, east) / (self._mission.simulation.step_ms / 1000)
-        return Appeared(now.time_ms, Pose(*now.position, heading), speed)
 
     def _could_keep(self, number: int, zone: Zone, fence: Fence) -> tuple[str, dict[str, Any]]:
         """What of a zone that appeared before a vehicle could have been kept."""
@@ -293,3 +291,11 @@ class ConstraintWatch:
                     "G1", eligible_item(task), Outcome.HOLDS, Kind.OBSERVED, "nobody began it",
                     checks=1, method="as_asked", kernels=(qualified(as_asked),),
                 )  # fmt: skip
+
+
+def _appeared(leg: tuple[Sample, Sample], now: Sample) -> Appeared:
+    """How a vehicle flies where it is now. leg: on which it came there, or else goes on from there."""
+    a, b = (sample.position for sample in leg)
+    north, east = b.north_m - a.north_m, b.east_m - a.east_m
+    speed = hypot(north, east) / ((leg[1].time_ms - leg[0].time_ms) / 1000)
+    return Appeared(now.time_ms, Pose(*now.position, atan2(east, north)), speed)

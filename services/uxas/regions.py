@@ -15,6 +15,8 @@ from cratous.services.bus import Envelope
 
 Zones = dict[int, Any]
 REGION, REMOVED_MS = 0, -1
+FLOAT = 1e-6
+"""So far a number is rounded on the wire, of itself."""
 
 
 class OperatingRegionStateService:
@@ -48,9 +50,12 @@ class OperatingRegionStateService:
         return made, out
 
     def _ours(self, known: Any, body: Any) -> bool:
-        """Whether a zone is what we have made of it, or another service of this kind has: padded by more, and the
-        same else. To pad that again would never end."""
-        if known is None or not self._padding_m or body.Padding <= known.Padding:
+        """Whether a zone is what we have made of it, or another service of this kind has: padded by as much more, and
+        the same else. To pad that again would never end; by less it is another zone, which is to be padded too."""
+        if known is None or not self._padding_m:
+            return False
+        most = max(abs(body.Padding), abs(known.Padding), self._padding_m)
+        if not body.Padding - known.Padding >= self._padding_m - FLOAT * most:
             return False
         return bool(body.copy(Padding=known.Padding) == known)
 

@@ -9,7 +9,7 @@ While a task steers with FlightDirectorActions of its own it is silent.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import degrees, dist, pi, radians, tan
+from math import degrees, dist, isfinite, pi, radians, tan
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
@@ -243,7 +243,12 @@ class SteeringService:
 
 
 def _begun(state: Steered, plan: Any, now_ms: int) -> Steered:
-    """At the first waypoint of a plan; the leg to it begins at the waypoint that leads to it, if there is one."""
+    """At the first waypoint of a plan; the leg to it begins at the waypoint that leads to it, if there is one.
+
+    A plan whose numbers lead nowhere is not taken: the one before is flown on.
+    """
+    if not all(map(_leads, plan.WaypointList)):
+        return state
     first = plan.FirstWaypoint
     before = next((w for w in plan.WaypointList if w.NextWaypoint == first != w.Number), None)
     begin = None if before is None else (before.Latitude, before.Longitude)
@@ -256,6 +261,14 @@ def _begun(state: Steered, plan: Any, now_ms: int) -> Steered:
         told_m_s=None,
         by_task=False,
     )
+
+
+def _leads(waypoint: Any) -> bool:
+    """Whether a course, a speed and an altitude can be told for a waypoint."""
+    loiter = _loiter(waypoint)
+    numbers = [waypoint.Speed, waypoint.Altitude, waypoint.ClimbRate]
+    numbers += [] if loiter is None else [loiter.Radius, loiter.Airspeed]
+    return is_place(waypoint.Latitude, waypoint.Longitude) and all(map(isfinite, numbers))
 
 
 def _loiter(waypoint: Any) -> Any:

@@ -14,6 +14,7 @@ from cratous.core.assignment.anytime import greedy, timed
 from cratous.core.assignment.instance import Instance
 from cratous.core.assignment.lower_bounds import least_until, shortest_ways, ways_hold
 from cratous.core.assignment.repair import repaired
+from cratous.services.certify.evidence import counted
 from cratous.services.planning import assign
 from cratous.services.planning.assign import Limits, solve
 from cratous.services.planning.assign_problem import arrays, parts
@@ -112,6 +113,17 @@ def test_the_same_ways_are_gone_over_once(monkeypatch: pytest.MonkeyPatch) -> No
     before = len(gone_over)
     layers.shortest(i, i.may)
     assert len(gone_over) == before + 2
+
+
+def test_what_is_counted_of_a_flight_is_the_same_after_another() -> None:
+    i = arrays_of(problem(3, 2))
+    found = []
+    for _ in range(2):
+        with counted() as calls:
+            layers.shortest(i, i.may)
+        found.append(calls.data()["called"])
+    assert found[0] == found[1]
+    assert any(name.endswith(".no_shortcut") for name in found[0])
 
 
 def test_ways_of_large_assignments_are_not_kept(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -136,3 +136,7 @@ def test_who_can_slow_down_has_a_way_where_no_turn_at_its_speed_is_tight_enough(
     assert of_type(said, "MissionChange") == []
     assert state.chain(1).speed_m_s < VEHICLE.speed_m_s
     assert first_bad_leg(flown(state, 60), (zone,)) is None
+
+
+def test_who_stands_has_no_way_to_turn() -> None:
+    assert list(escapes(north().pose, 0.0, VEHICLE, (wall(60.0),), DT_S)) == []

@@ -33,9 +33,18 @@ def taken(*times_ms: int, for_ms: int = 1000) -> list[Told]:
     return [told for at in times_ms for told in (by("ICAROUS", at), by("UxAS", at + for_ms))]
 
 
-def observed(*told: Told, mission: Mission = MISSION) -> Observed:
+def beats(late_ms: int = 0) -> list[Told]:
+    """Heartbeats of ICAROUS, each as late as this."""
+    period_ms = MISSION.simulation.heartbeat_ms
+    return [
+        (sent_ms + late_ms, "Heartbeat", {"Direction": "Up", "Sequence": k})
+        for k, sent_ms in enumerate(range(0, END_MS, period_ms), 1)
+    ]
+
+
+def observed(*told: Told, mission: Mission = MISSION, late_ms: int = 0) -> Observed:
     watch = GivenUpWatch(mission)
-    for at_ms, kind, fields in told:
+    for at_ms, kind, fields in sorted([*beats(late_ms), *told], key=lambda one: one[0]):
         body = lmcp.new(f"cratous.{kind}", VehicleID=1, Time=at_ms, **fields)
         watch.message(Message(kind, at_ms, "", body))
     watch.end(END_MS)
@@ -80,8 +89,36 @@ def test_who_gives_up_nothing_is_not_held_to_its_time() -> None:
     holds = replace(MISSION, changes=(Change(5000, VEHICLE_HOLDS, vehicle=1),))
     unheard = (2000, "LinkLossState", {})
     assert observed(*long).state == "broken"
-    assert observed(*long, mission=holds).state == "held"
+    assert observed(*long, mission=holds).state == "not observed"
+    assert observed(to_item(0), *taken(*OFTEN, 900_000), mission=holds).state == "not observed"
     assert observed(*long[:2], unheard, *long[2:]).state == "held"
+
+
+def test_what_is_taken_over_without_the_link_counts_on_no_item() -> None:
+    def silent(at_ms: int, heard: str = "Linked") -> list[Told]:
+        loss = [(at, "LinkLossState", {"Mode": mode}) for at, mode in ((at_ms, "Return"), (at_ms + 500, heard))]  # fmt: skip
+        return [loss[0], by("ICAROUS", at_ms), loss[1], by("UxAS", at_ms + 1000)]
+
+    often = [*OFTEN, 900_000]
+    losses = [told for at_ms in often for told in silent(at_ms)]
+    assert observed(to_item(0), *losses).state == "not observed"
+    # heard again, it is counted on
+    for times, state in ((OFTEN, "held"), (often, "broken")):
+        all_told = [*losses, *taken(*(at_ms + 5000 for at_ms in times))]
+        assert observed(to_item(0), *all_told).state == state
+
+
+def test_what_uxas_heard_of_late_is_not_held_against_its_count() -> None:
+    """It gives up by what it has heard: where that is late, more is no fault of the count."""
+    long = [to_item(0), *taken(1000, for_ms=LONGEST_MS + 3000)]
+    often = [to_item(0), *taken(*OFTEN, 900_000)]
+    period_ms = MISSION.simulation.heartbeat_ms
+    for told in (long, often):
+        assert observed(*told, late_ms=2 * period_ms).state == "broken"
+        found = observed(*told, late_ms=5000)
+        assert (found.state, found.broken) == ("not observed", None)
+        assert "UxAS heard of it late: heartbeat 1 of 0.00 s" in found.note
+    assert observed(to_item(0), *taken(*OFTEN), late_ms=5000).state == "held"
 
 
 def test_nothing_is_observed_where_nobody_is_on_the_way_to_an_item() -> None:

@@ -130,6 +130,36 @@ def test_a_zone_that_appears_far_ahead_and_is_entered_could_have_been_kept():
     assert row.evidence["way_kept"] in row.note
 
 
+WALL = Zone(7, ZoneKind.KEEP_OUT, ((500.0, -500.0), (900.0, -500.0), (900.0, 500.0), (500.0, 500.0)), 0.0, 500.0)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("places", "told"),
+    [
+        ({0: 0, 250: 5, 500: 10, 750: 505}, "495 m away: straight on"),
+        # not seen for 5 s before it appeared: it came there at 20 m/s, not at 400
+        ({0: 0, 5000: 100, 5250: 105, 5500: 505}, "400 m away: straight on"),
+        # not seen when it appeared: nothing is said of how it flew then
+        ({0: 0, 250: 5, 6000: 110, 6250: 505}, None),
+        ({0: 0, 5000: 0, 5250: 0, 5500: 505}, "500 m away and did not move: no way was tried"),
+        ({4750: -4000, 5000: 0, 5250: 5, 5500: 505}, "flew at 16000 m/s: no way was tried"),
+    ],
+)
+def test_how_a_vehicle_flew_as_a_zone_appeared_is_what_was_seen_of_it(places, told):
+    at_ms = 250 if 500 in places else 5000
+    of = mission(zones=(), changes=(Change(at_ms, changes.ZONE, zone=WALL),))
+    flight = [truth(1, ms, north, 0) for ms, north in places.items()]
+    row = watch(of, [*flight, *done(max(places))])["G1:zone: keep_out 7, flight of vehicle 1"]
+    assert row.outcome is Outcome.VIOLATED
+    if told is None:
+        assert (row.note, row.evidence) == ("entered at 6.00 s", None)
+        return
+    assert row.evidence is not None
+    assert f"when it appeared at {at_ms / 1000:.2f} s" in row.note
+    assert told in row.note
+    assert ("way_kept" in row.evidence) == ("tried" not in told)
+
+
 def test_a_zone_to_keep_in_is_left_not_entered():
     corners = ((10.0, -5.0), (30.0, -5.0), (30.0, 5.0), (10.0, 5.0))
     zone = Zone(7, ZoneKind.KEEP_IN, corners, 0.0, 500.0)

@@ -261,3 +261,29 @@ def test_places_near_each_other_and_across_the_date_line() -> None:
     assert at.y == pytest.approx(0.002 * DEGREE_M * cos(radians(10)), rel=1e-9)
     assert passed(Vec2(1.0, 0.0), Vec2(-5.0, 0.0), Vec2(0.0, 0.0))
     assert not passed(Vec2(-1.0, 9.0), Vec2(-5.0, 0.0), Vec2(0.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"Latitude": float("inf")},
+        {"Longitude": float("nan")},
+        {"Speed": float("nan")},
+        {"VehicleActionList": [lmcp.new("LoiterAction", Radius=float("nan"), Duration=-1)]},
+    ],
+)
+def test_a_plan_whose_numbers_lead_nowhere_is_not_flown(
+    tmp_path: Path, wrong: dict[str, Any]
+) -> None:
+    one = Flown(tmp_path)
+    good = plan((0.0, 0.02), (0.02, 0.02))
+    first, *rest = good.WaypointList
+    bad = good.copy(WaypointList=[first.copy(**wrong), *rest])
+    one.rig.tell(response(bad))
+    one.step()
+    assert not one.rig.got("VehicleActionCommand")
+    assert len(one.rig.got("AirVehicleState", STEERING)) == 1
+    one.rig.tell(response(good), response(bad))
+    one.step()
+    (told,) = one.rig.got("VehicleActionCommand")
+    assert told.VehicleActionList[0].Heading == pytest.approx(90.0, abs=0.5)

@@ -139,6 +139,9 @@ def test_zones_are_padded_by_more_and_each_once(tmp_path: Path) -> None:
     assert [z.Padding for z in rig.got("KeepInZone")] == [0.0, 25.0]
     rig.tell(zone.copy(Padding=60.0))  # as another service of this kind pads it
     assert rig.got("KeepOutZone")[-1].Padding == 60.0
+    # by less than is added: no service of this kind has done that
+    rig.tell(zone.copy(Padding=12.0))
+    assert [z.Padding for z in rig.got("KeepOutZone")][-2:] == [12.0, 37.0]
     rig.tell(zone.copy(Label="b"))  # another zone of this id
     assert [(z.Label, z.Padding) for z in rig.got("KeepOutZone")][-2:] == [("b", 10.0), ("b", 35.0)]
     assert [r.KeepOutAreas for r in rig.got("OperatingRegion")] == [[4], [4]]
