@@ -40,6 +40,8 @@ FIRST_MS = 500
 LIMITS = Limits(waiting_bytes=64 << 20)
 SCHEME = "amase://"
 COMMANDS = ("MissionCommand", "VehicleActionCommand")
+NEEDED = ("SessionStatus", "AirVehicleState")
+"""What is read of AMASE: it passes on whatever other clients send, of kinds that are not known here, too."""
 
 
 class AmaseLost(CratousError):
@@ -167,7 +169,7 @@ class Amase:
         if not self._port.peers:
             return "has not been met again"
         if self._phase is Phase.CLEARING and not self._clear:
-            return "has told no time: its clock does not run"
+            return "has told no time: its clock has not run"
         if self._phase is Phase.CLEARING:
             return "has kept aircraft that were to be taken out"
         return "has not told states of all aircraft of the mission"
@@ -222,7 +224,7 @@ class Amase:
     def _from_amase(self, incoming: Incoming) -> list[Any]:
         if self._phase is Phase.APART:
             return []
-        body = _body(incoming, self.name)
+        body = _body(incoming, self.name, NEEDED)
         kind = type(body).__name__
         if kind == "SessionStatus":
             return self._tick(body)
@@ -301,9 +303,12 @@ def _framed(body: Any) -> bytes:
     return wire.enclose(body.all_names[0], lmcp.binary.pack(body)).pack()
 
 
-def _body(incoming: Incoming, name: str) -> Any:
+def _body(incoming: Incoming, name: str, kinds: tuple[str, ...] = ()) -> Any:
+    """The object of a message; None if it is of another kind than the named ones."""
     try:
         message = wire.parse(incoming.parts[0])
+        if kinds and message.descriptor.rpartition(".")[2] not in kinds:
+            return None
         return lmcp.binary.received(message.payload, message.descriptor)[0]
     except BadInput as error:
         raise AmaseLost(f"what {name} says cannot be read: {error}") from error

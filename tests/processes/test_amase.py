@@ -20,7 +20,7 @@ from uxas_tools import ended
 
 from cratous.bridge import envelope as wire
 from cratous.bridge import lmcp
-from cratous.bridge.port import address
+from cratous.bridge.port import Incoming, address
 from cratous.bridge.tcp_port import TcpPort
 from cratous.services.cli import main
 from cratous.services.loading import load
@@ -49,13 +49,14 @@ class Fake:
         self.port, self._text = free_port(), text
         self._children, self._folder, self._count = Children(folder, folder), folder, 0
 
-    def start(self) -> None:
+    def start(self, clients: int = 0) -> None:
+        """clients: its clock stands until so many are there."""
         self._count += 1
         name = f"amase{self._count}"
         (self._folder / "scenario.xml").write_text(self._text)
         self._children.start(
             name, "sim", str(self._folder / "scenario.xml"), "--listen", f"127.0.0.1:{self.port}",
-            "--rate", "4", "--compatibility", "amase",
+            "--rate", "4", "--compatibility", "amase", "--clients", str(clients),
         )  # fmt: skip
         until(lambda: "listening" in self._children.said(name))
 
@@ -248,6 +249,36 @@ def test_one_that_does_not_come_back_ends_the_flight(
     ) as lost:
         flight.until(lambda: False)
     assert lost.value.exit_code == 3
+
+
+def test_what_another_client_says_is_not_read(
+    crossing: Mission, fake: Callable[..., Fake], session: Callable[[Fake], Session]
+) -> None:
+    """AMASE passes on what it is sent: of a series that is not known here, or a command."""
+    flight = session(fake())
+    flight.amase.begin(crossing, told_of(crossing))
+    flight.until(lambda: flight.amase.flies)
+    for name in ("larcfm.DAIDALUS.WellClearViolationIntervals", "afrl.cmasi.MissionCommand"):
+        payload = wire.enclose(name, b"LMCP" + bytes(20)).pack()
+        assert flight.amase._from_amase(Incoming((payload,), "amase")) == []
+    count = len(flight.states)
+    flight.until(lambda: len(flight.states) > count)
+
+
+def test_one_whose_clock_does_not_run_is_said_to_stand(
+    crossing: Mission,
+    fake: Callable[..., Fake],
+    session: Callable[[Fake], Session],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(amase_module, "RETURNS_S", 0.5)
+    simulator = fake()
+    simulator.kill()
+    simulator.start(clients=2)
+    flight = session(simulator)
+    flight.amase.begin(crossing, told_of(crossing))
+    with pytest.raises(AmaseLost, match=r"has told no time: its clock has not run for 0.5 s"):
+        flight.until(lambda: False)
 
 
 def test_an_aircraft_that_the_mission_has_not_is_refused(
