@@ -24,6 +24,7 @@ from cratous.spec.mission.plan import (
 from cratous.spec.mission.sensing import EXACT_STATES, words
 
 if TYPE_CHECKING:
+    from cratous.bridge.port import Address
     from cratous.services.certify.report import Flown
     from cratous.services.logs.log import LogWriter
     from cratous.services.monitor import Monitor
@@ -46,10 +47,11 @@ class Settings:
 
 class InProcesses(NamedTuple):
     """How a mission is flown in processes. rate: times real time; original: ICAROUS is behind clients of the
-    original's, which the user starts."""
+    original's, which the user starts; amase: the address of an AMASE that flies in place of our simulator."""
 
     rate: float = 1.0
     original: bool = False
+    amase: Address | None = None
 
 
 class Onlooker(Protocol):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack, closing
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -30,8 +31,10 @@ from cratous.services.cli.job import (
     tell_plan,
     watching,
 )
+from cratous.services.exporting.messages import Told
 from cratous.services.logs.log import LogWriter
-from cratous.services.processes.coverage import told_of
+from cratous.services.processes.amase import Amase
+from cratous.services.processes.coverage import refuse_for_amase, told_of
 from cratous.services.processes.flight import Flying, fly
 from cratous.services.processes.recorder import Recorder
 from cratous.services.results.names import LOG_NAME
@@ -45,6 +48,15 @@ UNCERTIFIED = (
     "without anybody avoiding, while its ICAROUS is not heard"
 )
 
+OTHERS = (
+    "which was not started here: its states are all that is known of where they were, its law of motion is its own, "
+    "and which program it is, and who else commanded there, is not known"
+)
+PUT_BACK = (
+    "its aircraft were put where their last states had them, with the commands that held, and the time of the flight "
+    "went on from there; what it flew after those states counts for nothing"
+)
+
 
 def run_in_processes(
     mission: Mission, path: Path, folder: Path, settings: Settings, how: InProcesses, tell: Tell
@@ -54,8 +66,23 @@ def run_in_processes(
     path: of the mission, which the ICAROUS processes read.
     """
     digest = mission_hash(mission)
-    mission = as_flown(mission if settings.daa else replace(mission, instances=()), how.original)
+    mission = as_flown(mission if settings.daa else replace(mission, instances=()), how)
     told = told_of(mission, how.original)
+    with ExitStack() as stack:
+        amase = None
+        if how.amase is not None:
+            refuse_for_amase(mission)
+            # nothing is planned for an AMASE that does not answer
+            amase = stack.enter_context(closing(Amase(how.amase, tell)))
+        flying = Flying(
+            path, digest, folder, how.rate, settings.allow_unproved, tell, how.original, amase
+        )
+        return _run(mission, told, settings, flying)
+
+
+def _run(mission: Mission, told: Told, settings: Settings, flying: Flying) -> dict[str, Any]:
+    """Plan, check, fly and judge; log and report are in the folder of `flying`."""
+    folder, tell = flying.folder, flying.tell
     standing = ledger.require(allow_unproved=settings.allow_unproved)
     tell(f"proofs: {standing.line}")
     proofs = inventory(standing, None)
@@ -67,14 +94,15 @@ def run_in_processes(
             plan, checks = plan_and_check(mission, planning)
             tell_plan(mission, plan, checks, tell)
             accept_plan(plan, checks, planning, folder, writer)
-            monitor = watching(mission, plan, tell, says_beats=not how.original)
+            monitor = watching(mission, plan, tell, says_beats=not flying.original)
             bus.tap(writer.tap)
             bus.tap(monitor.tap)
-            flying = Flying(
-                path, digest, folder, how.rate, settings.allow_unproved, tell, how.original
-            )
             ended = fly(mission, plan, told, Recorder(mission, bus), flying)
             writer.note("processes", {"pids": ended.pids, "ports": ended.ports})
+            if flying.amase is not None and flying.amase.met_again:
+                mission = _met_again(mission, flying.amase)
+                for key, value in log_meta(mission, flown).items():
+                    writer.note(key, value)
             if ended.why:
                 tell(f"NOT FLOWN TO ITS END: {ended.why}")
             verdicts, assumptions = monitor.verdicts(), monitor.assumptions()
@@ -86,16 +114,25 @@ def run_in_processes(
     return report
 
 
-def as_flown(mission: Mission, original: bool = False) -> Mission:
-    """The mission as it is flown in processes: how far apart its states are, and what has to be known of it.
+def _met_again(mission: Mission, amase: Amase) -> Mission:
+    """The mission with a note of when AMASE was lost and met again."""
+    note = f"AMASE was lost and met again {', '.join(amase.met_again)}: {PUT_BACK}"
+    return replace(mission, notes=(*mission.notes, note))
 
-    original: ICAROUS is behind clients of the original's.
-    """
+
+def as_flown(mission: Mission, how: InProcesses) -> Mission:
+    """The mission as it is flown in processes: how far apart its states are, and what has to be known of it."""
     count, known = len(mission.instances), ""
-    who = f"flown in {2 + count} processes: the simulator, UxAS and {count} of ICAROUS, with a key for each vehicle"
-    if original:
-        who = f"flown in processes: the simulator, UxAS, and {count} clients of the original's"
+    ours = 2 if how.amase is None else 1
+    simulator = "the simulator, " if how.amase is None else ""
+    who = f"flown in {ours + count} processes: {simulator}UxAS and {count} of ICAROUS, with a key for each vehicle"
+    if how.original:
+        who = f"flown in processes: {simulator}UxAS, and {count} clients of the original's"
         known = "which ICAROUS is behind them is not known here; "
     note = f"{who}; {known}between two states, up to {STATES_MS} ms apart, aircraft are taken to fly straight"
     simulation = replace(mission.simulation, step_ms=STATES_MS)
-    return replace(mission, simulation=simulation, notes=(*mission.notes, note, UNCERTIFIED))
+    notes = (*mission.notes, note, UNCERTIFIED)
+    if how.amase is not None:
+        where = how.amase.text.removeprefix("tcp://")
+        notes = (*notes, f"the aircraft flew in AMASE at {where}, {OTHERS}")
+    return replace(mission, simulation=simulation, notes=notes)

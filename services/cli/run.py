@@ -43,6 +43,10 @@ Tell = Callable[[str], None]
     "--original-clients", is_flag=True,
     help="With --processes: wait for the original's clients, which you start, in place of `cratous icarous`.",
 )  # fmt: skip
+@click.option(
+    "--simulator", metavar="amase://HOST:PORT",
+    help="As --processes, with an OpenAMASE that runs there in place of `cratous sim`, at its rate.",
+)  # fmt: skip
 @own_option("Also hold the log of the flight against requirements of your own.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="No progress, only the result.")
@@ -65,6 +69,9 @@ def run(
     With --processes a mission file is flown by processes that `ps` shows, over sockets of loopback and
     against the clock: `cratous sim`, `cratous uxas` and a `cratous icarous` for each protected vehicle.
 
+    With --simulator the aircraft are put into an OpenAMASE that runs, whatever scenario it has loaded that has no
+    other aircraft, and it is met again when it is lost.
+
     With --requirements (again for each file), the log is then held against requirements of your own, as
     `cratous monitor --requirements` does. They stand in the report, with the text of their files, margins and
     who was in command where one is violated; the exit code is that of all.
@@ -80,6 +87,9 @@ def run(
     own = own_files(how["requirements"])
     for file in own:
         command += ["--requirements", file.name]
+    if how["simulator"] is not None and rate is not None:
+        raise click.UsageError("--rate is not of --simulator: AMASE's clock runs at its own rate")
+    how["processes"] = how["processes"] or how["simulator"] is not None
     if rate is not None and not how["processes"]:
         raise click.UsageError("--rate is of --processes")
     if how["original_clients"] and not how["processes"]:
@@ -89,10 +99,13 @@ def run(
             raise click.UsageError(
                 "--processes flies a mission as it is written: no --seed, no --seeds"
             )
-        command += ["--processes"] + (["--rate", f"{rate:g}"] if rate is not None else [])
+        command += (
+            ["--processes"] if how["simulator"] is None else ["--simulator", how["simulator"]]
+        )
+        command += ["--rate", f"{rate:g}"] if rate is not None else []
         command += ["--original-clients"] * how["original_clients"]
         settings = Settings(daa, allow_unproved, shlex.join(command), own)
-        processes = InProcesses(rate or 1.0, how["original_clients"])
+        processes = InProcesses(rate or 1.0, how["original_clients"], _amase(how["simulator"]))
         return fly_and_show(mission, seed, out, settings, as_json, quiet, processes)
     if seeds is not None:
         if seed:
@@ -101,6 +114,15 @@ def run(
     command += ["--seed", str(seed)] if seed else []
     settings = Settings(daa, allow_unproved, shlex.join(command), own)
     return fly_and_show(mission, seed, out, settings, as_json, quiet)
+
+
+def _amase(text: str | None) -> Any:
+    """The address of an AMASE; None without one."""
+    if text is None:
+        return None
+    from cratous.services.processes.amase import amase_address
+
+    return amase_address(text)
 
 
 def fly_and_show(

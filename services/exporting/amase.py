@@ -28,7 +28,9 @@ def scenario_text(
         events += [_event(body, 0.0) for body in (*told.zones, told.region, *told.tasks)]
     events += [_event(body, sets_out_s) for body in told.states]
     for one in mission.traffic:
-        events += [_event(body, sets_out_s + at_ms / 1000) for body, at_ms in _traffic(one, plane)]
+        events += [
+            _event(body, sets_out_s + at_ms / 1000) for body, at_ms in traffic_events(one, plane)
+        ]
     return (
         "<AMASE>\n<ScenarioData>\n"
         f"<ScenarioName>{escape(mission.name)}</ScenarioName>\n"
@@ -42,7 +44,7 @@ def _event(body: Any, time_s: float) -> str:
     return dumps(body).replace(f"<{name} ", f'<{name} Time="{time_s:.3f}" ', 1).rstrip("\n")
 
 
-def _traffic(one: Traffic, plane: Projection) -> list[tuple[Any, int]]:
+def traffic_events(one: Traffic, plane: Projection) -> list[tuple[Any, int]]:
     """What there is of an aircraft that nobody commands, with the time of each [ms]."""
     north, east = one.velocity.north_m_s, one.velocity.east_m_s
     speed = math.hypot(north, east)

@@ -46,6 +46,26 @@ def told_of(mission: Mission, original: bool = False) -> Told:
     return told
 
 
+def refuse_for_amase(mission: Mission) -> None:
+    """BadInput for what AMASE cannot be made to do over the network; it names the field."""
+    asked = [
+        (f"vehicles[{k}].min_speed_m_s", not one.min_speed_m_s, "an aircraft that can hover")
+        for k, one in enumerate(mission.vehicles)
+    ] + [
+        (f"traffic[{k}]", bool(one.appears_ms) or one.vanishes_ms is not None,
+         "traffic that comes or goes in flight")
+        for k, one in enumerate(mission.traffic)
+    ]  # fmt: skip
+    for item, wrong, what in asked:
+        if wrong:
+            raise BadInput(
+                f"{what}, which AMASE cannot be made to fly over the network",
+                where=mission.source,
+                item=item,
+                expected="a mission without it, or a run without --simulator",
+            )
+
+
 def _asked(mission: Mission, original: bool) -> Iterator[tuple[str, bool, str, str]]:
     """Field, whether it asks for too much, what it asks for, and what would do."""
     alone = not mission.instances

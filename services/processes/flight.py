@@ -21,6 +21,7 @@ from cratous.bridge.tcp_port import TcpPort
 from cratous.bridge.text_protocol.keys import Keys, new_keys
 from cratous.services.exporting.messages import Told
 from cratous.services.processes.agreement import agrees
+from cratous.services.processes.amase import Amase, AmaseLost
 from cratous.services.processes.children import GRACE_S, Children, ProcessEnded, free_port
 from cratous.services.processes.failing_bridge import FailingBridge
 from cratous.services.processes.files import (
@@ -57,7 +58,7 @@ class Stuck(CratousError):
 class Flying(NamedTuple):
     """How a flight in processes is set up. path: of the mission, for ICAROUS; digest: of that mission, the
     hash of its report; folder: for what they are given and what they say; rate: times real time; original:
-    ICAROUS is behind clients of the original's, which others start."""
+    ICAROUS is behind clients of the original's, which others start; amase: what flies in place of our simulator."""
 
     path: Path
     digest: str
@@ -66,6 +67,7 @@ class Flying(NamedTuple):
     allow_unproved: bool
     tell: Tell
     original: bool = False
+    amase: Amase | None = None
 
 
 class Ended(NamedTuple):
@@ -131,11 +133,13 @@ class _Flight:
     def start(self) -> None:
         """All processes, in order; then the plan is made, checked, commanded, and the clock runs."""
         how, mission = self.how, self.mission
-        scenario = write_scenario(mission, self.told, how.folder)
         write_messages(self.told, how.folder)
-        port = self._start_simulator(scenario)
-        self._wait("the simulator's first states", self._all_there)
-        self._control("Paused", 1.0)
+        if how.amase is not None:
+            port = how.amase.port
+        else:
+            port = self._start_simulator(write_scenario(mission, self.told, how.folder))
+            self._wait("the simulator's first states", self._all_there)
+            self._control("Paused", 1.0)
         icarous = ORIGINAL_PORT if how.original else free_port()
         self.ports = ports = Ports(port, free_port(), icarous)
         instances = sorted(mission.instances)
@@ -167,7 +171,11 @@ class _Flight:
             self.recorder.heard(body)
         self.heard.clear()
         self.flown = True
-        self._control("Running", how.rate)
+        if how.amase is None:
+            self._control("Running", how.rate)
+            return
+        how.amase.begin(mission, self.told)
+        self._wait("AMASE to fly the aircraft (its clock has to run)", self._all_there)
 
     def _doors(self, instances: list[int]) -> dict[int, int]:
         """By vehicle, the port at which its ICAROUS finds UxAS: through a bridge that fails, if that is asked for."""
@@ -269,6 +277,11 @@ class _Flight:
                 self.stood.add(name)
             elif name in self.stood:
                 self._cut(name)
+        if self.how.amase is not None:
+            heard, count = self.how.amase.step(now_s)
+            arrived += count
+            for body in heard:
+                self._from_simulator(body)
         arrived += self._fail()
         if not arrived or is_due(self.look_s, now_s):
             self.look_s = now_s + LOOK_S
@@ -322,6 +335,9 @@ class _Flight:
             while not outcome:
                 self._turn()
                 now_ms = self.recorder.now_ms
+                if self.how.amase is not None and not self.how.amase.flies:
+                    # it is waited for, so long as it may be away; UxAS's clock stands meanwhile
+                    self.news_s = dict.fromkeys(self.news_s, time.monotonic())
                 for name, news_s in self.news_s.items():
                     if is_due(news_s + SILENCE_S, time.monotonic()):
                         raise Stuck(f"{name} has told nothing of the flight for {SILENCE_S:g} s")
@@ -330,7 +346,7 @@ class _Flight:
                     self.how.tell(f"\r{now_ms / 1000:7.1f} s of flight: flying")
                 outcome = self._outcome(asked, is_due(self.mission.simulation.limit_ms, now_ms))
             self.children.watch()  # a flight of which a process has ended meanwhile is not whole
-        except (ProcessEnded, Stuck) as error:
+        except (ProcessEnded, Stuck, AmaseLost) as error:
             outcome, why = "", str(error)
         # of a flight that was cut off nothing is said that nobody has seen
         for task in sorted(asked - self.complete) if outcome else ():

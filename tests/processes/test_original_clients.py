@@ -13,6 +13,7 @@ import pytest
 from cratous.bridge.text_protocol import Dialect
 from cratous.bridge.text_protocol.keys import KEY_VARIABLE, Keys, key_of, new_keys
 from cratous.services.cli import main
+from cratous.services.cli.job import InProcesses
 from cratous.services.cli.processes_job import as_flown
 from cratous.services.icarous_communication.settings import ATTRIBUTES, settings_of
 from cratous.services.loading import load
@@ -53,7 +54,7 @@ def test_no_icarous_is_started_where_clients_are_waited_for(
     plan: Any = SimpleNamespace(items=[])
     how: Any = SimpleNamespace(
         tell=told.append, folder=tmp_path, path=tmp_path, digest="0" * 64, rate=1.0,
-        allow_unproved=True, original=original,
+        allow_unproved=True, original=original, amase=None,
     )  # fmt: skip
     nobody: Any = SimpleNamespace()
     one = flights._Flight(crossing, plan, nobody, SimpleNamespace(accepted=id), how, nobody)  # type: ignore[arg-type]
@@ -107,7 +108,10 @@ def test_a_process_has_the_keys_that_it_is_given_and_no_others(
 
 def test_the_report_does_not_say_which_icarous_flew(crossing: Mission) -> None:
     mission = replace(crossing, notes=())
-    (ours, _), (theirs, _) = as_flown(mission).notes, as_flown(mission, original=True).notes
+    (ours, _), (theirs, _) = (
+        as_flown(mission, InProcesses()).notes,
+        as_flown(mission, InProcesses(original=True)).notes,
+    )
     assert "and 2 of ICAROUS" in ours
     assert "2 clients of the original's; which ICAROUS is behind them is not known here" in theirs
 

@@ -61,7 +61,7 @@ class Recorder:
 def flight(root: Path, ended: bool) -> Any:
     mission = load(root / "examples/crossing/mission.yaml", 0)
     plan: Any = SimpleNamespace(items=[SimpleNamespace(task_id=k, vehicle_id=k) for k in (1, 2)])
-    how: Any = SimpleNamespace(tell=lambda _text: None, original=False)
+    how: Any = SimpleNamespace(tell=lambda _text: None, original=False, amase=None)
     told: Any = None
     recorder, processes = Recorder(), Processes(ended)
     return flights._Flight(mission, plan, told, recorder, how, processes)  # type: ignore[arg-type]

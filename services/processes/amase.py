@@ -1,0 +1,314 @@
+"""AMASE as the simulator of a flight: it is met at its port, given the mission's aircraft, and met again when lost.
+
+UxAS speaks with AMASE through here. AMASE's clock cannot be stopped over the network, so nothing of AMASE counts
+before the flight begins: then the mission's aircraft are taken out of AMASE, whatever it had loaded, put in where they
+are to be, and commanded, all at once. When the connection ends, AMASE is begun anew or its clock goes back, the same is
+done with the states that were told last, and the time of the flight goes on from there.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterable
+from enum import Enum
+from typing import Any
+
+from cratous.bridge import envelope as wire
+from cratous.bridge import lmcp
+from cratous.bridge.port import Address, Incoming, Limits, address, is_due
+from cratous.bridge.tcp_port import TcpPort
+from cratous.services.exporting.amase import traffic_events
+from cratous.services.exporting.messages import Told
+from cratous.services.mission.frames import Projection
+from cratous.services.processes.amase_commands import (
+    Standing,
+    for_amase,
+    seen,
+    with_pixels,
+    without_numbers,
+)
+from cratous.spec.errors import BadInput, CratousError
+from cratous.spec.mission import Mission
+
+ANSWERS_S = 10.0
+"""How long AMASE may take to let us in at first [s]."""
+RETURNS_S = 120.0
+"""How long AMASE may be away before the flight ends [s], from its last state until states of all aircraft come again."""
+FIRST_MS = 500
+"""The time of the first states of a flight: AMASE tells them so often."""
+LIMITS = Limits(waiting_bytes=64 << 20)
+SCHEME = "amase://"
+COMMANDS = ("MissionCommand", "VehicleActionCommand")
+NEEDED = ("SessionStatus", "AirVehicleState")
+"""What is read of AMASE: it passes on whatever other clients send, of kinds that are not known here, too."""
+
+
+class AmaseLost(CratousError):
+    """AMASE is away, or does not do what a flight needs."""
+
+    exit_code = 3
+
+
+class Phase(Enum):
+    """How far AMASE is with a flight: told nothing yet, aircraft taken out, put in, or flying."""
+
+    APART, CLEARING, PLACING, FLYING = range(4)
+
+
+def amase_address(text: str) -> Address:
+    """The TCP address behind `amase://HOST:PORT`; BadInput for another text."""
+    scheme, item = text[: len(SCHEME)], "--simulator"
+    wrong = BadInput("not an address of AMASE", item=item, expected="amase://HOST:PORT", got=text)
+    if scheme != SCHEME:
+        raise wrong
+    try:
+        return address(f"tcp://{text[len(SCHEME) :]}", ("tcp",), item=item)
+    except BadInput:
+        raise wrong from None
+
+
+class Amase:
+    """The connection to an AMASE that runs, and the port at which UxAS finds it; close it when done."""
+
+    def __init__(self, where: Address, tell: Callable[[str], None]) -> None:
+        """Connect; BadInput if nobody answers."""
+        self.where, self._tell = where, tell
+        self._port = TcpPort(where, server=False, limits=LIMITS)
+        loopback = address("tcp://127.0.0.1:0", ("tcp",), free=True)
+        self._uxas = TcpPort(loopback, server=True, limits=LIMITS)
+        self.port = self._uxas.bound[1]
+        """Where UxAS finds AMASE, on this machine."""
+        self._phase = Phase.APART
+        self._told: dict[int, tuple[Any, Any]] = {}
+        self._last: dict[int, Any] = {}
+        self._standing: dict[int, Standing] = {}
+        self._instant: dict[int, Any] = {}
+        self._clear = 0
+        self._newest_ms = self._ahead_ms = 0
+        self._flown_ms = 0
+        self._away_s: float | None = None
+        self._was_there = False
+        self._gone = ""
+        self.met_again: list[str] = []
+        """What is to be said of each time that AMASE was lost and met again."""
+        try:
+            self._answered()
+        except BaseException:
+            self.close()
+            raise
+
+    @property
+    def name(self) -> str:
+        """As the user names it."""
+        return f"{SCHEME}{self.where.text.removeprefix('tcp://')}"
+
+    @property
+    def flies(self) -> bool:
+        """Whether states of all aircraft have come since they were put in."""
+        return self._phase is Phase.FLYING
+
+    def close(self) -> None:
+        """Let go of AMASE and UxAS."""
+        self._port.close()
+        self._uxas.close()
+
+    def _answered(self) -> None:
+        until_s = time.monotonic() + ANSWERS_S
+        while not self._port.peers:
+            now_s = time.monotonic()
+            self._port.step(now_s)
+            if is_due(until_s, now_s):
+                raise BadInput(
+                    "nobody answers there",
+                    where=self.name,
+                    item="--simulator",
+                    expected="OpenAMASE with a scenario loaded, at its port (5555)",
+                    got=f"no connection within {ANSWERS_S:g} s",
+                )
+            time.sleep(0.01)
+        self._was_there = True
+
+    # the flight -----------------------------------------------------------------------------------
+
+    def begin(self, mission: Mission, told: Told) -> None:
+        """The flight begins: the aircraft of the mission are put in where it says, with what was commanded so far."""
+        plane = Projection(mission.frame)
+        for vehicle, made, state in zip(
+            mission.vehicles, told.configurations, told.states, strict=True
+        ):
+            self._told[state.ID] = with_pixels(made, vehicle), state
+        for one in mission.traffic:
+            configuration, state = (body for body, _ in traffic_events(one, plane)[:2])
+            self._told[one.id] = configuration, state
+            self._uxas.send((_framed(configuration),))
+        self._last = {number: state for number, (_, state) in self._told.items()}
+        self._lost("")
+
+    def step(self, now_s: float) -> tuple[list[Any], int]:
+        """What the flight hears of its simulator, and how many messages came; AmaseLost if it cannot go on."""
+        heard: list[Any] = []
+        asked, told = self._uxas.step(now_s), self._port.step(now_s)
+        if self._uxas.peers:
+            self._uxas.shut()  # nobody else commands through here
+        for incoming in asked:
+            heard += self._commanded(_body(incoming, "UxAS"))
+        if self._port.peers:
+            self._back()
+        elif self._was_there:
+            self._was_there = False
+            if self._told:
+                self._lost("its connection has ended")
+        for incoming in told:
+            heard += self._from_amase(incoming)
+        if self._away_s is not None and is_due(self._away_s + RETURNS_S, now_s):
+            raise AmaseLost(f"{self.name} {self._missing()} for {RETURNS_S:g} s")
+        return heard, len(asked) + len(told)
+
+    def _missing(self) -> str:
+        if not self._port.peers:
+            return "has not been met again"
+        if self._phase is Phase.CLEARING and not self._clear:
+            return "has told no time: its clock has not run"
+        if self._phase is Phase.CLEARING:
+            return "has kept aircraft that were to be taken out"
+        return "has not told states of all aircraft of the mission"
+
+    def _commanded(self, body: Any) -> list[Any]:
+        """A message of UxAS: a command is passed on, and kept for when AMASE has to be told it again."""
+        if type(body).__name__ not in COMMANDS:
+            return []
+        standing = self._standing.setdefault(body.VehicleID, Standing())
+        made = for_amase(body, standing, self._last.get(body.VehicleID))
+        if self._phase is Phase.FLYING:
+            self._send(made)
+        return [body]
+
+    def _back(self) -> None:
+        if not self._was_there:
+            self._was_there = True
+            if self._told:
+                self._tell(f"{self.name} answers again")
+                self._clearing()
+
+    def _lost(self, why: str) -> None:
+        """What is in AMASE counts no more; why: how it was lost, empty at the beginning of the flight."""
+        if self._phase is Phase.FLYING:
+            at = f"at {self._flown_ms / 1000:.1f} s"
+            self._tell(f"{self.name} is lost {at}: {why}; waiting {RETURNS_S:g} s for it")
+            self._gone = f"{at} ({why})"
+        if self._away_s is None:
+            self._away_s = time.monotonic()
+        self._phase = Phase.APART
+        if self._port.peers:
+            self._clearing()
+
+    def _clearing(self) -> None:
+        """Whatever AMASE has of our aircraft is taken out: a state of one that comes then is of those put in."""
+        self._phase, self._clear, self._instant = Phase.CLEARING, 0, {}
+        self._newest_ms = 0
+        self._remove()
+
+    def _remove(self) -> None:
+        self._send([lmcp.new("RemoveEntities", EntityList=sorted(self._told))])
+
+    def _placing(self) -> None:
+        self._phase, self._instant = Phase.PLACING, {}
+        for number, (configuration, _) in sorted(self._told.items()):
+            self._send([configuration, self._last[number].copy(Time=0)])
+        for number, standing in sorted(self._standing.items()):
+            self._send(standing.again(self._last.get(number)))
+
+    # what AMASE tells -----------------------------------------------------------------------------
+
+    def _from_amase(self, incoming: Incoming) -> list[Any]:
+        if self._phase is Phase.APART:
+            return []
+        body = _body(incoming, self.name, NEEDED)
+        kind = type(body).__name__
+        if kind == "SessionStatus":
+            return self._tick(body)
+        if kind != "AirVehicleState" or not body.Time:
+            return []
+        if body.ID not in self._told:
+            if self._phase is Phase.CLEARING:  # it says so in each of its instants
+                return []
+            raise AmaseLost(
+                f"{self.name} has an aircraft {body.ID}, which the mission has not; "
+                "load a scenario without others, as `cratous export --format amase` writes it"
+            )
+        self._instant[body.ID] = body
+        if self._phase is Phase.PLACING and self._instant.keys() == self._told.keys():
+            return self._placed()
+        return self._state(body) if self._phase is Phase.FLYING else []
+
+    def _tick(self, body: Any) -> list[Any]:
+        """AMASE tells its time, before the states of that time."""
+        if body.ScenarioTime < self._newest_ms:
+            self._newest_ms = 0
+            self._lost("its clock has gone back")
+            return []
+        self._newest_ms = body.ScenarioTime
+        if self._phase is Phase.CLEARING:
+            # the first instant may have begun before it was told to; its scenario may put them in later
+            if self._clear and not self._instant:
+                self._placing()
+            elif self._instant:
+                self._remove()
+            self._clear += 1
+        self._instant = {}
+        return []
+
+    def _placed(self) -> list[Any]:
+        """All aircraft are there: the time of the flight goes on by how far they have come since."""
+        came_s = max(_flown_s(self._last[n], state) for n, state in self._instant.items())
+        first = not self._flown_ms
+        time_ms = self._flown_ms + (FIRST_MS if first else max(1, round(1000 * came_s)))
+        self._ahead_ms = time_ms - min(int(state.Time) for state in self._instant.values())
+        self._phase, self._away_s = Phase.FLYING, None
+        if not first:
+            self.met_again.append(self._gone)
+            self._tell(f"{self.name} flies again, from {time_ms / 1000:.1f} s on")
+        return [one for _, body in sorted(self._instant.items()) for one in self._state(body)]
+
+    def _state(self, body: Any) -> list[Any]:
+        """A state in the time of the flight, for UxAS and the log."""
+        wrong = without_numbers(body)
+        if wrong:
+            raise AmaseLost(f"{self.name} tells a {wrong} of aircraft {body.ID} that is no number")
+        state = body.copy(
+            Time=int(body.Time) + self._ahead_ms,
+            PayloadStateList=[seen(one) for one in body.PayloadStateList if one is not None],
+        )
+        self._flown_ms = max(self._flown_ms, state.Time)
+        self._last[state.ID] = state
+        self._uxas.send((_framed(state),))
+        return [state]
+
+    def _send(self, bodies: Iterable[Any]) -> None:
+        for body in bodies:
+            self._port.send((_framed(body),))
+
+
+def _flown_s(before: Any, after: Any) -> float:
+    """How long an aircraft has flown from where it was put, by its speed [s]; 0 if it stands."""
+    here, there = before.Location, after.Location
+    north = math.radians(there.Latitude - here.Latitude)
+    east = math.radians(there.Longitude - here.Longitude) * math.cos(math.radians(here.Latitude))
+    speed = float(after.Groundspeed)
+    return 6_371_000.0 * math.hypot(north, east) / speed if speed > 1.0 else 0.0
+
+
+def _framed(body: Any) -> bytes:
+    return wire.enclose(body.all_names[0], lmcp.binary.pack(body)).pack()
+
+
+def _body(incoming: Incoming, name: str, kinds: tuple[str, ...] = ()) -> Any:
+    """The object of a message; None if it is of another kind than the named ones."""
+    try:
+        message = wire.parse(incoming.parts[0])
+        if kinds and message.descriptor.rpartition(".")[2] not in kinds:
+            return None
+        return lmcp.binary.received(message.payload, message.descriptor)[0]
+    except BadInput as error:
+        raise AmaseLost(f"what {name} says cannot be read: {error}") from error
