@@ -36,7 +36,7 @@ CAMPAIGNS = {
     "separation": (
         "separation",
         "G2",
-        "generator: {kind: converging, ranges: {time_s: [35, 50]}}\n"
+        "generator: {kind: converging, intruders: 2, ranges: {time_s: [20, 50]}}\n"
         "options: [{name: narrow, set: {daa.buffer: 1.02}}]\n",
     ),
     "far": (
