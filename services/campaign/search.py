@@ -1,7 +1,7 @@
 """Towards small margins: which values of what is drawn make a requirement fail, and how small a mission does.
 
-Cross entropy: a batch of missions is drawn, the best of all so far (those with the least margins) say
-around which values the next batch is drawn, with a spread that is theirs; what is no number (sides, values of a
+Cross entropy: a first batch of missions is drawn evenly from the whole space, then the best of all so far (those
+with the least margins) say around which values the next batch is drawn, with a spread that is theirs; what is no number (sides, values of a
 list) is chosen as often as they have it. A batch is complete before the next begins, and its draws follow
 from its number, so that workers and losses change nothing.
 """
@@ -22,7 +22,7 @@ from cratous.services.campaign.runs import Made, Run
 from cratous.spec.errors import BadInput
 from cratous.spec.mission.guarantees import Outcome
 
-BATCH, ELITE = 10, 5
+BATCH, ELITE = 10, 3
 LEAST_SPREAD = 0.03
 """Share of a range that the spread keeps at least, so that the search goes on."""
 UNIFORM = 2
@@ -124,7 +124,8 @@ class Search:
         point: dict[str, Any] = {}
         for name, (low, high) in self._space.items():
             random = Random(f"search {number} {name}")
-            value = random.uniform(low, high)
+            part = random.random() if batch else (self._part(name, place) + random.random()) / BATCH
+            value = low + part * (high - low)
             if not drawn:
                 values = [p["values"][name] for p in best]
                 spread = max(pstdev(values), LEAST_SPREAD * (high - low))
@@ -135,6 +136,12 @@ class Search:
             anew = drawn or random.random() < OTHERWISE
             point[name] = random.choice(choices if anew else [p["values"][name] for p in best])
         return point
+
+    def _part(self, name: str, place: int) -> int:
+        """Which tenth of a range a point of the first batch is in: each has one (Latin hypercube)."""
+        parts = list(range(BATCH))
+        Random(f"search {self._first} parts {name}").shuffle(parts)
+        return parts[place]
 
     def _small(
         self, fly: Fly, made: Made, point: dict[str, Any], number: int, budget: int

@@ -77,6 +77,19 @@ def test_sides_are_searched_as_numbers_are() -> None:
     assert median(counts) <= 776 / 8, counts
 
 
+def test_the_first_batch_is_in_every_part_of_each_range() -> None:
+    for first in (1, 5001):
+        campaign = Campaign("made", generator={"kind": "converging"}, seeds=range(first, first + 1))
+        points = Search(campaign, "G2", "v", False).run(Flights(), 10).points
+        drawn = [p["values"] for p in points]
+        tenths = {
+            name: [int((one[name] - low) / (high - low) * 10 - 1e-9) for one in drawn]
+            for name, (low, high) in (("time_s", (70, 110)), ("miss_m[1]", (-50, 50)))
+        }
+        assert all(sorted(parts) == list(range(10)) for parts in tenths.values()), tenths
+        assert tenths["time_s"] != tenths["miss_m[1]"], "each range in an order of its own"
+
+
 def test_values_of_a_list_are_searched_too(tmp_path: Path) -> None:
     more = "vary: [{item: 'vehicles[0].max_climb_m_s', values: [1, 2, 3, 4, 5, 6, 7, 8, 9]},\n"
     more += "       {item: 'vehicles[0].speed_m_s', range: [1, 25]}]\nseeds: [1, 1]\n"
