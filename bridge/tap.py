@@ -18,9 +18,10 @@ import zmq
 from cratous.bridge.link import Listener
 from cratous.bridge.port import Address
 from cratous.bridge.relay import LOST, RECORD
+from cratous.bridge.text_protocol.keys import without_keys
 from cratous.spec.errors import BadInput
 
-_READ = 1 << 18
+_READ, _READS = 1 << 18, 4
 
 
 class Copied(NamedTuple):
@@ -52,7 +53,7 @@ class Tap:
             [sys.executable, "-m", "cratous.bridge.relay", *words],
             pass_fds=handles,
             stdin=subprocess.DEVNULL,
-            env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+            env={**without_keys(os.environ), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
             start_new_session=True,
         )
         theirs.close()
@@ -69,10 +70,10 @@ class Tap:
         return [(self._ours.fileno(), zmq.POLLIN)] if self._ours.fileno() >= 0 else []
 
     def step(self) -> Iterator[Copied]:
-        """What has been copied since, in the order in which it passed."""
+        """What has been copied since, in the order in which it passed; no more than some of it at a time."""
         try:
-            while data := self._ours.recv(_READ):
-                self._part += data
+            for _ in range(_READS):
+                self._part += self._ours.recv(_READ)
                 yield from self._records()
         except (BlockingIOError, ConnectionError):
             pass
