@@ -21,7 +21,7 @@ from cratous.bridge.relay import LOST, RECORD
 from cratous.bridge.text_protocol.keys import without_keys
 from cratous.spec.errors import BadInput
 
-_READ, _READS = 1 << 18, 4
+_READ = 1 << 16
 
 
 class Copied(NamedTuple):
@@ -52,7 +52,10 @@ class Tap:
         self.process = subprocess.Popen(
             [sys.executable, "-m", "cratous.bridge.relay", *words],
             pass_fds=handles,
+            # who reads what the watch prints does not wait for the relay
             stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
             env={**without_keys(os.environ), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
             start_new_session=True,
         )
@@ -72,11 +75,10 @@ class Tap:
     def step(self) -> Iterator[Copied]:
         """What has been copied since, in the order in which it passed; no more than some of it at a time."""
         try:
-            for _ in range(_READS):
-                self._part += self._ours.recv(_READ)
-                yield from self._records()
+            self._part += self._ours.recv(_READ)
         except (BlockingIOError, ConnectionError):
-            pass
+            return
+        yield from self._records()
 
     def _records(self) -> Iterator[Copied]:
         at = 0

@@ -314,4 +314,4 @@ def test_a_flood_does_not_keep_who_watches_from_ending(taps) -> None:
             over.set()
         for thread in threads:
             thread.join(10)
-    assert 0 < most <= 2 << 20
+    assert 0 < most <= 1 << 18
