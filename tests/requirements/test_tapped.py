@@ -279,3 +279,19 @@ def test_a_watch_ends_in_a_flood_and_what_came_before_is_left_out_by_name(
     assert list(one.messages(10.0, lambda _: next(turns))) == []
     assert time.monotonic() - begun_s < 10
     assert ("left out" in found) == (came_ns is not None)
+
+
+def test_a_file_of_a_key_that_holds_none_is_bad_input(requirements, tmp_path, capsys):
+    (tmp_path / "vehicle_3.key").write_text("no key")
+    words = [
+        "--attach",
+        "cratous://127.0.0.1:1",
+        "--listen",
+        "127.0.0.1:0",
+        "--keys",
+        str(tmp_path),
+    ]
+    assert main(["monitor", *words, "--requirements", str(requirements)]) == 2
+    said = capsys.readouterr().err
+    assert "vehicle_3.key" in said
+    assert "no key of the bridge" in said
