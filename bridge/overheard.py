@@ -17,7 +17,7 @@ from cratous.bridge.text_protocol.dialects import (
     has_comma_after_tag,
     has_label_after_tag,
 )
-from cratous.bridge.text_protocol.handshake import ACCEPT, HELLO, SECRET_LENGTH
+from cratous.bridge.text_protocol.handshake import ACCEPT, HELLO, SECRET_LENGTH, is_secret
 from cratous.bridge.text_protocol.messages import Direction, Hello, OwnPosition
 from cratous.bridge.text_protocol.parser import MAX_LINE, Record, StreamParser, WireError
 from cratous.bridge.text_protocol.sealed import (
@@ -93,6 +93,7 @@ class _Packets:
                 else:
                     lines += line + b"\n"
             if self._part[MOST_LINE:]:
+                wrong.append(WireError(self._count + 1, 1, DAMAGED, f"{MOST_LINE} bytes", "more"))
                 self._part = b""
         return [*self._parser.feed(lines), *wrong]
 
@@ -149,18 +150,24 @@ class Overheard:
 
     def _opening(self) -> list[Said]:
         """Go on with the opening; what came with its end is read."""
-        for uxas in (False, True):
-            text = self._held[uxas]
-            if text.startswith(HELLO):
-                return self._plain(uxas)
-            line, newline, _ = text.partition(b"\n")
-            if newline and line.startswith(NAME + b",") and line.count(b",") == 1:
-                return self._sealed(uxas)
+        begun = {uxas: way for uxas in (False, True) if (way := self._begun(self._held[uxas]))}
+        if len(begun) == 2:  # both would be UxAS's end
+            return self._fail(NO_OPENING)
+        for uxas, way in begun.items():
+            return way(uxas)
         held = [text for text in self._held.values() if text]
         begins = (HELLO, NAME + b",")
         if all(any(b.startswith(t[: len(b)]) for b in begins) for t in held) and len(held) == 1:
             return [] if len(held[0]) <= MOST_OPENING else self._fail(NO_OPENING)
         return self._fail(NO_OPENING)
+
+    def _begun(self, text: bytes) -> Callable[[bool], list[Said]] | None:
+        """How to go on with what an end has said, if it speaks as UxAS's end does."""
+        if text.startswith(HELLO):
+            return self._plain
+        line, newline, _ = text.partition(b"\n")
+        opens = newline and line.startswith(NAME + b",") and line.count(b",") == 1
+        return self._sealed if opens else None
 
     def _plain(self, uxas: bool) -> list[Said]:
         answer, secret = self._held[uxas][len(HELLO) :], self._held[not uxas]
@@ -168,6 +175,8 @@ class Overheard:
             return self._fail(REFUSED)
         if len(answer) < len(ACCEPT) or len(secret) < SECRET_LENGTH:
             return [] if len(answer) + len(secret) < MOST_OPENING else self._fail(NO_OPENING)
+        if not is_secret(secret[:SECRET_LENGTH].decode("ascii", "replace")):
+            return self._fail(NO_OPENING)
         ways = (_Lines(Direction.DOWN), _Lines(Direction.UP))
         return self._begin(uxas, ways, answer[len(ACCEPT) :], secret[SECRET_LENGTH:])
 

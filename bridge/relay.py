@@ -207,7 +207,7 @@ class Relay:
         self.copy, self._to, self._plain = Copy(watcher), to, plain
         self.pairs: dict[int, Pair] = {}
         self._waiting: deque[socket.socket] = deque()
-        self._count = 0
+        self._count, self._rests = 0, False
         listener.setblocking(False)
 
     def run(self) -> None:
@@ -232,21 +232,31 @@ class Relay:
         while self.listener is not None:
             try:
                 near, _ = self.listener.accept()
-            except OSError:
+            except BlockingIOError:
                 break
-            self._waiting.append(near)
+            except OSError:  # no handle is left: not again at once
+                self._rests = True
+                break
+            if len(self.pairs) + len(self._waiting) < MOST_CONNECTIONS:
+                self._waiting.append(near)
+            else:
+                near.close()
         # one after the other, so that the program meets them in the order in which they came
         while self._waiting and not any(pair.connecting for pair in self.pairs.values()):
             near = self._waiting.popleft()
-            if len(self.pairs) >= MOST_CONNECTIONS:
+            try:
+                pair = Pair(self._count + 1, near, self._far(), self._plain)
+            except OSError:  # no handle is left, or it is gone
                 near.close()
                 continue
             self._count += 1
-            family = socket.AF_INET6 if ":" in self._to[0] else socket.AF_INET
-            far = socket.socket(family, socket.SOCK_STREAM)
-            self.pairs[self._count] = Pair(self._count, near, far, self._plain)
-            far.connect_ex(self._to)
+            self.pairs[self._count] = pair
+            pair.far.connect_ex(self._to)
             self.copy.put(OPENED, self._count)
+
+    def _far(self) -> socket.socket:
+        family = socket.AF_INET6 if ":" in self._to[0] else socket.AF_INET
+        return socket.socket(family, socket.SOCK_STREAM)
 
     def _wait(self) -> set[int]:
         masks: dict[int, int] = {}
@@ -256,12 +266,15 @@ class Relay:
                 masks[sock.fileno()] = masks.get(sock.fileno(), 0) | mask
 
         timeout_ms: int | None = None
-        add(self.listener, select.POLLIN)
+        if self._rests:
+            timeout_ms, self._rests = AGAIN_MS, False
+        else:
+            add(self.listener, select.POLLIN)
         add(self.copy.sock, select.POLLIN | (select.POLLOUT if self.copy.out else 0))
         for pair in self.pairs.values():
             if pair.connecting:
                 add(pair.far, select.POLLOUT)
-                timeout_ms = 1000
+                timeout_ms = timeout_ms or 1000
                 continue
             for way in pair.ways:
                 if way.full or way.tail:

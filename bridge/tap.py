@@ -18,9 +18,10 @@ import zmq
 from cratous.bridge.link import Listener
 from cratous.bridge.port import Address
 from cratous.bridge.relay import LOST, RECORD
+from cratous.bridge.text_protocol.keys import without_keys
 from cratous.spec.errors import BadInput
 
-_READ = 1 << 18
+_READ = 1 << 16
 
 
 class Copied(NamedTuple):
@@ -51,8 +52,11 @@ class Tap:
         self.process = subprocess.Popen(
             [sys.executable, "-m", "cratous.bridge.relay", *words],
             pass_fds=handles,
+            # who reads what the watch prints does not wait for the relay
             stdin=subprocess.DEVNULL,
-            env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            env={**without_keys(os.environ), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
             start_new_session=True,
         )
         theirs.close()
@@ -69,13 +73,12 @@ class Tap:
         return [(self._ours.fileno(), zmq.POLLIN)] if self._ours.fileno() >= 0 else []
 
     def step(self) -> Iterator[Copied]:
-        """What has been copied since, in the order in which it passed."""
+        """What has been copied since, in the order in which it passed; no more than some of it at a time."""
         try:
-            while data := self._ours.recv(_READ):
-                self._part += data
-                yield from self._records()
+            self._part += self._ours.recv(_READ)
         except (BlockingIOError, ConnectionError):
-            pass
+            return
+        yield from self._records()
 
     def _records(self) -> Iterator[Copied]:
         at = 0

@@ -1,7 +1,7 @@
 """Captures of the CRATOUS protocol as lines, whoever took them: pcap of TCP and UDP, recorded sessions, text.
 
 pcap: as `tcpdump -w` writes it (not pcapng), of Ethernet, loopback, `any` and raw IP, IPv4 alone; a TCP segment that comes
-again or out of order is put in its place. Session: a JSON object a line, of which those with `ev` send or write and a
+again or out of order is put in its place, and bytes that were not captured are told. Session: a JSON object a line, of which those with `ev` send or write and a
 text `data` count. Text: a line each, after `> ` (to UxAS) or `< ` (to ICAROUS) if that is known.
 """
 
@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import re
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -31,15 +31,18 @@ _SECRET = re.compile(rb"[0-9a-fA-F]{%d}" % SECRET_LENGTH)
 MOST_FLOWS = 1000
 MOST_HELD = 1000
 """Segments of one flow that wait for an earlier one."""
+MOST_PENDING = 65_536
+"""More than this without a newline is told as it is."""
 
 
 class Heard(NamedTuple):
     """A line without its newline, or what stands in its place. at_s: None where the capture has no times; who: from
-    whom to whom, as the capture has it."""
+    whom to whom, as the capture has it; missing: so many bytes were not captured after `text`, which is cut off."""
 
     at_s: float | None
     who: str
     text: bytes
+    missing: int = 0
 
 
 @dataclass
@@ -48,6 +51,7 @@ class _Flow:
 
     begun: bool = False
     pending: bytes = b""
+    first: int | None = None
     following: int | None = None
     held: dict[int, bytes] = field(default_factory=dict)
 
@@ -65,25 +69,49 @@ class _Flow:
             self.pending, self.begun = self.pending[len(whole) :], known != HELLO
         *whole_lines, self.pending = self.pending.split(b"\n")
         yield from whole_lines
+        if self.pending[MOST_PENDING:]:
+            yield self.pending
+            self.pending = b""
 
-    def segment(self, number: int, data: bytes) -> bytes:
-        """The bytes that follow those known, once a segment with this number has come."""
+    def segment(self, number: int, data: bytes) -> Iterator[tuple[int, bytes]]:
+        """What follows now that a segment with this number has come: bytes, and how many before them are missing."""
         if self.following is None:
-            self.following = number
+            self.first = self.following = number
         if data:
             self.held.setdefault(number, data)
-        found = b""
+        yield 0, self._joined()
+        if len(self.held) > MOST_HELD:  # what is missing has not been captured
+            yield from self._onward()
+
+    def rest(self) -> Iterator[tuple[int, bytes]]:
+        """The same of what waits at the end of the capture."""
+        while self.held:
+            yield from self._onward()
+
+    def _onward(self) -> Iterator[tuple[int, bytes]]:
+        before = self.following or 0
+        self.following = min(self.held, key=lambda n: (n - before) % 2**32)
+        yield (self.following - before) % 2**32, self._joined()
+
+    def _joined(self) -> bytes:
+        found, following = b"", self.following or 0
         for _ in range(len(self.held) + 1):
-            at = next((n for n in self.held if (self.following - n) % 2**32 < 2**31), None)
+            at = next((n for n in self.held if (following - n) % 2**32 < 2**31), None)
             if at is None:
                 break
-            part = self.held.pop(at)[(self.following - at) % 2**32 :]
+            part = self.held.pop(at)[(following - at) % 2**32 :]
             found += part
-            self.following = (self.following + len(part)) % 2**32
-        if len(self.held) > MOST_HELD:  # what is missing has not been captured
-            self.following = min(self.held, key=lambda n: (n - (self.following or 0)) % 2**32)
-            return found + self.segment(self.following, b"")
+            following = (following + len(part)) % 2**32
+        self.following = following
         return found
+
+    def told(self, at_s: float, who: str, parts: Iterable[tuple[int, bytes]]) -> Iterator[Heard]:
+        """The lines of parts of which some may be missing before."""
+        for missing, data in parts:
+            if missing:
+                yield Heard(at_s, who, self.pending, missing)
+                self.pending = b""
+            yield from (Heard(at_s, who, text) for text in self.lines(data))
 
 
 def read(data: bytes, where: str) -> Iterator[Heard]:
@@ -102,26 +130,33 @@ def read(data: bytes, where: str) -> Iterator[Heard]:
 
 
 def _session(data: bytes, where: str) -> Iterator[Heard]:
-    flows: dict[str, _Flow] = {}
+    flows: dict[tuple[str, str], _Flow] = {}
     for number, row in enumerate(data.splitlines(), 1):
         try:
             event = json.loads(row) if row.strip() else {}
-        except ValueError as error:
+        except (ValueError, RecursionError) as error:
             raise BadInput("no JSON", where=where, item=f"line {number}", got=str(error)) from None
         said = event.get("data") if isinstance(event, dict) else None
         if not isinstance(said, str) or event.get("ev") not in ("send", "write"):
             continue
         said = _LEFT_OUT.sub("", said)
         who, at_s = str(event.get("who", "")), event.get("t")
-        flow = flows.setdefault(f"{who} {event.get('fd', '')}", _Flow())
+        flow = flows.setdefault((who, str(event.get("fd", ""))), _Flow())
         for text in flow.lines(said.encode("utf-8", "replace")):
-            yield Heard(float(at_s) if isinstance(at_s, int | float) else None, who, text)
-    yield from _unfinished({name.partition(" ")[0]: flow for name, flow in flows.items()})
+            yield Heard(at_s if isinstance(at_s, float) else _seconds(at_s), who, text)
+    yield from _unfinished((who, flow) for (who, _), flow in flows.items())
 
 
-def _unfinished(flows: dict[str, _Flow]) -> Iterator[Heard]:
+def _seconds(said: object) -> float | None:
+    try:
+        return float(said) if isinstance(said, int) else None
+    except OverflowError:
+        return None
+
+
+def _unfinished(flows: Iterable[tuple[str, _Flow]]) -> Iterator[Heard]:
     """What has no newline at the end of the capture."""
-    return (Heard(None, who, flow.pending) for who, flow in flows.items() if flow.pending)
+    return (Heard(None, who, flow.pending) for who, flow in flows if flow.pending)
 
 
 def _pcap(data: bytes, where: str) -> Iterator[Heard]:
@@ -135,11 +170,11 @@ def _pcap(data: bytes, where: str) -> Iterator[Heard]:
             "link type of the capture", where=where, expected="Ethernet, loopback or raw IP"
         )
     flows: dict[str, _Flow] = {}
-    at, first_s = 24, None
+    at, first_s, at_s = 24, None, 0.0
     while at < len(data):
         if len(data) < at + 16:
             raise cut
-        whole_s, fraction, length, _ = struct.unpack_from(order + "IIII", data, at)
+        whole_s, fraction, length, sent = struct.unpack_from(order + "IIII", data, at)
         at_s = whole_s + fraction * unit_s
         first_s = at_s if first_s is None else first_s
         packet = data[at + 16 : at + 16 + length]
@@ -147,25 +182,45 @@ def _pcap(data: bytes, where: str) -> Iterator[Heard]:
             raise cut
         at += 16 + length
         found = _payload(packet[skip:])
-        if found is None or (found.who not in flows and len(flows) >= MOST_FLOWS):
+        if found is None:
             continue
+        if length < sent:
+            raise BadInput(
+                "packet captured in part", where=where, item=f"{at_s - first_s:.3f} s",
+                expected=f"all of its {sent} bytes, as `tcpdump -s 0` has them", got=f"{length} bytes",
+            )  # fmt: skip
+        if found.who not in flows and len(flows) >= MOST_FLOWS:
+            raise BadInput("too many connections", where=where, expected=f"{MOST_FLOWS} at most")
         flow = flows.setdefault(found.who, _Flow())
-        told = flow.lines(flow.segment(found.number, found.data)) if found.tcp else (found.data,)
-        for text in told:
-            yield Heard(at_s - first_s, found.who, text)
-    yield from _unfinished(flows)
+        if found.begins and flow.first not in (None, found.number):  # the port is used again
+            yield from _ended(found.who, flow, at_s - first_s)
+            flow = flows[found.who] = _Flow()
+        if found.tcp:
+            parts = flow.segment(found.number, found.data)
+            yield from flow.told(at_s - first_s, found.who, parts)
+        else:
+            yield Heard(at_s - first_s, found.who, found.data)
+    for who, flow in flows.items():
+        yield from _ended(who, flow, at_s - (first_s or 0.0))
+
+
+def _ended(who: str, flow: _Flow, at_s: float) -> Iterator[Heard]:
+    """What is left of a connection at its end."""
+    yield from flow.told(at_s, who, flow.rest())
+    yield from _unfinished([(who, flow)])
 
 
 class _Packet(NamedTuple):
     who: str
     tcp: bool
+    begins: bool
     number: int
     data: bytes
 
 
 def _payload(ip: bytes) -> _Packet | None:
-    """What an IPv4 packet carries; None for one that is none of TCP or UDP, or not whole."""
-    if len(ip) < 20 or ip[0] >> 4 != 4:
+    """What an IPv4 packet carries; None for one that is none of TCP or UDP, or a fragment."""
+    if len(ip) < 20 or ip[0] >> 4 != 4 or ip[0] & 15 < 5 or int.from_bytes(ip[6:8], "big") & 0x3FFF:
         return None
     head, total, kind = 4 * (ip[0] & 15), int.from_bytes(ip[2:4], "big"), ip[9]
     body = ip[head : total or None]
@@ -175,6 +230,7 @@ def _payload(ip: bytes) -> _Packet | None:
     source, to, number = struct.unpack_from(">HHI", body)
     who = f"{ends[0]}:{source} > {ends[1]}:{to}"
     if kind == _UDP:
-        return _Packet(who, False, 0, body[8:])
-    number += bool(body[13] & 2)  # SYN counts as one
-    return _Packet(who, True, number % 2**32, body[4 * (body[12] >> 4) :])
+        return _Packet(who, False, False, 0, body[8:])
+    begins = bool(body[13] & 2)
+    number += begins  # SYN counts as one
+    return _Packet(who, True, begins, number % 2**32, body[4 * (body[12] >> 4) :])

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from cratous.core.files.whole_file import write_atomically
 from cratous.services.certify.flight_record import flown_of
-from cratous.services.certify.own_again import together
+from cratous.services.certify.own_again import named, shown, together
 from cratous.services.certify.rejudge import not_as_flown, subject, watch
 from cratous.services.certify.report import Judged, build_report, report_text, write_report
 from cratous.services.certify.verdicts import constraint_rows, plan_rows
@@ -49,8 +49,8 @@ def report_of(log: Path, own: Sequence[OwnFile] = ()) -> FromLog:
     flown = replace(flown, own=together((), meta, own))
     given = [file.named for file in flown.own]
     unchecked += [
-        f"{OWN}: the flight was flown with {one.get('file')}, which is not given"
-        for one in meta.get(OWN, ())
+        f"{OWN}: the flight was flown with {shown(one)}, which is not given"
+        for one in named(meta)
         if one not in given
     ]
     watched = watch(log)
@@ -75,6 +75,11 @@ def _doubted(row: dict[str, Any], doubted: Sequence[str]) -> dict[str, Any]:
 
 def write_from_log(log: Path, folder: Path, own: Sequence[OwnFile] = ()) -> FromLog:
     """Make the folder of results of a log: the log, the report, and its pages; BadInput where one is there already."""
+    kept = folder / LOG_NAME
+    if kept.exists() and log.resolve() != kept.resolve():
+        raise BadInput(
+            "there is another log already", where=str(kept), expected="another folder: -o DIR"
+        )
     if (folder / REPORT_NAME).exists():
         raise BadInput(
             "there is a report already", where=str(folder / REPORT_NAME), expected="another folder: -o DIR"
@@ -82,8 +87,8 @@ def write_from_log(log: Path, folder: Path, own: Sequence[OwnFile] = ()) -> From
     made = report_of(log, own)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        if log.resolve() != (folder / LOG_NAME).resolve():
-            write_atomically(folder / LOG_NAME, log.read_bytes(), "the log")
+        if not kept.exists():
+            write_atomically(kept, log.read_bytes(), "the log")
     except OSError as error:
         raise BadInput(
             "cannot be written", where=str(folder), got=error.strerror or str(error)

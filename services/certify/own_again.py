@@ -30,20 +30,20 @@ def files_in(written: Data, meta: Data) -> tuple[tuple[OwnFile, ...], list[str]]
             wrong.append(f"{OWN}: {error}")
     there = [file.named for file in files]
     wrong += [
-        f"{OWN}: the flight was flown with {_shown(one)}, which the report lacks"
-        for one in _named(meta)
+        f"{OWN}: the flight was flown with {shown(one)}, which the report lacks"
+        for one in named(meta)
         if one not in there
     ]
     return files, wrong
 
 
-def _named(meta: Data) -> list[Any]:
+def named(meta: Data) -> list[Any]:
     """What the log says of the files that the flight was flown with."""
-    named = meta.get(OWN, [])
-    return named if isinstance(named, list) else [named]
+    said = meta.get(OWN, [])
+    return said if isinstance(said, list) else [said]
 
 
-def _shown(one: Any) -> str:
+def shown(one: Any) -> str:
     if isinstance(one, dict) and isinstance(one.get("file"), str):
         return f"{one['file']} (SHA-256 {one.get('sha256')})"
     return "files that it does not name rightly"
@@ -54,8 +54,8 @@ def together(files: Sequence[OwnFile], meta: Data, given: Iterable[OwnFile]) -> 
 
     files: of the report, confirmed; what only an earlier `cratous certify --requirements` put there is dropped.
     """
-    named = _named(meta)
-    kept = [file for file in files if file.named in named]
+    flown = named(meta)
+    kept = [file for file in files if file.named in flown]
     added = [file for file in given if file not in kept]
     refuse_clashes([*kept, *added])
     return (*kept, *added)

@@ -197,9 +197,17 @@ def not_as_flown(log: Path) -> list[str]:
     if "mission_hash" in meta and meta["mission_hash"] != mission_hash(mission):
         return [f"{LOG_NAME}: meta.mission is not the mission that was flown"]
     accepted = next((row for row in read_log(log) if row.topic == ACCEPTED), None)
-    if accepted is not None and json.loads(accepted.body)["PlanHash"] != plan_hash(plan):
+    if accepted is not None and _plan_hash(accepted.body) != plan_hash(plan):
         found.append(f"{LOG_NAME}: meta.plan is not the plan that was accepted")
     return found
+
+
+def _plan_hash(body: str) -> Any:
+    """Of which plan a message says that it was accepted; None where it says nothing that can be read."""
+    try:
+        return json.loads(body)["PlanHash"]
+    except (ValueError, TypeError, LookupError, RecursionError):
+        return None
 
 
 def rebuilt(log: Path, written: dict[str, Any]) -> tuple[dict[str, Any], dict[str, str], list[str]]:

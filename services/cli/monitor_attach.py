@@ -152,6 +152,7 @@ def _tap(address: str, live: Live) -> Open:
         )
     if live.keys is not None and not live.keys.is_dir():
         raise BadInput("there is no such folder", item="--keys", got=str(live.keys))
+    _refuse_no_keys(live.keys)
     leads_to = read_address("tcp://" + address.removeprefix(TAP), ("tcp",), item="--attach")
     listens = read_address(f"tcp://{live.listen}", ("tcp",), item="--listen", free=True)
 
@@ -165,6 +166,16 @@ def _tap(address: str, live: Live) -> Open:
         return Tapped(tap, lambda vehicle: _key(vehicle, live.keys), report, find), TAP_WAIT_S
 
     return opened
+
+
+def _refuse_no_keys(folder: Path | None) -> None:
+    """BadInput for a file of a key that holds none: else its lines would just not be authenticated."""
+    from cratous.bridge.text_protocol.keys import key_of
+
+    for file in sorted(folder.glob("vehicle_*.key")) if folder is not None else ():
+        number = file.stem.removeprefix("vehicle_")
+        if number.isdecimal() and str(int(number)) == number:
+            key_of(int(number), folder)
 
 
 def _key(vehicle: int, folder: Path | None) -> bytes | None:

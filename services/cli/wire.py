@@ -38,8 +38,9 @@ def explain(file: Path, raw: bool) -> int:
     from cratous.spec.files.text_file import bytes_of
 
     good, wrong = 0, 0
-    for at_s, who, text in read(bytes_of(file, MESSAGES_BYTES), str(file)):
-        right, words = told(text)
+    for at_s, who, text, missing in read(bytes_of(file, MESSAGES_BYTES), str(file)):
+        lost = f"MISSING: {missing} bytes were not captured"
+        right, words = (False, lost) if missing else told(text)
         good, wrong = good + right, wrong + (not right)
         when = "" if at_s is None else f"{at_s:10.3f} s  "
         click.echo(printable(f"{when}{who + '  ' if who else ''}{words}"))

@@ -12,7 +12,7 @@ from cratous.bridge import envelope as wire
 from cratous.bridge import lmcp
 from cratous.bridge.port import Address, Report, Tally
 from cratous.bridge.tcp_port import TcpPort
-from cratous.bridge.text_protocol import Message, OwnPosition
+from cratous.bridge.text_protocol import Message, OwnPosition, encode
 from cratous.services.flight.dynamics import AirState
 from cratous.services.icarous_communication.state import air_state
 from cratous.services.icarous_communication.steering import action_of, command_of
@@ -67,13 +67,15 @@ class Autopilot:
                 and self._vehicle_id == body.ID
                 and body.Time
             ):
-                found.append(self._state(body))
+                try:
+                    found.append(self._state(body))
+                except BadInput as error:
+                    self._tally.refuse("state that is none of a vehicle", str(error))
         return found
 
     def _state(self, body: Any) -> Reported:
-        air = self._air = air_state(body, self._projection)
-        self._passed += self._waypoint not in (0, body.CurrentWaypoint)
-        self._waypoint = body.CurrentWaypoint
+        """BadInput for one that POSTN could not say: of no number, no place or no time."""
+        air = air_state(body, self._projection)
         alt_m, v = air.position.alt_m, air.velocity
         line = OwnPosition(
             time_s=body.Time / 1000,
@@ -86,6 +88,10 @@ class Autopilot:
             down_mps=v.down_m_s,
             vehicle_id=self._vehicle_id,
         )
+        encode(line)
+        self._air = air
+        self._passed += self._waypoint not in (0, body.CurrentWaypoint)
+        self._waypoint = body.CurrentWaypoint
         return Reported(line, self._passed)
 
     def steer(self, line: Message) -> bool:

@@ -14,6 +14,7 @@ import contextlib
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import zmq
@@ -133,7 +134,7 @@ class Program:
             self._came(came, now_s)
         if self._besides.direct is not None:
             for state in self._besides.direct.step():
-                self._step(self._end.peer(self.state, *state))
+                self._made(state.line, partial(self._end.peer, self.state, *state))
         autopilot = self._besides.autopilot
         for reported in () if autopilot is None else autopilot.step(now_s):
             self._flown(reported)
@@ -195,13 +196,8 @@ class Program:
                 self._until_s = now_s + self._patience.wait_s
 
     def _line(self, line: Message) -> None:
-        try:
-            step = self._end.handle(self.state, line)
-        except Exception as error:  # one line must not end the avoidance of the next ones
-            self._tally.refuse("line that the step fails at", f"{line}: {error!r}")
-            return
         before = self.state
-        self._step(step)
+        self._made(line, lambda: self._end.handle(self.state, line))
         if isinstance(line, OwnPosition) and self.state is not before:
             self._told_ms, self._waypoints = round(1000 * line.time_s), self._passed
             if self._alone:
@@ -220,13 +216,22 @@ class Program:
             self._report("WARN", f"{now_ms} ms: no POSTN of UxAS; the state is the autopilot's")
         before = self.state
         passed, self._waypoints = self._passed - self._waypoints, self._passed
-        self._step(self._end.alone(self.state, line, passed))
+        self._made(line, lambda: self._end.alone(self.state, line, passed))
         if self.state is not before:
             self._say_directly(line)
 
     def _say_directly(self, line: OwnPosition) -> None:
         if self._besides.direct is not None:
             self._besides.direct.say(replace(line, vehicle_id=self._end.craft.config.vehicle_id))
+
+    def _made(self, line: Message, made: Callable[[], Step]) -> None:
+        """A step; one line at which it fails must not end the avoidance of the next ones."""
+        try:
+            step = made()
+        except Exception as error:
+            self._tally.refuse("line that the step fails at", f"{line}: {error!r}")
+            return
+        self._step(step)
 
     def _step(self, step: Step) -> None:
         state, answers = step

@@ -35,6 +35,8 @@ from cratous.services.requirements.specification import Signal
 from cratous.spec.errors import BadInput
 
 POLL_S = 0.1
+REST_S = 1.0
+"""So long what has come before the end is looked at."""
 STATE = ("ID", "Time", "Groundspeed", "Course", "VerticalSpeed")
 FIELDS: dict[str, tuple[str, ...]] = {
     "afrl.cmasi.AirVehicleState": (
@@ -127,8 +129,21 @@ class Tapped:
                     stands = False
                     self._find("cut", self.now_ms() * 10**6)
                     self._report("ERROR", "tap: the relay has ended, and all connections with it")
+            yield from self._rest(time.monotonic_ns())
         finally:
             self._tap.close()
+
+    def _rest(self, end_ns: int) -> Iterator[Entry]:
+        """What has passed before the end, or that it is too much to be looked at still."""
+        given_up_s = time.monotonic() + REST_S
+        while records := list(self._tap.step()):
+            for one in records:
+                if one.time_ns > end_ns:
+                    return
+                if is_due(given_up_s, time.monotonic()):
+                    self._find("left out", self._since(one.time_ns) * 10**6)
+                    return
+                yield from self._copied(one)
 
     def _copied(self, one: Copied) -> Iterator[Entry]:
         if one.kind == OPENED:

@@ -10,12 +10,14 @@ from cratous.bridge import text_protocol as tp
 from cratous.bridge.overheard import NO_OPENING, REFUSED, Overheard, Said
 from cratous.bridge.text_protocol.dialects import Dialect
 from cratous.bridge.text_protocol.handshake import (
+    ACCEPT,
     DEFAULT_SECRET,
+    HELLO,
     ClientHandshake,
     Handshake,
     ServerHandshake,
 )
-from cratous.bridge.text_protocol.sealed import FORGED, SealedClient, SealedServer
+from cratous.bridge.text_protocol.sealed import DAMAGED, FORGED, SealedClient, SealedServer
 
 KEY = b"k" * 32
 LINES = {
@@ -163,3 +165,27 @@ def test_after_bytes_were_left_out_it_goes_on_with_the_next_line() -> None:
         found = [s.record for s in one.feed(True, cut[10:] + again)]
         assert found[-1] == tp.SetMode("PASSIVE", 2) or tp.SetMode("PASSIVE", 2) in found
         assert not one.authenticated
+
+
+def test_a_client_cannot_pass_for_uxas_before_uxas_has_spoken() -> None:
+    """Lines of one without a key would else be read as if the hands had been shaken."""
+    one, server = Overheard(lambda _: KEY), SealedServer(keys={3: KEY})
+    found = one.feed(True, HELLO + ACCEPT + tp.encode(LINES[False][0]))
+    found += one.feed(False, server.start() + b"error,another dialect than v2\n" + b" " * 64)
+    assert [getattr(s.record, "what", "") for s in found] == [NO_OPENING]
+    assert not one.is_open
+
+
+def test_without_a_secret_hands_are_not_shaken() -> None:
+    one = Overheard()
+    one.feed(True, HELLO + ACCEPT + tp.encode(LINES[False][0]))
+    found = one.feed(False, b"HTTP/1.1 400 Bad Request\r\n" * 5)
+    assert [getattr(s.record, "what", "") for s in found] == [NO_OPENING]
+    assert not one.is_open
+
+
+def test_a_packet_that_does_not_end_is_told_without_a_key_too() -> None:
+    one = Overheard()
+    heard(talk(*sealed()), one)
+    (found,) = one.feed(True, b"x" * 9000)
+    assert getattr(found.record, "what", "") == DAMAGED

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import resource
 import socket
 import struct
 import subprocess
@@ -11,6 +12,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from pathlib import Path
 
 import pytest
 
@@ -254,3 +256,62 @@ def test_bad_addresses_are_bad_input() -> None:
         Tap(at(taken_port.getsockname()[1]), at(1))
     with pytest.raises(BadInput, match="nobody knows this host"):
         Tap(at(), at(1, "no-such-host.invalid"))
+
+
+def test_more_clients_than_there_are_handles_end_no_connection(taps) -> None:
+    with socket.create_server(("127.0.0.1", 0), backlog=200) as server:
+        tap = taps(at(), at(server.getsockname()[1]))
+        client = socket.create_connection(tap.bound)
+        far, _ = server.accept()
+        resource.prlimit(tap.process.pid, resource.RLIMIT_NOFILE, (24, 24))
+        others = [socket.create_connection(tap.bound) for _ in range(60)]
+        time.sleep(0.3)
+        with client, far:
+            far.settimeout(10)
+            client.sendall(b"one\n")
+            assert far.recv(100) == b"one\n"
+        for one in others:
+            one.close()
+        assert tap.stands
+
+
+def test_the_relay_has_no_key_of_a_vehicle(taps, monkeypatch) -> None:
+    monkeypatch.setenv("CRATOUS_BRIDGE_KEY_3", "00" * 32)
+    tap = taps(at(), at(1))
+    assert b"CRATOUS_BRIDGE_KEY_3" not in Path(f"/proc/{tap.process.pid}/environ").read_bytes()
+
+
+def test_a_flood_does_not_keep_who_watches_from_ending(taps) -> None:
+    """What comes is given in parts, so that it is looked in between whether to end."""
+    over = threading.Event()
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        tap = taps(at(), at(server.getsockname()[1]))
+        client = socket.create_connection(tap.bound)
+        far, _ = server.accept()
+
+        def flood() -> None:
+            with suppress(OSError):
+                while not over.is_set():
+                    client.sendall(b"x" * 65536)
+
+        threads = [
+            threading.Thread(target=flood),
+            threading.Thread(target=read_all, args=(far, bytearray())),
+        ]
+        with client, far:
+            for thread in threads:
+                thread.start()
+            time.sleep(0.5)
+            most = 0
+            for _ in range(5):
+                count = 0
+                for one in tap.step():
+                    count += len(one.data)
+                    time.sleep(0.005)  # it is looked at
+                    if count > 8 << 20:
+                        break
+                most = max(most, count)
+            over.set()
+        for thread in threads:
+            thread.join(10)
+    assert 0 < most <= 1 << 18

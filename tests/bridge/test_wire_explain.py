@@ -164,3 +164,64 @@ def test_nothing_that_comes_makes_it_fall(data: bytes) -> None:
                 told(one.text)
         except BadInput:
             pass
+
+
+def test_what_was_not_captured_is_told_and_what_follows_it_too(tmp_path, capsys) -> None:
+    """At the end of a capture, and where more waits than is held."""
+    lines = [tp.encode(tp.WaypointReached(k % 250)) for k in range(1500)]
+    packets, number = [packet(DOWN, b"", 999, syn=True)], 1000
+    for k, line in enumerate(lines):
+        if k not in (3, 1498):
+            packets.append(packet(DOWN, line, number))
+        number += len(line)
+    found = list(read(pcap(*packets), "x"))
+    kept = [line for k, line in enumerate(lines) if k not in (3, 1498)]
+    assert [h.text + b"\n" for h in found if not h.missing] == kept
+    assert [h.missing for h in found if h.missing] == [len(lines[3]), len(lines[1498])]
+    file = tmp_path / "x.pcap"
+    file.write_bytes(pcap(*packets))
+    assert main(["wire", "explain", str(file)]) == 2
+    said = capsys.readouterr()
+    assert f"MISSING: {len(lines[3])} bytes" in said.out
+    assert said.err == "cratous: 1498 lines right, 2 wrong\n"
+
+
+def test_a_port_that_is_used_again_begins_a_connection() -> None:
+    one, two = (tp.encode(tp.WaypointReached(k)) for k in (1, 2))
+    data = pcap(
+        packet(DOWN, b"", 2**31, syn=True), packet(DOWN, one, 2**31 + 1),
+        packet(DOWN, b"", 5, syn=True), packet(DOWN, two, 6), packet(DOWN, b"", 5, syn=True),
+    )  # fmt: skip
+    assert texts(data) == [one[:-1], two[:-1]]
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (b'{"a":' + b"[" * 100_000, "no JSON"),
+        (pcap(packet(UP, b"x" * 50, 1))[:-30], "capture cut off"),
+        (
+            pcap() + struct.pack("<IIII", 1, 0, 60, 104) + packet(UP, b"x" * 50, 1)[:60],
+            "captured in part",
+        ),
+        (
+            pcap(*(packet(("127.0.0.1", k, 1), b"", 1) for k in range(1, 1003))),
+            "too many connections",
+        ),
+    ],
+)
+def test_what_cannot_be_told_whole_is_bad_input(data: bytes, said: str) -> None:
+    with pytest.raises(BadInput, match=said):
+        texts(data)
+
+
+def test_a_time_that_is_no_number_of_this_machine_is_none() -> None:
+    row = {"ev": "send", "who": "uxas", "t": 10**400, "data": "WPRCH,id_1,\n"}
+    assert [one.at_s for one in read(json.dumps(row).encode(), "x")] == [None]
+
+
+def test_what_has_no_newline_does_not_take_more_time_by_its_square() -> None:
+    packets = (packet(UP, b"A" * 1400, 1 + 1400 * k) for k in range(3000))
+    found = texts(pcap(*packets))
+    assert b"".join(found) == b"A" * 1400 * 3000
+    assert max(map(len, found)) < 70_000

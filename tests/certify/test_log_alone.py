@@ -96,3 +96,38 @@ def test_a_changed_log_and_what_is_none_are_refused_by_name(
 def test_a_certificate_alone_is_checked(log: Path, capsys) -> None:
     assert main(["certify", str(log.parent / "certificate.json")]) == 0
     assert "confirmed: optimal" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("body", ["{", "{}", "5", "[" * 100_000])
+def test_an_acceptance_that_says_no_plan_is_not_that_of_the_plan(
+    body: str, log: Path, tmp_path: Path, capsys
+) -> None:
+    with sqlite3.connect(log) as database:
+        database.execute(
+            "UPDATE messages SET body = ? WHERE topic = 'cratous.PlanAccepted'", (body,)
+        )
+        assert database.execute("SELECT changes()").fetchone() == (1,)
+        database.execute("DELETE FROM closing")
+    assert main(["certify", str(log), "-o", str(tmp_path / "made")]) == 2
+    assert str(log) in capsys.readouterr().err
+    assert not (tmp_path / "made").exists()
+
+
+@pytest.mark.parametrize("said", ["7", "[5]", '[{"file": 3}]'])
+def test_requirements_that_the_log_does_not_name_rightly_are_told(
+    said: str, log: Path, tmp_path: Path, capsys
+) -> None:
+    with sqlite3.connect(log) as database:
+        database.execute("INSERT INTO meta VALUES ('own', ?)", (said,))
+    assert main(["certify", str(log), "-o", str(tmp_path / "made")]) == 0
+    assert "own: the flight was flown with files that it does not name" in capsys.readouterr().out
+
+
+def test_another_log_is_not_written_over(log: Path, tmp_path: Path, capsys) -> None:
+    """As of a flight that was stopped, and has no report yet."""
+    made = tmp_path / "made"
+    made.mkdir()
+    (made / "log.sqlite").write_bytes(b"of another flight")
+    assert main(["certify", str(log), "-o", str(made)]) == 2
+    assert "there is another log already" in capsys.readouterr().err
+    assert (made / "log.sqlite").read_bytes() == b"of another flight"

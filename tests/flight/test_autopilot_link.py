@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from typing import Any
@@ -142,3 +143,37 @@ def test_it_counts_once_postn_has_not_come_for_a_while_after_a_plan_has(opened: 
     assert any("POSTN comes again" in text for text in said)
     reported(5.0)
     assert program.state.now_ms == 4000
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [("u", math.nan), ("v", math.inf), ("Time", 2**62), ("Latitude", math.nan)],
+)
+def test_a_state_that_is_none_is_refused_and_the_next_one_counts(
+    field: str, value: float, opened: list[Any]
+) -> None:
+    vehicle, right = Vehicle(opened), state(1, now_ms=2000)
+    wrong = state(1, now_ms=1000)
+    if field == "Latitude":
+        wrong = wrong.copy(Location=wrong.Location.copy(Latitude=value))
+    else:
+        wrong = wrong.copy(**{field: value})
+    vehicle.tell(wrong, right)
+    assert [one.line.time_s for one in vehicle.told(1)] == [2.0]
+    assert "state that is none of a vehicle" in str(vehicle.said)
+
+
+def test_a_step_that_fails_ends_nothing(opened: list[Any], monkeypatch) -> None:
+    port = TextPort(Address("tcp", "127.0.0.1", free_port(), "tcp://uxas"), server=False)
+    opened.append(port)
+    program = Program(IcarousEnd(CRAFT), port, lambda _s, _text: None)
+    for line in (*plan(), own(1.0)):
+        program._line(line)
+
+    def fails(*_: Any) -> Any:
+        raise ValueError("of this line")
+
+    monkeypatch.setattr(IcarousEnd, "alone", fails)
+    program._flown(Reported(own(4.0), 0))
+    assert program.state.now_ms == 1000
+    assert dict(program._tally.counts.refused) == {"line that the step fails at": 1}

@@ -15,12 +15,15 @@ import pytest
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.link import Link
 from cratous.bridge.port import Address
+from cratous.bridge.relay import NEAR, OPENED
+from cratous.bridge.tap import Copied
 from cratous.bridge.text_connection import Opened
 from cratous.bridge.text_port import TextPort
 from cratous.bridge.text_protocol.dialects import Dialect
 from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET
 from cratous.bridge.text_protocol.keys import Keys
 from cratous.services.cli import main
+from cratous.services.requirements import tapped
 
 REQUIREMENTS = """trace every 100 ms gap 2 s begins with all
 signal altitude: m from AirVehicleState[ID=3].Location.Altitude hold 5 s
@@ -241,3 +244,54 @@ def test_that_nobody_comes_is_said(requirements, monkeypatch, capsys):
     words = ["monitor", "--attach", f"cratous://127.0.0.1:{_free()}", "--listen", "127.0.0.1:0"]
     assert main([*words, "--requirements", str(requirements)]) == 2
     assert "nobody has connected to the tap" in capsys.readouterr().err
+
+
+class Flood:
+    """A tap at which more has come than is ever looked at; came_ns: when, None for always just now."""
+
+    stands, process = True, None
+
+    def __init__(self, came_ns: int | None) -> None:
+        self._came_ns, self._kind = came_ns, OPENED
+
+    def handles(self) -> list[Any]:
+        return []
+
+    def step(self) -> Iterator[Copied]:
+        time_ns = time.monotonic_ns() if self._came_ns is None else self._came_ns
+        kind, self._kind = self._kind, NEAR
+        yield Copied(kind, 1, time_ns, b"" if kind == OPENED else b"x\n")
+
+    def close(self) -> None:
+        pass
+
+
+@pytest.mark.parametrize("came_ns", [1, None])
+def test_a_watch_ends_in_a_flood_and_what_came_before_is_left_out_by_name(
+    came_ns: int | None, monkeypatch
+) -> None:
+    monkeypatch.setattr(tapped, "REST_S", 0.2)
+    found: list[str] = []
+    flood: Any = Flood(came_ns)
+    one = tapped.Tapped(flood, lambda _: None, lambda *_: None, lambda kind, _: found.append(kind))
+    begun_s = time.monotonic()
+    turns = iter([False, False, True])
+    assert list(one.messages(10.0, lambda _: next(turns))) == []
+    assert time.monotonic() - begun_s < 10
+    assert ("left out" in found) == (came_ns is not None)
+
+
+def test_a_file_of_a_key_that_holds_none_is_bad_input(requirements, tmp_path, capsys):
+    (tmp_path / "vehicle_3.key").write_text("no key")
+    words = [
+        "--attach",
+        "cratous://127.0.0.1:1",
+        "--listen",
+        "127.0.0.1:0",
+        "--keys",
+        str(tmp_path),
+    ]
+    assert main(["monitor", *words, "--requirements", str(requirements)]) == 2
+    said = capsys.readouterr().err
+    assert "vehicle_3.key" in said
+    assert "no key of the bridge" in said
