@@ -111,7 +111,7 @@ def kept(result: Any, folder: Path, who: str) -> bool:
         for key, rlimit, *rest in result["answers"]:
             answer = Answer(*rest)
             kinds = [type(value) for value in (key, rlimit, *rest)]
-            if kinds != [str, int, str, int, float, str] or not KEY.fullmatch(key):
+            if kinds != [str, int, str, int, float, str, str] or not KEY.fullmatch(key):
                 raise ValueError(key)
             cache.put(key, rlimit, answer)
         return result["proved"] is True

@@ -159,6 +159,8 @@ def test_they_are_the_same_program_in_any_folder(
     monkeypatch.setenv("PYTHONPATH", "src")
     with Children(tmp_path, tmp_path) as children:
         pid = simulator(children, tmp_path, "simulator")
+        # empty for a moment while the system still sets the program up
+        until(lambda: Path(f"/proc/{pid}/environ").read_text())
         environment = Path(f"/proc/{pid}/environ").read_text().split("\0")
     (paths,) = [x.partition("=")[2] for x in environment if x.startswith("PYTHONPATH=")]
     place = Path(paths.split(os.pathsep)[0])

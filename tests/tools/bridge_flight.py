@@ -134,14 +134,19 @@ class Aircraft:
         self.flies: Command | None = None
         self.numbers: list[int] = []
         self.passed: list[int] = []
+        self.plan: Any = None
         self.steered = False
 
     def told(self, body: Any) -> None:
-        """A MissionCommand or VehicleActionCommand."""
+        """A MissionCommand or VehicleActionCommand; GoToWaypointAction goes on with the last plan from there."""
+        for action in getattr(body, "VehicleActionList", ()):
+            if type(action).__name__ == "GoToWaypointAction":
+                body = self.plan.copy(FirstWaypoint=action.WaypointNumber)
         self.steered = type(body).__name__ == "VehicleActionCommand"
         if self.steered:
             self.flies = decode(PLANE, body, self.air.heading_rad)
             return
+        self.plan = body
         known = {w.Number: w for w in body.WaypointList}
         number, order = body.FirstWaypoint, []
         while number in known:
