@@ -56,5 +56,5 @@ def restored(data: dict[str, Any] | None) -> Ran | None:
     if data is None:
         return None
     texts = {key: tuple(map(str, data[key])) for key in ("differences", "left_out")}
-    counts = {key: int(data[key]) for key in ("points", "doubles")}
-    return Ran(not_run=str(data["not_run"]), **counts, **texts)
+    points, doubles = int(data["points"]), int(data["doubles"])
+    return Ran(points=points, not_run=str(data["not_run"]), doubles=doubles, **texts)

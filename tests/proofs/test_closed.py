@@ -137,13 +137,12 @@ def test_how_arguments_vary():
     [
         (lambda c, x, n: x * x == 1, "not 2"),
         (lambda c, x, n: x * x * x == x, "not 3"),
-        (lambda c, x, n: x * x == 2, "not 2"),
         (lambda c, x, n: x * (2**70 * x - 1) == 0, "not 2"),
         (lambda c, x, n: c.all_of(x >= 0, x <= 1), "all"),
         (lambda c, x, n: x * x <= 4, "all"),
         (lambda c, x, n: 2**60 * x * x <= 1, "all"),
         (lambda c, x, n: n * n == 4, "not 2"),
-        (lambda c, x, n: n * n == n, "all"),
+        (lambda c, x, n: c.all_of(n >= 0, n <= 1), "all"),
         (lambda c, x, n: c.all_of(n >= 0, n <= 3), "all"),
     ],
 )
