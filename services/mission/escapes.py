@@ -69,7 +69,7 @@ def escapes(
 ) -> Iterator[Escape]:
     """All ways tried from a pose at a speed over the ground. vehicle: as it is able in the wind; zones: to keep, without
     padding; dt_s: a step of the flight [s]. One that stands has none."""
-    if not speed_m_s > 0:
+    if not speed_m_s:
         return
     here = _Flown(start, speed_m_s, (Position(start.north_m, start.east_m, start.alt_m),))
     slow_m_s = min(speed_m_s, vehicle.min_speed_m_s)

@@ -18,6 +18,7 @@ from cratous.bridge import envelope as wire
 from cratous.bridge import lmcp
 from cratous.bridge.port import Address, Incoming, Limits, address, is_due
 from cratous.bridge.tcp_port import TcpPort
+from cratous.core.authority.timeliness import lasted
 from cratous.services.exporting.amase import traffic_events
 from cratous.services.exporting.messages import Told
 from cratous.services.mission.frames import Projection
@@ -244,7 +245,7 @@ class Amase:
 
     def _tick(self, body: Any) -> list[Any]:
         """AMASE tells its time, before the states of that time."""
-        if body.ScenarioTime < self._newest_ms:
+        if not lasted(self._newest_ms, body.ScenarioTime, 0):
             self._newest_ms = 0
             self._lost("its clock has gone back")
             return []

@@ -8,6 +8,7 @@ binds no aircraft and is left out. With an additional padding each zone is sent 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from math import floor
 from typing import Any
 
 from cratous.bridge import lmcp
@@ -55,7 +56,8 @@ class OperatingRegionStateService:
         if known is None or not self._padding_m:
             return False
         most = max(abs(body.Padding), abs(known.Padding), self._padding_m)
-        if not body.Padding - known.Padding >= self._padding_m - FLOAT * most:
+        times = floor((body.Padding - known.Padding + FLOAT * most) / self._padding_m)
+        if not max(0, times):
             return False
         return bool(body.copy(Padding=known.Padding) == known)
 
