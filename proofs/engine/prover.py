@@ -255,12 +255,6 @@ def prove(
     def possible(terms: list[z3.BoolRef]) -> str:
         return _satisfiable(terms, min(rlimit, PATH_RLIMIT), memory)
 
-    def another(terms: list[z3.BoolRef], value: z3.ExprRef) -> z3.ExprRef | None:
-        _, model, context = _ask(terms, min(rlimit, PATH_RLIMIT), memory.seen)
-        if model is None:
-            return None
-        return model.eval(value.translate(context), model_completion=True).translate(value.ctx)
-
     theorem = Theorem(
         name,
         sentence,
@@ -271,7 +265,7 @@ def prove(
         tuple(claim.assumptions),
         _KEY,
         reachable_paths.paths(claim, possible),
-        reachable_paths.varied(claim, possible, another),
+        reachable_paths.varied(claim, possible),
     )
     return replace(theorem, ended=tuple(memory.ended), _key=_KEY)
 

@@ -13,7 +13,6 @@ from cratous.core.kernel.sources import ours
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.outcomes import Ran
 from cratous.proofs.engine.symbolic import SymMask
-from cratous.proofs.engine.terms import leaves
 from cratous.proofs.engine.theorem_files import load_claim, load_lemma
 from cratous.proofs.running.copies import Undecided
 from cratous.proofs.running.late_values import now
@@ -69,7 +68,7 @@ def _ran(
     called: dict[Function, list[tuple[Any, ...]]],
 ) -> Ran:
     found: list[str] = []
-    points = doubles = 0
+    points = 0
     given = witnesses(claim)
     lemma = functools.cache(lambda other: load_lemma(other, folder))
     for number in range(len(given) + DRAWN_AT_MOST):
@@ -86,21 +85,12 @@ def _ran(
             if len(found) < ENOUGH:
                 found.append(f"run as Python: {error}: {_numbers(on.shown)}")
         except NotRun as error:
-            return Ran(points, tuple(found), str(error), doubles=doubles)
+            return Ran(points, tuple(found), str(error))
         except (TypeError, AttributeError) as error:
-            return Ran(points, tuple(found), f"{type(error).__name__}: {error}", doubles=doubles)
+            return Ran(points, tuple(found), f"{type(error).__name__}: {error}")
         else:
             points += 1
-            doubles += all(map(_is_double, leaves(now(tuple(on.shown.values())))))
-    return Ran(points, tuple(found), doubles=doubles)
-
-
-def _is_double(value: Any) -> bool:
-    """A number that a double is, or an integer or truth value."""
-    try:
-        return not isinstance(value, Fraction) or Fraction(float(value)) == value
-    except OverflowError:
-        return False
+    return Ran(points, tuple(found))
 
 
 def _numbers(shown: dict[str, Any]) -> str:

@@ -110,13 +110,7 @@ def _how(state) -> list[str]:
     claim, memory = Watched(), _Memory(Cache(None))
     state(claim)
     ask = lambda terms: _satisfiable(terms, 100_000, memory)  # noqa: E731
-    return [how for _, how in reachable_paths.varied(claim, ask, _another)]
-
-
-def _another(terms, value):
-    solver = z3.Solver()
-    solver.add(*terms)
-    return solver.model().eval(value, model_completion=True) if solver.check() == z3.sat else None
+    return [how for _, how in reachable_paths.varied(claim, ask)]
 
 
 def test_how_arguments_vary():
@@ -133,49 +127,10 @@ def test_how_arguments_vary():
 
 
 @pytest.mark.parametrize(
-    ("premise", "how"),
-    [
-        (lambda c, x, n: x * x == 1, "not 2"),
-        (lambda c, x, n: x * x * x == x, "not 3"),
-        (lambda c, x, n: x * (2**70 * x - 1) == 0, "not 2"),
-        (lambda c, x, n: c.all_of(x >= 0, x <= 1), "all"),
-        (lambda c, x, n: x * x <= 4, "all"),
-        (lambda c, x, n: 2**60 * x * x <= 1, "all"),
-        (lambda c, x, n: n * n == 4, "not 2"),
-        (lambda c, x, n: c.all_of(n >= 0, n <= 1), "all"),
-        (lambda c, x, n: c.all_of(n >= 0, n <= 3), "all"),
-    ],
-)
-def test_a_few_values_of_an_argument_are_told_from_many(premise, how):
-    def state(c: Claim) -> None:
-        x, n = c.real("x"), c.integer("n")
-        c.premise(premise(c, x, n))
-        c.use(two, x, n)
-
-    assert _how(state) == [how]
-
-
-def masked(mask: int) -> bool:
-    """Whatever."""
-    return mask & 1 == 0
-
-
-def test_a_mask_takes_more_than_a_few_values():
-    def state(c: Claim, most: int) -> None:
-        mask = c.mask("mask")
-        c.premise(mask & c.bits(2**64 - 1 - most) == c.bits(0))
-        c.use(masked, mask)
-
-    assert [_how(lambda c, most=most: state(c, most)) for most in (7, 15)] == [["not 8"], ["all"]]
-
-
-@pytest.mark.parametrize(
     ("how", "more"),
     [
         ([], False),
         (["not", "all"], True),
-        (["not 2"], False),
-        (["not 2", "not 3"], False),
         (["3"], False),
         (["3", "3"], False),
         (["3", "4"], True),
