@@ -32,6 +32,7 @@ TRUSTED = (
     "the rows of a branch",
     "the theorems themselves",
     "the caches",
+    "answers of other machines",
     "the definitions in `spec/`",
     "the monitor, and what it shares with the rest",
     "the projection",

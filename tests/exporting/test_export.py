@@ -55,7 +55,7 @@ def items(texts: tuple[str, ...]) -> set[str]:
     [
         ("crossing", {}),
         ("relations", {UXAS: {"traffic"}}),
-        ("popup", {form: {"changes"} for form in (AMASE, UXAS)}),
+        ("popup", {form: {"changes", "tasks[0].views"} for form in (AMASE, UXAS)}),
         ("partial", {form: {"changes"} for form in (AMASE, UXAS)}),
     ],
 )

@@ -67,7 +67,7 @@ def test_what_the_zone_forbade_is_done_once_it_has_ended(ended: Any) -> None:
 
 def test_the_map_of_the_report_says_until_when(ended: Any) -> None:
     folder, _, _ = ended
-    assert "zone 12, until 60.0 s" in (folder / "report.html").read_text(encoding="utf-8")
+    assert "zone 12, until 60 s" in (folder / "report.html").read_text(encoding="utf-8")
 
 
 def test_without_the_change_it_is_left_out(tmp_path: Path) -> None:

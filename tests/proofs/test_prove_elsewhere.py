@@ -152,7 +152,7 @@ def test_a_worker_of_another_version_is_refused(root: Path, place: Place) -> Non
 def test_answers_of_others_are_taken_after_ones_own_and_never_kept_as_such(tmp_path: Path) -> None:
     own, others = tmp_path / "own", tmp_path / "others"
     keys = [character * 64 for character in "abc"]
-    rows = [[key, 5, result, 1, 0.5, "ALL"] for key, result in zip(keys, ("unsat", "unknown", "sat"), strict=True)]  # fmt: skip
+    rows = [[key, 5, result, 1, 0.5, "ALL", ""] for key, result in zip(keys, ("unsat", "unknown", "sat"), strict=True)]  # fmt: skip
     assert kept({"proved": True, "answers": rows}, others, "a worker")
     Cache(own).put(keys[2], 5, Answer("unsat", 1, 0.5, "ALL"))
     cache = Beside(own, others)
@@ -166,8 +166,8 @@ def test_answers_of_others_are_taken_after_ones_own_and_never_kept_as_such(tmp_p
     "result",
     [
         {}, {"answers": []}, {"proved": True, "answers": [1]}, {"proved": True, "answers": [["a"]]},
-        {"proved": True, "answers": [["../../x", 5, "unsat", 1, 0.5, "ALL"]]}, None,
-        {"proved": True, "answers": [["a" * 64, "5", "unsat", 1, 0.5, "ALL"]]},
+        {"proved": True, "answers": [["../../x", 5, "unsat", 1, 0.5, "ALL", ""]]}, None,
+        {"proved": True, "answers": [["a" * 64, "5", "unsat", 1, 0.5, "ALL", ""]]},
     ],
 )  # fmt: skip
 def test_what_is_no_answer_is_bad_input(tmp_path: Path, result: object) -> None:
