@@ -343,7 +343,7 @@ def test_roads_and_ways_are_written_down(tmp_path: Path, monkeypatch: pytest.Mon
     one.bus.publish(routes((MIDDLE, corner)), "test")
     one.bus.run()
     assert len(list(folder.iterdir())) == 4
-    for text in ("../edges.csv", "/tmp/edges.csv", "a\\b"):
+    for text in ("../edges.csv", "/edges.csv", "a\\b"):
         path = write_cfg(tmp_path, f'<Service Type="{ROADS}" {osm_file} MetricsFile="{text}"/>')
         with pytest.raises(BadInput, match=r"MetricsFile: a file elsewhere"):
             Process(read(path), Logs("DEBUG", echo=str), data=data, virtual=True)
