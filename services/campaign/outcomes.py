@@ -112,8 +112,11 @@ def _disagrees(judge: dict[str, Any], requirements: tuple[str, ...]) -> bool:
     return any(d["guarantee"] in ("", *requirements) for d in judge.get("disagreements", []))
 
 
-def code_of(outcomes: set[str]) -> int:
-    """The exit code: 0 if every run holds, 1 if something is violated, 3 if something is not known."""
+def code_of(outcomes: set[str], asked: bool = True) -> int:
+    """The exit code: 0 if every run holds, 1 if something is violated, 3 if something is not known.
+
+    asked: False if logs were to be held against the proved steps of authority, and not one could be.
+    """
     if outcomes & set(BAD):
         return 1
-    return 0 if outcomes == {str(Outcome.HOLDS)} else 3
+    return 0 if asked and outcomes == {str(Outcome.HOLDS)} else 3

@@ -45,6 +45,8 @@ def share(rate: dict[str, Any]) -> str:
 def model_line(model: dict[str, int]) -> str:
     """In words, how many logs are runs of the proved steps of authority. model: as in campaign.json."""
     asked = model["fits"] + model["does_not_fit"]
+    if not asked:
+        return f"No log was held against the proved steps of authority: {model['not_asked']} without ICAROUS"
     words = f"Logs that fit the proved steps of authority: {model['fits']} of {asked}, {model['events']} events in these"
     return f"{words}; {model['not_asked']} without ICAROUS" if model["not_asked"] else words
 

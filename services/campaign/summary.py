@@ -27,6 +27,7 @@ MOST_REASONS = 20
 def build(campaign: Campaign, rows: list[Row], version: str) -> dict[str, Any]:
     """The whole summary as plain data."""
     outcomes = Counter(row.outcome for row in rows)
+    model = _model(rows) if campaign.model else None
     groups = [
         _group(campaign, mission, option, group)
         for (mission, option), group in _grouped(rows, lambda r: (r.run.mission, r.run.option))
@@ -40,10 +41,10 @@ def build(campaign: Campaign, rows: list[Row], version: str) -> dict[str, Any]:
         "own": [file.named for file in campaign.own],
         "judged": campaign.judge,
         "disagreements": _disagreements(rows),
-        "model": _model(rows) if campaign.model else None,
+        "model": model,
         "runs_in_all": len(rows),
         "outcomes": {name: outcomes[name] for name in ORDER if outcomes[name]},
-        "exit_code": code_of(set(outcomes)),
+        "exit_code": code_of(set(outcomes), asked=model is None or model["fits"] > 0),
         "limits": list(_limits(campaign, rows)),
         "groups": groups,
         "comparisons": _comparisons(campaign, rows),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
@@ -91,6 +92,8 @@ def show_found(data: dict[str, Any], place: Path, as_json: bool) -> None:
     least = f"least margin {min(told):.4g}" if told else "nothing was measured"
     if data["found"] is None:
         say(f"{data['requirement']}: not found to fail in {data['runs']} runs, {least}")
+        counts = Counter(point["outcome"] for point in data["points"])
+        say(f"of these: {', '.join(f'{count} {name}' for name, count in sorted(counts.items()))}")
         say("A search that finds nothing shows nothing: other runs may fail.")
     else:
         say(

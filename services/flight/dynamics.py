@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from cratous.core.avoidance.manoeuvre import Ability
 from cratous.services.mission.landing import MAX_ACCELERATION_M_S2, is_down
 from cratous.spec.mission import GroundedVehicle, Position, Traffic, Vehicle, Velocity
 from cratous.spec.mission.plan import Pose
@@ -112,6 +113,19 @@ def clamp(value: float, low: float, high: float) -> float:
 def turn_rate_rad_s(speed_m_s: float, max_bank_rad: float) -> float:
     """Fastest level turn at a bank angle: g tan(bank) / v [rad/s]."""
     return GRAVITY_M_S2 * math.tan(max_bank_rad) / speed_m_s
+
+
+def ability_at(speed_m_s: float, limits: Limits, floor_m: float, step_s: float) -> Ability:
+    """What the airframe can do at a speed [m/s]. floor_m, step_s: as of `Ability`."""
+    return Ability(
+        turn_rate_rad_s(speed_m_s, limits.max_bank_rad),
+        limits.min_speed_m_s,
+        limits.max_speed_m_s,
+        limits.max_climb_m_s,
+        MAX_ACCELERATION_M_S2,
+        floor_m,
+        step_s,
+    )
 
 
 def turn_radius_m(speed_m_s: float, max_bank_rad: float) -> float:

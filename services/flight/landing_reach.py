@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from cratous.core.avoidance.drift import NONE
-from cratous.core.avoidance.manoeuvre import Ability, Motion
+from cratous.core.avoidance.manoeuvre import Motion
 from cratous.core.avoidance.prediction import buffered
 from cratous.core.avoidance.resolution import Scene
 from cratous.services.flight.dynamics import (
     AirState,
+    ability_at,
     limits_of,
     planned_state,
-    turn_rate_rad_s,
 )
 from cratous.services.flight.vehicle import UNTOUCHED
 from cratous.services.flight.without_link import lost_link
@@ -26,7 +26,7 @@ from cratous.services.icarous.lost import LostLink
 from cratous.services.icarous.messages import Sensed
 from cratous.services.loading.polygons import hard_zones
 from cratous.services.mission.ground import floor_of
-from cratous.services.mission.landing import MAX_ACCELERATION_M_S2, sites_of
+from cratous.services.mission.landing import sites_of
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission, Vehicle
 
@@ -73,14 +73,7 @@ def _why_not(mission: Mission, vehicle: Vehicle, plan: LostLink) -> list[str]:
 def at_start(mission: Mission, vehicle: Vehicle, air: AirState) -> Sensed:
     """What a vehicle in a state senses before anybody flies; on the ground it turns as it does when it leaves it."""
     limits = limits_of(vehicle)
-    ability = Ability(
-        turn_rate_rad_s(air.speed_m_s or limits.min_speed_m_s, limits.max_bank_rad),
-        limits.min_speed_m_s,
-        limits.max_speed_m_s,
-        limits.max_climb_m_s,
-        MAX_ACCELERATION_M_S2,
-        floor_of(mission),
-        mission.simulation.step_ms / 1000,
-    )
+    speed, step_s = air.speed_m_s or limits.min_speed_m_s, mission.simulation.step_ms / 1000
+    ability = ability_at(speed, limits, floor_of(mission), step_s)
     motion = Motion(air.position, air.heading_rad, air.speed_m_s, air.climb_m_s)
     return Sensed(0, motion, ability, (), UNTOUCHED)

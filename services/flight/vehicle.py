@@ -20,7 +20,7 @@ from cratous.core.authority.gate import (
     gate_accepts,
     gate_after,
 )
-from cratous.core.avoidance.manoeuvre import Ability, Motion
+from cratous.core.avoidance.manoeuvre import Motion
 from cratous.core.avoidance.prediction import Intruder
 from cratous.services.flight import holding
 from cratous.services.flight.autopilot import (
@@ -35,6 +35,7 @@ from cratous.services.flight.commands import SENDERS, decode
 from cratous.services.flight.dynamics import (
     AirState,
     Limits,
+    ability_at,
     advance,
     first_state,
     limits_of,
@@ -43,7 +44,6 @@ from cratous.services.flight.dynamics import (
     steer,
     touching_down,
     turn_radius_m,
-    turn_rate_rad_s,
 )
 from cratous.services.flight.holding import Ground, InHand
 from cratous.services.flight.messages import (
@@ -68,7 +68,6 @@ from cratous.services.icarous.messages import Offers, Sensed
 from cratous.services.mission.frames import Projection, compass
 from cratous.services.mission.landing import (
     BRAKING_M_S2,
-    MAX_ACCELERATION_M_S2,
     ground_m,
     is_down,
     site_under,
@@ -292,15 +291,7 @@ class VehicleNode:
         air, limits = state.air, state.limits
         rolls = state.landed or state.on_ground
         flown_m_s = limits.min_speed_m_s if rolls else air.speed_m_s
-        ability = Ability(
-            turn_rate_rad_s(flown_m_s, limits.max_bank_rad),
-            limits.min_speed_m_s,
-            limits.max_speed_m_s,
-            limits.max_climb_m_s,
-            MAX_ACCELERATION_M_S2,
-            self.floor_m,
-            self.dt_s,
-        )
+        ability = ability_at(flown_m_s, limits, self.floor_m, self.dt_s)
         motion = Motion(air.position, air.heading_rad, air.speed_m_s, air.climb_m_s)
         seen = traffic_picture(self.vehicle.id, message)
         hand = state.held.hand

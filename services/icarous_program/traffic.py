@@ -16,10 +16,9 @@ from cratous.bridge.text_protocol import OwnPosition, Traffic
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import Ability, Motion
 from cratous.core.avoidance.prediction import EXACT, Intruder, Spread
-from cratous.services.flight.dynamics import Limits, turn_rate_rad_s
+from cratous.services.flight.dynamics import Limits, ability_at
 from cratous.services.icarous.others import LINK_LOST_MS
 from cratous.services.mission.frames import Projection
-from cratous.services.mission.landing import MAX_ACCELERATION_M_S2
 from cratous.spec.mission import Position, Velocity
 
 TRAFFIC_KEPT_MS = 5000
@@ -122,13 +121,5 @@ def flying(
     north, east = projection.to_local(line.lat_deg, line.long_deg)
     speed = math.hypot(line.north_mps, line.east_mps)
     course = math.atan2(line.east_mps, line.north_mps)
-    ability = Ability(
-        turn_rate_rad_s(speed, limits.max_bank_rad),
-        limits.min_speed_m_s,
-        limits.max_speed_m_s,
-        limits.max_climb_m_s,
-        MAX_ACCELERATION_M_S2,
-        floor_m,
-        step_s,
-    )
+    ability = ability_at(speed, limits, floor_m, step_s)
     return Motion(Position(north, east, line.alt_abs_m), course, speed, -line.down_mps), ability

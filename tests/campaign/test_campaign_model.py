@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +43,18 @@ def test_each_log_is_counted_by_whether_it_fits(campaign: Campaign) -> None:
     assert model["events"] > 100
     said = f"1 of 1, {model['events']} events in these; 1 without ICAROUS"
     assert model_line(model).endswith(said)
+
+
+def test_where_no_flight_has_icarous_nothing_is_said_to_fit(campaign: Campaign) -> None:
+    """All requirements of the flight hold, but what `model: true` asks for was not looked at."""
+    rows = [row for row in rows_of(campaign) if row.run.option == "without"]
+    held = [replace(row, outcome="holds") for row in rows]
+    found = build(campaign, held, "v")
+    assert (found["model"]["not_asked"], found["exit_code"]) == (1, 3)
+    said = "No log was held against the proved steps of authority: 1 without ICAROUS"
+    assert model_line(found["model"]) == said
+    assert said in page(found, {})
+    assert build(replace(campaign, model=False), held, "v")["exit_code"] == 0
 
 
 def test_a_log_with_an_event_that_is_no_step_is_a_misfit_and_says_which(

@@ -17,6 +17,7 @@ from cratous.services.campaign.definition import Campaign, load_campaign
 from cratous.services.campaign.outcomes import Row, row_of
 from cratous.services.campaign.runs import Run
 from cratous.services.campaign.search import Search
+from cratous.services.cli.campaign_find import show_found
 from cratous.spec.errors import BadInput
 
 RARE = "seeds: [1, 1]\nvary: [{item: 'vehicles[0].speed_m_s', range: [1, %s]}]\n"
@@ -165,3 +166,15 @@ def test_a_search_is_in_one_space(tmp_path: Path) -> None:
         Search(campaign, "G2", "v", False)
     with pytest.raises(BadInput, match="nothing to search"):
         Search(load_campaign(written(tmp_path, {"plain": ""}, ""), None, ()), "G2", "v", False)
+
+
+def test_where_nothing_is_found_it_says_what_became_of_the_runs(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The requirement was looked at alone: the exit code speaks of all that the runs came to."""
+    points = [{"outcome": name, "margin": 5.0} for name in ("holds", "misfit", "holds")]
+    data = {"requirement": "G2", "points": points, "runs": 3, "found": None, "exit_code": 1}
+    show_found(data, tmp_path, False)
+    said = capsys.readouterr().out
+    assert "G2: not found to fail in 3 runs, least margin 5\nof these: 2 holds, 1 misfit\n" in said
+    assert "exit code 1" in said

@@ -91,7 +91,11 @@ def test_who_gives_up_nothing_is_not_held_to_its_time() -> None:
     assert observed(*long).state == "broken"
     assert observed(*long, mission=holds).state == "not observed"
     assert observed(to_item(0), *taken(*OFTEN, 900_000), mission=holds).state == "not observed"
-    assert observed(*long[:2], unheard, *long[2:]).state == "held"
+    found = observed(*long[:2], unheard, *long[2:])
+    assert (found.state, found.broken) == ("not observed", None)
+    assert found.note.endswith("on its way to task 1, and is not held to its time")
+    short = [to_item(0), *taken(1000, for_ms=LONGEST_MS)]
+    assert observed(*short[:2], unheard, *short[2:]).state == "held"
 
 
 def test_what_is_taken_over_without_the_link_counts_on_no_item() -> None:
