@@ -15,8 +15,8 @@ import pytest
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.link import Link
 from cratous.bridge.port import Address
-from cratous.bridge.relay import NEAR, OPENED
-from cratous.bridge.tap import Copied
+from cratous.bridge.relay import NEAR, OPENED, RECORD
+from cratous.bridge.tap import Copied, Tap
 from cratous.bridge.text_connection import Opened
 from cratous.bridge.text_port import TextPort
 from cratous.bridge.text_protocol.dialects import Dialect
@@ -279,6 +279,42 @@ def test_a_watch_ends_in_a_flood_and_what_came_before_is_left_out_by_name(
     assert list(one.messages(10.0, lambda _: next(turns))) == []
     assert time.monotonic() - begun_s < 10
     assert ("left out" in found) == (came_ns is not None)
+
+
+class Behind:
+    """A tap whose relay hands over late, and in parts, what has passed before the end of the watch."""
+
+    stands, process = True, None
+
+    def __init__(self) -> None:
+        self._ours, theirs = socket.socketpair()
+        passed = (OPENED, b""), (NEAR, b"what is no opening\n")
+        data = [RECORD.pack(kind, 1, 1, len(said)) + said for kind, said in passed]
+        parts = data[0], data[1][:5], data[1][5:]
+        self._tap = Tap.__new__(Tap)
+        self._tap._ours, self._tap._part = self._ours, b""
+        self._ours.setblocking(False)
+
+        def hand_over() -> None:
+            for part in parts:
+                time.sleep(0.03)
+                theirs.sendall(part)
+
+        threading.Thread(target=hand_over, daemon=True).start()
+        self._theirs = theirs
+        self.handles, self.step = self._tap.handles, self._tap.step
+
+    def close(self) -> None:
+        self._ours.close()
+        self._theirs.close()
+
+
+def test_what_the_relay_hands_over_late_is_looked_at_still() -> None:
+    found: list[str] = []
+    tap: Any = Behind()
+    one = tapped.Tapped(tap, lambda _: None, lambda *_: None, lambda kind, _: found.append(kind))
+    assert list(one.messages(10.0, lambda _: True)) == []
+    assert found == ["refused"]
 
 
 def test_a_file_of_a_key_that_holds_none_is_bad_input(requirements, tmp_path, capsys):
