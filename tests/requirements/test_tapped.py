@@ -11,6 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from requirement_tools import all_closed, written
+from uxas_tools import free_port
 
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.link import Link
@@ -51,17 +53,16 @@ DOWN = [
 UP = [tp.SetMode("ACTIVE", 1), tp.SetVelocity(15.0, 20.0, 0.0), tp.Heartbeat(7, 1.0)]
 
 
-def _free() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as probe:
-        port: int = probe.getsockname()[1]
-        return port
-
-
 class Bridge:
     """UxAS's end and ICAROUS's, of which one speaks through the tap; each says its lines in turn."""
 
-    def __init__(self, secret: str | Keys, dialect: Dialect, raw: bytes) -> None:
-        self.port, self.tap = _free(), _free()
+    def __init__(
+        self,
+        secret: str | Keys = DEFAULT_SECRET,
+        dialect: Dialect = Dialect.CRATOUS,
+        raw: bytes = b"",
+    ) -> None:
+        self.port, self.tap = free_port(), free_port()
         self.heard: dict[bool, list[Any]] = {True: [], False: []}
         self._dialect, self._raw, self._over = dialect, raw, threading.Event()
         at = Address("tcp", "127.0.0.1", self.port, "")
@@ -108,24 +109,12 @@ class Bridge:
 
 @pytest.fixture
 def bridges() -> Iterator[Callable[..., Bridge]]:
-    made: list[Bridge] = []
-
-    def bridge(
-        secret: str | Keys = DEFAULT_SECRET, dialect: Dialect = Dialect.CRATOUS, raw: bytes = b""
-    ) -> Bridge:
-        made.append(Bridge(secret, dialect, raw))
-        return made[-1]
-
-    yield bridge
-    for one in made:
-        one.close()
+    yield from all_closed(Bridge)
 
 
 @pytest.fixture
 def requirements(tmp_path: Path) -> Path:
-    file = tmp_path / "r.req"
-    file.write_text(REQUIREMENTS)
-    return file
+    return written(tmp_path, REQUIREMENTS)
 
 
 def _watch(bridge: Bridge, requirements: Path, *more: str) -> int:
@@ -241,7 +230,7 @@ def test_that_nobody_comes_is_said(requirements, monkeypatch, capsys):
     from cratous.services.cli import monitor_attach
 
     monkeypatch.setattr(monitor_attach, "TAP_WAIT_S", 0.3)
-    words = ["monitor", "--attach", f"cratous://127.0.0.1:{_free()}", "--listen", "127.0.0.1:0"]
+    words = ["monitor", "--attach", f"cratous://127.0.0.1:{free_port()}", "--listen", "127.0.0.1:0"]
     assert main([*words, "--requirements", str(requirements)]) == 2
     assert "nobody has connected to the tap" in capsys.readouterr().err
 
