@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cratous.core.files.whole_file import write_atomically
+from cratous.services.assumptions.listing import State
 from cratous.services.certify.flight_record import flown_of
 from cratous.services.certify.own_again import named, shown, together
 from cratous.services.certify.rejudge import not_as_flown, subject, watch
@@ -56,9 +57,8 @@ def report_of(log: Path, own: Sequence[OwnFile] = ()) -> FromLog:
     watched = watch(log)
     rows = [_doubted(row, doubted) for row in constraint_rows(watched.verdicts, "flight")]
     rows += plan_rows(check_plan(known_at(mission, 0), plan))
-    report = build_report(
-        mission, plan, Judged(rows, watched.assumptions, watched.commands), log, flown
-    )
+    assumptions = [_not_held(row, doubted) for row in watched.assumptions]
+    report = build_report(mission, plan, Judged(rows, assumptions, watched.commands), log, flown)
     said = [f"{one[0].upper()}{one[1:]}: nothing in flight holds." for one in doubted]
     report["limits"] = [*said, *report["limits"]]
     if plan.certificate:
@@ -71,6 +71,14 @@ def _doubted(row: dict[str, Any], doubted: Sequence[str]) -> dict[str, Any]:
     if not doubted or row["verdict"] != Outcome.HOLDS:
         return row
     return {**row, "verdict": str(Outcome.UNKNOWN), "note": f"{doubted[0]}; else: {row['note']}"}
+
+
+def _not_held(row: dict[str, Any], doubted: Sequence[str]) -> dict[str, Any]:
+    """An assumption over a log that is not whole: what seemed to be held was not observed to its end."""
+    if not doubted or row["state"] != State.HELD:
+        return row
+    note = f"{doubted[0]}; else: {row['note'] or 'held'}"
+    return {**row, "state": str(State.NOT_OBSERVED), "note": note}
 
 
 def write_from_log(log: Path, folder: Path, own: Sequence[OwnFile] = ()) -> FromLog:

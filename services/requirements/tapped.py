@@ -117,10 +117,7 @@ class Tapped:
         given_up_s, stands = time.monotonic() + wait_s, True
         try:
             while not until(self.now_ms()):
-                poll = zmq.Poller()
-                for handle, flags in self._tap.handles() if stands else ():
-                    poll.register(handle, flags)
-                poll.poll(int(POLL_S * 1000))
+                self._wait(stands)
                 for one in self._tap.step():
                     yield from self._copied(one)
                 if self._begun_ns is None and is_due(given_up_s, time.monotonic()):
@@ -133,10 +130,21 @@ class Tapped:
         finally:
             self._tap.close()
 
+    def _wait(self, stands: bool) -> bool:
+        """Wait a moment for the relay, if it stands; whether something is there."""
+        poll = zmq.Poller()
+        for handle, flags in self._tap.handles() if stands else ():
+            poll.register(handle, flags)
+        return bool(poll.poll(int(POLL_S * 1000)))
+
     def _rest(self, end_ns: int) -> Iterator[Entry]:
         """What has passed before the end, or that it is too much to be looked at still."""
         given_up_s = time.monotonic() + REST_S
-        while records := list(self._tap.step()):
+        while True:
+            # the relay may be a moment behind
+            comes, records = self._wait(True), list(self._tap.step())
+            if not records and not (comes and self._tap.stands):
+                return
             for one in records:
                 if one.time_ns > end_ns:
                     return

@@ -69,10 +69,12 @@ def test_messages_that_are_missing_within_it_let_nothing_hold(log: Path, tmp_pat
         database.execute("INSERT INTO gaps VALUES (100, 1, 3000, 3000, 'disk full')")
         database.execute("DELETE FROM closing")
     assert main(["certify", str(log), "-o", str(tmp_path / "made")]) == 3
-    assert (
-        "messages of the log are missing"
-        in " ".join(_report(tmp_path / "made")["limits"][:2]).lower()
-    )
+    report = _report(tmp_path / "made")
+    assert "messages of the log are missing" in " ".join(report["limits"][:2]).lower()
+    in_flight = [row for row in report["constraints"] if row["source"] == "flight"]
+    assert {row["verdict"] for row in in_flight} == {"unknown"}
+    assert {row["state"] for row in report["assumptions"]} == {"not observed"}
+    assert any(row["note"].endswith("; else: held") for row in report["assumptions"])
 
 
 def test_a_changed_log_and_what_is_none_are_refused_by_name(

@@ -42,6 +42,12 @@ def crossing(root: Path) -> Mission:
     return load(root / "examples/crossing/mission.yaml", 0)
 
 
+@pytest.fixture
+def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """AMASE may be away for half a second."""
+    monkeypatch.setattr(amase_module, "RETURNS_S", 0.5)
+
+
 class Fake:
     """`cratous sim --compatibility amase`: AMASE's port and defects, which can be killed and begun again."""
 
@@ -232,13 +238,10 @@ def test_a_clock_that_goes_back_is_a_simulator_begun_anew(
     assert max(b - a for a, b in itertools.pairwise(times)) < 600
 
 
+@pytest.mark.usefixtures("impatient")
 def test_one_that_does_not_come_back_ends_the_flight(
-    crossing: Mission,
-    fake: Callable[..., Fake],
-    session: Callable[[Fake], Session],
-    monkeypatch: pytest.MonkeyPatch,
+    crossing: Mission, fake: Callable[..., Fake], session: Callable[[Fake], Session]
 ) -> None:
-    monkeypatch.setattr(amase_module, "RETURNS_S", 0.5)
     simulator = fake()
     flight = session(simulator)
     flight.amase.begin(crossing, told_of(crossing))
@@ -265,13 +268,10 @@ def test_what_another_client_says_is_not_read(
     flight.until(lambda: len(flight.states) > count)
 
 
+@pytest.mark.usefixtures("impatient")
 def test_one_whose_clock_does_not_run_is_said_to_stand(
-    crossing: Mission,
-    fake: Callable[..., Fake],
-    session: Callable[[Fake], Session],
-    monkeypatch: pytest.MonkeyPatch,
+    crossing: Mission, fake: Callable[..., Fake], session: Callable[[Fake], Session]
 ) -> None:
-    monkeypatch.setattr(amase_module, "RETURNS_S", 0.5)
     simulator = fake()
     simulator.kill()
     simulator.start(clients=2)

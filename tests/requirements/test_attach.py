@@ -19,6 +19,7 @@ from typing import Any
 
 import pytest
 import zmq
+from requirement_tools import all_closed, written
 
 from cratous.bridge import envelope, lmcp, sentinel
 from cratous.services.cli import main
@@ -76,22 +77,12 @@ class Peer:
 
 @pytest.fixture
 def peers() -> Iterator[Callable[..., Peer]]:
-    made: list[Peer] = []
-
-    def peer(*talks: list[bytes]) -> Peer:
-        made.append(Peer(*talks))
-        return made[-1]
-
-    yield peer
-    for one in made:
-        one.close()
+    yield from all_closed(Peer)
 
 
 @pytest.fixture
 def requirements(tmp_path: Path) -> Path:
-    file = tmp_path / "r.req"
-    file.write_text(REQUIREMENTS)
-    return file
+    return written(tmp_path, REQUIREMENTS)
 
 
 def _attach(port: int, requirements: Path, *more: str, seconds: float = 1.0) -> int:

@@ -11,12 +11,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from requirement_tools import all_closed, written
+from uxas_tools import free_port
 
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.link import Link
 from cratous.bridge.port import Address
-from cratous.bridge.relay import NEAR, OPENED
-from cratous.bridge.tap import Copied
+from cratous.bridge.relay import NEAR, OPENED, RECORD
+from cratous.bridge.tap import Copied, Tap
 from cratous.bridge.text_connection import Opened
 from cratous.bridge.text_port import TextPort
 from cratous.bridge.text_protocol.dialects import Dialect
@@ -51,17 +53,16 @@ DOWN = [
 UP = [tp.SetMode("ACTIVE", 1), tp.SetVelocity(15.0, 20.0, 0.0), tp.Heartbeat(7, 1.0)]
 
 
-def _free() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as probe:
-        port: int = probe.getsockname()[1]
-        return port
-
-
 class Bridge:
     """UxAS's end and ICAROUS's, of which one speaks through the tap; each says its lines in turn."""
 
-    def __init__(self, secret: str | Keys, dialect: Dialect, raw: bytes) -> None:
-        self.port, self.tap = _free(), _free()
+    def __init__(
+        self,
+        secret: str | Keys = DEFAULT_SECRET,
+        dialect: Dialect = Dialect.CRATOUS,
+        raw: bytes = b"",
+    ) -> None:
+        self.port, self.tap = free_port(), free_port()
         self.heard: dict[bool, list[Any]] = {True: [], False: []}
         self._dialect, self._raw, self._over = dialect, raw, threading.Event()
         at = Address("tcp", "127.0.0.1", self.port, "")
@@ -108,24 +109,12 @@ class Bridge:
 
 @pytest.fixture
 def bridges() -> Iterator[Callable[..., Bridge]]:
-    made: list[Bridge] = []
-
-    def bridge(
-        secret: str | Keys = DEFAULT_SECRET, dialect: Dialect = Dialect.CRATOUS, raw: bytes = b""
-    ) -> Bridge:
-        made.append(Bridge(secret, dialect, raw))
-        return made[-1]
-
-    yield bridge
-    for one in made:
-        one.close()
+    yield from all_closed(Bridge)
 
 
 @pytest.fixture
 def requirements(tmp_path: Path) -> Path:
-    file = tmp_path / "r.req"
-    file.write_text(REQUIREMENTS)
-    return file
+    return written(tmp_path, REQUIREMENTS)
 
 
 def _watch(bridge: Bridge, requirements: Path, *more: str) -> int:
@@ -241,7 +230,7 @@ def test_that_nobody_comes_is_said(requirements, monkeypatch, capsys):
     from cratous.services.cli import monitor_attach
 
     monkeypatch.setattr(monitor_attach, "TAP_WAIT_S", 0.3)
-    words = ["monitor", "--attach", f"cratous://127.0.0.1:{_free()}", "--listen", "127.0.0.1:0"]
+    words = ["monitor", "--attach", f"cratous://127.0.0.1:{free_port()}", "--listen", "127.0.0.1:0"]
     assert main([*words, "--requirements", str(requirements)]) == 2
     assert "nobody has connected to the tap" in capsys.readouterr().err
 
@@ -279,6 +268,42 @@ def test_a_watch_ends_in_a_flood_and_what_came_before_is_left_out_by_name(
     assert list(one.messages(10.0, lambda _: next(turns))) == []
     assert time.monotonic() - begun_s < 10
     assert ("left out" in found) == (came_ns is not None)
+
+
+class Behind:
+    """A tap whose relay hands over late, and in parts, what has passed before the end of the watch."""
+
+    stands, process = True, None
+
+    def __init__(self) -> None:
+        self._ours, theirs = socket.socketpair()
+        passed = (OPENED, b""), (NEAR, b"what is no opening\n")
+        data = [RECORD.pack(kind, 1, 1, len(said)) + said for kind, said in passed]
+        parts = data[0], data[1][:5], data[1][5:]
+        self._tap = Tap.__new__(Tap)
+        self._tap._ours, self._tap._part = self._ours, b""
+        self._ours.setblocking(False)
+
+        def hand_over() -> None:
+            for part in parts:
+                time.sleep(0.03)
+                theirs.sendall(part)
+
+        threading.Thread(target=hand_over, daemon=True).start()
+        self._theirs = theirs
+        self.handles, self.step = self._tap.handles, self._tap.step
+
+    def close(self) -> None:
+        self._ours.close()
+        self._theirs.close()
+
+
+def test_what_the_relay_hands_over_late_is_looked_at_still() -> None:
+    found: list[str] = []
+    tap: Any = Behind()
+    one = tapped.Tapped(tap, lambda _: None, lambda *_: None, lambda kind, _: found.append(kind))
+    assert list(one.messages(10.0, lambda _: True)) == []
+    assert found == ["refused"]
 
 
 def test_a_file_of_a_key_that_holds_none_is_bad_input(requirements, tmp_path, capsys):

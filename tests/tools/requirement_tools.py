@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, closing
 from pathlib import Path
+from typing import Any, Protocol, TypeVar
 
 import pytest
 
 from cratous.services.requirements.outcome import Outcome
 from cratous.services.requirements.specification import Specification
 from cratous.services.requirements.watch import watch
+
+
+class Closes(Protocol):
+    """Something that is to be closed."""
+
+    def close(self) -> Any: ...
+
+
+T = TypeVar("T", bound=Closes)
 
 
 def alike_at_once(
@@ -25,3 +37,16 @@ def alike_at_once(
     assert [vars(one) for one in watch(spec, trace).outcomes] == [vars(one) for one in one_by_one]
     (found,) = one_by_one
     return found
+
+
+def all_closed(make: Callable[..., T]) -> Iterator[Callable[..., T]]:
+    """For a fixture: makes what has `close`, and closes all of it at the end."""
+    with ExitStack() as stack:
+        yield lambda *given, **named: stack.enter_context(closing(make(*given, **named)))
+
+
+def written(folder: Path, text: str) -> Path:
+    """A file of requirements."""
+    file = folder / "r.req"
+    file.write_text(text)
+    return file
