@@ -5,9 +5,12 @@ from __future__ import annotations
 import shlex
 
 
+IN_PROCESSES = ("--processes", "--simulator")
+
+
 def flown_in_processes(command: str) -> bool:
-    """Whether a command flies in processes: in real time, with the gates in UxAS."""
-    return "--processes" in _words(command)
+    """Whether a command flies in processes: in real time, with the gates in UxAS. On an AMASE it does, too."""
+    return any(word.partition("=")[0] in IN_PROCESSES for word in _words(command))
 
 
 def with_original_clients(command: str) -> bool:

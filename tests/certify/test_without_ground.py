@@ -37,6 +37,8 @@ def folder(root: Path, fly_once: Callable[[Path], Path]) -> Path:
     [
         ("cratous run crossing.yaml --processes", [BROKEN], 3),
         ("cratous run crossing.yaml --processes", [{**BROKEN, "state": "held"}], 0),
+        ("cratous run crossing.yaml --simulator amase://127.0.0.1:5555", [BROKEN], 3),
+        ("cratous run crossing.yaml --simulator=amase://127.0.0.1:5555", [BROKEN], 3),
         ("cratous run crossing.yaml", [BROKEN], 0),
         ("cratous run 'missions --processes of may/crossing.yaml'", [BROKEN], 0),
         ("cratous run 'may --processes", [BROKEN], 3),
