@@ -87,6 +87,11 @@ def test_a_plan_is_flown_and_its_tasks_are_told(tmp_path: Path) -> None:
         pytest.fail("it has not come to the last waypoint")
     tasks = [tuple(s.AssociatedTasks) for s in one.rig.got("AirVehicleState", STEERING)]
     assert list(dict.fromkeys(tasks)) == [(), (1,), (2,), (3,)]
+    passed_by = len(one.track)
+    for _ in range(300):
+        one.step()
+    away = [hypot(p.x, p.y - 0.02 * DEGREE_M) for p in one.track[passed_by:]]
+    assert max(away) < 300, "it stays about the last one"
     middle = [p for p in one.track if 800 < p.y < 1500 and p.x > 1000]
     assert max(abs(p.x - 0.02 * DEGREE_M) for p in middle) < 60, "along the second leg"
     first = one.rig.got("VehicleActionCommand")[0]
@@ -162,6 +167,9 @@ def test_while_a_task_steers_it_is_silent(tmp_path: Path) -> None:
         counts.append(len(one.rig.got("VehicleActionCommand", STEERING)))
     assert counts == [1, 2, 2]
     assert len(one.rig.got("AirVehicleState", STEERING)) == 3, "states go on"
+    one.rig.tell(plan((0.02, 0.0)))
+    one.step()
+    assert len(one.rig.got("VehicleActionCommand", STEERING)) == 3, "until the next plan"
 
 
 @pytest.mark.shows(
@@ -184,7 +192,10 @@ def test_courses_go_to_the_leash_in_the_region_of_the_plan(
         )  # fmt: skip
         one.rig.tell(asked)
     answer = response(plan((0.0, 0.02)))
-    one.rig.tell(lmcp.new("UniqueAutomationResponse", ResponseID=4, OriginalResponse=answer))
+    for number in (4, 5):  # the second answers a trial, which is not flown
+        one.rig.tell(
+            lmcp.new("UniqueAutomationResponse", ResponseID=number, OriginalResponse=answer)
+        )
     one.rig.tell(answer)
     one.step()
     (action,) = one.rig.got("SafeHeadingAction")
