@@ -64,6 +64,14 @@ def _with(body: Any, speed: float, altitude: float, kind: Any, where: str) -> An
             expected=f"{least:g} to {most:g} m/s",
             got=f"{speed:g}",
         )
+    if not isfinite(altitude):
+        raise BadInput(
+            f"vehicle {body.ID} does not fly at this altitude",
+            where=where,
+            item=f"{ITEM}.Altitude",
+            expected="a number of metres",
+            got=f"{altitude:g}",
+        )
     made = body.copy(NominalSpeed=speed)
     if altitude == 0 and kind.name == "AGL":
         return made

@@ -133,7 +133,7 @@ class SteeringService:
         return state._replace(by_task=state.by_task or "FlightDirectorAction" in kinds), ()
 
     def _planned(self, state: Steered, body: Any, asked: bool) -> Steered:
-        """The region of a request is that of its plan, if this aircraft is in it."""
+        """The region of a request is that of its plan, if this aircraft is in it; a trial's is not flown."""
         if asked:
             if body.SandBoxRequest or body.OriginalRequest is None:
                 return state
@@ -141,7 +141,7 @@ class SteeringService:
             return state._replace(regions=(*state.regions, one)[-REGIONS_MOST:])
         plans = body.OriginalResponse.MissionCommandList if body.OriginalResponse else ()
         mine = any(command.VehicleID == self._vehicle for command in plans)
-        region = dict(state.regions).get(body.ResponseID, 0) if mine else state.region
+        region = dict(state.regions).get(body.ResponseID, state.region) if mine else state.region
         left = tuple(one for one in state.regions if one[0] != body.ResponseID)
         return state._replace(region=region, regions=left)
 

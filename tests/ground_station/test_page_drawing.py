@@ -7,11 +7,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from chromium_tools import Page, browsing
-from ground_station_tools import serving
+from chromium_tools import Page, playing
 
 pytestmark = pytest.mark.slow
-READY = "!document.getElementById('station')?.hidden && document.querySelector('#aircraft tr')"
 COUNT = """(() => {
   window.drawn = {}; window.frames = 0; window.since = performance.now();
   const clear = CanvasRenderingContext2D.prototype.clearRect, ask = window.requestAnimationFrame.bind(window);
@@ -26,11 +24,8 @@ COUNTED = "[(performance.now() - window.since) / 1000, window.frames, window.dra
 
 @pytest.fixture
 def page(crossing: Path, tmp_path: Path) -> Iterator[Page]:
-    with serving(crossing) as (_, port), browsing(tmp_path) as page:
-        page.go(f"http://127.0.0.1:{port}/#t=2")
-        page.until(READY)
+    with playing(crossing, tmp_path, 2) as page:
         yield page
-        assert page.logged == []
 
 
 def test_a_frame_in_which_nothing_moves_to_be_seen_draws_nothing(page: Page) -> None:

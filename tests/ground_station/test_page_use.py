@@ -8,21 +8,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from chromium_tools import Page, browsing
-from ground_station_tools import serving
+from chromium_tools import Page, playing
 
 pytestmark = pytest.mark.slow
-READY = "!document.getElementById('station')?.hidden && document.querySelector('#aircraft tr')"
 
 
 @pytest.fixture
 def page(crossing: Path, tmp_path: Path) -> Iterator[Page]:
-    with serving(crossing) as (_, port), browsing(tmp_path) as page:
-        page.go(f"http://127.0.0.1:{port}/#t=0")
-        page.until(READY)
+    with playing(crossing, tmp_path, 0) as page:
         yield page
-        # nothing was refused by the content security policy, no script failed
-        assert page.logged == []
 
 
 def _time_s(page: Page) -> float:
@@ -162,12 +156,9 @@ def test_of_a_lost_vehicle_it_is_not_said_that_uxas_commands_it(
     popup: Path, tmp_path: Path
 ) -> None:
     second = "document.querySelectorAll(\"#aircraft tr[data-aircraft='2']\")[1].textContent"
-    with serving(popup) as (_, port), browsing(tmp_path) as page:
-        page.go(f"http://127.0.0.1:{port}/#t=59.9")
-        page.until(READY)
+    with playing(popup, tmp_path, 59.9) as page:
         assert page.value(second).startswith("authority UxAS")
         page.value("location.hash = '#t=60'")
         page.until("document.getElementById('clock').textContent.startsWith('00:01:00.0')")
         assert page.value(second).startswith("authority lost since 60.0 s: it takes no part")
         assert "authority UxAS" in page.text("aircraft")  # vehicle 1 flies on
-        assert page.logged == []

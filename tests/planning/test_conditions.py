@@ -52,7 +52,13 @@ def test_a_trial_is_planned_at_its_own_speed_and_altitude(tmp_path: Path) -> Non
     ("pairs", "words"),
     [
         ([pair(10.0)], "vehicle 1 does not fly at this speed; expected 15 to 30 m/s"),
+        ([pair(40.0)], "vehicle 1 does not fly at this speed"),
         ([pair(float("nan"))], "vehicle 1 does not fly at this speed"),
+        (
+            [pair(20.0, float("nan"))],
+            "vehicle 1 does not fly at this altitude; expected a number of metres",
+        ),
+        ([pair(20.0, float("inf"))], "vehicle 1 does not fly at this altitude"),
         ([pair(20.0, vehicle_id=9)], "vehicle 9 has no AirVehicleConfiguration"),
         ([pair(25.0, task=5)], "some tasks at another speed"),
         ([pair(25.0), pair(20.0, task=6)], "some tasks at another speed"),

@@ -92,6 +92,11 @@ def test_what_comes_of_others_has_the_errors_latency_drop_outs_and_range_of_its_
     assert (one.VelocityValid, one.AttitudeValid, list(one.PerceiverPayloads)) == (True, False, [])
     speeds = np.array([b.Velocity for _, b in by_name if b.PerceivedEntityID == 2])
     assert np.std(speeds[:, 2]) == pytest.approx(1.0, rel=0.2)
+    early = [b.Velocity for _, b in by_name if b.PerceivedEntityID == 2 and b.TimeLastSeen < 20_000]
+    (_, *_, fast) = (
+        b.Groundspeed for _, b in told(world(None), 20) if type(b).__name__ == "AirVehicleState"
+    )
+    assert np.mean(early, axis=0) == pytest.approx([fast, 0, 0], abs=2), "it flies north"
     nameless = [b for _, b in seen if not b.PerceivedEntityID]
     # 2.2 km apart: twice a second, all of it
     assert len(nameless) == pytest.approx(1200, abs=8)
@@ -119,6 +124,10 @@ def test_a_state_says_where_its_gps_has_it_and_it_flies_by_the_truth() -> None:
     assert np.max(abs(offs)) < 10
     exactly = [b for b in exact if b.Time > 20_000]
     assert max(abs(a.Groundspeed - b.Groundspeed) for a, b in zip(later, exactly, strict=True)) < 1
+    turned = [
+        abs((a.Course - b.Course + 180) % 360 - 180) for a, b in zip(later, exactly, strict=True)
+    ]
+    assert max(turned) < 5
     own = world(replace(ALL, sensors=(ADSB,)))
     (a, b) = (
         [x for _, x in told(w, 10) if type(x).__name__ == "AirVehicleState"]

@@ -14,8 +14,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from ground_station_tools import serving
 
 LIMIT_S = 20.0
+READY = "!document.getElementById('station')?.hidden && document.querySelector('#aircraft tr')"
 
 
 class Page:
@@ -127,3 +129,14 @@ def browsing(profile: Path) -> Iterator[Page]:
             running.kill()
             running.wait(5)
         os.close(read)
+
+
+@contextlib.contextmanager
+def playing(results: Path, profile: Path, time_s: float) -> Iterator[Page]:
+    """The ground station's page on results, from an instant [s] on. Nothing was refused by the content security policy,
+    and no script failed."""
+    with serving(results) as (_, port), browsing(profile) as page:
+        page.go(f"http://127.0.0.1:{port}/#t={time_s:g}")
+        page.until(READY)
+        yield page
+        assert page.logged == []
