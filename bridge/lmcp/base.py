@@ -48,6 +48,10 @@ class LmcpObject:
             for name, make, constant in self._makers:
                 if name not in given:
                     setattr(self, name, constant if make is None else make())
+        self._set(given)
+
+    def _set(self, given: dict[str, Any]) -> None:
+        """Fields by name, each value checked; BadInput with the nearest names for one that there is not."""
         for name, value in given.items():
             check = self._checks.get(name)
             if check is None:
@@ -92,9 +96,13 @@ class LmcpObject:
         return self
 
     def copy(self: Self, **changes: Any) -> Self:
-        """A deep copy, with some fields changed."""
-        kept = {n: _copied(getattr(self, n)) for n in self.names if n not in changes}
-        return type(self)(**kept, **changes)
+        """A deep copy, with some fields changed; only these are checked."""
+        kept = [(n, _copied(getattr(self, n))) for n in self.names if n not in changes]
+        made = object.__new__(type(self))
+        for name, value in kept:
+            setattr(made, name, value)
+        made._set(changes)
+        return made
 
     def checked(self: Self, where: str = "") -> Self:
         """Itself, after all its values are found (or made) to be of their types; else BadInput."""

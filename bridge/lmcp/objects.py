@@ -80,8 +80,12 @@ def _char(value: Any) -> str:
 
 
 def _enum(type_name: str) -> Check:
+    members: Any = None  # classes are made on first use
+
     def check(value: Any) -> LmcpEnum:
-        members = enums[type_name]
+        nonlocal members
+        if members is None:
+            members = enums[type_name]
         if type(value) is members:
             return value
         if isinstance(value, str) and value in members.__members__:
@@ -97,10 +101,14 @@ def _enum(type_name: str) -> Check:
 
 
 def _object(type_name: str, nullable: bool) -> Check:
+    base: Any = LmcpObject if type_name == model.ANY else None  # classes are made on first use
+
     def check(value: Any) -> LmcpObject | None:
+        nonlocal base
         if value is None and nullable:
             return None
-        base = LmcpObject if type_name == model.ANY else types[type_name]
+        if base is None:
+            base = types[type_name]
         if not isinstance(value, base):
             raise _wrong(base.__name__ + (" or null" if nullable else ""), value)
         return value

@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from cratous.bridge.lmcp import model
-from cratous.bridge.lmcp.objects import LmcpObject
+from cratous.bridge.lmcp.base import LmcpObject, within
 from cratous.spec.errors import BadInput
 
 _ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", "\r": "&#13;"})
@@ -17,7 +17,7 @@ def dumps(obj: LmcpObject) -> str:
     """XML text of an object, fields in the order of the wire, two blanks of indentation."""
     lines: list[str] = []
     try:
-        _write(obj.copy().checked(), lines, "")
+        _write(obj.complete(), lines, "")
     except RecursionError:
         raise BadInput("nested too deeply", item=type(obj).__name__) from None
     return "\n".join(lines) + "\n"
@@ -30,23 +30,32 @@ def _write(obj: LmcpObject | None, lines: list[str], pad: str) -> None:
     name = type(obj).__name__
     lines.append(f'{pad}<{name} Series="{obj.series}">')
     for field in obj.fields:
-        value = getattr(obj, field.name)
-        if field.array is not None:
-            lines.append(f"{pad}  <{field.name}>")
-            tag = field.type.rpartition("/")[2]
-            for element in value:
-                if field.kind in ("struct", "any"):
-                    _write(element, lines, pad + "    ")
-                else:
-                    lines.append(f"{pad}    <{tag}>{_text_of(field, element)}</{tag}>")
-            lines.append(f"{pad}  </{field.name}>")
-        elif field.kind in ("struct", "any"):
-            lines.append(f"{pad}  <{field.name}>")
-            _write(value, lines, pad + "    ")
-            lines.append(f"{pad}  </{field.name}>")
-        else:
-            lines.append(f"{pad}  <{field.name}>{_text_of(field, value)}</{field.name}>")
+        try:
+            value = obj._checks[field.name](getattr(obj, field.name))
+            _write_field(field, value, lines, pad + "  ")
+        except BadInput as err:
+            raise within(err, f"{name}.{field.name}") from None
     lines.append(f"{pad}</{name}>")
+
+
+def _write_field(field: model.Field, value: Any, lines: list[str], pad: str) -> None:
+    nested = field.kind in ("struct", "any")
+    if field.array is None and not nested:
+        lines.append(f"{pad}<{field.name}>{_text_of(field, value)}</{field.name}>")
+        return
+    lines.append(f"{pad}<{field.name}>")
+    if field.array is None:
+        _write(value, lines, pad + "  ")
+    elif nested:
+        for i, element in enumerate(value):
+            try:
+                _write(element, lines, pad + "  ")
+            except BadInput as err:
+                raise within(err, f"[{i}]") from None
+    else:
+        tag = field.type.rpartition("/")[2]
+        lines += [f"{pad}  <{tag}>{_text_of(field, element)}</{tag}>" for element in value]
+    lines.append(f"{pad}</{field.name}>")
 
 
 def _text_of(field: model.Field, value: Any) -> str:
@@ -59,7 +68,6 @@ def _text_of(field: model.Field, value: Any) -> str:
         if bad:
             raise BadInput(
                 "text that XML cannot hold",
-                item=field.name,
                 expected="no control characters",
                 got=repr(bad.group()),
             )

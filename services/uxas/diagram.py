@@ -12,11 +12,11 @@ import os
 import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.core.files.whole_file import PART, Workspace, sync
-from cratous.services.bus import Envelope
+from cratous.services.bus import Envelope, Wake
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.world import World
 from cratous.services.uxas.diagram_picture import picture
@@ -36,8 +36,12 @@ _REFERENCES = {
 }
 """What a task may refer to by id: the sort of object, and how its file is called."""
 
-State = dict[int, Any]
-"""The requests that have no response yet, by id, the newest AT_ONCE of them."""
+
+class Pairs(NamedTuple):
+    """Requests by id that have no response yet, the newest AT_ONCE of them; and what is still to be written."""
+
+    asked: dict[int, Any] = {}
+    answered: tuple[tuple[Any, Any], ...] = ()
 
 
 class AutomationDiagramDataService:
@@ -50,23 +54,35 @@ class AutomationDiagramDataService:
         self.name, self._world, self._entity = name, world, entity_id
         self._folder = folder / SERVICE_TYPE
 
-    def start(self) -> State:
-        return {}
+    def start(self) -> Pairs:
+        return Pairs()
 
-    def handle(self, state: State, envelope: Envelope, now_ms: int) -> tuple[State, Iterable[Any]]:
+    def handle(self, state: Pairs, envelope: Envelope, now_ms: int) -> tuple[Pairs, Iterable[Any]]:
+        """Pairs responses with requests; files are written once whoever waits for the response has it."""
         body = envelope.body
         if envelope.topic == REQUEST:
-            return dict([*state.items(), (body.RequestID, body)][-AT_ONCE:]), ()
-        request = state.get(body.ResponseID)
+            newest = [*state.asked.items(), (body.RequestID, body)][-AT_ONCE:]
+            return state._replace(asked=dict(newest)), ()
+        asked = dict(state.asked)
+        request = asked.pop(body.ResponseID, None)
         if request is None:
             return state, ()
-        rest = {number: other for number, other in state.items() if number != body.ResponseID}
-        try:
-            self._write(request, body)
-        except OSError as error:
-            what = f"{error.filename or self._folder}: {error.strerror or error}"
-            return rest, [status(body.ResponseID, "Error", [(SERVICE_TYPE, what)])]
-        return rest, ()
+        return Pairs(asked, (*state.answered, (request, body))), [Wake(0)]
+
+    def wake(self, state: Pairs, key: None, now_ms: int) -> tuple[Pairs, Iterable[Any]]:
+        """Writes what has been answered; says what could not be written."""
+        said = []
+        for request, response in state.answered:
+            try:
+                self._write(request, response)
+            except OSError as error:
+                what = f"{error.filename or self._folder}: {error.strerror or error}"
+                said.append(status(response.ResponseID, "Error", [(SERVICE_TYPE, what)]))
+        return state._replace(answered=()), said
+
+    def stop(self, state: Pairs) -> None:
+        """The service leaves the bus: nothing that was answered stays unwritten."""
+        self.wake(state, None, 0)
 
     def files(self, request: Any, response: Any) -> dict[str, Any]:
         """What is written for a request and its response: the object of each file by its name."""

@@ -72,7 +72,7 @@ def run(folder: Path, *more: Any) -> list[Any]:
     bus.tap(lambda envelope: said.append(envelope) if envelope.source == "Diagram" else None)
     for body in (*WORLD, *more):
         bus.publish(body, "test")
-    bus.run()
+    bus.run_until(0)
     return [envelope.body for envelope in said]
 
 
@@ -90,6 +90,20 @@ def test_each_response_gets_a_folder_of_its_own(tmp_path: Path) -> None:
     assert state.Heading == 45.0  # what was planned from, not the newest state
     (response,) = lmcp.xml.read_file(whole / "UniqueAutomationResponse_Id_12.xml")
     assert response == RESPONSE
+
+
+def test_a_response_is_passed_on_before_files_are_written_and_none_is_lost_at_the_end(
+    tmp_path: Path,
+) -> None:
+    world, bus = World(), Bus(lmcp.full_names)
+    bus.add(world)
+    bus.add(AutomationDiagramDataService("Diagram", world, tmp_path, 100))
+    for body in (*WORLD, REQUEST, RESPONSE):
+        bus.publish(body, "test")
+    bus.run()
+    assert os.listdir(tmp_path) == []  # whoever waits for the response has it by now
+    bus.remove("Diagram")
+    assert set(os.listdir(next(tmp_path.rglob("0001_*")))) == NAMES
 
 
 def test_the_picture_has_every_zone_task_vehicle_and_way(tmp_path: Path) -> None:
