@@ -40,7 +40,7 @@ _REFERENCES = {
 class Pairs(NamedTuple):
     """Requests by id that have no response yet, the newest AT_ONCE of them; and what is still to be written."""
 
-    asked: dict[int, Any] = {}
+    asked: dict[int, Any]
     answered: tuple[tuple[Any, Any], ...] = ()
 
 
@@ -55,7 +55,7 @@ class AutomationDiagramDataService:
         self._folder = folder / SERVICE_TYPE
 
     def start(self) -> Pairs:
-        return Pairs()
+        return Pairs({})
 
     def handle(self, state: Pairs, envelope: Envelope, now_ms: int) -> tuple[Pairs, Iterable[Any]]:
         """Pairs responses with requests; files are written once whoever waits for the response has it."""
