@@ -113,6 +113,7 @@ def _row(one: Outcome, file: OwnFile, asked: int | None, blame: Data | None) -> 
         "horizon_s": one.horizon / 1e9,
         "time_ms": first // MS if first >= 0 else None,
         "known_ms": one.decided_at // MS if one.violated else None,
+        **({} if one.whole or one.until < 0 else {"until_ms": one.until // MS}),
         "margin": margin,
         "unit": unit,
         "margins": margins(one),
@@ -185,7 +186,7 @@ def _note(one: Outcome, asked: int | None) -> str:
         at = one.first_unknown / 1e9
         return f"{one.unknown} of {total} samples unknown, first at {at:g} s"
     if not one.whole:
-        return "samples or messages are missing, so nothing holds"
+        return one.so_far or "samples or messages are missing, so nothing holds"
     if one.undecided:
         return f"{one.undecided} of {total} samples undecided when the log ends"
     if asked == 0:

@@ -115,6 +115,8 @@ def attach(
             find("silent", watch.sampling.last)
     for line in attached.left():
         click.echo(line, err=True)
+    seen_s = attached.now_ms() / 1000
+    click.echo(f"watched until {seen_s:g} s; what the system does later is unseen", err=True)
     found = watch.result()
     blame = own_blame(found.outcomes, spec, None)
     return print_result(Judged(True, found, remarks, blame), standing, as_json)

@@ -123,6 +123,7 @@ def _data(one: Outcome, timed: bool) -> dict[str, Any]:
     instants = {k: getattr(one, k) for k in ("first_violated", "decided_at", "first_unknown")}
     if timed:
         instants = {f"{k}_s": v / 1e9 if v >= 0 else None for k, v in instants.items()}
+        instants["until_s"] = one.until / 1e9 if one.until >= 0 else None
     counts = {k: getattr(one, k) for k in ("holds", "violated", "unknown", "undecided")}
     return {
         "name": one.name,
@@ -130,6 +131,7 @@ def _data(one: Outcome, timed: bool) -> dict[str, Any]:
         "text": required.text,
         "title": required.title,
         "severity": required.severity,
+        "so_far": one.so_far,
         "source": required.source,
         **({"horizon_s": one.horizon / 1e9} if timed else {"horizon": one.horizon}),
         **counts,
@@ -160,7 +162,7 @@ def _line(one: Outcome, timed: bool) -> str:
             else (f"sample {one.first_violated}", str(one.decided_at))
         )
         text += f"; first violated at {first}, known at {known}"
-    return text
+    return f"{text}; {one.so_far}" if one.so_far else text
 
 
 def _margin(margin: Margin) -> str:

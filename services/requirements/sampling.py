@@ -31,7 +31,7 @@ SAYS = {
     "left out": "bytes came too fast to be looked at",
     "unsealed": "lines came that no key here authenticates: whoever reaches the bridge may have said them",
 }
-NOT_WHOLE = ("order", "open", "lost", "cut", "silent", "refused", "left out")
+NOT_WHOLE = ("order", *DOUBTS, "cut", "silent", "refused", "left out")
 """Where one of these was found nothing holds, since more could be known."""
 
 
@@ -76,6 +76,11 @@ class Sampling:
     def is_whole(self) -> bool:
         """No sample was left out, and no message of the trace is known to be missing."""
         return not any((kind, "") in self._found for kind in NOT_WHOLE)
+
+    @property
+    def is_cut_off(self) -> bool:
+        """The flight went on, or was broken off, where the trace ends."""
+        return ("cut off", "") in self._found
 
     def samples(self, rows: Iterable[Row]) -> Iterator[tuple[int, Sample]]:
         """The samples of the rows, with times that rise."""
