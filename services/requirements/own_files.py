@@ -1,6 +1,7 @@
 """Files of requirements with all that they import, as texts: what a report keeps, so that it can be judged again.
 
-A file is read once. From then on its text is what counts, wherever it goes; exports of FRET that it names go with it.
+A file is read once. From then on its text is what counts, wherever it goes; what it includes, and exports of FRET that it names,
+go with it.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import Any, NamedTuple
 from cratous.services.requirements import language
 from cratous.services.requirements.arithmetic import sources
 from cratous.services.requirements.formula import signals
+from cratous.services.requirements.including import LIBRARY, SUFFIX, text_at
 from cratous.services.requirements.specification import NotRead, Specification
 from cratous.services.requirements.traces import wanted_of
 from cratous.spec.errors import BadInput
@@ -26,7 +28,7 @@ TAKEN = re.compile("G[1-5]")
 
 
 class OwnFile(NamedTuple):
-    """One file. name: as it was given, never with a folder of one machine; imports: its exports, by name."""
+    """One file. name: as it was given, never with a folder of one machine; imports: what it includes and takes, by name."""
 
     name: str
     text: str
@@ -68,7 +70,10 @@ class _Gathered(dict[str, str]):
         return True
 
     def __missing__(self, name: str) -> str:
-        self[name] = text_of(self.folder / name, DOCUMENT_BYTES, "an export of FRET")
+        if name.endswith(SUFFIX) or name.startswith(LIBRARY):
+            self[name] = text_at(self.folder, name)
+        else:
+            self[name] = text_of(self.folder / name, DOCUMENT_BYTES, "an export of FRET")
         return self[name]
 
 
