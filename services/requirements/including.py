@@ -17,7 +17,7 @@ from typing import Any
 
 from cratous.services.requirements.fret_import import Files, quantity, unit_at
 from cratous.services.requirements.fret_terms import Wrong
-from cratous.services.requirements.units import Quantity, dimension
+from cratous.services.requirements.units import Quantity, dimension, in_unit
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import CONFIG_BYTES
 from cratous.spec.files.text_file import text_of
@@ -56,6 +56,13 @@ class Reach:
     def folder(self) -> str:
         """Where the file lies, from the folder of the first."""
         return posixpath.dirname(self.chain[-1])
+
+    @property
+    def where(self) -> str:
+        """The file, for messages."""
+        name, folder = self.chain[-1], getattr(self.files, "folder", self.files)
+        is_file = isinstance(folder, Path) and not name.startswith(LIBRARY)
+        return str(folder / name) if is_file else name
 
     def include(self, token: Any) -> tuple[Reach, str]:
         """(what the included file may take, its text). Raises Wrong for what is included in itself, too deep, too
@@ -179,4 +186,4 @@ def _fitting(value: Value, kind: Any, at: Any) -> Value:
     if dimension(value.unit) != dimension(unit):
         expected = f"{dimension(unit)}, as {unit}"
         raise Wrong("units that do not fit", at.start_pos, expected, value.unit)
-    return value
+    return Quantity(in_unit(value, unit), unit, value.text)

@@ -205,9 +205,7 @@ class _Reader:
         if "." in alias[:-1]:
             raise Wrong("this is no plain name", parts["alias"][0].start_pos, got=alias[:-1])
         before = len(self.shared.requirements)
-        child = _read(
-            text, reach.chain[-1], _Reader(self.shared, reach, self.prefix + alias, given)
-        )
+        child = _read(text, reach.where, _Reader(self.shared, reach, self.prefix + alias, given))
         for name, full in child.visible.items():
             if self.visible.setdefault(alias + name, full) != full:
                 raise Wrong("a signal is declared twice", token.start_pos, got=alias + name)

@@ -15,7 +15,13 @@ from typing import Any, NamedTuple
 from cratous.services.requirements import language
 from cratous.services.requirements.arithmetic import sources
 from cratous.services.requirements.formula import signals
-from cratous.services.requirements.including import LIBRARY, SUFFIX, text_at
+from cratous.services.requirements.including import (
+    LIBRARY,
+    SUFFIX,
+    libraries,
+    library_text,
+    text_at,
+)
 from cratous.services.requirements.specification import NotRead, Specification
 from cratous.services.requirements.traces import wanted_of
 from cratous.spec.errors import BadInput
@@ -172,6 +178,18 @@ def files_of(data: Any) -> tuple[OwnFile, ...]:
                 expected=", ".join(sorted(taken.asked)) or "none", got=", ".join(names) or "none",
             )  # fmt: skip
     return files
+
+
+def other_libraries(files: Iterable[OwnFile]) -> list[str]:
+    """The libraries of the product that these include with another text than this version has, in words."""
+    shipped, found = libraries(), []
+    for file in files:
+        for name, text in file.imports:
+            library = name.removeprefix(LIBRARY)
+            if library == name or (library in shipped and text == library_text(library)):
+                continue
+            found.append(f"{file.name}: {name} is another text than this version of CRATOUS has")
+    return found
 
 
 def line_of(text: str, name: str) -> int | None:
