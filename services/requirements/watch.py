@@ -40,7 +40,7 @@ class Watch:
 
     def __init__(self, spec: Specification, verdicts: list[str] | None = None) -> None:
         self.spec, self.verdicts = spec, verdicts
-        self.count, self._last = 0, -1
+        self.count, self.last = 0, -1
         self.needed: set[str] = set()
         names: set[str] = set()
         self._watched: list[tuple[Outcome, Evaluation]] = []
@@ -79,7 +79,7 @@ class Watch:
         self._sample(time, self._calculated.row(row))
 
     def _sample(self, time: int, row: Sample) -> None:
-        changed, self._last = self._changed(row), time
+        changed, self.last = self._changed(row), time
         for number, (outcome, evaluation) in enumerate(self._watched):
             same = number not in changed
             if not same:
@@ -128,7 +128,7 @@ class Watch:
             columns = Whole(kept)
             for outcome, evaluation in self._watched:
                 columns.fill(outcome, evaluation.formula)
-            self.count, self._last = len(kept.times), kept.last if kept.times else -1
+            self.count, self.last = len(kept.times), kept.last if kept.times else -1
             return
         for time, row in chain(kept.samples(), taken):
             self._sample(time, row)
@@ -138,7 +138,7 @@ class Watch:
         for outcome in self.outcomes:
             outcome.undecided = self.count - outcome.holds - outcome.violated - outcome.unknown
             outcome.whole = self.sampling.is_whole and self.sampling.has_begun
-            outcome.until, outcome.cut_off = self._last, self.sampling.is_cut_off
+            outcome.until, outcome.cut_off = self.last, self.sampling.is_cut_off
         findings = tuple(self.sampling.findings) if self.spec.timed else ()
         return Watched(tuple(self.outcomes), findings)
 
