@@ -17,7 +17,7 @@ from cratous.services.certify.own_blame import Told, blame_rows_of
 from cratous.services.certify.own_margins import least_margin, margins
 from cratous.services.logs.source import open_log
 from cratous.services.requirements.formula import Bounded, Formula, Join, Not, Reaches, parts
-from cratous.services.requirements.outcome import Outcome
+from cratous.services.requirements.outcome import TOLD_BY, Outcome
 from cratous.services.requirements.own_files import OwnFile, line_of
 from cratous.services.requirements.specification import NotRead, Requirement, Specification
 from cratous.services.requirements.traces import doubts, rows_of_messages, wanted_of
@@ -73,7 +73,11 @@ def _watched(spec: Specification, log: Path) -> Watched:
         watching.sampling.find(doubt)
     wanted = wanted_of(spec, watching.needed)
     with open_log(log) as source:
-        watching.all(watching.sampling.samples(rows_of_messages(source.entries(), wanted)))
+        watching.all(
+            watching.sampling.samples(
+                rows_of_messages(source.entries(), wanted, told_by=watching.sampling.told_by)
+            )
+        )
     return watching.result()
 
 
@@ -106,7 +110,7 @@ def _row(one: Outcome, file: OwnFile, asked: int | None, blame: Data | None) -> 
     return {
         **_told(one.requirement, file),
         "verdict": word,
-        "note": _note(one, asked),
+        "note": _note(one, asked) + (f"; {TOLD_BY}" if one.unauthenticated else ""),
         "samples": {k: getattr(one, k) for k in ("holds", "violated", "unknown", "undecided")},
         "asked": asked,
         "checks": decided if asked is None else min(asked, decided),

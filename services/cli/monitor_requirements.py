@@ -132,6 +132,7 @@ def _data(one: Outcome, timed: bool) -> dict[str, Any]:
         "title": required.title,
         "severity": required.severity,
         "so_far": one.so_far,
+        "unauthenticated": one.unauthenticated,
         "source": required.source,
         **({"horizon_s": one.horizon / 1e9} if timed else {"horizon": one.horizon}),
         **counts,
@@ -151,6 +152,8 @@ def _data(one: Outcome, timed: bool) -> dict[str, Any]:
 
 
 def _line(one: Outcome, timed: bool) -> str:
+    from cratous.services.requirements.outcome import TOLD_BY
+
     name = f"{one.name} ({one.requirement.title})" if one.requirement.title else one.name
     severity = f" [{one.requirement.severity}]" if one.requirement.severity else ""
     text = f"{name}{severity}: {one.verdict}; samples: {one.holds} hold, {one.violated} violated"
@@ -162,7 +165,8 @@ def _line(one: Outcome, timed: bool) -> str:
             else (f"sample {one.first_violated}", str(one.decided_at))
         )
         text += f"; first violated at {first}, known at {known}"
-    return f"{text}; {one.so_far}" if one.so_far else text
+    said = [text, one.so_far, TOLD_BY if one.unauthenticated else ""]
+    return "; ".join(filter(None, said))
 
 
 def _margin(margin: Margin) -> str:

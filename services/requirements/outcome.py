@@ -11,6 +11,8 @@ from cratous.services.requirements.sampling import Sample
 from cratous.services.requirements.specification import Requirement, Specification
 from cratous.services.requirements.to_blame import Part
 
+TOLD_BY = "as told by an unauthenticated source"
+
 
 @dataclass
 class Outcome:
@@ -18,7 +20,7 @@ class Outcome:
 
     undecided: samples whose verdict needs more than the trace has; decided_at: when the first violation was
     known; whole: nothing of the trace is known to be missing; until: the last sample; cut_off: the trace is a flight that
-    was cut off there, so that it goes on unseen; margins: of each comparison; blamed: the parts of the
+    was cut off there, so that it goes on unseen; unauthenticated: of what it was held against nothing says who said it; margins: of each comparison; blamed: the parts of the
     formula that are to blame for the first violation.
     """
 
@@ -34,6 +36,7 @@ class Outcome:
     whole: bool = True
     until: int = -1
     cut_off: bool = False
+    unauthenticated: bool = False
     margins: list[Margin] = field(default_factory=list)
     blamed: tuple[Part, ...] = ()
 

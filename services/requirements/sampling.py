@@ -31,6 +31,8 @@ SAYS = {
     "left out": "bytes came too fast to be looked at",
     "unsealed": "lines came that no key here authenticates: whoever reaches the bridge may have said them",
 }
+UNAUTHENTICATED = "not authenticated"
+"""So ends the source of a message that whoever reaches the bridge may have said, as a tap keeps it."""
 NOT_WHOLE = ("order", *DOUBTS, "cut", "silent", "refused", "left out")
 """Where one of these was found nothing holds, since more could be known."""
 
@@ -63,6 +65,8 @@ class Sampling:
         self.last = -1
         self.has_begun, self._before = not spec.begins_with_all, -1
         self._found: dict[tuple[str, str], Finding] = {}
+        self.unauthenticated: set[str] = set()
+        """Signals of which a value came from a source that nothing authenticates."""
 
     @property
     def findings(self) -> list[Finding]:
@@ -124,6 +128,13 @@ class Sampling:
             self.find("stale" if is_stale else "missing", name, time)
             return None
         return last
+
+    def told_by(self, source: str, names: Iterable[str], time: int) -> None:
+        """Values of these signals came from a source, at a time [ns]."""
+        if source.endswith(UNAUTHENTICATED):
+            self.unauthenticated.update(names)
+            if ("unsealed", "") not in self._found:
+                self.find("unsealed", "", time)
 
     def find(self, kind: str, signal: str = "", time: int = -1) -> None:
         """Remember what is wrong, at a time [ns] if it has one."""

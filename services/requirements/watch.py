@@ -68,6 +68,13 @@ class Watch:
         """The outcomes so far, in the order of the file."""
         return [outcome for outcome, _ in self._watched]
 
+    def is_unauthenticated(self, outcome: Outcome) -> bool:
+        """Whether it was held against values from a source that nothing authenticates."""
+        told, formula = self.sampling.unauthenticated, outcome.requirement.formula
+        if not told or isinstance(formula, NotRead):
+            return False
+        return bool(told & sources(signals(formula), self.spec.signals))
+
     def rows(self, rows: Iterable[Row]) -> Iterator[int]:
         """Take rows with times; the time [ns] of each sample that is taken."""
         for time, row in self.sampling.samples(rows):
@@ -139,6 +146,7 @@ class Watch:
             outcome.undecided = self.count - outcome.holds - outcome.violated - outcome.unknown
             outcome.whole = self.sampling.is_whole and self.sampling.has_begun
             outcome.until, outcome.cut_off = self.last, self.sampling.is_cut_off
+            outcome.unauthenticated = self.is_unauthenticated(outcome)
         findings = tuple(self.sampling.findings) if self.spec.timed else ()
         return Watched(tuple(self.outcomes), findings)
 
@@ -151,7 +159,7 @@ def watch(spec: Specification, trace: Path, verdicts: list[str] | None = None) -
     """
     watching = Watch(spec, verdicts)
     if spec.timed:
-        rows = timed_rows(trace, spec, watching.needed)
+        rows = timed_rows(trace, spec, watching.needed, watching.sampling.told_by)
         for doubt in doubts(trace):
             watching.sampling.find(doubt)
         watching.all(watching.sampling.samples(rows))

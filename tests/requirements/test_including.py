@@ -186,7 +186,7 @@ HOLDS = {
     "authority": ("vehicle is 1, back is 1 s", {"icarous": (0, 1), "epoch": (0, 0)}),
     "link": ("vehicle is 1", {"now": (1000, 1001), "up": (0, 0), "down": (0, 500), "alive": (1, 1)}),
     "assumptions": ("vehicle is 1, limit is 10 min",
-                    {"now": (500, 501), "down": (0, 0), "up_number": (1, 1), "icarous": (0, 0), "epoch": (0, 0), "commanded": (0, 0)}),
+                    {"now": (500, 501), "down": (0, 0), "up_number": (1, 1), "icarous": (0, 0), "epoch": (0, 0)}),
 }  # fmt: skip
 BROKEN = {
     "keep-in": "INSIDE", "keep-out": "OUTSIDE", "timing": "ENDS", "order": "AFTER", "well-clear": "CLEAR",

@@ -78,7 +78,7 @@ def test_a_message_that_never_comes_leaves_its_requirements_unknown(tmp_path: Pa
 def test_the_examples_hold_on_the_flight_that_they_are_of(name, root, fly_once) -> None:
     folder = root / "examples" / "crossing"
     log = fly_once(folder / "mission.yaml") / "log.sqlite"
-    found = watch(read((folder / f"{name}.req").read_text()), log)
+    found = watch(read((folder / f"{name}.req").read_text(), files=folder), log)
     wanted = {"holds"} if name == "guarantees" else {"holds", "undecided"}
     assert {one.verdict for one in found.outcomes} == wanted
     assert found.findings == ()
