@@ -56,8 +56,8 @@ def imported(
     wanted = [(_text(one), one.start_pos) for one in parts.get("only", ())]
     for name, at in wanted or [(name, token.start_pos) for name in rows]:
         if name not in rows:
-            known = ", ".join(list(rows)[:8]) or "it has none"
-            raise Wrong("the export has no such requirement", at, known, name)
+            there = ", ".join(list(rows)[:8]) or "it has none"
+            raise Wrong("the export has no such requirement", at, there, name)
         yield fret.requirement(rows[name], names, export.where, timed=True)
 
 

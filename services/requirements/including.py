@@ -61,8 +61,9 @@ class Reach:
     def where(self) -> str:
         """The file, for messages."""
         name, folder = self.chain[-1], getattr(self.files, "folder", self.files)
-        is_file = isinstance(folder, Path) and not name.startswith(LIBRARY)
-        return str(folder / name) if is_file else name
+        if isinstance(folder, Path) and not name.startswith(LIBRARY):
+            return str(folder / name)
+        return name
 
     def include(self, token: Any) -> tuple[Reach, str]:
         """(what the included file may take, its text). Raises Wrong for what is included in itself, too deep, too

@@ -308,7 +308,7 @@ class _Reader:
         if kind == "constant":
             return TRUE if got[0] == "true" else FALSE
         if kind == "compare":
-            return self._compared(*got, names)
+            return self._compared(got[0], got[1], got[2], names)
         if kind == "negation":
             return Not(got[0])
         if kind == "unary":
