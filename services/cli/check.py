@@ -82,7 +82,7 @@ def _read(file: Path, notes: dict[Path, tuple[str, ...]]) -> tuple[Path, list[Ba
             from cratous.services.cli.monitor_requirements import read
             from cratous.services.requirements.specification import NotRead
 
-            asked = [one.formula for one in read(file).requirements]
+            asked = [one.formula for one in read(file, is_open=True).requirements]
             return file, [one for one in asked if isinstance(one, NotRead)]
         else:
             from cratous.services.loading import load
@@ -112,7 +112,7 @@ def _said(file: Path) -> list[dict[str, str]]:
     from cratous.services.requirements.fretish import NoForm, sentence
     from cratous.services.requirements.specification import NotRead
 
-    spec, rows = read(file), []
+    spec, rows = read(file, is_open=True), []
     for one in spec.requirements:
         made, why = "", ""
         try:

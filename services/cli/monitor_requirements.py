@@ -103,8 +103,10 @@ def told(found: Judged) -> Iterator[str]:
     yield from lines(found.blame)
 
 
-def read(requirements: Path) -> Specification:
-    """The requirements of a file, in the language that its name tells; BadInput for what is none."""
+def read(requirements: Path, is_open: bool = False) -> Specification:
+    """The requirements of a file, in the language that its name tells; BadInput for what is none.
+
+    is_open: its parameters need no values."""
     from cratous.services.requirements import c2po, fret, language
     from cratous.spec.files.limits import CONFIG_BYTES, DOCUMENT_BYTES
     from cratous.spec.files.text_file import text_of
@@ -114,7 +116,7 @@ def read(requirements: Path) -> Specification:
         return fret.read(text, str(requirements))
     text = text_of(requirements, CONFIG_BYTES, "requirements")
     if requirements.suffix == ".req":
-        return language.read(text, str(requirements), requirements.parent)
+        return language.read(text, str(requirements), requirements.parent, is_open)
     return c2po.read(text, str(requirements))
 
 

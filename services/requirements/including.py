@@ -12,6 +12,7 @@ import posixpath
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -113,9 +114,10 @@ def text_at(folder: Path, name: str) -> str:
 class Parameters:
     """The parameters of one file, with the values that are given or that it says itself."""
 
-    def __init__(self, given: Mapping[str, tuple[Value, Any]]) -> None:
-        """given: by name the value, and the place where it stands."""
-        self.given = given
+    def __init__(self, given: Mapping[str, tuple[Value, Any]], is_open: bool = False) -> None:
+        """given: by name the value, and the place where it stands; is_open: what has none is taken to be 1, as the file
+        is only looked at."""
+        self.given, self.is_open = given, is_open
         self.values: dict[str, Value] = {}
 
     def declare(self, item: Any) -> None:
@@ -125,6 +127,10 @@ class Parameters:
             raise Wrong("a parameter is declared twice, or has no plain name", name.start_pos)
         own = quantity(*item.children[2].children) if len(item.children) > 2 else None
         value, at = self.given.get(str(name), (own, name))
+        if value is None and self.is_open:
+            value = (
+                "1" if kind.type == "NUMERAL" else Quantity(Fraction(1), unit_at(kind), f"1 {kind}")
+            )
         if value is None:
             expected = f"parameter {name}: {kind} is VALUE, or include ... with {name} is VALUE"
             raise Wrong("nothing gives this parameter a value", name.start_pos, expected)

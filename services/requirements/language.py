@@ -66,15 +66,18 @@ ONE_SIDED: dict[str, Callable[[Formula, int, int], Formula]] = {
 }
 
 
-def read(text: str, where: str = "requirements", files: Files | None = None) -> Specification:
+def read(
+    text: str, where: str = "requirements", files: Files | None = None, is_open: bool = False
+) -> Specification:
     """The requirements of a text. Raises NotRead, with a caret, for what is outside of the language.
 
     files: where files that it imports lie; None: it may import none. Of these a requirement that is not read
-    stands among the others, and says why.
+    stands among the others, and says why. is_open: parameters that have no value are taken to be 1, of a file that
+    others include and that is only looked at.
     """
     at_most(len(text.encode()), CONFIG_BYTES, "the requirements are too long", where)
     shared = _Shared()
-    reader = _read(text, where, _Reader(shared, Reach(files)))
+    reader = _read(text, where, _Reader(shared, Reach(files), is_open=is_open))
     if not shared.requirements:
         line, column, caret = caret_of(text, len(text.rstrip()))
         place = f"{where}, line {line}, column {column}"
@@ -164,10 +167,11 @@ class _Reader:
         reach: Reach,
         prefix: str = "",
         given: Mapping[str, tuple[Value, Any]] | None = None,
+        is_open: bool = False,
     ) -> None:
         self.shared, self.reach, self.prefix = shared, reach, prefix
         self.signals = shared.signals
-        self.parameters = Parameters(given or {})
+        self.parameters = Parameters(given or {}, is_open)
         self.visible: dict[str, str] = {}
         """What it may call a signal, and the signal's name."""
         self.own: set[str] = set()
