@@ -17,7 +17,7 @@ from cratous.services.certify.own_blame import Told, blame_rows_of
 from cratous.services.certify.own_margins import least_margin, margins
 from cratous.services.logs.source import open_log
 from cratous.services.requirements.formula import Bounded, Formula, Join, Not, Reaches, parts
-from cratous.services.requirements.outcome import TOLD_BY, Outcome
+from cratous.services.requirements.outcome import SPARE, TOLD_BY, Outcome
 from cratous.services.requirements.own_files import OwnFile, line_of
 from cratous.services.requirements.specification import NotRead, Requirement, Specification
 from cratous.services.requirements.traces import doubts, rows_of_messages, wanted_of
@@ -153,7 +153,7 @@ def _told(one: Requirement, file: OwnFile) -> Data:
         "file": file.name,
         "line": line_of(file.text, one.name),
         "text": one.text,
-        "kernels": [] if isinstance(one.formula, NotRead) else kernels(one.formula),
+        "kernels": [] if isinstance(one.formula, NotRead) else kernels(one.judged),
         "lint": [],
     }
 
@@ -188,7 +188,8 @@ def _note(one: Outcome, asked: int | None) -> str:
         )
     if one.unknown:
         at = one.first_unknown / 1e9
-        return f"{one.unknown} of {total} samples unknown, first at {at:g} s"
+        spare = f", or {SPARE}" if one.requirement.between is not None else ""
+        return f"{one.unknown} of {total} samples unknown{spare}, first at {at:g} s"
     if not one.whole:
         return one.so_far or "samples or messages are missing, so nothing holds"
     if one.undecided:

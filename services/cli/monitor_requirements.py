@@ -154,12 +154,13 @@ def _data(one: Outcome, timed: bool) -> dict[str, Any]:
 
 
 def _line(one: Outcome, timed: bool) -> str:
-    from cratous.services.requirements.outcome import TOLD_BY
+    from cratous.services.requirements.outcome import SPARE, TOLD_BY
 
     name = f"{one.name} ({one.requirement.title})" if one.requirement.title else one.name
     severity = f" [{one.requirement.severity}]" if one.requirement.severity else ""
     text = f"{name}{severity}: {one.verdict}; samples: {one.holds} hold, {one.violated} violated"
-    text += f", {one.unknown} unknown, {one.undecided} undecided at the end"
+    spare = f" (or {SPARE})" if one.unknown and one.requirement.between is not None else ""
+    text += f", {one.unknown} unknown{spare}, {one.undecided} undecided at the end"
     if one.violated:
         first, known = (
             (f"{one.first_violated / 1e9:g} s", f"{one.decided_at / 1e9:g} s")

@@ -7,14 +7,13 @@ dimension, a signal that is not declared, a name given twice) is refused with it
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from functools import cache
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from fractions import Fraction
+from typing import Any
 
 from cratous.services.requirements.arithmetic import sources
+from cratous.services.requirements.between import NoBound, between
 from cratous.services.requirements.formula import (
     FALSE,
     MAX_TIME,
@@ -43,6 +42,7 @@ from cratous.services.requirements.fret_import import (
 from cratous.services.requirements.fret_nodes import SIGNS, settle, settled, term
 from cratous.services.requirements.fret_terms import Names, Wrong, value_in
 from cratous.services.requirements.including import Parameters, Reach, Value, given_of
+from cratous.services.requirements.language_tree import parsed, refuse_deep
 from cratous.services.requirements.specification import (
     NotRead,
     Requirement,
@@ -50,13 +50,9 @@ from cratous.services.requirements.specification import (
     Specification,
     caret_of,
 )
-from cratous.services.requirements.units import dimension, in_unit
+from cratous.services.requirements.units import NoUnit, dimension, in_unit, product
 from cratous.spec.files.limits import CONFIG_BYTES, at_most
 
-if TYPE_CHECKING:
-    from lark import Lark
-
-NESTED = 200
 ARITHMETIC = (*SIGNS, "negative", "call")
 ONE_SIDED: dict[str, Callable[[Formula, int, int], Formula]] = {
     "always": globally,
@@ -91,50 +87,13 @@ def read(
 def _read(text: str, where: str, reader: _Reader) -> _Reader:
     """Take all that a file says; NotRead with the place in this file."""
     try:
-        _refuse_deep(text)
-        reader.take(text, _parsed(text))
+        refuse_deep(text)
+        reader.take(text, parsed(text))
     except Wrong as no:
         line, column, caret = caret_of(text, no.offset)
         place = f"{where}, line {line}, column {column}"
         raise NotRead(no.what, place, caret, expected=no.expected, got=no.got) from None
     return reader
-
-
-def _refuse_deep(text: str) -> None:
-    depth = 0
-    for found in re.finditer(r'"[^"\n]*"|#[^\n]*|[()]', text):
-        depth += {"(": 1, ")": -1}.get(found.group(), 0)
-        if depth > NESTED:
-            raise Wrong("the formula is nested too deeply", found.start(), f"{NESTED} levels")
-
-
-def _parsed(text: str) -> Any:
-    from lark.exceptions import UnexpectedCharacters, UnexpectedInput
-
-    try:
-        return _parser().parse(text)
-    except UnexpectedInput as error:
-        offset = error.pos_in_stream if error.pos_in_stream is not None else len(text)
-        token = None if isinstance(error, UnexpectedCharacters) else getattr(error, "token", None)
-        if offset < 0 or (token is not None and token.type == "$END"):
-            offset, token = len(text.rstrip()), None
-        got = str(token or text[offset : offset + 1]) or "the end of the file"
-        known = sorted(getattr(error, "expected", None) or getattr(error, "allowed", None) or ())
-        raise Wrong("this cannot stand here", offset, _in_words(known), got) from None
-
-
-WORDS = {
-    "UNIT": "a unit", "NAME": "a name", "NUMBER": "a number", "RELATION": "a comparison",
-    "ID": "the requirement's id", "ORIGIN": "TYPE[FIELD=VALUE].FIELD", "BOOL": "bool",
-    "UNARY": "always, eventually, historically or once", "BINARY": "until or since",
-    "STRING": "a text in quotes", "LPAR": "(", "RPAR": ")", "COLON": ":", "COMMA": ",",
-    "CONSTANT": "true or false", "PARAMETER": "$PARAMETER", "NUMERAL": "id", "FUNCTION": "abs, sqrt, sin or cos",
-    "PLUS": "+", "MINUS": "-", "STAR": "*", "SLASH": "/", "$END": "the end of the file",
-}  # fmt: skip
-
-
-def _in_words(known: list[str]) -> str:
-    return ", ".join(WORDS.get(name, name.lower()) for name in known[:12])
 
 
 class _Shared:
@@ -152,7 +111,7 @@ class _Shared:
             name
             for one in self.requirements
             if not isinstance(one.formula, NotRead)
-            for name in signals(one.formula)
+            for name in (*signals(one.formula), *signals(one.judged))
         }
         kept = own | read | sources(read, self.signals)
         return {name: one for name, one in self.signals.items() if name in kept}
@@ -255,9 +214,26 @@ class _Reader:
             if "." in str(name):
                 raise Wrong("a signal has no dot in its name", name.start_pos, got=str(name))
             of, unit = ("bool", "") if kind.type == "BOOL" else ("float", unit_at(kind))
-            self.signals[full] = Signal(of, unit, *origin, hold_ns=hold, word=word)
+            rate = self._rate(subs["rate"].children[0], unit) if "rate" in subs else Fraction(0)
+            self.signals[full] = Signal(of, unit, *origin, hold_ns=hold, word=word, rate=rate)
             self.visible[str(name)] = full
             self.own.add(full)
+
+    def _rate(self, node: Any, unit: str) -> Fraction:
+        """By how much a signal of a unit changes in a second."""
+        at = node.children[0]
+        given = self.parameters.number(at) if node.data == "given" else quantity(*node.children)
+        try:
+            a_second = replace(given, unit=product(given.unit, "s"))
+        except NoUnit as no:
+            raise Wrong(str(no), at.start_pos) from None
+        if not unit or dimension(a_second.unit) != dimension(unit) or given.value <= 0:
+            expected = f"{unit}/s, above 0" if unit else "no rate of a truth value"
+            raise Wrong("this is no rate of the signal", at.start_pos, expected, given.text)
+        if not self.shared.gap_ns:
+            expected = "trace every ... gap ..."
+            raise Wrong("nothing says how far samples are apart", at.start_pos, expected)
+        return in_unit(a_second, unit)
 
     def _requirement(self, item: Any, names: Names) -> None:
         name = item.children[0]
@@ -279,6 +255,13 @@ class _Reader:
         made = replace(made, name=f"{self.prefix}{made.name}")
         if any(one.name == made.name for one in self.shared.requirements):
             raise Wrong("a requirement's id is given twice", at.start_pos, got=made.name)
+        if not isinstance(made.formula, NotRead):
+            try:
+                judged = between(made.formula, self.signals, self.shared.gap_ns)
+            except NoBound as no:
+                expected = "sums, and factors that are numbers, of signals with a rate"
+                raise Wrong(str(no), at.start_pos, expected) from None
+            made = replace(made, between=judged)
         self.shared.requirements.append(made)
 
     def _formula(self, tree: Any, names: Names) -> Formula:
@@ -387,11 +370,3 @@ class _Reader:
 
 def _offset(node: Any) -> int:
     return int(node.meta.start_pos)
-
-
-@cache
-def _parser() -> Lark:
-    from lark import Lark
-
-    grammar = Path(__file__).with_name("language.lark").read_text(encoding="utf-8")
-    return Lark(grammar, parser="lalr", propagate_positions=True, maybe_placeholders=False)

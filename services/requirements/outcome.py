@@ -11,6 +11,7 @@ from cratous.services.requirements.sampling import Sample
 from cratous.services.requirements.specification import Requirement, Specification
 from cratous.services.requirements.to_blame import Part
 
+SPARE = "so with too little to spare to exclude what lies between samples"
 TOLD_BY = "as told by an unauthenticated source"
 
 

@@ -22,7 +22,7 @@ from cratous.services.requirements.including import (
     library_text,
     text_at,
 )
-from cratous.services.requirements.specification import NotRead, Specification
+from cratous.services.requirements.specification import Specification
 from cratous.services.requirements.traces import wanted_of
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import CONFIG_BYTES, DOCUMENT_BYTES
@@ -59,9 +59,7 @@ class OwnFile(NamedTuple):
         found = language.read(self.text, self.name, dict(self.imports))
         needed: set[str] = set()
         for one in found.requirements:
-            if isinstance(one.formula, NotRead):
-                raise one.formula
-            needed |= sources(signals(one.formula), found.signals)
+            needed |= sources(signals(one.judged), found.signals)
         wanted_of(found, needed)
         return found
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 
 from cratous.services.requirements.arithmetic import Term
 from cratous.services.requirements.formula import Formula
@@ -31,7 +32,8 @@ class NotRead(BadInput):
 class Requirement:
     """One requirement of a file. name: its own, else its number; formula: or why it is not read.
 
-    title, severity, source: as its author states them, empty where he does not.
+    title, severity, source: as its author states them, empty where he does not; between: what is judged at samples in place
+    of the formula, so that it holds between them too (`requirements.between`), where a signal of it has a rate.
     """
 
     name: str
@@ -40,6 +42,14 @@ class Requirement:
     title: str = ""
     severity: str = ""
     source: str = ""
+    between: Formula | None = None
+
+    @property
+    def judged(self) -> Formula:
+        """What is judged at each sample. Raises NotRead."""
+        if isinstance(self.formula, NotRead):
+            raise self.formula
+        return self.formula if self.between is None else self.between
 
 
 @dataclass(frozen=True)
@@ -48,7 +58,8 @@ class Signal:
 
     message, field: the message type and the field that give it in a log, with what the message's other
     fields must be; hold_ns: how long a value counts after its sample (0: at its sample alone); made: of what it is
-    calculated, None: it stands in the trace; word: it is whether the field is this word.
+    calculated, None: it stands in the trace; word: it is whether the field is this word; rate: by how much it changes in a
+    second at most, in its unit, 0 where nothing is said of it.
     """
 
     kind: str
@@ -59,6 +70,7 @@ class Signal:
     hold_ns: int = 0
     made: Term | None = None
     word: str = ""
+    rate: Fraction = Fraction(0)
 
 
 @dataclass(frozen=True)

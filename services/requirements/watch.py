@@ -50,15 +50,15 @@ class Watch:
         self.news: list[tuple[str, Outcome]] = []
         """What was so for the first time: a requirement is `violated` at a sample, or `unknown`; who reads it empties it."""
         for one in spec.requirements:
-            if isinstance(one.formula, NotRead):
-                raise one.formula
-            read = signals(one.formula)
+            judged = one.judged
+            read = signals(judged)
             self.needed |= sources(read, spec.signals)
             names |= set(read)
             for name in read:
                 self._reading.setdefault(name, []).append(len(self._watched))
-            outcome = Outcome(one, horizon(one.formula), margins=margins_of(one.formula, spec))
-            self._watched.append((outcome, Evaluation(one.formula, blames=True)))
+            assert not isinstance(one.formula, NotRead)
+            outcome = Outcome(one, horizon(judged), margins=margins_of(one.formula, spec))
+            self._watched.append((outcome, Evaluation(judged, blames=True)))
         self.sampling = Sampling(spec, self.needed)
         self._names = self.needed | names
         self._calculated = Calculated(names, spec.signals)
