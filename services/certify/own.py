@@ -7,7 +7,6 @@ of `cratous monitor --requirements`, in the words of a report: what is undecided
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +15,7 @@ from cratous.core.requirements import since, until, verdict
 from cratous.services.certify.own_blame import Told, blame_rows_of
 from cratous.services.certify.own_margins import least_margin, margins
 from cratous.services.logs.source import open_log
+from cratous.services.requirements.asked import with_asked
 from cratous.services.requirements.formula import Bounded, Formula, Join, Not, Reaches, parts
 from cratous.services.requirements.outcome import SPARE, TOLD_BY, Outcome
 from cratous.services.requirements.own_files import OwnFile, line_of
@@ -62,13 +62,8 @@ def own_section(files: Sequence[OwnFile], log: Path, told: Told, lint: Lint | No
 
 
 def _watched(spec: Specification, log: Path) -> Watched:
-    """The outcomes of the requirements, then those of what each of them depends on (`_asked`)."""
-    asked = [
-        Requirement(one.name, "", antecedent)
-        for one in spec.requirements
-        if (antecedent := _asked(one)) is not None
-    ]
-    watching = Watch(replace(spec, requirements=(*spec.requirements, *asked)))
+    """The outcomes of the requirements, then those of what each of them depends on (`requirements.asked`)."""
+    watching = Watch(with_asked(spec))
     for doubt in doubts(log):
         watching.sampling.find(doubt)
     wanted = wanted_of(spec, watching.needed)
@@ -79,14 +74,6 @@ def _watched(spec: Specification, log: Path) -> Watched:
             )
         )
     return watching.result()
-
-
-def _asked(one: Requirement) -> Formula | None:
-    """Of `a implies b`, a: where it is not so the requirement asks nothing."""
-    formula = one.formula
-    if isinstance(formula, Join) and not formula.is_and and isinstance(formula.phi, Not):
-        return formula.phi.phi
-    return None
 
 
 def _rows(

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from cratous.services.requirements.watch import Watched
 
 
+UNTESTED = "nothing tested it, as what it depends on was so at no sample"
+
+
 class Judged(NamedTuple):
     """A trace held against requirements. lines: a line for each verdict, None where they were not asked for."""
 
@@ -85,6 +88,7 @@ def result(found: Judged) -> dict[str, Any]:
         "findings": [vars(one) for one in found.watched.findings],
         "lint": [vars(one) for one in found.remarks],
         "blame": found.blame,
+        "untested": found.watched.untested,
     }
 
 
@@ -97,7 +101,8 @@ def told(found: Judged) -> Iterator[str]:
     for finding in found.watched.findings:
         yield f"finding: {finding.text}"
     for one in found.watched.outcomes:
-        yield _line(one, found.timed)
+        tested = one.name not in (found.watched.untested or ())
+        yield _line(one, found.timed) + ("" if tested else f"; {UNTESTED}")
         for margin in one.margins if found.timed else ():
             yield f"  {_margin(margin)}"
     yield from lines(found.blame)

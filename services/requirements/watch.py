@@ -6,11 +6,12 @@ Samples are numbered from 0 where the language counts them, and bear times where
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain, islice
 from pathlib import Path
 
 from cratous.services.requirements.arithmetic import Calculated, sources
+from cratous.services.requirements.asked import with_asked
 from cratous.services.requirements.csv_trace import samples
 from cratous.services.requirements.evaluation import FALSE, TRUE, Evaluation
 from cratous.services.requirements.formula import horizon, signals
@@ -29,6 +30,8 @@ class Watched:
 
     outcomes: tuple[Outcome, ...]
     findings: tuple[Finding, ...]
+    untested: tuple[str, ...] | None = None
+    """Requirements of the form `a implies b` where a was so at no sample; None: that was not looked at."""
 
 
 class Watch:
@@ -41,6 +44,8 @@ class Watch:
     def __init__(self, spec: Specification, verdicts: list[str] | None = None) -> None:
         self.spec, self.verdicts = spec, verdicts
         self.count, self.last = 0, -1
+        self.told = len(spec.requirements)
+        """Of so many requirements the verdicts are written down."""
         self.needed: set[str] = set()
         names: set[str] = set()
         self._watched: list[tuple[Outcome, Evaluation]] = []
@@ -97,7 +102,7 @@ class Watch:
                     outcome.holds += 1
                 else:
                     self._bad(outcome, sample, verdict, time)
-                if self.verdicts is not None:
+                if self.verdicts is not None and number < self.told:
                     at = f"{sample / 1e9:.9g}" if self.spec.timed else str(sample)
                     self.verdicts.append(f"{outcome.name}:{at},{'F?T'[verdict]}")
             if outcome.violated and not outcome.blamed:
@@ -157,7 +162,8 @@ def watch(spec: Specification, trace: Path, verdicts: list[str] | None = None) -
     verdicts: as for `Watch`. A cell that is empty or no finite number is unknown. Raises BadInput for a
     requirement that is not read, a signal that the trace cannot have, and a bool that is neither 0 nor 1.
     """
-    watching = Watch(spec, verdicts)
+    watching = Watch(with_asked(spec), verdicts)
+    watching.told = len(spec.requirements)
     if spec.timed:
         rows = timed_rows(trace, spec, watching.needed, watching.sampling.told_by)
         for doubt in doubts(trace):
@@ -165,7 +171,10 @@ def watch(spec: Specification, trace: Path, verdicts: list[str] | None = None) -
         watching.all(watching.sampling.samples(rows))
     else:
         watching.all(_counted(spec, trace, watching.needed))
-    return watching.result()
+    found = watching.result()
+    own, asked = found.outcomes[: watching.told], found.outcomes[watching.told :]
+    untested = tuple(one.name for one in asked if not one.holds)
+    return replace(found, outcomes=own, untested=untested)
 
 
 def _counted(spec: Specification, trace: Path, needed: set[str]) -> Iterator[tuple[int, Sample]]:

@@ -165,3 +165,19 @@ def test_what_a_log_does_not_have(tmp_path: Path, signal: str, what: str) -> Non
     with pytest.raises(BadInput) as told:
         watch(read(f"signal q: {signal}\nrequirement R: {atom}"), _log(tmp_path))
     assert told.value.what == what
+
+
+def test_what_nothing_tested_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    trace, file = tmp_path / "t.csv", tmp_path / "r.req"
+    trace.write_text("time_s,x\n0,1\n1,3\n")
+    file.write_text(
+        "trace every 1 s\nsignal x: m\nrequirement NEVER: x > 5 m implies x > 9 m\n"
+        "requirement ONCE: x > 2 m implies once within 1 s x > 0 m\nrequirement PLAIN: x > 0 m\n"
+    )
+    assert main(["monitor", str(trace), "--requirements", str(file), "--verdicts"]) in (0, 3)
+    lines = capsys.readouterr().out.splitlines()
+    said = [line for line in lines if "nothing tested it" in line]
+    assert [line.partition(":")[0] for line in said] == ["NEVER"]
+    assert sum(line.endswith(",T") for line in lines) == 6
+    assert main(["monitor", str(trace), "--requirements", str(file), "--json"]) in (0, 3)
+    assert json.loads(capsys.readouterr().out)["untested"] == ["NEVER"]
