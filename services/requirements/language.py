@@ -90,10 +90,18 @@ def _read(text: str, where: str, reader: _Reader) -> _Reader:
         refuse_deep(text)
         reader.take(text, parsed(text))
     except Wrong as no:
-        line, column, caret = caret_of(text, no.offset)
-        place = f"{where}, line {line}, column {column}"
-        raise NotRead(no.what, place, caret, expected=no.expected, got=no.got) from None
+        raise _refused(no, text, where) from None
+    if reader.wrong:
+        first, *others = [_refused(no, text, where, name) for name, no in reader.wrong]
+        first.problems = (first, *others)
+        raise first
     return reader
+
+
+def _refused(no: Wrong, text: str, where: str, name: str = "") -> NotRead:
+    line, column, caret = caret_of(text, no.offset)
+    place = f"{where}, line {line}, column {column}"
+    return NotRead(no.what, place, caret, item=name, expected=no.expected, got=no.got)
 
 
 class _Shared:
@@ -134,6 +142,8 @@ class _Reader:
         self.visible: dict[str, str] = {}
         """What it may call a signal, and the signal's name."""
         self.own: set[str] = set()
+        self.wrong: list[tuple[str, Wrong]] = []
+        """Requirements that do not fit, by id, and why."""
 
     def take(self, text: str, tree: Any) -> None:
         """All that the file says."""
@@ -154,7 +164,10 @@ class _Reader:
         names = Names(self.signals, self.visible, real=True)
         for item in tree.children:
             if item.data == "requirement":
-                self._requirement(item, names)
+                try:
+                    self._requirement(item, names)
+                except Wrong as no:
+                    self.wrong.append((f"{self.prefix}{item.children[0]}", no))
             elif item.data == "import":
                 known = Names(self.signals, self.visible)
                 for one in imported(item, known, self.reach.files, self.reach.folder):

@@ -14,10 +14,19 @@ class NotRead(BadInput):
     """A requirement that is outside of the language."""
 
     def __init__(
-        self, what: str, where: str, caret: str, *, expected: str = "", got: str = ""
+        self,
+        what: str,
+        where: str,
+        caret: str,
+        *,
+        item: str = "",
+        expected: str = "",
+        got: str = "",
     ) -> None:
         self._caret = caret
-        super().__init__(what, where=where, expected=expected, got=got)
+        self.problems: tuple[NotRead, ...] = ()
+        """All that do not fit in its file, this one the first; none where it is the only one that is known."""
+        super().__init__(what, where=where, item=item, expected=expected, got=got)
 
     def caret(self) -> str:
         """The line of the requirement (a window of it if it is long), and ^ below the place."""

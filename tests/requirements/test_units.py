@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 from fractions import Fraction
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cratous.services.cli import main
 from cratous.services.requirements import fretish
 from cratous.services.requirements.language import read
 from cratous.services.requirements.specification import NotRead
@@ -137,6 +139,7 @@ def test_what_does_not_fit_says_what_was_expected_and_got(text: str, says: str) 
     with pytest.raises(NotRead) as no:
         of(text)
     assert says in str(no.value).replace("requirements, line 14, ", ""), str(no.value)
+    assert no.value.item in ("R", "")
     assert no.value.where.startswith("requirements, line 14, column ")
 
 
@@ -176,3 +179,17 @@ def test_a_number_in_another_unit_is_another_number() -> None:
     spec = read(f"{HEAD}requirement R: x * 2 ft <= 1 m^2 and x * 2 m <= 1 m^2\n")
     made = {name: s.unit for name, s in spec.signals.items() if s.made is not None}
     assert made == {"(x * 2.0 ft)": "ft*m", "(x * 2.0 m)": "m^2"}
+
+
+def test_each_requirement_that_does_not_fit_is_named_by_its_id(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "r.req"
+    text = f"{HEAD}requirement ONE: x >= 3 s\nrequirement GOOD: x >= 3 m\nrequirement TWO: x * v >= y\n"
+    file.write_text(text)
+    assert main(["check", str(file), "--json"]) == 2
+    ((*problems,),) = [one["problems"] for one in json.loads(capsys.readouterr().out)["files"]]
+    assert [one["item"] for one in problems] == ["ONE", "TWO"]
+    assert [one["expected"] for one in problems] == ["length, as m", "length^2/time, as m^2/s"]
+    assert main(["monitor", str(file), "--requirements", str(file)]) == 2
+    assert f"{file}, line 14, column 20: ONE: units that do not fit" in capsys.readouterr().err
