@@ -82,7 +82,9 @@ def _read(file: Path, notes: dict[Path, tuple[str, ...]]) -> tuple[Path, list[Ba
             from cratous.services.cli.monitor_requirements import read
             from cratous.services.requirements.specification import NotRead
 
-            asked = [one.formula for one in read(file, is_open=True).requirements]
+            spec = read(file, is_open=True)
+            asked = [one.formula for one in spec.requirements]
+            notes[file] = spec.notes if spec.period_ns else ()  # one without times is for others
             return file, [one for one in asked if isinstance(one, NotRead)]
         else:
             from cratous.services.loading import load

@@ -122,7 +122,7 @@ def attach(
     click.echo(f"watched until {seen_s:g} s; what the system does later is unseen", err=True)
     found = watch.result()
     blame = own_blame(found.outcomes, spec, None)
-    return print_result(Judged(True, found, remarks, blame), standing, as_json)
+    return print_result(Judged(True, found, remarks, blame, notes=spec.notes), standing, as_json)
 
 
 Find = Callable[[str, int], None]

@@ -28,6 +28,7 @@ class Judged(NamedTuple):
     remarks: Sequence[Remark]
     blame: list[dict[str, Any]]
     lines: list[str] | None = None
+    notes: tuple[str, ...] = ()
 
     @property
     def code(self) -> int:
@@ -56,7 +57,9 @@ def judged(spec: Specification, trace: Path, verdicts: bool = False) -> Judged:
     remarks = lint(spec)
     lines: list[str] | None = [] if verdicts else None
     watched = watch(spec, trace, lines)
-    return Judged(spec.timed, watched, remarks, own_blame(watched.outcomes, spec, trace), lines)
+    return Judged(
+        spec.timed, watched, remarks, own_blame(watched.outcomes, spec, trace), lines, spec.notes
+    )
 
 
 def print_result(found: Judged, standing: Standing, as_json: bool) -> int:
@@ -89,6 +92,7 @@ def result(found: Judged) -> dict[str, Any]:
         "lint": [vars(one) for one in found.remarks],
         "blame": found.blame,
         "untested": found.watched.untested,
+        "notes": list(found.notes),
     }
 
 
@@ -98,6 +102,8 @@ def told(found: Judged) -> Iterator[str]:
 
     for remark in found.remarks:
         yield f"lint: {remark.text}"
+    for note in found.notes:
+        yield f"note: {note}"
     for finding in found.watched.findings:
         yield f"finding: {finding.text}"
     for one in found.watched.outcomes:

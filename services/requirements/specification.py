@@ -99,6 +99,13 @@ class Specification:
     begins_with_all: bool = False
 
     @property
+    def notes(self) -> tuple[str, ...]:
+        """What of a trace these requirements do not look at, in words."""
+        if not self.timed or self.gap_ns:
+            return ()
+        return ("no gap is stated (trace every ... gap ...): time without samples goes unnoticed",)
+
+    @property
     def types(self) -> dict[str, str]:
         """The kind of each signal: bool, int or float."""
         return {name: signal.kind for name, signal in self.signals.items()}

@@ -180,4 +180,13 @@ def test_what_nothing_tested_is_said(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert [line.partition(":")[0] for line in said] == ["NEVER"]
     assert sum(line.endswith(",T") for line in lines) == 6
     assert main(["monitor", str(trace), "--requirements", str(file), "--json"]) in (0, 3)
-    assert json.loads(capsys.readouterr().out)["untested"] == ["NEVER"]
+    found = json.loads(capsys.readouterr().out)
+    assert found["untested"] == ["NEVER"]
+    (note,) = found["notes"]
+    assert note.startswith("no gap is stated")
+    assert f"note: {note}" in lines
+    assert main(["check", str(file)]) == 0
+    assert f"{file}: {note}" in capsys.readouterr().out
+    file.write_text(file.read_text().replace("every 1 s", "every 1 s gap 1 s"))
+    assert main(["monitor", str(trace), "--requirements", str(file), "--json"]) in (0, 3)
+    assert json.loads(capsys.readouterr().out)["notes"] == []
