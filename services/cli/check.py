@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from cratous.services.cli.progress import waiting
 from cratous.services.cli.show import say
 from cratous.spec.errors import BadInput
+
+if TYPE_CHECKING:
+    from cratous.services.requirements.specification import Specification
 
 ALGEBRA, REQUIREMENTS = ".algebra", (".req", ".json")
 
@@ -84,7 +87,8 @@ def _read(file: Path, notes: dict[Path, tuple[str, ...]]) -> tuple[Path, list[Ba
 
             spec = read(file, is_open=True)
             asked = [one.formula for one in spec.requirements]
-            notes[file] = spec.notes if spec.period_ns else ()  # one without times is for others
+            # one without times is for others
+            notes[file] = (*spec.notes, *_kept(spec)) if spec.period_ns else ()
             return file, [one for one in asked if isinstance(one, NotRead)]
         else:
             from cratous.services.loading import load
@@ -104,6 +108,16 @@ def _read(file: Path, notes: dict[Path, tuple[str, ...]]) -> tuple[Path, list[Ba
     except BadInput as error:
         return file, list(getattr(error, "problems", ())) or [error]
     return file, []
+
+
+def _kept(spec: Specification) -> list[str]:
+    """How many samples wait at most for their verdict, in words."""
+    from cratous.services.requirements.formula import waiting
+    from cratous.services.requirements.specification import NotRead
+
+    read = [one for one in spec.requirements if not isinstance(one.formula, NotRead)]
+    most = max((waiting(one.judged, spec.period_ns) for one in read), default=0)
+    return [f"{most} samples wait at most for a verdict, where they come as often as it says"]
 
 
 def _said(file: Path) -> list[dict[str, str]]:
