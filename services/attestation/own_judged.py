@@ -16,6 +16,7 @@ from cratous.services.assumptions.listing import State
 from cratous.services.attestation.blamed import broken_then, command_then
 from cratous.services.attestation.findings import Data
 from cratous.services.results.names import ASSUMPTIONS, OWN, REPORT_NAME
+from cratous.spec.errors import BadInput
 
 LINT = "lint"
 
@@ -71,8 +72,14 @@ def own_not_judged(report: Data) -> list[str]:
     """What of them nobody looked into here, in words."""
     if not report.get(OWN):
         return []
+    from cratous.services.requirements.own_files import files_of, other_libraries
+
     said = "lint of requirements of the user's own (cratous certify asks z3 again)"
-    return [said]
+    try:
+        files = files_of(report[OWN].get("files"))
+    except BadInput:  # which is refused as such
+        return [said]
+    return [said, *other_libraries(files)]
 
 
 def _told(report: Data) -> Any:

@@ -11,7 +11,8 @@ from cratous.services.certify.proofs import inventory
 from cratous.services.certify.report import PROOFS_KEPT, Flown, environment
 from cratous.services.certify.running_code import running_code
 from cratous.services.logs.records import fingerprint
-from cratous.services.results.names import FORMER
+from cratous.services.requirements.own_files import other_libraries
+from cratous.services.results.names import FORMER, OWN
 from cratous.spec.errors import BadInput
 
 SILENT = "the log does not say (it was made before this was recorded)"
@@ -56,6 +57,8 @@ def flown_of(
         unchecked["format"] = unchecked["proofs"] = f"the report is one of {FORMER}"
         wrong = []
     own, lacking = files_in(written, meta)
+    if others := other_libraries(own):
+        unchecked[f"{OWN}.files"] = "; ".join(others)
     return Flown(command, avoidance, proofs, around, own), unchecked, wrong, lacking
 
 

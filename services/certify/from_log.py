@@ -35,7 +35,8 @@ def report_of(log: Path, own: Sequence[OwnFile] = ()) -> FromLog:
     """The report as the log gives it. BadInput where the log is none of a flight, or not what its writer left."""
     from cratous.services.monitor.plan_check import check_plan
 
-    doubted = [DOUBTS[one] for one in doubts(log)]
+    # that a flight was cut off its rows say themselves
+    doubted = [DOUBTS[one] for one in doubts(log) if one != "cut off"]
     wrong = not_as_flown(log)
     if wrong:
         raise BadInput(wrong[0].partition(": ")[2], where=str(log))

@@ -7,7 +7,6 @@ of `cratous monitor --requirements`, in the words of a report: what is undecided
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +15,9 @@ from cratous.core.requirements import since, until, verdict
 from cratous.services.certify.own_blame import Told, blame_rows_of
 from cratous.services.certify.own_margins import least_margin, margins
 from cratous.services.logs.source import open_log
+from cratous.services.requirements.asked import with_asked
 from cratous.services.requirements.formula import Bounded, Formula, Join, Not, Reaches, parts
-from cratous.services.requirements.outcome import Outcome
+from cratous.services.requirements.outcome import SPARE, TOLD_BY, Outcome
 from cratous.services.requirements.own_files import OwnFile, line_of
 from cratous.services.requirements.specification import NotRead, Requirement, Specification
 from cratous.services.requirements.traces import doubts, rows_of_messages, wanted_of
@@ -62,27 +62,18 @@ def own_section(files: Sequence[OwnFile], log: Path, told: Told, lint: Lint | No
 
 
 def _watched(spec: Specification, log: Path) -> Watched:
-    """The outcomes of the requirements, then those of what each of them depends on (`_asked`)."""
-    asked = [
-        Requirement(one.name, "", antecedent)
-        for one in spec.requirements
-        if (antecedent := _asked(one)) is not None
-    ]
-    watching = Watch(replace(spec, requirements=(*spec.requirements, *asked)))
+    """The outcomes of the requirements, then those of what each of them depends on (`requirements.asked`)."""
+    watching = Watch(with_asked(spec))
     for doubt in doubts(log):
         watching.sampling.find(doubt)
     wanted = wanted_of(spec, watching.needed)
     with open_log(log) as source:
-        watching.all(watching.sampling.samples(rows_of_messages(source.entries(), wanted)))
+        watching.all(
+            watching.sampling.samples(
+                rows_of_messages(source.entries(), wanted, told_by=watching.sampling.told_by)
+            )
+        )
     return watching.result()
-
-
-def _asked(one: Requirement) -> Formula | None:
-    """Of `a implies b`, a: where it is not so the requirement asks nothing."""
-    formula = one.formula
-    if isinstance(formula, Join) and not formula.is_and and isinstance(formula.phi, Not):
-        return formula.phi.phi
-    return None
 
 
 def _rows(
@@ -106,13 +97,14 @@ def _row(one: Outcome, file: OwnFile, asked: int | None, blame: Data | None) -> 
     return {
         **_told(one.requirement, file),
         "verdict": word,
-        "note": _note(one, asked),
+        "note": _note(one, asked) + (f"; {TOLD_BY}" if one.unauthenticated else ""),
         "samples": {k: getattr(one, k) for k in ("holds", "violated", "unknown", "undecided")},
         "asked": asked,
         "checks": decided if asked is None else min(asked, decided),
         "horizon_s": one.horizon / 1e9,
         "time_ms": first // MS if first >= 0 else None,
         "known_ms": one.decided_at // MS if one.violated else None,
+        **({} if one.whole or one.until < 0 else {"until_ms": one.until // MS}),
         "margin": margin,
         "unit": unit,
         "margins": margins(one),
@@ -148,7 +140,7 @@ def _told(one: Requirement, file: OwnFile) -> Data:
         "file": file.name,
         "line": line_of(file.text, one.name),
         "text": one.text,
-        "kernels": [] if isinstance(one.formula, NotRead) else kernels(one.formula),
+        "kernels": [] if isinstance(one.formula, NotRead) else kernels(one.judged),
         "lint": [],
     }
 
@@ -183,9 +175,10 @@ def _note(one: Outcome, asked: int | None) -> str:
         )
     if one.unknown:
         at = one.first_unknown / 1e9
-        return f"{one.unknown} of {total} samples unknown, first at {at:g} s"
+        spare = f", or {SPARE}" if one.requirement.between is not None else ""
+        return f"{one.unknown} of {total} samples unknown{spare}, first at {at:g} s"
     if not one.whole:
-        return "samples or messages are missing, so nothing holds"
+        return one.so_far or "samples or messages are missing, so nothing holds"
     if one.undecided:
         return f"{one.undecided} of {total} samples undecided when the log ends"
     if asked == 0:

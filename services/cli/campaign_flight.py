@@ -125,6 +125,8 @@ def _requirement(row: dict[str, Any]) -> dict[str, Any]:
     found = {key: row[key] for key in ("verdict", "margin", "unit", "time_ms", "item")}
     if row["verdict"] != Outcome.HOLDS:
         found["note"] = row["note"]
+    if (until_ms := row.get("own", {}).get("until_ms")) is not None:
+        found["until_ms"] = until_ms
     return found
 
 

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from cratous.services.cli.progress import waiting
 from cratous.services.cli.show import say
 from cratous.spec.errors import BadInput
+
+if TYPE_CHECKING:
+    from cratous.services.requirements.specification import Specification
 
 ALGEBRA, REQUIREMENTS = ".algebra", (".req", ".json")
 
@@ -82,7 +85,10 @@ def _read(file: Path, notes: dict[Path, tuple[str, ...]]) -> tuple[Path, list[Ba
             from cratous.services.cli.monitor_requirements import read
             from cratous.services.requirements.specification import NotRead
 
-            asked = [one.formula for one in read(file).requirements]
+            spec = read(file, is_open=True)
+            asked = [one.formula for one in spec.requirements]
+            # one without times is for others
+            notes[file] = (*spec.notes, *_kept(spec)) if spec.period_ns else ()
             return file, [one for one in asked if isinstance(one, NotRead)]
         else:
             from cratous.services.loading import load
@@ -104,6 +110,16 @@ def _read(file: Path, notes: dict[Path, tuple[str, ...]]) -> tuple[Path, list[Ba
     return file, []
 
 
+def _kept(spec: Specification) -> list[str]:
+    """How many samples wait at most for their verdict, in words."""
+    from cratous.services.requirements.formula import waiting
+    from cratous.services.requirements.specification import NotRead
+
+    read = [one for one in spec.requirements if not isinstance(one.formula, NotRead)]
+    most = max((waiting(one.judged, spec.period_ns) for one in read), default=0)
+    return [f"{most} samples wait at most for a verdict, where they come as often as it says"]
+
+
 def _said(file: Path) -> list[dict[str, str]]:
     """The sentence of each requirement of a file, or why it has none; nothing of other files."""
     if file.suffix not in REQUIREMENTS:
@@ -112,7 +128,7 @@ def _said(file: Path) -> list[dict[str, str]]:
     from cratous.services.requirements.fretish import NoForm, sentence
     from cratous.services.requirements.specification import NotRead
 
-    spec, rows = read(file), []
+    spec, rows = read(file, is_open=True), []
     for one in spec.requirements:
         made, why = "", ""
         try:

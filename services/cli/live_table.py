@@ -53,11 +53,12 @@ def table_of(watch: Watch, messages: int, now_ms: int) -> Table:
     drawn = Table(*HEAD, header_style="bold", caption=caption)
     for one in watch.outcomes:
         word = so_far(one)
+        told = " (unauthenticated)" if watch.is_unauthenticated(one) else ""
         severity = f" [{one.requirement.severity}]" if one.requirement.severity else ""
         counts = (f"{getattr(one, name)}" for name in ("holds", "violated", "unknown"))
         drawn.add_row(
             escape(printable(one.name + severity)),
-            f"[{COLOURS.get(word, 'white')}]{word}[/]",
+            f"[{COLOURS.get(word, 'white')}]{word}{told}[/]",
             *counts,
             escape(nearest(one)),
         )

@@ -100,14 +100,17 @@ def attach(
             stores.append(stack.enter_context(LogStore(live.keep, origin=address)))
             messages = _recorded(messages, stores[0])
         rows = rows_of_messages(
-            messages, wanted, lambda entry: find("refused", entry.time_ms * 10**6)
+            messages,
+            wanted,
+            lambda entry: find("refused", entry.time_ms * 10**6),
+            watch.sampling.told_by,
         )
         stack.enter_context(
             shown(lambda: table_of(watch, attached.seq, attached.now_ms()), not as_json)
         )
         for _ in watch.rows(rows):
             for event, one in watch.news:
-                _tell(event, one, as_json)
+                _tell(event, one, as_json, watch.is_unauthenticated(one))
                 if event == "violated" and words:
                     _run(words, one)
             watch.news.clear()
@@ -115,9 +118,11 @@ def attach(
             find("silent", watch.sampling.last)
     for line in attached.left():
         click.echo(line, err=True)
+    seen_s = attached.now_ms() / 1000
+    click.echo(f"watched until {seen_s:g} s; what the system does later is unseen", err=True)
     found = watch.result()
     blame = own_blame(found.outcomes, spec, None)
-    return print_result(Judged(True, found, remarks, blame), standing, as_json)
+    return print_result(Judged(True, found, remarks, blame, notes=spec.notes), standing, as_json)
 
 
 Find = Callable[[str, int], None]
@@ -193,16 +198,20 @@ def _recorded(messages: Iterator[Entry], store: LogStore) -> Iterator[Entry]:
         yield entry
 
 
-def _tell(event: str, one: Outcome, as_json: bool) -> None:
+def _tell(event: str, one: Outcome, as_json: bool, unauthenticated: bool) -> None:
+    from cratous.services.requirements.outcome import TOLD_BY
+
     at_s = getattr(one, f"first_{event}") / 1e9
     if as_json:
         data: dict[str, Any] = {"event": event, "requirement": one.name, "at_s": at_s}
         if event == "violated":
             data["known_s"] = one.decided_at / 1e9
-        click.echo(json.dumps({**data, "severity": one.requirement.severity}))
+        said = {"severity": one.requirement.severity, "unauthenticated": unauthenticated}
+        click.echo(json.dumps({**data, **said}))
         return
     severity = f" [{one.requirement.severity}]" if one.requirement.severity else ""
-    click.echo(f"{one.name}{severity}: {event} at {at_s:g} s")
+    who = f", {TOLD_BY}" if unauthenticated else ""
+    click.echo(f"{one.name}{severity}: {event} at {at_s:g} s{who}")
 
 
 def _command(text: str) -> list[str]:

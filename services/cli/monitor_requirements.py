@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from cratous.services.requirements.watch import Watched
 
 
+UNTESTED = "nothing tested it, as what it depends on was so at no sample"
+
+
 class Judged(NamedTuple):
     """A trace held against requirements. lines: a line for each verdict, None where they were not asked for."""
 
@@ -25,6 +28,7 @@ class Judged(NamedTuple):
     remarks: Sequence[Remark]
     blame: list[dict[str, Any]]
     lines: list[str] | None = None
+    notes: tuple[str, ...] = ()
 
     @property
     def code(self) -> int:
@@ -53,7 +57,9 @@ def judged(spec: Specification, trace: Path, verdicts: bool = False) -> Judged:
     remarks = lint(spec)
     lines: list[str] | None = [] if verdicts else None
     watched = watch(spec, trace, lines)
-    return Judged(spec.timed, watched, remarks, own_blame(watched.outcomes, spec, trace), lines)
+    return Judged(
+        spec.timed, watched, remarks, own_blame(watched.outcomes, spec, trace), lines, spec.notes
+    )
 
 
 def print_result(found: Judged, standing: Standing, as_json: bool) -> int:
@@ -85,6 +91,8 @@ def result(found: Judged) -> dict[str, Any]:
         "findings": [vars(one) for one in found.watched.findings],
         "lint": [vars(one) for one in found.remarks],
         "blame": found.blame,
+        "untested": found.watched.untested,
+        "notes": list(found.notes),
     }
 
 
@@ -94,17 +102,22 @@ def told(found: Judged) -> Iterator[str]:
 
     for remark in found.remarks:
         yield f"lint: {remark.text}"
+    for note in found.notes:
+        yield f"note: {note}"
     for finding in found.watched.findings:
         yield f"finding: {finding.text}"
     for one in found.watched.outcomes:
-        yield _line(one, found.timed)
+        tested = one.name not in (found.watched.untested or ())
+        yield _line(one, found.timed) + ("" if tested else f"; {UNTESTED}")
         for margin in one.margins if found.timed else ():
             yield f"  {_margin(margin)}"
     yield from lines(found.blame)
 
 
-def read(requirements: Path) -> Specification:
-    """The requirements of a file, in the language that its name tells; BadInput for what is none."""
+def read(requirements: Path, is_open: bool = False) -> Specification:
+    """The requirements of a file, in the language that its name tells; BadInput for what is none.
+
+    is_open: its parameters need no values."""
     from cratous.services.requirements import c2po, fret, language
     from cratous.spec.files.limits import CONFIG_BYTES, DOCUMENT_BYTES
     from cratous.spec.files.text_file import text_of
@@ -114,7 +127,7 @@ def read(requirements: Path) -> Specification:
         return fret.read(text, str(requirements))
     text = text_of(requirements, CONFIG_BYTES, "requirements")
     if requirements.suffix == ".req":
-        return language.read(text, str(requirements), requirements.parent)
+        return language.read(text, str(requirements), requirements.parent, is_open)
     return c2po.read(text, str(requirements))
 
 
@@ -123,6 +136,7 @@ def _data(one: Outcome, timed: bool) -> dict[str, Any]:
     instants = {k: getattr(one, k) for k in ("first_violated", "decided_at", "first_unknown")}
     if timed:
         instants = {f"{k}_s": v / 1e9 if v >= 0 else None for k, v in instants.items()}
+        instants["until_s"] = one.until / 1e9 if one.until >= 0 else None
     counts = {k: getattr(one, k) for k in ("holds", "violated", "unknown", "undecided")}
     return {
         "name": one.name,
@@ -130,6 +144,8 @@ def _data(one: Outcome, timed: bool) -> dict[str, Any]:
         "text": required.text,
         "title": required.title,
         "severity": required.severity,
+        "so_far": one.so_far,
+        "unauthenticated": one.unauthenticated,
         "source": required.source,
         **({"horizon_s": one.horizon / 1e9} if timed else {"horizon": one.horizon}),
         **counts,
@@ -149,10 +165,13 @@ def _data(one: Outcome, timed: bool) -> dict[str, Any]:
 
 
 def _line(one: Outcome, timed: bool) -> str:
+    from cratous.services.requirements.outcome import SPARE, TOLD_BY
+
     name = f"{one.name} ({one.requirement.title})" if one.requirement.title else one.name
     severity = f" [{one.requirement.severity}]" if one.requirement.severity else ""
     text = f"{name}{severity}: {one.verdict}; samples: {one.holds} hold, {one.violated} violated"
-    text += f", {one.unknown} unknown, {one.undecided} undecided at the end"
+    spare = f" (or {SPARE})" if one.unknown and one.requirement.between is not None else ""
+    text += f", {one.unknown} unknown{spare}, {one.undecided} undecided at the end"
     if one.violated:
         first, known = (
             (f"{one.first_violated / 1e9:g} s", f"{one.decided_at / 1e9:g} s")
@@ -160,7 +179,8 @@ def _line(one: Outcome, timed: bool) -> str:
             else (f"sample {one.first_violated}", str(one.decided_at))
         )
         text += f"; first violated at {first}, known at {known}"
-    return text
+    said = [text, one.so_far, TOLD_BY if one.unauthenticated else ""]
+    return "; ".join(filter(None, said))
 
 
 def _margin(margin: Margin) -> str:

@@ -171,14 +171,21 @@ def _file(path: Path, head: bytes) -> Source:
 DOUBTS = {
     "open": "the log has no end: it is being written, or its writer was stopped",
     "lost": "messages of the log are missing",
+    "selected": "messages of the log were selected, and the others are not here",
+    "cut off": "the flight was cut off: the log stops before its mission ends",
 }
-"""What keeps a log from being whole, in words."""
+"""What keeps a log from being whole, or a flight from being seen to its end, in words."""
+BEGINS, ENDS = "cratous.PlanAccepted", "cratous.MissionEnd"
 
 
 def doubts(path: Path) -> list[str]:
     """What keeps a log from being whole, of DOUBTS; BadInput where it is not what its writer left."""
     with open_log(path) as source:
-        source.verify()
+        topics = {entry.topic for entry in source.verified_entries()}
         is_open = bool(source.end()) and source.closing() is None
         is_lost = bool(source.holes() + sum(gap.missing for gap in source.gaps()))
-    return [kind for kind, is_so in (("open", is_open), ("lost", is_lost)) if is_so]
+        meta = source.meta()
+        is_flight = BEGINS in topics or ("mission" in meta and "selected" not in meta)
+    is_cut = is_flight and ENDS not in topics and not is_open
+    so = {"open": is_open, "lost": is_lost, "selected": "selected" in meta, "cut off": is_cut}
+    return [kind for kind, is_so in so.items() if is_so]

@@ -16,7 +16,7 @@ from typing import Protocol
 
 Values = Mapping[str, float | None]
 PRE, NEGATED, ABSOLUTE = "pre", "negated", "absolute"
-BEFORE, BEGINS, CHOICE, NAMED = "before", "begins", "choice", "named"
+BEFORE, BEGINS, CHOICE, NAMED, QUANTITY = "before", "begins", "choice", "named", "quantity"
 REACHES, NOT, AND, OR = "reaches", "not", "and", "or"
 ONE: dict[str, Callable[[float], float]] = {
     NEGATED: operator.neg,
@@ -40,7 +40,7 @@ class Term:
 
     PRE: the first side at the first sample, then what the second was at the sample before; BEFORE: the same, unknown at
     the first sample; BEGINS: the first side at the first sample, then the second; CHOICE: by the first side, a truth
-    value (1 or 0), the second or the third; NAMED: its side, which may look at this one at the sample before by its name;
+    value (1 or 0), the second or the third; NAMED: its side, which may look at this one at the sample before by its name; QUANTITY: its side, in the unit;
     REACHES, NOT, AND, OR: truth values, for a choice."""
 
     kind: str
@@ -144,7 +144,7 @@ def _joined(sides: list[float | None], is_and: bool) -> float | None:
 
 
 def _calculated(kind: str, sides: list[float]) -> float:
-    if kind == NAMED:
+    if kind in (NAMED, QUANTITY):
         return sides[0]
     if kind == NOT:
         return 1.0 - sides[0]

@@ -164,12 +164,26 @@ def _head(formula: Formula) -> tuple[object, ...]:
 
 def horizon(formula: Formula) -> int:
     """How long after a sample the formula is decided there at the latest, in time units."""
+    return _horizons(formula)[id(formula)]
+
+
+def _horizons(formula: Formula) -> dict[int, int]:
     longest: dict[int, int] = {}
     for part in parts(formula):
         below = max((longest[id(child)] for child in children(part)), default=0)
         ahead = part.high if isinstance(part, Bounded) and not part.past else 0
         longest[id(part)] = below + ahead
-    return longest[id(formula)]
+    return longest
+
+
+def waiting(formula: Formula, period: int) -> int:
+    """So many samples wait at most in any queue of its evaluation, where samples are at least a period apart."""
+    longest, found = _horizons(formula), 0
+    for part in parts(formula):
+        old = part.low if isinstance(part, Bounded) and part.past else 0
+        if isinstance(part, Join | Bounded):
+            found = max(found, (longest[id(part)] + old) // period + 1)
+    return found
 
 
 def signals(formula: Formula) -> tuple[str, ...]:

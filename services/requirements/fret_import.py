@@ -9,6 +9,7 @@ unit of what it is compared with.
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from pathlib import Path
@@ -18,17 +19,17 @@ from cratous.services.requirements import fret, fretish_read
 from cratous.services.requirements.formula import Formula
 from cratous.services.requirements.fret_definitions import with_definitions
 from cratous.services.requirements.fret_terms import Meaning, Names, Wrong
-from cratous.services.requirements.specification import Requirement, Signal
-from cratous.services.requirements.units import Quantity
+from cratous.services.requirements.specification import Requirement
+from cratous.services.requirements.units import NoUnit, Quantity, of_text
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import DIGITS, DOCUMENT_BYTES
 from cratous.spec.files.text_file import text_of
 
 
-def of_sentence(token: Any, signals: dict[str, Signal]) -> Formula:
+def of_sentence(token: Any, names: Names) -> Formula:
     """The requirement of a sentence in quotes; Wrong, with the place in the file, for what is not read."""
     try:
-        return fretish_read.asked(_text(token), Names(signals, {}), timed=True)
+        return fretish_read.asked(_text(token), names, timed=True)
     except Wrong as no:
         raise Wrong(no.what, token.start_pos + 1 + no.offset, no.expected, no.got) from None
 
@@ -37,24 +38,26 @@ Files = Path | Mapping[str, str]
 """Where the files lie that a file of requirements imports: a folder, or their texts by name."""
 
 
-def imported(item: Any, signals: dict[str, Signal], files: Files | None) -> Iterator[Requirement]:
+def imported(
+    item: Any, known: Names, files: Files | None, folder: str = ""
+) -> Iterator[Requirement]:
     """The requirements that an import names, or all of the export; one that is not read says why.
 
-    Raises Wrong for what is not in the export, BadInput for a file that is none.
+    known: the signals; folder: of the file with the import, from that of `files`. Raises Wrong for what is not in the export, BadInput for a file that is none.
     """
     token = item.children[1]
     if files is None:
         raise Wrong("a text that lies in no folder imports nothing", token.start_pos)
     parts = {str(one.data): one.children for one in item.children[2:]}
-    export = fret.read_export(*_export(files, _text(token)))
-    bound = _bound(parts.get("variables", ()), signals)
-    names = with_definitions(Names(signals, {**export.defined, **bound}))
+    export = fret.read_export(*_export(files, posixpath.join(folder, _text(token))))
+    bound = _bound(parts.get("variables", ()), known)
+    names = with_definitions(Names(known.signals, {**known.bound, **export.defined, **bound}))
     rows = {str(one["reqid"]): one for one in export.requirements}
     wanted = [(_text(one), one.start_pos) for one in parts.get("only", ())]
     for name, at in wanted or [(name, token.start_pos) for name in rows]:
         if name not in rows:
-            known = ", ".join(list(rows)[:8]) or "it has none"
-            raise Wrong("the export has no such requirement", at, known, name)
+            there = ", ".join(list(rows)[:8]) or "it has none"
+            raise Wrong("the export has no such requirement", at, there, name)
         yield fret.requirement(rows[name], names, export.where, timed=True)
 
 
@@ -68,7 +71,7 @@ def _export(files: Files, name: str) -> tuple[str, str]:
     return text_of(files / name, DOCUMENT_BYTES, "an export of FRET"), str(files / name)
 
 
-def _bound(variables: Any, signals: Mapping[str, Signal]) -> dict[str, Meaning]:
+def _bound(variables: Any, known: Names) -> dict[str, Meaning]:
     found: dict[str, Meaning] = {}
     for one in variables:
         token, what = one.children
@@ -79,11 +82,11 @@ def _bound(variables: Any, signals: Mapping[str, Signal]) -> dict[str, Meaning]:
             found[name] = quantity(*what.children)
         elif what.type == "CONSTANT":
             found[name] = str(what) == "true"
-        elif str(what) in signals:
-            found[name] = str(what)
+        elif str(what) in known.bound:
+            found[name] = known.bound[str(what)]
         else:
-            known = ", ".join(sorted(signals)[:8]) or "there is none"
-            raise Wrong("this is no signal", what.start_pos, known, str(what))
+            said = ", ".join(sorted(known.bound)[:8]) or "there is none"
+            raise Wrong("this is no signal", what.start_pos, said, str(what))
     return found
 
 
@@ -96,4 +99,12 @@ def quantity(number: Any, unit: Any = "1") -> Quantity:
     mantissa, _, exponent = str(number).lower().partition("e")
     if len(mantissa) > DIGITS or len(exponent) > 4 or abs(int(exponent or "0")) > DIGITS:
         raise Wrong("the number is too long", number.start_pos, f"up to {DIGITS} digits")
-    return Quantity(Fraction(str(number)), str(unit), f"{number} {unit}")
+    return Quantity(Fraction(str(number)), unit_at(unit), f"{number} {unit}")
+
+
+def unit_at(token: Any) -> str:
+    """The unit of a token in its one form; Wrong for what is none."""
+    try:
+        return of_text(str(token))
+    except NoUnit as no:
+        raise Wrong(str(no), token.start_pos) from None

@@ -5,20 +5,31 @@ What only definitions have, Lustre's `->`, `pre` and `if`, `fret_streams` makes.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from cratous.services.requirements import formula as formulas
-from cratous.services.requirements.arithmetic import ABSOLUTE, NEGATED, PRE, Side, Term
+from cratous.services.requirements.arithmetic import ABSOLUTE, NEGATED, PRE, QUANTITY, Side, Term
 from cratous.services.requirements.formula import MAX_TIME, Join, Not
 from cratous.services.requirements.fret_terms import Names, Wrong, number, parsed, value_in
-from cratous.services.requirements.units import Quantity
+from cratous.services.requirements.units import (
+    NONE,
+    NoUnit,
+    Quantity,
+    dimension,
+    in_unit,
+    product,
+    root,
+)
 
 if TYPE_CHECKING:
     from lark import Lark
 
 LONGEST = 2000
 """Characters of what is calculated."""
+RADIANS = math.pi / 180
+"""Of a degree."""
 SIGNS = {"plus": "+", "minus": "-", "times": "*", "over": "/"}
 FUNCTIONS = {
     "absReal": 1,
@@ -34,16 +45,15 @@ FUNCTIONS = {
 STREAMS = {"begins": (), "choice": (0,), "before": ()}
 """Nodes of definitions that are numbers or truth values as the place where they stand asks; which parts are always truth
 values."""
-NONE = ("", "1")
 NOT_SURE = "of a quotient of whole numbers it is not sure whether it is one"
-NUMBERS = ("number", "negative", *SIGNS)
+NUMBERS = ("number", "quantity", "given", "negative", *SIGNS)
 CALCULATING = ("compare", "negative", *SIGNS)
 """Nodes whose children are numbers, or in a comparison truth values."""
 PLAIN = {"truth": "name", "constant": "word"}
 
 
 def settled(tree: Any, is_number: bool = False) -> None:
-    """Say of each name and constant whether it is a number or a truth value there; Wrong where the other stands."""
+    """Say of each name and constant below the whole whether it is a number or a truth value there; Wrong where the other stands."""
     todo = [(tree, is_number)]
     while todo:
         node, wanted = todo.pop()
@@ -54,11 +64,11 @@ def settled(tree: Any, is_number: bool = False) -> None:
             numeric = _is_calculating(node)
             if kind == "start" or kind in STREAMS:
                 numeric = wanted and n not in STREAMS.get(kind, ())
-            _settle(child, numeric, kind)
+            settle(child, numeric, kind)
             todo.append((child, numeric))
 
 
-def _settle(child: Any, numeric: bool, above: str) -> None:
+def settle(child: Any, numeric: bool, above: str = "") -> None:
     """Say of a node below one of a kind that it is a number, or a truth value; Wrong where it is none."""
     if numeric and str(child.data) in PLAIN:
         child.data = PLAIN[str(child.data)]
@@ -160,14 +170,25 @@ class _Numbers:
         return self._term(PRE, (begins, one), f"{name}({said},{text})", unit, whole)
 
     def _real(self, name: str, one: Any) -> Term:
-        """A sine, cosine or root, of what has no unit or is in radians."""
+        """A sine or cosine, of what has no unit or is in radians; a root, of what has even powers of units."""
         said, unit = (
             (repr(float(one.value)), one.unit) if isinstance(one, Quantity) else self._said(one)[:2]
         )
-        if unit not in NONE and (unit != "rad" or name == "sqrt"):
-            expected = "a number without a unit" if name == "sqrt" else "an angle in rad"
-            raise self._wrong("this has no unit that is known", expected, unit)
         side = float(one.value) if isinstance(one, Quantity) else one
+        if name == "sqrt":
+            try:
+                return self._term(name, (side,), f"{name}({said})", root(unit), False)
+            except NoUnit as no:
+                raise self._wrong(str(no), "even powers of units, as m^2", unit) from None
+        if unit == "deg" and self.names.real:
+            said, unit = f"({said} * {RADIANS!r})", "rad"
+            side = self._term("*", (side, RADIANS), said, unit, False)
+        if unit not in NONE and unit != "rad":
+            raise self._wrong(
+                "units that do not fit",
+                "an angle in rad or deg" if self.names.real else "an angle in rad",
+                unit,
+            )
         return self._term(name, (side,), f"{name}({said})", unit and "1", False)
 
     def _before(self, first: Any, phi: Any) -> formulas.Formula:
@@ -188,7 +209,7 @@ class _Numbers:
         if isinstance(left, Quantity) and isinstance(right, Quantity):
             return self._folded(sign, left, right)
         unit = self._unit(sign, left, right)
-        # of a sum a number is in the unit of the other side; a factor has none
+        # of a sum a number is in the unit of the other side; a factor has its own
         (one, said), (other, also) = (self._side(s, unit if sign in "+-" else None) for s in sides)
         whole = all(self._is_whole(side) for side in sides)
         if whole and sign == "/":
@@ -197,20 +218,23 @@ class _Numbers:
 
     def _unit(self, sign: str, left: Any, right: Any) -> str:
         """The unit of what is calculated of two sides."""
-        one, other = ("" if isinstance(s, Quantity) else self._said(s)[1] for s in (left, right))
-        if sign in "+-":
-            if one == other or isinstance(left, Quantity) or isinstance(right, Quantity):
-                return one or other
-            raise self._wrong("signals of two units", one or "no unit", other or "no unit")
-        if any(isinstance(s, Quantity) and s.unit for s in (left, right)):
-            raise self._wrong("a factor with a unit", "a factor without", sign)
-        if other in NONE or (sign == "*" and one in NONE):
-            return one if other in NONE and one not in NONE else other if other not in NONE else one
-        if sign == "/" and one == other:
-            return "1"
-        raise self._wrong(
-            "this has no unit that is known", "a factor without a unit", f"{one} {sign} {other}"
+        one, other = (
+            side.unit if isinstance(side, Quantity) else self._said(side)[1]
+            for side in (left, right)
         )
+        if sign in "+-":
+            if isinstance(left, Quantity) or isinstance(right, Quantity):
+                return other if isinstance(left, Quantity) else one
+            if one == other:
+                return one
+            what = "signals of two units"
+            if one and other and dimension(one) != dimension(other):
+                what, one = "units that do not fit", f"{dimension(one)}, as {one}"
+            raise self._wrong(what, one or "no unit", other or "no unit")
+        try:
+            return product(one, other, sign)
+        except NoUnit as no:
+            raise self._wrong(str(no), "units with a product", f"{one} {sign} {other}") from None
 
     def _is_whole(self, side: Any) -> bool:
         if isinstance(side, Quantity):
@@ -226,9 +250,12 @@ class _Numbers:
         return side, self.names.signals[side].unit, self.names.signals[side].kind == "int"
 
     def _side(self, side: Any, unit: str | None) -> tuple[Side, str]:
-        """(A side, its text) beside what is in a unit; None: beside anything."""
+        """(A side, its text) beside what is in a unit; None: beside anything, so that a number keeps its own."""
         if isinstance(side, Quantity):
-            value = value_in(side, unit or "", self.at)
+            value = value_in(side, side.unit if unit is None else unit, self.at)
+            if unit is None and side.unit not in NONE:
+                text = f"{value!r} {side.unit}"
+                return Term(QUANTITY, (value,), text, side.unit, False), text
             return value, repr(value)
         text, has, _ = self._said(side)
         if unit is not None and has != unit:
@@ -237,16 +264,25 @@ class _Numbers:
 
     def _folded(self, sign: str, left: Quantity, right: Quantity) -> Quantity:
         """What is calculated of two numbers, exactly."""
-        if left.unit or right.unit:
-            raise self._wrong("numbers with units are calculated with", "one number", sign)
-        a, b = left.value, right.value
+        a, b, unit = left.value, right.value, left.unit
         if sign == "/":
-            if not b or (self._is_whole(left) and self._is_whole(right)):
+            is_sure = self.names.real or not (self._is_whole(left) and self._is_whole(right))
+            if not b or not is_sure:
                 raise self._wrong(NOT_SURE, "a number with a point that is not 0", sign)
             value = a / b
+        elif sign == "*":
+            value = a * b
         else:
-            value = {"+": a + b, "-": a - b, "*": a * b}[sign]
-        return Quantity(value, "", self._short(f"({left.text} {sign} {right.text})"))
+            if dimension(unit or "1") != dimension(right.unit or "1"):
+                raise self._wrong("units that do not fit", unit or "no unit", right.unit)
+            b = in_unit(right, unit) if unit else b
+            value = a + b if sign == "+" else a - b
+        if sign in "*/":
+            try:
+                unit = product(left.unit, right.unit, sign)
+            except NoUnit as no:
+                raise self._wrong(str(no), "units with a product", right.unit) from None
+        return Quantity(value, unit, self._short(f"({left.text} {sign} {right.text})"))
 
     def _term(self, kind: str, sides: tuple[Side, ...], text: str, unit: str, whole: bool) -> Term:
         return Term(kind, sides, self._short(text), unit, whole)

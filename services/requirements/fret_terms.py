@@ -7,7 +7,7 @@ here, `Names` says; one that it does not have is refused.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -63,12 +63,14 @@ TRUTHS = (formulas.Always, formulas.Reaches, formulas.Not, formulas.Join, formul
 class Names:
     """Signals by name, and what else a variable is; a variable that is called as a signal is this signal.
 
-    What is calculated becomes a signal more. counted: samples are counted, so one is the one before.
+    What is calculated becomes a signal more. counted: samples are counted, so one is the one before; real: numbers are
+    those of mathematics, so that a quotient of whole ones is one.
     """
 
     signals: dict[str, Signal]
     bound: Mapping[str, Meaning]
     counted: bool = False
+    real: bool = False
 
     def of(self, token: Any) -> Meaning:
         """What a variable is; Wrong for one that nobody has declared."""
@@ -103,12 +105,11 @@ class Names:
             one, other = (_truth(side) for side in (left, right))
             same = formulas.iff(one, other)
             return same if relation == "=" else formulas.Not(same)
-        left, right = (self._named(side) for side in (left, right))
+        left, right = (self.named(side) for side in (left, right))
         units = [self.signals[side].unit for side in (left, right) if isinstance(side, str)]
         if not units:
             raise Wrong("no signal is compared", at, "a signal on one side")
-        if len(set(units)) > 1:
-            raise Wrong("signals of two units are compared", at, units[0] or "no unit", units[1])
+        self.refuse_units(units, at)
         values = [
             side if isinstance(side, str) else value_in(side, units[0], at)
             for side in (left, right)
@@ -116,15 +117,30 @@ class Names:
         relation = {"=": "=="}.get(str(relation), str(relation))
         return formulas.compared(values[0], relation, values[1])
 
-    def _named(self, side: Any) -> Any:
+    def named(self, side: Any) -> Any:
         """Of what is calculated the name of its signal; anything else as it is."""
         if not isinstance(side, Term):
             return side
         self.signals.setdefault(side.text, Signal("float", side.unit, made=side))
         return side.text
 
+    @staticmethod
+    def refuse_units(units: Sequence[str], at: int) -> None:
+        """Wrong where two signals that are compared have not one unit."""
+        if len(set(units)) < 2:
+            return
+        one, other = units
+        if not (one and other) or dimension(one) == dimension(other):
+            what = "signals of two units are compared"
+            raise Wrong(what, at, one or "no unit", other or "no unit")
+        raise Wrong("units that do not fit", at, _expected(one), other)
+
     def _kind(self, side: Any) -> str:
         return self.signals[side].kind if isinstance(side, str) else ""
+
+
+def _expected(unit: str) -> str:
+    return f"{dimension(unit)}, as {unit}" if unit else "no unit"
 
 
 def _truth(side: Any) -> formulas.Formula:
@@ -138,7 +154,7 @@ def _truth(side: Any) -> formulas.Formula:
 def value_in(number: Quantity, unit: str, at: int) -> float:
     """A number in a unit, in which one without a unit is already; Wrong, with the place, where it is none."""
     if number.unit and (not unit or dimension(number.unit) != dimension(unit)):
-        raise Wrong("units that do not fit", at, unit or "no unit", number.unit)
+        raise Wrong("units that do not fit", at, _expected(unit), number.unit)
     try:
         return float(in_unit(number, unit) if number.unit else number.value)
     except OverflowError:

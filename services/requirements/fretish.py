@@ -110,11 +110,13 @@ def _side(side: str | float, spec: Specification) -> str:
     if not isinstance(side, str):
         return re.sub(r"e([-+])0+", r"e\1", repr(side))
     for name in sources([side], spec.signals):
-        if WORDS.fullmatch(name) or name.startswith("_"):
+        if WORDS.fullmatch(name) or name.startswith("_") or "." in name:
             raise NoForm(f"FRETish has no signal of the name {name}")
     made = spec.signals[side].made
     if made is not None and any(one.kind not in SAID for one in terms(made)):
-        raise NoForm("what FRET's definitions say in Lustre has no form")
+        raise NoForm(
+            "numbers with units in what is calculated, and what FRET's definitions say in Lustre, have no form"
+        )
     return side
 
 

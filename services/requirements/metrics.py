@@ -37,6 +37,12 @@ def text_of(watch: Watch, messages: int) -> str:
             f"{int(one.violated > 0)}"
             for one in watch.outcomes
         ),
+        "# HELP cratous_unauthenticated Whether a requirement was held against what nothing authenticates.",
+        "# TYPE cratous_unauthenticated gauge",
+        *(
+            f'cratous_unauthenticated{{requirement="{_quoted(one.name)}"}} {int(watch.is_unauthenticated(one))}'
+            for one in watch.outcomes
+        ),
         "# HELP cratous_findings_total What was wrong with the samples.",
         "# TYPE cratous_findings_total counter",
         *(

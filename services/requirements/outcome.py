@@ -11,13 +11,17 @@ from cratous.services.requirements.sampling import Sample
 from cratous.services.requirements.specification import Requirement, Specification
 from cratous.services.requirements.to_blame import Part
 
+SPARE = "so with too little to spare to exclude what lies between samples"
+TOLD_BY = "as told by an unauthenticated source"
+
 
 @dataclass
 class Outcome:
     """One requirement over a trace. Instants: numbers of samples, or times [ns]; -1 where there is none.
 
     undecided: samples whose verdict needs more than the trace has; decided_at: when the first violation was
-    known; whole: nothing of the trace is known to be missing; margins: of each comparison; blamed: the parts of the
+    known; whole: nothing of the trace is known to be missing; until: the last sample; cut_off: the trace is a flight that
+    was cut off there, so that it goes on unseen; unauthenticated: of what it was held against nothing says who said it; margins: of each comparison; blamed: the parts of the
     formula that are to blame for the first violation.
     """
 
@@ -31,6 +35,9 @@ class Outcome:
     decided_at: int = -1
     first_unknown: int = -1
     whole: bool = True
+    until: int = -1
+    cut_off: bool = False
+    unauthenticated: bool = False
     margins: list[Margin] = field(default_factory=list)
     blamed: tuple[Part, ...] = ()
 
@@ -47,6 +54,22 @@ class Outcome:
         if self.unknown or not self.whole:
             return "unknown"
         return "undecided" if self.undecided or not self.holds else "holds"
+
+    @property
+    def so_far(self) -> str:
+        """Until when it was looked at, and what of it was so, where nothing was violated or unknown and the trace is not
+        whole; else nothing."""
+        if self.whole or self.violated or self.unknown or self.until < 0:
+            return ""
+        until = f"until {self.until / 1e9:g} s"
+        why = "where the flight was cut off; what came after is unseen"
+        if not self.cut_off:
+            why = "but samples or messages are missing, so nothing holds"
+        if self.undecided or not self.holds:
+            why += f"; {self.holds} samples hold and {self.undecided} are undecided"
+        elif not self.horizon:  # what looks back alone is decided at each sample by what was flown
+            return f"held at each sample {until}, {why}"
+        return f"holds so far, {until}, {why}"
 
     def add(self, sample: int, verdict: int, now: int) -> None:
         """A verdict more, decided by the sample `now`."""

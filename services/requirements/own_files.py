@@ -1,6 +1,7 @@
 """Files of requirements with all that they import, as texts: what a report keeps, so that it can be judged again.
 
-A file is read once. From then on its text is what counts, wherever it goes; exports of FRET that it names go with it.
+A file is read once. From then on its text is what counts, wherever it goes; what it includes, and exports of FRET that it names,
+go with it.
 """
 
 from __future__ import annotations
@@ -14,7 +15,14 @@ from typing import Any, NamedTuple
 from cratous.services.requirements import language
 from cratous.services.requirements.arithmetic import sources
 from cratous.services.requirements.formula import signals
-from cratous.services.requirements.specification import NotRead, Specification
+from cratous.services.requirements.including import (
+    LIBRARY,
+    SUFFIX,
+    libraries,
+    library_text,
+    text_at,
+)
+from cratous.services.requirements.specification import Specification
 from cratous.services.requirements.traces import wanted_of
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import CONFIG_BYTES, DOCUMENT_BYTES
@@ -26,7 +34,7 @@ TAKEN = re.compile("G[1-5]")
 
 
 class OwnFile(NamedTuple):
-    """One file. name: as it was given, never with a folder of one machine; imports: its exports, by name."""
+    """One file. name: as it was given, never with a folder of one machine; imports: what it includes and takes, by name."""
 
     name: str
     text: str
@@ -51,9 +59,7 @@ class OwnFile(NamedTuple):
         found = language.read(self.text, self.name, dict(self.imports))
         needed: set[str] = set()
         for one in found.requirements:
-            if isinstance(one.formula, NotRead):
-                raise one.formula
-            needed |= sources(signals(one.formula), found.signals)
+            needed |= sources(signals(one.judged), found.signals)
         wanted_of(found, needed)
         return found
 
@@ -68,7 +74,10 @@ class _Gathered(dict[str, str]):
         return True
 
     def __missing__(self, name: str) -> str:
-        self[name] = text_of(self.folder / name, DOCUMENT_BYTES, "an export of FRET")
+        if name.endswith(SUFFIX) or name.startswith(LIBRARY):
+            self[name] = text_at(self.folder, name)
+        else:
+            self[name] = text_of(self.folder / name, DOCUMENT_BYTES, "an export of FRET")
         return self[name]
 
 
@@ -167,6 +176,18 @@ def files_of(data: Any) -> tuple[OwnFile, ...]:
                 expected=", ".join(sorted(taken.asked)) or "none", got=", ".join(names) or "none",
             )  # fmt: skip
     return files
+
+
+def other_libraries(files: Iterable[OwnFile]) -> list[str]:
+    """The libraries of the product that these include with another text than this version has, in words."""
+    shipped, found = libraries(), []
+    for file in files:
+        for name, text in file.imports:
+            library = name.removeprefix(LIBRARY)
+            if library == name or (library in shipped and text == library_text(library)):
+                continue
+            found.append(f"{file.name}: {name} is another text than this version of CRATOUS has")
+    return found
 
 
 def line_of(text: str, name: str) -> int | None:

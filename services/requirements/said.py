@@ -11,6 +11,7 @@ from cratous.services.requirements.to_blame import Part
 DEEPEST, LONGEST, HELD = 5, 300, 2
 LOOSE = ("and", "or", "implies", "until", "since", "within", "from")
 """In a part that has one of these, one may doubt how strongly it binds."""
+UNKNOWN = form.Always(1)
 UNITS = ((60 * 10**9, "min"), (10**9, "s"), (10**6, "ms"), (1000, "us"), (1, "ns"))
 
 
@@ -40,6 +41,8 @@ def _said(formula: form.Formula, spec: Specification, level: int) -> str:
     if isinstance(formula, form.Bounded):
         return _timed(formula, spec, level, always=False)
     if isinstance(formula, form.Join):
+        if isinstance(formula.psi, form.Join) and formula.psi.psi == UNKNOWN:
+            return said(formula.phi, spec, level)  # with something to spare, as it was asked
         left, word = formula.phi, "and" if formula.is_and else "or"
         if not formula.is_and and isinstance(left, form.Not):
             left, word = left.phi, "implies"

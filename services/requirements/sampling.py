@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from math import isfinite
 
 from cratous.services.logs.source import DOUBTS
@@ -29,9 +30,13 @@ SAYS = {
     "silent": "nothing came any more before the watch ended",
     "refused": "bytes came that are no message",
     "left out": "bytes came too fast to be looked at",
+    "faster": "a signal changes faster than its rate, so nothing is known of it between samples",
     "unsealed": "lines came that no key here authenticates: whoever reaches the bridge may have said them",
 }
-NOT_WHOLE = ("order", "open", "lost", "cut", "silent", "refused", "left out")
+SECOND = 10**9
+UNAUTHENTICATED = "not authenticated"
+"""So ends the source of a message that whoever reaches the bridge may have said, as a tap keeps it."""
+NOT_WHOLE = ("order", *DOUBTS, "cut", "silent", "refused", "left out", "faster")
 """Where one of these was found nothing holds, since more could be known."""
 
 
@@ -63,6 +68,8 @@ class Sampling:
         self.last = -1
         self.has_begun, self._before = not spec.begins_with_all, -1
         self._found: dict[tuple[str, str], Finding] = {}
+        self.unauthenticated: set[str] = set()
+        """Signals of which a value came from a source that nothing authenticates."""
 
     @property
     def findings(self) -> list[Finding]:
@@ -75,7 +82,12 @@ class Sampling:
     @property
     def is_whole(self) -> bool:
         """No sample was left out, and no message of the trace is known to be missing."""
-        return not any((kind, "") in self._found for kind in NOT_WHOLE)
+        return not any(kind in NOT_WHOLE for kind, _ in self._found)
+
+    @property
+    def is_cut_off(self) -> bool:
+        """The flight went on, or was broken off, where the trace ends."""
+        return ("cut off", "") in self._found
 
     def samples(self, rows: Iterable[Row]) -> Iterator[tuple[int, Sample]]:
         """The samples of the rows, with times that rise."""
@@ -106,6 +118,7 @@ class Sampling:
         if name in row:
             value = row[name]
             known = value if value is not None and isfinite(value) else None
+            self._faster(name, time, known)
             # one that is no number takes the place of the one before
             self.held[name] = time, known
             if known is None:
@@ -119,6 +132,22 @@ class Sampling:
             self.find("stale" if is_stale else "missing", name, time)
             return None
         return last
+
+    def _faster(self, name: str, time: int, known: float | None) -> None:
+        """Find a signal that has changed faster than its rate since its last value."""
+        rate = self.signals[name].rate
+        since, last = self.held.get(name, (time, None))
+        if not rate or known is None or last is None:
+            return
+        if abs(Fraction(known) - Fraction(last)) * SECOND > rate * (time - since):
+            self.find("faster", name, time)
+
+    def told_by(self, source: str, names: Iterable[str], time: int) -> None:
+        """Values of these signals came from a source, at a time [ns]."""
+        if source.endswith(UNAUTHENTICATED):
+            self.unauthenticated.update(names)
+            if ("unsealed", "") not in self._found:
+                self.find("unsealed", "", time)
 
     def find(self, kind: str, signal: str = "", time: int = -1) -> None:
         """Remember what is wrong, at a time [ns] if it has one."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 
 from cratous.services.requirements.arithmetic import Term
 from cratous.services.requirements.formula import Formula
@@ -13,10 +14,19 @@ class NotRead(BadInput):
     """A requirement that is outside of the language."""
 
     def __init__(
-        self, what: str, where: str, caret: str, *, expected: str = "", got: str = ""
+        self,
+        what: str,
+        where: str,
+        caret: str,
+        *,
+        item: str = "",
+        expected: str = "",
+        got: str = "",
     ) -> None:
         self._caret = caret
-        super().__init__(what, where=where, expected=expected, got=got)
+        self.problems: tuple[NotRead, ...] = ()
+        """All that do not fit in its file, this one the first; none where it is the only one that is known."""
+        super().__init__(what, where=where, item=item, expected=expected, got=got)
 
     def caret(self) -> str:
         """The line of the requirement (a window of it if it is long), and ^ below the place."""
@@ -31,7 +41,8 @@ class NotRead(BadInput):
 class Requirement:
     """One requirement of a file. name: its own, else its number; formula: or why it is not read.
 
-    title, severity, source: as its author states them, empty where he does not.
+    title, severity, source: as its author states them, empty where he does not; between: what is judged at samples in place
+    of the formula, so that it holds between them too (`requirements.between`), where a signal of it has a rate.
     """
 
     name: str
@@ -40,6 +51,14 @@ class Requirement:
     title: str = ""
     severity: str = ""
     source: str = ""
+    between: Formula | None = None
+
+    @property
+    def judged(self) -> Formula:
+        """What is judged at each sample. Raises NotRead."""
+        if isinstance(self.formula, NotRead):
+            raise self.formula
+        return self.formula if self.between is None else self.between
 
 
 @dataclass(frozen=True)
@@ -48,7 +67,8 @@ class Signal:
 
     message, field: the message type and the field that give it in a log, with what the message's other
     fields must be; hold_ns: how long a value counts after its sample (0: at its sample alone); made: of what it is
-    calculated, None: it stands in the trace; word: it is whether the field is this word.
+    calculated, None: it stands in the trace; word: it is whether the field is this word; rate: by how much it changes in a
+    second at most, in its unit, 0 where nothing is said of it.
     """
 
     kind: str
@@ -59,6 +79,7 @@ class Signal:
     hold_ns: int = 0
     made: Term | None = None
     word: str = ""
+    rate: Fraction = Fraction(0)
 
 
 @dataclass(frozen=True)
@@ -76,6 +97,13 @@ class Specification:
     gap_ns: int = 0
     period_ns: int = 0
     begins_with_all: bool = False
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What of a trace these requirements do not look at, in words."""
+        if not self.timed or self.gap_ns:
+            return ()
+        return ("no gap is stated (trace every ... gap ...): time without samples goes unnoticed",)
 
     @property
     def types(self) -> dict[str, str]:

@@ -31,6 +31,7 @@ from cratous.bridge.text_protocol import (
 )
 from cratous.services.logs.entry import Entry
 from cratous.services.mission.frames import compass
+from cratous.services.requirements.sampling import UNAUTHENTICATED
 from cratous.services.requirements.specification import Signal
 from cratous.spec.errors import BadInput
 
@@ -244,7 +245,7 @@ class Tapped:
         self, heard: Overheard, now_ms: int, who: str, topic: str, body: dict[str, Any]
     ) -> Entry:
         seq, self.seq = self.seq, self.seq + 1
-        source = who if heard.authenticated else f"{who}, not authenticated"
+        source = who if heard.authenticated else f"{who}, {UNAUTHENTICATED}"
         return Entry(seq, now_ms, source, topic, json.dumps(body, separators=(",", ":")))
 
 

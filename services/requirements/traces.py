@@ -28,11 +28,17 @@ from cratous.spec.files.limits import DIGITS
 TIME = "time_s"
 
 
-def rows(trace: Path, spec: Specification, names: Iterable[str]) -> Iterator[Row]:
+ToldBy = Callable[[str, Iterable[str], int], None]
+"""Is told the source of a message, the signals that it gives and its time [ns]: `Sampling.told_by`."""
+
+
+def rows(
+    trace: Path, spec: Specification, names: Iterable[str], told_by: ToldBy | None = None
+) -> Iterator[Row]:
     """The rows of a trace; BadInput with the place for what is none."""
     if _is_csv(trace):
         return _of_csv(trace, {name: spec.signals[name] for name in sorted(names)})
-    return _of_log(trace, wanted_of(spec, names))
+    return _of_log(trace, wanted_of(spec, names), told_by)
 
 
 def doubts(trace: Path) -> list[str]:
@@ -96,7 +102,7 @@ def wanted_of(spec: Specification, names: Iterable[str]) -> dict[str, Signal]:
     return wanted
 
 
-def _of_log(trace: Path, wanted: Mapping[str, Signal]) -> Iterator[Row]:
+def _of_log(trace: Path, wanted: Mapping[str, Signal], told_by: ToldBy | None) -> Iterator[Row]:
     source = open_log(trace)
     known = {topic.topic for topic in source.topics()}
     for name, signal in wanted.items():
@@ -107,19 +113,22 @@ def _of_log(trace: Path, wanted: Mapping[str, Signal]) -> Iterator[Row]:
                 "the log has no message of this type", where=str(trace), item=name,
                 expected=signal.message, got=got[:300],
             )  # fmt: skip
-    yield from rows_of_messages(source.entries(), wanted)
+    yield from rows_of_messages(source.entries(), wanted, told_by=told_by)
 
 
 def rows_of_messages(
     entries: Iterable[Entry],
     wanted: Mapping[str, Signal],
     unread: Callable[[Entry], None] | None = None,
+    told_by: ToldBy | None = None,
 ) -> Iterator[Row]:
     """The rows of messages in the order of their times; those of one instant are one row.
 
     unread: is told of a message that cannot be decoded or has no such fields, and it is left out; without it BadInput is raised.
     """
-    for time_ms, parts in groupby(_of_messages(entries, wanted, unread), key=itemgetter(0)):
+    for time_ms, parts in groupby(
+        _of_messages(entries, wanted, unread, told_by), key=itemgetter(0)
+    ):
         row: dict[str, float | None] = {}
         for _, part in parts:
             row.update(part)
@@ -130,6 +139,7 @@ def _of_messages(
     entries: Iterable[Entry],
     wanted: Mapping[str, Signal],
     unread: Callable[[Entry], None] | None,
+    told_by: ToldBy | None,
 ) -> Iterator[tuple[int, Mapping[str, float | None]]]:
     """The time [ms] of each message that has a signal, and what it has."""
     for entry in entries:
@@ -149,6 +159,8 @@ def _of_messages(
             unread(entry)
             continue
         if found:
+            if told_by is not None:
+                told_by(entry.source, found, entry.time_ms * 10**6)
             yield entry.time_ms, found
 
 

@@ -6,11 +6,12 @@ Samples are numbered from 0 where the language counts them, and bear times where
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain, islice
 from pathlib import Path
 
 from cratous.services.requirements.arithmetic import Calculated, sources
+from cratous.services.requirements.asked import with_asked
 from cratous.services.requirements.csv_trace import samples
 from cratous.services.requirements.evaluation import FALSE, TRUE, Evaluation
 from cratous.services.requirements.formula import horizon, signals
@@ -29,6 +30,8 @@ class Watched:
 
     outcomes: tuple[Outcome, ...]
     findings: tuple[Finding, ...]
+    untested: tuple[str, ...] | None = None
+    """Requirements of the form `a implies b` where a was so at no sample; None: that was not looked at."""
 
 
 class Watch:
@@ -40,7 +43,9 @@ class Watch:
 
     def __init__(self, spec: Specification, verdicts: list[str] | None = None) -> None:
         self.spec, self.verdicts = spec, verdicts
-        self.count = 0
+        self.count, self.last = 0, -1
+        self.told = len(spec.requirements)
+        """Of so many requirements the verdicts are written down."""
         self.needed: set[str] = set()
         names: set[str] = set()
         self._watched: list[tuple[Outcome, Evaluation]] = []
@@ -50,15 +55,15 @@ class Watch:
         self.news: list[tuple[str, Outcome]] = []
         """What was so for the first time: a requirement is `violated` at a sample, or `unknown`; who reads it empties it."""
         for one in spec.requirements:
-            if isinstance(one.formula, NotRead):
-                raise one.formula
-            read = signals(one.formula)
+            judged = one.judged
+            read = signals(judged)
             self.needed |= sources(read, spec.signals)
             names |= set(read)
             for name in read:
                 self._reading.setdefault(name, []).append(len(self._watched))
-            outcome = Outcome(one, horizon(one.formula), margins=margins_of(one.formula, spec))
-            self._watched.append((outcome, Evaluation(one.formula, blames=True)))
+            assert not isinstance(one.formula, NotRead)
+            outcome = Outcome(one, horizon(judged), margins=margins_of(one.formula, spec))
+            self._watched.append((outcome, Evaluation(judged, blames=True)))
         self.sampling = Sampling(spec, self.needed)
         self._names = self.needed | names
         self._calculated = Calculated(names, spec.signals)
@@ -67,6 +72,13 @@ class Watch:
     def outcomes(self) -> list[Outcome]:
         """The outcomes so far, in the order of the file."""
         return [outcome for outcome, _ in self._watched]
+
+    def is_unauthenticated(self, outcome: Outcome) -> bool:
+        """Whether it was held against values from a source that nothing authenticates."""
+        told, formula = self.sampling.unauthenticated, outcome.requirement.formula
+        if not told or isinstance(formula, NotRead):
+            return False
+        return bool(told & sources(signals(formula), self.spec.signals))
 
     def rows(self, rows: Iterable[Row]) -> Iterator[int]:
         """Take rows with times; the time [ns] of each sample that is taken."""
@@ -79,7 +91,7 @@ class Watch:
         self._sample(time, self._calculated.row(row))
 
     def _sample(self, time: int, row: Sample) -> None:
-        changed = self._changed(row)
+        changed, self.last = self._changed(row), time
         for number, (outcome, evaluation) in enumerate(self._watched):
             same = number not in changed
             if not same:
@@ -90,7 +102,7 @@ class Watch:
                     outcome.holds += 1
                 else:
                     self._bad(outcome, sample, verdict, time)
-                if self.verdicts is not None:
+                if self.verdicts is not None and number < self.told:
                     at = f"{sample / 1e9:.9g}" if self.spec.timed else str(sample)
                     self.verdicts.append(f"{outcome.name}:{at},{'F?T'[verdict]}")
             if outcome.violated and not outcome.blamed:
@@ -128,7 +140,7 @@ class Watch:
             columns = Whole(kept)
             for outcome, evaluation in self._watched:
                 columns.fill(outcome, evaluation.formula)
-            self.count = len(kept.times)
+            self.count, self.last = len(kept.times), kept.last if kept.times else -1
             return
         for time, row in chain(kept.samples(), taken):
             self._sample(time, row)
@@ -138,6 +150,8 @@ class Watch:
         for outcome in self.outcomes:
             outcome.undecided = self.count - outcome.holds - outcome.violated - outcome.unknown
             outcome.whole = self.sampling.is_whole and self.sampling.has_begun
+            outcome.until, outcome.cut_off = self.last, self.sampling.is_cut_off
+            outcome.unauthenticated = self.is_unauthenticated(outcome)
         findings = tuple(self.sampling.findings) if self.spec.timed else ()
         return Watched(tuple(self.outcomes), findings)
 
@@ -148,15 +162,19 @@ def watch(spec: Specification, trace: Path, verdicts: list[str] | None = None) -
     verdicts: as for `Watch`. A cell that is empty or no finite number is unknown. Raises BadInput for a
     requirement that is not read, a signal that the trace cannot have, and a bool that is neither 0 nor 1.
     """
-    watching = Watch(spec, verdicts)
+    watching = Watch(with_asked(spec), verdicts)
+    watching.told = len(spec.requirements)
     if spec.timed:
-        rows = timed_rows(trace, spec, watching.needed)
+        rows = timed_rows(trace, spec, watching.needed, watching.sampling.told_by)
         for doubt in doubts(trace):
             watching.sampling.find(doubt)
         watching.all(watching.sampling.samples(rows))
     else:
         watching.all(_counted(spec, trace, watching.needed))
-    return watching.result()
+    found = watching.result()
+    own, asked = found.outcomes[: watching.told], found.outcomes[watching.told :]
+    untested = tuple(one.name for one in asked if not one.holds)
+    return replace(found, outcomes=own, untested=untested)
 
 
 def _counted(spec: Specification, trace: Path, needed: set[str]) -> Iterator[tuple[int, Sample]]:

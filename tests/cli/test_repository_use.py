@@ -115,6 +115,13 @@ def test_the_workflow_in_a_repository(repository: Repository, root: Path) -> Non
     assert all(p["region"]["startLine"] >= 1 for p in places)
 
 
+LOW = """parameter vehicle: id
+parameter floor: m
+signal z: m from AirVehicleState[ID=$vehicle].Location.Altitude hold 1 s
+requirement FLOOR: z >= $floor
+"""
+
+
 def test_hooks_refuse_what_cannot_be_read(repository: Repository, root: Path) -> None:
     hooks = yaml.safe_load((root / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
     assert [hook["id"] for hook in hooks] == re.findall(r"- id: (cratous-\w+)", page(root))
@@ -125,6 +132,10 @@ def test_hooks_refuse_what_cannot_be_read(repository: Repository, root: Path) ->
     )
     hook.chmod(0o755)
     repository.write("missions/order.algebra", ".(p1 p2)\n")
+    repository.write("common/low.req", LOW)
+    repository.write(
+        "own.req", 'include "common/low.req" as one with vehicle is 1, floor is 90 m\n'
+    )
     repository.write("notes.yaml", "no: mission\n")
     done = repository.commit()
     assert done.returncode == 0, done.stderr
@@ -139,6 +150,12 @@ def test_hooks_refuse_what_cannot_be_read(repository: Repository, root: Path) ->
     done = repository.commit()
     assert done.returncode != 0
     assert "missions/order.algebra" in done.stderr
+    repository.write("missions/order.algebra", ".(p1 p2)\n")
+    repository.write("own.req", 'include "common/low.req" as one\n')
+    done = repository.commit()
+    assert done.returncode != 0
+    assert "nothing gives this parameter a value" in done.stderr
+    assert "common/low.req, line 1" in done.stderr
     assert repository.shell("git log --oneline").stdout.count("\n") == 1
 
 

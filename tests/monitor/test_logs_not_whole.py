@@ -21,6 +21,11 @@ CUT = "DELETE FROM messages WHERE topic LIKE '%VehicleState' AND seq % 7 = 0"
         ([], 0, ""),
         ([CUT], 2, "the messages are not those that were logged"),
         (["DELETE FROM closing"], 3, "unknown at best: the log has no end"),
+        (
+            ["INSERT INTO meta VALUES ('selected', 'true')"],
+            3,
+            "unknown at best: messages of the log were selected",
+        ),
         (["DELETE FROM closing", CUT], 3, "unknown at best: messages of the log are missing"),
     ],
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from itertools import accumulate
 
@@ -25,6 +26,7 @@ from cratous.services.requirements.formula import (
     horizon,
     once,
     signals,
+    waiting,
 )
 from cratous.spec.errors import BadInput
 from cratous.spec.requirements.operators import Meant, since_step, until_step
@@ -179,3 +181,29 @@ def test_deep_formulas_take_no_recursion():
         formula = Not(formula)
     assert signals(formula) == ("x", "y")
     assert run(formula, [(0, {"x": 1.0, "y": 1.0})]) == [[(0, 2)]]
+
+
+@settings(max_examples=200, deadline=None)
+@given(formula=FORMULAS, trace=traces(), more=st.integers(0, 40))
+def test_no_queue_is_longer_than_was_known_before(formula, trace, more):
+    """Whatever comes, where samples are no closer than the period."""
+    last = trace[-1][0]
+    trace = [*trace, *((last + k, {"x": 1.0, "y": None}) for k in range(1, more + 1))]
+    period = min((b - a for (a, _), (b, _) in itertools.pairwise(trace)), default=1)
+    most = waiting(formula, period)
+    evaluation = Evaluation(formula)
+    for time, values in trace:
+        evaluation.sample(time, values)
+        assert max((getattr(node, "size", 0) for node in evaluation.nodes), default=0) <= most
+
+
+def test_what_waits_at_most_is_reached():
+    formula = eventually(Reaches("x", 1.0), 0, 10)
+    evaluation = Evaluation(formula)
+    sizes = []
+    for time in range(30):
+        evaluation.sample(time, {"x": 0.0})
+        sizes.append(max(getattr(node, "size", 0) for node in evaluation.nodes))
+    assert waiting(formula, 1) == 11
+    assert max(sizes) in (10, 11)
+    assert waiting(formula, 5) == 3

@@ -147,9 +147,9 @@ def test_units_of_a_file_of_requirements(tmp_path: Path) -> None:
     (margin,) = one.margins
     assert (margin.least, margin.unit) == (-0.5, "m")
     for said, why in (
-        ("sin(v) > 0.5", "an angle in rad"), ("sqrt(x) > 1.0", "a number without a unit"),
-        ("x + v > 1.0", "two units"), ("x * y > 1.0", "no unit that is known"),
-        ("preReal(0.0, x) > 1.0", "none is the one before"), ("x / y > n * v", "two units"),
+        ("sin(v) > 0.5", "an angle in rad"), ("sqrt(x) > 1.0", "root of this has no unit; expected even powers of units, as m\\^2; got m"),
+        ("x + v > 1.0", "do not fit; expected length, as m; got kn"), ("x * y > v", "expected length\\^2, as m\\^2; got kn"),
+        ("preReal(0.0, x) > 1.0", "none is the one before"), ("x / y > n * v", "expected number, as 1; got kn"),
     ):  # fmt: skip
         with pytest.raises(NotRead, match=why):
             language.read(f'{HEAD}requirement A: fretish "{asked.format(said)}"')

@@ -78,7 +78,7 @@ def test_a_message_that_never_comes_leaves_its_requirements_unknown(tmp_path: Pa
 def test_the_examples_hold_on_the_flight_that_they_are_of(name, root, fly_once) -> None:
     folder = root / "examples" / "crossing"
     log = fly_once(folder / "mission.yaml") / "log.sqlite"
-    found = watch(read((folder / f"{name}.req").read_text()), log)
+    found = watch(read((folder / f"{name}.req").read_text(), files=folder), log)
     wanted = {"holds"} if name == "guarantees" else {"holds", "undecided"}
     assert {one.verdict for one in found.outcomes} == wanted
     assert found.findings == ()
@@ -165,3 +165,28 @@ def test_what_a_log_does_not_have(tmp_path: Path, signal: str, what: str) -> Non
     with pytest.raises(BadInput) as told:
         watch(read(f"signal q: {signal}\nrequirement R: {atom}"), _log(tmp_path))
     assert told.value.what == what
+
+
+def test_what_nothing_tested_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    trace, file = tmp_path / "t.csv", tmp_path / "r.req"
+    trace.write_text("time_s,x\n0,1\n1,3\n")
+    file.write_text(
+        "trace every 1 s\nsignal x: m\nrequirement NEVER: x > 5 m implies x > 9 m\n"
+        "requirement ONCE: x > 2 m implies once within 1 s x > 0 m\nrequirement PLAIN: x > 0 m\n"
+    )
+    assert main(["monitor", str(trace), "--requirements", str(file), "--verdicts"]) in (0, 3)
+    lines = capsys.readouterr().out.splitlines()
+    said = [line for line in lines if "nothing tested it" in line]
+    assert [line.partition(":")[0] for line in said] == ["NEVER"]
+    assert sum(line.endswith(",T") for line in lines) == 6
+    assert main(["monitor", str(trace), "--requirements", str(file), "--json"]) in (0, 3)
+    found = json.loads(capsys.readouterr().out)
+    assert found["untested"] == ["NEVER"]
+    (note,) = found["notes"]
+    assert note.startswith("no gap is stated")
+    assert f"note: {note}" in lines
+    assert main(["check", str(file)]) == 0
+    assert f"{file}: {note}" in capsys.readouterr().out
+    file.write_text(file.read_text().replace("every 1 s", "every 1 s gap 1 s"))
+    assert main(["monitor", str(trace), "--requirements", str(file), "--json"]) in (0, 3)
+    assert json.loads(capsys.readouterr().out)["notes"] == []

@@ -150,11 +150,20 @@ def test_lines_are_judged_as_they_pass_and_as_the_log_is(
     kinds = {one["kind"] for one in live["findings"]}
     assert ("unsealed" in kinds) == (kind != "v2 with its key")
     assert ("not authenticated" in said.err) == (kind != "v2 with its key")
+    # whoever reaches the bridge may have said it: each row, and each event, says so
+    sure = kind == "v2 with its key"
+    assert {one["unauthenticated"] for one in live["requirements"]} == {not sure}
+    events = [json.loads(line) for line in said.out.splitlines() if line.startswith('{"event"')]
+    assert {one["unauthenticated"] for one in events} == {not sure}
     # both ends have heard all that the other one said
     assert [m for m in bridge.heard[True] if not isinstance(m, tp.Hello)] == UP
     assert bridge.heard[False] == DOWN
     assert main(["monitor", str(log), "--requirements", str(requirements), "--json"]) == 1
     assert json.loads(capsys.readouterr().out)["requirements"] == live["requirements"]
+    assert main(["monitor", str(log), "--requirements", str(requirements)]) == 1
+    lines = [one for one in capsys.readouterr().out.splitlines() if "; samples: " in one]
+    told = [one.endswith("; as told by an unauthenticated source") for one in lines]
+    assert told == [not sure] * 4
     assert main(["log", "filter", str(log), "--json"]) == 0
     assert ("not authenticated" in capsys.readouterr().out) == (kind != "v2 with its key")
 

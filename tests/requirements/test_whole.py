@@ -69,7 +69,7 @@ def both_ways(formula: form.Formula, rows: list[tuple[int, Any, Any]]) -> tuple[
     for time, row in samples(rows):
         columns.add(time, row)
     whole.Whole(columns).fill(at_once.outcomes[0], formula)
-    at_once.count = len(rows)
+    at_once.count, at_once.last = len(rows), columns.last if rows else -1
     return one_by_one.result().outcomes[0], at_once.result().outcomes[0]
 
 
