@@ -65,6 +65,11 @@ class Craft:
     handed: bool = False
     waiting: Any = None
 
+    @property
+    def listed(self) -> tuple[int, ...]:
+        """The tasks of its newest state."""
+        return () if self.body is None else tuple(self.body.AssociatedTasks)
+
 
 @dataclass(frozen=True)
 class State:

@@ -40,8 +40,10 @@ from cratous.services.icarous_communication.plans import (
     Away,
     Plan,
     begins_as,
+    being_done,
     deviates,
     going_on,
+    leading_back,
     next_part,
     part,
     plan_of,
@@ -109,8 +111,7 @@ class Communication:
             out += more
             if not self.dialect.ours:  # which says no epoch
                 out += in_flight(self.name, vehicle_id, peer.gate, state.craft(vehicle_id).plan)
-        body = state.craft(vehicle_id).body
-        if body is None:
+        if (body := state.craft(vehicle_id).body) is None:
             return state, out
         state, more = self._seen(state, vehicle_id, body, now_ms)
         return state, [*out, *more]
@@ -160,8 +161,7 @@ class Communication:
     def _mode(self, state: State, vehicle_id: int, line: SetMode, now_ms: int) -> Step:
         """A SETMOD: the gate is moved as the line says, if it is the next step of this gate; the kernels
         of the link end decide whether that is true, and what follows."""
-        peer = state.link.peer(vehicle_id)
-        if peer is None:
+        if (peer := state.link.peer(vehicle_id)) is None:
             return state, []
         fresh = vehicle_id in state.fresh
         over = modes.forgotten(peer, line, fresh)
@@ -202,6 +202,8 @@ class Communication:
         craft = state.craft(vid)
         here = None if craft.air is None else craft.air.position
         plan = plan_of(command, plane(state.frame), now_ms, here)
+        if plan is not None:  # a part of a way may begin within a task
+            plan = plan._replace(begun=being_done(craft.plan, craft.listed))
         if begins_as(plan, craft.plan):  # what a waypoint manager hands on is told already
             return state, out
         state, more = self._route(state.put(vid, replace(craft, plan=plan)), vid)
@@ -300,7 +302,7 @@ class Communication:
     def _suspend(self, state: State, vid: int, now_ms: int) -> Step:
         craft, peer = state.craft(vid), state.link.peer(vid)
         assert peer is not None
-        tasks = () if craft.body is None else tuple(craft.body.AssociatedTasks)
+        tasks = being_done(craft.plan, craft.listed)  # one that it is on its way to needs no pause
         left = Position(0.0, 0.0, 0.0) if craft.air is None else craft.air.position
         # an instance that comes again has had the vehicle all the time
         state = state.put(vid, replace(craft, away=craft.away or Away(left, tasks)))
@@ -336,9 +338,9 @@ class Communication:
         now = Motion(air.position, air.heading_rad, air.speed_m_s, air.climb_m_s)
         plan, radius_m = going_on(plan, away), turn_radius_of(craft, air)
         sent = resumed(plan, away, now, radius_m, projection, COMMANDS_FROM + state.commands + 1)
-        way = plan_of(sent.command, projection, now_ms, air.position)
-        if way is not None:  # the mission's own command is what the next way back leads to
-            way = way._replace(command=plan.command, back=sent.back, resume=sent.resume)
+        way = leading_back(
+            plan, away, sent, plan_of(sent.command, projection, now_ms, air.position)
+        )
         after = replace(craft, away=None, holds=False, handed=True, plan=way)
         state = replace(state.put(vid, after), commands=state.commands + 1)
         state, out = self._route(state, vid)
