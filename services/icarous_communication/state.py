@@ -84,6 +84,11 @@ class State:
     fresh: frozenset[int] = frozenset()
     stale: frozenset[int] = frozenset()
 
+    @property
+    def plane(self) -> Projection:
+        """The projection of the frame, some other as long as there is none."""
+        return plane(self.frame or Frame(0.0, 0.0))
+
     def craft(self, vehicle_id: int) -> Craft:
         """What is known of a vehicle."""
         return self.crafts.get(vehicle_id, Craft())

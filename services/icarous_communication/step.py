@@ -73,6 +73,7 @@ from cratous.services.icarous_communication.steering import (
     action_of,
     at_gate,
     command_of,
+    flies,
     hold,
     in_flight,
     taken_back,
@@ -81,7 +82,7 @@ from cratous.services.icarous_communication.steering import (
 from cratous.services.pipeline.status import status
 from cratous.services.uxas.daidalus.zones import frame_at
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import Frame, Position
+from cratous.spec.mission import Position
 
 Step = tuple[State, list[Out]]
 
@@ -104,8 +105,8 @@ class Communication:
         state, out = self._end(state, Connected(now_ms, (vehicle_id,)))
         peer = state.link.peer(vehicle_id)
         assert peer is not None
-        anew = state.link.with_peer(modes.anew(peer))
-        state = replace(state, link=anew, fresh=state.fresh | {vehicle_id})
+        link = state.link.with_peer(modes.anew(peer))
+        state = replace(state, link=link, fresh=state.fresh | {vehicle_id})
         if not known:
             state, more = self._route(state, vehicle_id)
             out += more
@@ -125,7 +126,8 @@ class Communication:
         """A line has come from an instance."""
         if isinstance(line, SetMode):
             return self._mode(state, vehicle_id, line, now_ms)
-        state, out = self._end(state, Heard(vehicle_id, now_ms, line))
+        flown = flies(line, state.craft(vehicle_id).air, state.plane)
+        state, out = self._end(state, Heard(vehicle_id, now_ms, flown))
         state = self._free(state, vehicle_id)
         if isinstance(line, Heartbeat):
             state = state.put(vehicle_id, replace(state.craft(vehicle_id), handed=False))
@@ -180,8 +182,7 @@ class Communication:
 
     def configured(self, state: State, body: Any) -> Step:
         """An AirVehicleConfiguration."""
-        craft = replace(state.craft(body.ID), configuration=body)
-        return state.put(body.ID, craft), []
+        return state.put(body.ID, replace(state.craft(body.ID), configuration=body)), []
 
     def mission(self, state: State, command: Any, now_ms: int) -> Step:
         """A MissionCommand of somebody else's; while ICAROUS has the vehicle it waits for the handback."""
@@ -257,8 +258,8 @@ class Communication:
     def _seen(self, state: State, vid: int, body: Any, now_ms: int) -> Step:
         """Everybody at the time of this vehicle's state, to its instance; who cannot be, is said once."""
         aircraft, stale = at_the_time_of(body, state.crafts)
-        roll, pitch = math.radians(body.Roll), math.radians(body.Pitch)
-        seen = Seen(vid, now_ms, int(body.Time), aircraft, roll, pitch)
+        angles = math.radians(body.Roll), math.radians(body.Pitch)
+        seen = Seen(vid, now_ms, int(body.Time), aircraft, *angles)
         notes = left_out(stale - state.stale)
         state, out = self._end(replace(state, stale=stale), seen)
         return state, [*notes, *out]
@@ -282,8 +283,7 @@ class Communication:
 
     def _end(self, state: State, message: ToLinkEnd) -> Step:
         """Tell the end, and do what it answers."""
-        frame = state.frame or Frame(0.0, 0.0)
-        link, answers = UxasEnd(plane(frame)).handle(state.link, message)
+        link, answers = UxasEnd(state.plane).handle(state.link, message)
         state, out = replace(state, link=link), list[Out]()
         for answer in answers:
             match answer:
@@ -306,8 +306,8 @@ class Communication:
         left = Position(0.0, 0.0, 0.0) if craft.air is None else craft.air.position
         # an instance that comes again has had the vehicle all the time
         state = state.put(vid, replace(craft, away=craft.away or Away(left, tasks)))
-        note = Note("WARN", f"vehicle {vid}: ICAROUS has it, in epoch {peer.gate.epoch}")
-        return state, [note, *told(self.name, vid, now_ms, peer.gate)]
+        text = f"vehicle {vid}: ICAROUS has it, in epoch {peer.gate.epoch}"
+        return state, [Note("WARN", text), *told(self.name, vid, now_ms, peer.gate)]
 
     def _take_back(self, state: State, vid: int, epoch: int, now_ms: int) -> Step:
         """Tasks resume, the mission goes on, ICAROUS is told the way; without a mission it holds."""
@@ -350,8 +350,7 @@ class Communication:
         plan = state.craft(vid).plan
         if plan is None or state.link.peer(vid) is None:
             return state, []
-        points = part(plan, self.dialect.part_waypoints)
-        from_m = plan.track.s_m[plan.told]
+        points, from_m = part(plan, self.dialect.part_waypoints), plan.track.s_m[plan.told]
         return self._end(state, Route(vid, points, plan.speed_m_s, from_m))
 
     def _held(self, state: State, vid: int, out: list[Out]) -> Step:
@@ -383,9 +382,8 @@ class Communication:
         return state.put(vid, replace(craft, holds=False)) if craft.holds else state
 
     def _command(self, state: State, vid: int, action: Any) -> tuple[State, Say]:
-        number = COMMANDS_FROM + state.commands + 1
         state = replace(state, commands=state.commands + 1)
-        return state, Say(command_of(vid, number, action), self.name)
+        return state, Say(command_of(vid, COMMANDS_FROM + state.commands, action), self.name)
 
     def _framed(self, state: State, place: Any) -> Step:
         """The plane is that of the first place that is told; zones told before are in it from then on."""
