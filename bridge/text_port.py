@@ -93,7 +93,7 @@ class TextPort:
         self._tally = Tally(where.text, report)
         self.counts = self._tally.counts
         self._connections: dict[int, Connection] = {}
-        self._keys = itertools.count(1)
+        self.numbers = itertools.count(1)  # of the connections
         self._listener: Listener | None = None
         self._closed, self._now_s = False, 0.0
         if server if listens is None else listens:
@@ -216,7 +216,7 @@ class TextPort:
         return False
 
     def _join(self, link: Link, now_s: float) -> int:
-        key = next(self._keys)
+        key = next(self.numbers)
         direction = Direction.UP if self._server else Direction.DOWN
         handshake: Handshake
         if isinstance(self._secret, str):

@@ -15,6 +15,7 @@ from cratous.bridge.port import Report, Tally, is_due, often
 from cratous.bridge.redial import Redial
 from cratous.bridge.text_connection import PROGRAM_LIMITS, REFUSED, Bounds, Opened
 from cratous.bridge.text_port import Came, TextPort
+from cratous.bridge.text_ports import TextPorts
 from cratous.bridge.text_protocol import (
     Heartbeat,
     Hello,
@@ -93,16 +94,22 @@ class IcarousCommunicationService:
         ICAROUS may ask UxAS for ways."""
         self.name, self._bus, self._report, self._settings = name, bus, report, settings
         bounds = Bounds(silence_s=None, connections=4 * settings.instances)
-        self.port = TextPort(
-            settings.where,
-            server=True,
-            listens=not settings.to,
-            bounds=bounds,
-            dialect=settings.dialect,
-            secret=settings.keys or secret,
-            report=report,
+        self._doors = settings.doors
+        self.port = TextPorts(
+            [
+                TextPort(
+                    door.where,
+                    server=True,
+                    listens=not settings.to,
+                    bounds=bounds,
+                    dialect=door.dialect,
+                    secret=door.keys or secret,
+                    report=report,
+                )
+                for door in self._doors
+            ]
         )
-        self._step = Communication(name, settings.deviation_m, settings.dialect)
+        self._step = Communication(name, settings.deviation_m, settings.dialects)
         self._seats = Seats(settings.instances, settings.ids)
         self._routes, self._proposals = routes, proposals
         self._early: dict[int, list[Message]] = {}
@@ -112,15 +119,17 @@ class IcarousCommunicationService:
         self._started = False
         self._until_s: float | None = None
         self._say_s, self._said = 0.0, ""
-        self._redial = Redial(self.port, settings.to)
+        self._redial = Redial(self.port.ports[0], settings.to)
         if settings.to:
             text = ", ".join(one.text for one in settings.to)
             report("INFO", f"{name}: connects to {text}")
             return
-        host, port = self.port.bound
-        report("INFO", f"{name}: listens at {host}:{port}")
-        if settings.where.everywhere:
-            report("WARN", f"{name}: listens on all interfaces; whoever is there may connect")
+        for door, one in zip(self._doors, self.port.ports, strict=True):
+            host, port = one.bound
+            who = f", {door.dialect.value} for vehicles {door.ids}" if settings.others else ""
+            report("INFO", f"{name}: listens at {host}:{port}{who}")
+            if door.where.everywhere:
+                report("WARN", f"{name}: listens on all interfaces; whoever is there may connect")
 
     # of the bus -----------------------------------------------------------------------------------
 
@@ -182,6 +191,7 @@ class IcarousCommunicationService:
         arrived = self.port.step(now_s)
         for came in arrived:
             self._came(came, now_s)
+            self.port.ended(came)
         for key, vid in self._seats.settle(self._known, now_s):
             self._seated(key, vid)
         self._publish([] if self._routes is None else self._routes.look(now_s))
@@ -216,7 +226,8 @@ class IcarousCommunicationService:
         match came.what:
             case Opened():
                 self._redial.opened(key, now_s)
-                self._refuse(key, self._seats.opened(key, now_s))
+                only = self._doors[self.port.which(key)].ids if self._settings.others else ()
+                self._refuse(key, self._seats.opened(key, now_s, only))
             case LinkEvent() as event:
                 said = self._redial.ended(key, event.detail or event.kind, now_s)
                 if said:

@@ -8,13 +8,22 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from cratous.bridge.text_protocol import Dialect, GoToWaypoint, Message, SoftReset, Waypoint
+from cratous.bridge.text_protocol import (
+    Dialect,
+    FenceDone,
+    FenceVertex,
+    GoToWaypoint,
+    Message,
+    SoftReset,
+    Waypoint,
+)
 from cratous.bridge.text_protocol.layouts import ORIGINAL_LIMITS
 from cratous.core.authority.timeliness import in_time
 from cratous.services.flight import link_end
 from cratous.services.flight.dynamics import AirState, turn_radius_m
 from cratous.services.flight.messages import Down, Say
 from cratous.services.icarous.ending import TURN_MARGIN
+from cratous.services.icarous_communication.doors import Dialects
 from cratous.services.icarous_communication.plans import Away, Plan, position_of
 from cratous.services.mission.frames import Projection
 from cratous.services.uxas.daidalus.zones import surroundings
@@ -74,7 +83,8 @@ class Craft:
 @dataclass(frozen=True)
 class State:
     """link: what the end remembers; frame: the plane, None before anything has a place; zones and crafts
-    by id; commands: given so far; fresh: vehicles whose instance has not yet said which epoch it is in; stale: who is not told as traffic."""
+    by id; commands: given so far; fresh: vehicles whose instance has not yet said which epoch it is in; stale: who is not told as traffic;
+    client_zones: the zones that the original's clients are told."""
 
     link: link_end.State = field(default_factory=link_end.State)
     frame: Frame | None = None
@@ -83,6 +93,7 @@ class State:
     commands: int = 0
     fresh: frozenset[int] = frozenset()
     stale: frozenset[int] = frozenset()
+    client_zones: frozenset[int] = frozenset()
 
     @property
     def plane(self) -> Projection:
@@ -119,25 +130,33 @@ def air_state(body: Any, projection: Projection) -> AirState:
     return AirState(place, math.atan2(east, north), math.hypot(north, east), climb)
 
 
-def tellable(
-    frame: Frame, bodies: Iterable[Any], dialect: Dialect
-) -> tuple[tuple[Zone, ...], list[Note]]:
-    """The zones that peers are told, whole, and about the others why not. The original's client publishes a fence
-    for each GEOFN_SEND, with whatever it holds of it, and counts them itself."""
+def tellable(frame: Frame, bodies: Iterable[Any]) -> tuple[tuple[Zone, ...], list[Note]]:
+    """The zones that peers are told, and about the others why not."""
     around = surroundings(frame, bodies, "MSL")
-    fit, why = around.zones, list(around.missing)
-    if dialect is Dialect.ORIGINAL:
-        most, corners = ORIGINAL_LIMITS.zones, ORIGINAL_LIMITS.vertices
-        fit = tuple(zone for zone in fit if len(zone.vertices) in range(corners + 1))
-        alone = "the original's client is not told of it"
-        why += [
-            f"zone {z.id}: more than {corners} vertices; {alone}"
-            for z in around.zones
-            if z not in fit
-        ]
-        why += [f"zone {z.id}: more than {most} zones; {alone}" for z in fit[most:]]
-        fit = fit[:most]
-    return fit, [Note("WARN", text) for text in why]
+    return around.zones, [Note("WARN", text) for text in around.missing]
+
+
+def held_by_client(zones: tuple[Zone, ...]) -> tuple[tuple[Zone, ...], list[Note]]:
+    """Those of them that the original's client is told, and about the others why not: it publishes a fence for each
+    GEOFN_SEND, with whatever it holds of it, and counts them itself."""
+    most, corners = ORIGINAL_LIMITS.zones, ORIGINAL_LIMITS.vertices
+    fit = tuple(zone for zone in zones if len(zone.vertices) in range(corners + 1))
+    alone = "the original's client is not told of it"
+    why = [f"zone {z.id}: more than {corners} vertices; {alone}" for z in zones if z not in fit]
+    why += [f"zone {z.id}: more than {most} zones; {alone}" for z in fit[most:]]
+    return fit[:most], [Note("WARN", text) for text in why]
+
+
+def known_zones(
+    state: State, frame: Frame, dialects: Dialects
+) -> tuple[State, tuple[Zone, ...], list[Note]]:
+    """The zones that peers are told, with those of the original's clients remembered, and about the others why not."""
+    zones, notes = tellable(frame, state.zones.values())
+    if Dialect.ORIGINAL in dialects.all:
+        held, more = held_by_client(zones)
+        notes = [*notes, *more]
+        state = replace(state, client_zones=frozenset(zone.id for zone in held))
+    return state, zones, notes
 
 
 def turn_radius_of(craft: Craft, air: AirState) -> float:
@@ -181,9 +200,21 @@ def moved(air: AirState, late_s: float) -> AirState:
     return air._replace(position=place)
 
 
-def placed(state: State, vid: int, line: Message, dialect: Dialect) -> Message:
-    """As a peer of another dialect than ours reads it: RESET_SFT with where the vehicle is, and WAYPT with a
-    running count for the original's client."""
+def placed(
+    state: State, vid: int, lines: tuple[Message, ...], dialect: Dialect
+) -> tuple[Message, ...]:
+    """As a peer of another dialect than ours reads them: RESET_SFT with where the vehicle is, and for the original's
+    client WAYPT with a running count, and the zones that it holds alone."""
+    if dialect.ours:
+        return lines
+    if dialect is Dialect.ORIGINAL:
+        told = state.client_zones
+        fences = (FenceVertex, FenceDone)
+        lines = tuple(x for x in lines if not isinstance(x, fences) or x.zone in told)
+    return tuple(_placed(state, vid, line, dialect) for line in lines)
+
+
+def _placed(state: State, vid: int, line: Message, dialect: Dialect) -> Message:
     if dialect is Dialect.ORIGINAL and isinstance(line, Waypoint):
         return replace(line, total=line.index + 1)
     if not isinstance(line, SoftReset) or line.lat_deg is not None:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from cratous.bridge import lmcp
-from cratous.bridge.text_protocol import Dialect, GoToWaypoint, Heartbeat, Hello, Message, SetMode
+from cratous.bridge.text_protocol import GoToWaypoint, Heartbeat, Hello, Message, SetMode
 from cratous.core.authority.gate import ICAROUS, UXAS, gate_accepts, gate_after
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import Motion
@@ -36,6 +36,7 @@ from cratous.services.flight.messages import (
     ZonesKnown,
 )
 from cratous.services.icarous_communication import modes
+from cratous.services.icarous_communication.doors import Dialects
 from cratous.services.icarous_communication.plans import (
     Away,
     Plan,
@@ -63,10 +64,10 @@ from cratous.services.icarous_communication.state import (
     air_state,
     at_the_time_of,
     goes_on,
+    known_zones,
     left_out,
     placed,
     plane,
-    tellable,
     turn_radius_of,
 )
 from cratous.services.icarous_communication.steering import (
@@ -90,11 +91,11 @@ Step = tuple[State, list[Out]]
 @dataclass(frozen=True)
 class Communication:
     """The step; what does not change. allowed_m: how far from its leg a vehicle may be before its tasks
-    are paused; dialect: of the peers; of those of another one than ours no heartbeat is to be expected."""
+    are paused; dialects: of the peers; of those of another one than ours no heartbeat is to be expected."""
 
     name: str
     allowed_m: float
-    dialect: Dialect = Dialect.CRATOUS
+    dialects: Dialects
 
     # what comes over the wire ---------------------------------------------------------------------
 
@@ -110,7 +111,7 @@ class Communication:
         if not known:
             state, more = self._route(state, vehicle_id)
             out += more
-            if not self.dialect.ours:  # which says no epoch
+            if not self.dialects.ours(vehicle_id):  # which says no epoch
                 out += in_flight(self.name, vehicle_id, peer.gate, state.craft(vehicle_id).plan)
         if (body := state.craft(vehicle_id).body) is None:
             return state, out
@@ -131,7 +132,7 @@ class Communication:
         state = self._free(state, vehicle_id)
         if isinstance(line, Heartbeat):
             state = state.put(vehicle_id, replace(state.craft(vehicle_id), handed=False))
-        if self.dialect is Dialect.ORIGINAL and isinstance(line, GoToWaypoint):
+        if self.dialects.original(vehicle_id) and isinstance(line, GoToWaypoint):
             return state, [*out, Refuse("GOTOWP of the original: its number is noise", str(line))]
         craft, peer = state.craft(vehicle_id), state.link.peer(vehicle_id)
         if craft.air is None or peer is None or state.frame is None:
@@ -153,11 +154,10 @@ class Communication:
 
     def watch(self, state: State, now_ms: int) -> Step:
         """Time has passed: who has fallen silent."""
-        if not self.dialect.ours:
-            return state, []
-        state, out = self._end(state, Watch(now_ms))
-        for peer in state.link.peers:
-            state, out = self._held(state, peer.vehicle_id, out)
+        peers = [one.vehicle_id for one in state.link.peers]
+        state, out = self._end(state, Watch(now_ms, frozenset(filter(self.dialects.ours, peers))))
+        for vid in peers:
+            state, out = self._held(state, vid, out)
         return state, out
 
     def _mode(self, state: State, vehicle_id: int, line: SetMode, now_ms: int) -> Step:
@@ -173,7 +173,7 @@ class Communication:
         said = modes.read(peer, line, fresh)
         state = replace(state, fresh=state.fresh - {vehicle_id} if said.believed else state.fresh)
         state, out = self._end(state, GateIs(vehicle_id, said.gate))
-        if modes.begins(peer, said, fresh and self.dialect.ours):
+        if modes.begins(peer, said, fresh and self.dialects.ours(vehicle_id)):
             out += in_flight(self.name, vehicle_id, said.gate, state.craft(vehicle_id).plan)
         state, more = self._end(state, Heard(vehicle_id, now_ms, said.line))
         return self._free(state, vehicle_id), [*out, *more]
@@ -244,7 +244,7 @@ class Communication:
     def _reached(self, state: State, vid: int, plan: Plan) -> Step:
         """The waypoints that are behind, and, to a peer that holds a part alone, the next part."""
         out: list[Out] = []
-        if (most := self.dialect.part_waypoints) is not None:
+        if (most := self.dialects.of(vid).part_waypoints) is not None:
             onward = next_part(plan, most, SPARE_WAYPOINTS)
             if onward is not plan:
                 state = state.put(vid, replace(state.craft(vid), plan=onward))
@@ -273,7 +273,7 @@ class Communication:
         if not deviates(plan, air.position, self.allowed_m):
             return state, []
         state = state.put(vid, replace(craft, away=away._replace(paused=True)))
-        point = None if self.dialect is Dialect.ORIGINAL else resume_point(plan, away.left)
+        point = None if self.dialects.original(vid) else resume_point(plan, away.left)
         state, out = self._end(state, Left(vid, point)) if point else (state, [])
         paused = [Say(lmcp.new("TaskPause", TaskID=task), self.name) for task in away.tasks]
         text = f"vehicle {vid} is more than {self.allowed_m:g} m from its leg; tasks pause"
@@ -293,9 +293,9 @@ class Communication:
                 case TakeBack(vid, now_ms, _, epoch):
                     state, more = self._take_back(state, vid, epoch, now_ms)
                     out += more
-                case Down(vid, lines) if not self.dialect.ours:
-                    out.append(Down(vid, tuple(placed(state, vid, x, self.dialect) for x in lines)))
-                case Say() | Down():
+                case Down(vid, lines):
+                    out.append(Down(vid, placed(state, vid, lines, self.dialects.of(vid))))
+                case Say():
                     out.append(answer)
         return state, out
 
@@ -350,8 +350,8 @@ class Communication:
         plan = state.craft(vid).plan
         if plan is None or state.link.peer(vid) is None:
             return state, []
-        points, from_m = part(plan, self.dialect.part_waypoints), plan.track.s_m[plan.told]
-        return self._end(state, Route(vid, points, plan.speed_m_s, from_m))
+        points = part(plan, self.dialects.of(vid).part_waypoints)
+        return self._end(state, Route(vid, points, plan.speed_m_s, plan.track.s_m[plan.told]))
 
     def _held(self, state: State, vid: int, out: list[Out]) -> Step:
         """A vehicle that ICAROUS has and whose ICAROUS is not heard holds where it is."""
@@ -371,7 +371,7 @@ class Communication:
 
     def _by_uxas(self, state: State, vid: int, command: Any) -> list[Out]:
         """What UxAS commands a vehicle that has a gate here."""
-        peer, fresh = state.link.peer(vid), self.dialect.ours and vid in state.fresh
+        peer, fresh = state.link.peer(vid), self.dialects.ours(vid) and vid in state.fresh
         if peer is None or modes.unknown(peer, fresh):
             return []
         return [at_gate(self.name, vid, peer.gate, UXAS, command)]
@@ -395,6 +395,6 @@ class Communication:
         """All zones to all instances."""
         if state.frame is None:
             return state, []
-        zones, notes = tellable(state.frame, state.zones.values(), self.dialect)
+        state, zones, notes = known_zones(state, state.frame, self.dialects)
         state, out = self._end(state, ZonesKnown(zones))
         return state, [*out, *notes]
