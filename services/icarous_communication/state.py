@@ -84,7 +84,7 @@ class Craft:
 class State:
     """link: what the end remembers; frame: the plane, None before anything has a place; zones and crafts
     by id; commands: given so far; fresh: vehicles whose instance has not yet said which epoch it is in; stale: who is not told as traffic;
-    client_zones: the zones that the original's clients are told."""
+    client_zones: which of the zones that are told, counted from 1, the original's clients are told."""
 
     link: link_end.State = field(default_factory=link_end.State)
     frame: Frame | None = None
@@ -93,7 +93,7 @@ class State:
     commands: int = 0
     fresh: frozenset[int] = frozenset()
     stale: frozenset[int] = frozenset()
-    client_zones: frozenset[int] = frozenset()
+    client_zones: tuple[int, ...] = ()
 
     @property
     def plane(self) -> Projection:
@@ -155,7 +155,8 @@ def known_zones(
     if Dialect.ORIGINAL in dialects.all:
         held, more = held_by_client(zones)
         notes = [*notes, *more]
-        state = replace(state, client_zones=frozenset(zone.id for zone in held))
+        numbers = tuple(k for k, zone in enumerate(zones, 1) if zone in held)
+        state = replace(state, client_zones=numbers)
     return state, zones, notes
 
 
@@ -208,10 +209,19 @@ def placed(
     if dialect.ours:
         return lines
     if dialect is Dialect.ORIGINAL:
-        told = state.client_zones
-        fences = (FenceVertex, FenceDone)
-        lines = tuple(x for x in lines if not isinstance(x, fences) or x.zone in told)
+        lines = tuple(_numbered(x, state.client_zones) for x in lines if _held(x, state))
     return tuple(_placed(state, vid, line, dialect) for line in lines)
+
+
+def _held(line: Message, state: State) -> bool:
+    return not isinstance(line, FenceVertex | FenceDone) or line.zone in state.client_zones
+
+
+def _numbered(line: Message, told: tuple[int, ...]) -> Message:
+    """The client keeps its zones by their numbers, which have to be 1 to n."""
+    if isinstance(line, FenceVertex | FenceDone) and line.zone is not None:
+        return replace(line, zone=told.index(line.zone) + 1)
+    return line
 
 
 def _placed(state: State, vid: int, line: Message, dialect: Dialect) -> Message:

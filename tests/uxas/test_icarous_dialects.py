@@ -46,7 +46,7 @@ def test_each_peer_is_told_in_its_own_form_and_steers_its_own_vehicle(
 ) -> None:
     rig = Rig(tmp_path, THREE, opened)
     peers = {1: peer(rig, 0, hello=1), 2: peer(rig, 1), 3: peer(rig, 2)}
-    rig.tell(zone(4, 1), zone(60, 2))
+    rig.tell(zone(60, 7), zone(4, 9))
     for vid in peers:
         command = way((0.0, 0.0), (5000.0, 0.0), (9000.0, 0.0)).copy(VehicleID=vid)
         rig.tell(state(vid, 400.0 * vid), command)
@@ -63,8 +63,9 @@ def test_each_peer_is_told_in_its_own_form_and_steers_its_own_vehicle(
     assert totals == list(range(1, len(totals) + 1)), "a running count is what its client reads"
     assert {line.total for line in ours.all(tp.Waypoint)} == {len(totals)}
     assert all(line.lat_deg is not None for line in original.all(tp.SoftReset))
-    # its client holds no zone of more than 50 vertices; the others are told both
+    # its client holds no zone of more than 50 vertices, and counts those that it holds; the others are told both
     assert [line.zone for line in original.all(tp.FenceDone)] == [1]
+    assert [(line.zone, line.total) for line in original.all(tp.FenceVertex)] == [(1, 4)] * 4
     for one in (ours, thesis):
         assert {line.zone for line in one.all(tp.FenceDone)} == {1, 2}
     # epochs are ours alone, and each steers the vehicle that it speaks for
