@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 from cratous.bridge.text_protocol import (
     Attitude,
+    ForgetFences,
     HardReset,
     Heartbeat,
     LinesMissing,
@@ -240,6 +241,8 @@ class UxasEnd:
         for peer in state.peers:
             others = of_others(state, peer.vehicle_id, self.projection)
             anew = [HardReset(), *fences, *link_lines.onward(peer.way, peer.reached), *others]
+            if not zones:  # the way stays
+                anew = [ForgetFences()]
             out += down_to(peer, fences if more else anew)
             state = state.with_peer(replace(peer, again=()))
         return replace(state, zones=zones), tuple(out)

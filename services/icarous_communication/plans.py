@@ -85,6 +85,11 @@ def being_done(plan: Plan | None, tasks: Iterable[int]) -> tuple[int, ...]:
     return tuple(task for task in tasks if begun(task))
 
 
+def begun_with(plan: Plan | None, tasks: tuple[int, ...]) -> Plan | None:
+    """A plan that may be a part of a way, as it begins within these tasks."""
+    return None if plan is None else plan._replace(begun=tasks)
+
+
 class Away(NamedTuple):
     """ICAROUS commands a vehicle. left: where its way was left; tasks: that it was doing then; paused:
     it is farther from its leg than is allowed, and these tasks are told to pause; proposed: the way of UxAS's

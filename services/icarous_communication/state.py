@@ -12,15 +12,21 @@ from cratous.bridge.text_protocol import (
     Dialect,
     FenceDone,
     FenceVertex,
+    ForgetFences,
+    ForgetWaypoints,
     GoToWaypoint,
+    HardReset,
     Message,
     SoftReset,
+    StopMission,
     Waypoint,
 )
 from cratous.bridge.text_protocol.layouts import ORIGINAL_LIMITS
 from cratous.core.authority.timeliness import in_time
 from cratous.services.flight import link_end
 from cratous.services.flight.dynamics import AirState, turn_radius_m
+from cratous.services.flight.link_lines import onward
+from cratous.services.flight.link_peers import to_others
 from cratous.services.flight.messages import Down, Say
 from cratous.services.icarous.ending import TURN_MARGIN
 from cratous.services.icarous_communication.doors import Dialects
@@ -160,6 +166,22 @@ def known_zones(
     return state, zones, notes
 
 
+def ended(state: State, vid: int) -> tuple[State, list[Out]]:
+    """A MissionCommand without waypoints: the mission of a vehicle that UxAS flies is over, and its instance is told."""
+    craft, peer = state.craft(vid), state.link.peer(vid)
+    if craft.plan is None or craft.away is not None:
+        return state, [Refuse("mission without waypoints", f"vehicle {vid}")]
+    state = state.put(vid, replace(craft, plan=None))
+    if peer is None:
+        return state, []
+    over = replace(peer, way=(), flies=(), marks_m=(), from_m=0.0, reached=0, steered=None)
+    state = replace(state, link=state.link.with_peer(over))
+    return state, [
+        *to_others(state.link, over, state.plane),
+        Down(vid, (StopMission(), ForgetWaypoints())),
+    ]
+
+
 def turn_radius_of(craft: Craft, air: AirState) -> float:
     """Of the turns of a way back [m]: those that its ICAROUS makes it of."""
     profile = None if craft.configuration is None else craft.configuration.NominalFlightProfile
@@ -208,6 +230,10 @@ def placed(
     client WAYPT with a running count, and the zones that it holds alone."""
     if dialect.ours:
         return lines
+    if lines == (ForgetFences(),):  # for which it has no word
+        peer = state.link.peer(vid)
+        assert peer is not None
+        lines = (HardReset(), *onward(peer.way, peer.reached))
     if dialect is Dialect.ORIGINAL:
         lines = tuple(_numbered(x, state.client_zones) for x in lines if _held(x, state))
     return tuple(_placed(state, vid, line, dialect) for line in lines)

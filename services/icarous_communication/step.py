@@ -41,6 +41,7 @@ from cratous.services.icarous_communication.plans import (
     Away,
     Plan,
     begins_as,
+    begun_with,
     being_done,
     deviates,
     going_on,
@@ -63,6 +64,7 @@ from cratous.services.icarous_communication.state import (
     State,
     air_state,
     at_the_time_of,
+    ended,
     goes_on,
     known_zones,
     left_out,
@@ -188,7 +190,7 @@ class Communication:
         """A MissionCommand of somebody else's; while ICAROUS has the vehicle it waits for the handback."""
         vid, craft = int(command.VehicleID), state.craft(command.VehicleID)
         if not command.WaypointList:
-            return state, [Refuse("mission without waypoints", f"vehicle {vid}")]
+            return ended(state, vid)
         if craft.away is not None:
             text = f"vehicle {vid}: a mission has come while ICAROUS has it, and waits for the handback"
             come = self._by_uxas(state, vid, command)
@@ -203,8 +205,7 @@ class Communication:
         craft = state.craft(vid)
         here = None if craft.air is None else craft.air.position
         plan = plan_of(command, plane(state.frame), now_ms, here)
-        if plan is not None:  # a part of a way may begin within a task
-            plan = plan._replace(begun=being_done(craft.plan, craft.listed))
+        plan = begun_with(plan, being_done(craft.plan, craft.listed))
         if begins_as(plan, craft.plan):  # what a waypoint manager hands on is told already
             return state, out
         state, more = self._route(state.put(vid, replace(craft, plan=plan)), vid)
@@ -365,9 +366,9 @@ class Communication:
         said = Say(status(0, "Error", [("reason", f"vehicle {vid} holds: {why}")]), self.name)
         if craft.air is None or state.frame is None:
             return state, [*out, said]
-        state, command = self._command(state, vid, hold(craft.air, plane(state.frame)))
-        come = self._by_uxas(state, vid, command.body)
-        return state.put(vid, replace(craft, holds=True)), [*out, *come, command, said]
+        state, told_to = self._command(state, vid, hold(craft.air, state.plane))
+        out = [*out, *self._by_uxas(state, vid, told_to.body), told_to, said]
+        return state.put(vid, replace(craft, holds=True)), out
 
     def _by_uxas(self, state: State, vid: int, command: Any) -> list[Out]:
         """What UxAS commands a vehicle that has a gate here."""
