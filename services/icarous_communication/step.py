@@ -203,9 +203,9 @@ class Communication:
         state, out = self._framed(state, command.WaypointList[0])
         assert state.frame is not None
         craft = state.craft(vid)
-        here = None if craft.air is None else craft.air.position
-        plan = plan_of(command, plane(state.frame), now_ms, here)
-        plan = begun_with(plan, being_done(craft.plan, craft.listed))
+        here = craft.air.position if craft.air else None
+        begun = being_done(craft.plan, craft.listed)
+        plan = begun_with(plan_of(command, plane(state.frame), now_ms, here), begun)
         if begins_as(plan, craft.plan):  # what a waypoint manager hands on is told already
             return state, out
         state, more = self._route(state.put(vid, replace(craft, plan=plan)), vid)
@@ -335,12 +335,11 @@ class Communication:
             return state, [Say(craft.waiting, self.name), *out]
         if plan is None or away is None or air is None or state.frame is None:
             return self._hold(state, vid, [], "handed back without a mission")
-        projection = plane(state.frame)
         now = Motion(air.position, air.heading_rad, air.speed_m_s, air.climb_m_s)
         plan, radius_m = going_on(plan, away), turn_radius_of(craft, air)
-        sent = resumed(plan, away, now, radius_m, projection, COMMANDS_FROM + state.commands + 1)
+        sent = resumed(plan, away, now, radius_m, state.plane, COMMANDS_FROM + state.commands + 1)
         way = leading_back(
-            plan, away, sent, plan_of(sent.command, projection, now_ms, air.position)
+            plan, away, sent, plan_of(sent.command, state.plane, now_ms, air.position)
         )
         after = replace(craft, away=None, holds=False, handed=True, plan=way)
         state = replace(state.put(vid, after), commands=state.commands + 1)

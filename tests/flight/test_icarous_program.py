@@ -299,3 +299,23 @@ def test_a_place_at_another_altitude_is_not_flown_straight_to() -> None:
     said = flown_round(END, beats=12, alt_m=320.0)
     assert not any(isinstance(m, tp.SetPosition) for m in said)
     assert any(isinstance(m, tp.SetVelocity) for m in said)
+
+
+def test_what_it_is_told_to_forget_is_forgotten_and_nothing_else() -> None:
+    corners = ((0.0, 9000.0), (0.0, 9100.0), (100.0, 9100.0))
+    places = [PROJECTION.to_geodetic(*corner) for corner in corners]
+    fence = [tp.FenceVertex("KEEPOUT", 3, k, *p, 0.0, 900.0, 1) for k, p in enumerate(places, 1)]
+    state, _ = tell(State(), *way(0, 1, 2, total=3), *fence, tp.FenceDone(1))
+    told = state.instance.told
+    assert len(told.zones) == 1
+    assert (len(told.waypoints), told.started) == (3, True)
+    without, answers = tell(state, tp.ForgetFences())
+    assert not refused(answers)
+    assert (without.instance.told.zones, without.instance.told.waypoints) == ((), told.waypoints)
+    without, answers = tell(state, tp.ForgetWaypoints())
+    assert not refused(answers)
+    assert (without.instance.told.zones, without.instance.told.waypoints) == (told.zones, ())
+    without, answers = tell(state, tp.StopMission())
+    assert not refused(answers)
+    assert not without.instance.told.started
+    assert tell(without, tp.StartMission())[0].instance.told.started

@@ -78,6 +78,42 @@ def test_each_peer_is_told_in_its_own_form_and_steers_its_own_vehicle(
     assert steered[1] < steered[2] < steered[3]
 
 
+def test_zones_that_are_removed_and_a_mission_that_is_over_are_told_to_each_as_it_knows(
+    tmp_path: Path, opened: list[Any]
+) -> None:
+    rig = Rig(tmp_path, THREE, opened)
+    peers = {1: peer(rig, 0, hello=1), 2: peer(rig, 1), 3: peer(rig, 2)}
+    rig.tell(zone(4, 9))
+    for vid, one in peers.items():
+        command = way((0.0, 0.0), (5000.0, 0.0)).copy(VehicleID=vid)
+        rig.tell(state(vid, 400.0 * vid), command)
+        rig.until(lambda one=one: one.all(tp.StartMission) and one.all(tp.FenceDone))
+    ours, original, thesis = peers.values()
+    waypoints = {one: len(one.all(tp.Waypoint)) for one in peers.values()}
+    rig.tell(lmcp.new("RemoveZones", ZoneList=[9]))
+    rig.until(lambda: ours.all(tp.ForgetFences))
+    assert len(ours.all(tp.Waypoint)) == waypoints[ours], "the plan stays"
+    for one in (
+        original,
+        thesis,
+    ):  # which have no such word: all is forgotten, and the plan told again
+        rig.until(lambda one=one: len(one.all(tp.Waypoint)) == 2 * waypoints[one])
+        assert one.all(tp.HardReset)
+        assert not one.all(tp.ForgetFences)
+    rig.tell(lmcp.new("MissionCommand", VehicleID=1))
+    rig.until(lambda: ours.all(tp.StopMission) and ours.all(tp.ForgetWaypoints))
+    again = peer_again(rig, ours)
+    rig.until(lambda: again.all(tp.OwnPosition) or rig.tell(state(1, 400.0, 1500)))
+    assert not again.all(tp.Waypoint), "on a new connection there is no plan either"
+
+
+def peer_again(rig: Rig, one: Fake) -> Fake:
+    """The instance of vehicle 1 on a new connection."""
+    one.close()
+    rig.until(lambda: rig.said.has("vehicle 1: closed"))
+    return peer(rig, 0, hello=1)
+
+
 def test_only_whom_a_heartbeat_is_owed_by_is_taken_for_lost(
     tmp_path: Path, opened: list[Any]
 ) -> None:
