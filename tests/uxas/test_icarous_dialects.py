@@ -110,7 +110,7 @@ def test_zones_that_are_removed_and_a_mission_that_is_over_are_told_to_each_as_i
 def peer_again(rig: Rig, one: Fake) -> Fake:
     """The instance of vehicle 1 on a new connection."""
     one.close()
-    rig.until(lambda: rig.said.has("vehicle 1: closed"))
+    rig.until(lambda: any(not b.Alive and b.VehicleID == 1 for b in rig.got("BridgeStatus")))
     return peer(rig, 0, hello=1)
 
 
