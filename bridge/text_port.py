@@ -191,6 +191,13 @@ class TextPort:
             one.drop(detail or why)
             self._tally.refuse(why, f"{one.name}: {detail}" if detail else one.name)
 
+    def refuse(self, key: int, why: str, detail: str) -> None:
+        """Tell a peer why it is refused, and end its connection, see `drop`."""
+        if key in self._connections:
+            one = self._connections[key]
+            one.refuse(detail, self._now_s)
+            self._tally.refuse(why, f"{one.name}: {detail}")
+
     def name(self, key: int) -> str:
         """Who is at the other end of a connection."""
         return self._connections[key].name if key in self._connections else f"connection {key}"

@@ -61,9 +61,9 @@ class TextPorts:
         """Queue a message for a peer; False if it is gone or the message cannot stand on the wire."""
         return self.ports[self.which(key)].send(key, message)
 
-    def drop(self, key: int, why: str, detail: str = "") -> None:
-        """End a connection for a reason, see `TextPort.drop`."""
-        self.ports[self.which(key)].drop(key, why, detail)
+    def refuse(self, key: int, why: str, detail: str) -> None:
+        """Tell a peer why it is refused, and end its connection, see `TextPort.refuse`."""
+        self.ports[self.which(key)].refuse(key, why, detail)
 
     def name(self, key: int) -> str:
         """Who is at the other end of a connection."""

@@ -43,6 +43,7 @@ from cratous.services.icarous_communication.step import (
     Step,
 )
 from cratous.services.pipeline.planner import OWN_PLANNER
+from cratous.services.pipeline.status import status
 from cratous.spec.errors import CratousError
 
 MISSION, STATE = "afrl.cmasi.MissionCommand", "afrl.cmasi.AirVehicleState"
@@ -116,6 +117,8 @@ class IcarousCommunicationService:
         self._known: set[int] = set()
         self._tally = Tally(name, report)
         self._forgeries: Counter[int] = Counter()
+        self._refusals: Counter[str] = Counter()
+        self._refused: set[int] = set()
         self._started = False
         self._until_s: float | None = None
         self._say_s, self._said = 0.0, ""
@@ -302,6 +305,9 @@ class IcarousCommunicationService:
             self._publish([] if self._routes is None else self._routes.gone(vid))
         elif event.kind in ("dropped", REFUSED):
             self._tally.refuse("peer that speaks for no vehicle", event.detail)
+            if key not in self._refused:
+                self._say_refused(event.kind, event.detail)
+        self._refused.discard(key)
 
     def _seated(self, key: int, vid: int) -> None:
         """A connection speaks for a vehicle from now on."""
@@ -313,8 +319,23 @@ class IcarousCommunicationService:
             self._line(key, line)
 
     def _refuse(self, key: int, refusal: Refusal | None) -> None:
-        if refusal is not None:
-            self.port.drop(key, refusal.why, refusal.detail)
+        if refusal is None:
+            return
+        name = self.port.name(key)
+        self.port.refuse(key, refusal.why, refusal.detail)
+        self._seats.gone(key)  # it keeps no place while it is told why
+        self._early.pop(key, None)
+        self._refused.add(key)
+        self._say_refused(refusal.why, f"{name}: {refusal.detail}")
+
+    def _say_refused(self, why: str, text: str) -> None:
+        """That a peer is refused, on the bus: it stands in the report. Not each time, where strangers come again and again.
+        why: counted by it, so it holds nothing that the peer can choose."""
+        self._refusals[why] += 1
+        count = self._refusals[why]
+        if often(count):
+            said = f"refused {text} ({count} so far)"
+            self._publish([Say(status(0, "Warning", [("reason", said)]), self.name)])
 
     def _stepped(self, step: Callable[[State], Step]) -> None:
         """A step that a connection has caused; the bus keeps the state."""

@@ -113,6 +113,12 @@ def test_two_instances_for_one_vehicle_and_a_stranger_are_refused(
         other = rig.fake(hello=hello)
         rig.until(lambda other=other: other.read() is not None and other.ended)
         assert rig.said.has(why)
+        assert f"error,{'a second' if hello == 1 else 'HELLO of'}".encode() in other.raw, (
+            "it is told why"
+        )
+        told = [p.Value for s in rig.got("ServiceStatus") for p in s.Info if p.Key == "reason"]
+        assert told[-1].startswith("refused 127.0.0.1:")
+        assert why in told[-1]
     for hello in range(10, 14):  # what is counted does not grow with what strangers say
         other = rig.fake(hello=hello)
         rig.until(lambda other=other: other.read() is not None and other.ended)
