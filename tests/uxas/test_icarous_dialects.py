@@ -7,12 +7,13 @@ from typing import Any
 
 import pytest
 from bridge_flight import PLANE, way
-from icarous_rig import SERVICE, Fake, Rig, state
+from icarous_rig import Fake, Rig, state
 
 from cratous.bridge import lmcp
 from cratous.bridge import text_protocol as tp
 from cratous.spec.errors import BadInput
 
+SERVICE = "IcarousCommunicationService"  # named here for the table of services
 OURS, ORIGINAL, THESIS = tp.Dialect.CRATOUS, tp.Dialect.ORIGINAL, tp.Dialect.THESIS
 OTHERS = "2=original@tcp://127.0.0.2:0 3=thesis@tcp://127.0.0.3:0"
 THREE = f'NumberOfUAVs="3" VehicleIDs="1 2 3" Dialect="cratous" OtherDialects="{OTHERS}"'
