@@ -81,6 +81,12 @@ class Counts:
     refused: Counter[str] = field(default_factory=Counter)
     lost: Counter[str] = field(default_factory=Counter)
 
+    def add(self, other: Counts) -> None:
+        """What another port has done besides."""
+        self.received, self.sent = self.received + other.received, self.sent + other.sent
+        self.refused.update(other.refused)
+        self.lost.update(other.lost)
+
     def line(self) -> str:
         """All of it in one line."""
         text = f"received {self.received}, sent {self.sent}"

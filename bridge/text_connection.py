@@ -188,12 +188,14 @@ class Connection:
             self.link.flush()
             self.link.ended = LinkEvent(kind, why)
 
-    def _refuse(self, now_s: float) -> None:
+    def refuse(self, why: str, now_s: float) -> None:
         """Tell the peer why it is refused, and leave it time to read that: an end with bytes unread would
         destroy it on its way."""
-        self._refused = f"{OTHER_DIALECT}: {self._dialect.value} is spoken here"
-        self.link.send(f"{REFUSAL}{self._refused}\n".encode("ascii"))
-        self._until_s = now_s + PARTING_S
+        if self._refused or not self.link.alive:
+            return
+        line = f"{REFUSAL}{why}\n".encode("ascii", "replace")
+        self.link.send(line if self.seal is None else self.seal.wrap(line, round(1000 * now_s)))
+        self._refused, self._until_s = why, now_s + PARTING_S
 
     def _part(self, now_s: float) -> list[Opened | Record | LinkEvent]:
         """The end of a peer that is refused, once it is gone or has had its time."""
@@ -236,7 +238,7 @@ class Connection:
             found.append(record)
             wrong_dialect = isinstance(record, WireError) and record.what == OTHER_DIALECT
             if wrong_dialect and not self._understood:
-                self._refuse(now_s)
+                self.refuse(f"{OTHER_DIALECT}: {self._dialect.value} is spoken here", now_s)
                 break
             self._understood = self._understood or isinstance(record, Message)
             self._bad = self._bad + 1 if isinstance(record, WireError) else 0

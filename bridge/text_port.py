@@ -31,12 +31,15 @@ from cratous.bridge.text_protocol.messages import (
     Direction,
     EpochTold,
     FenceVertex,
+    ForgetFences,
+    ForgetWaypoints,
     Heartbeat,
     Hello,
     IcarousPlans,
     LinesMissing,
     Message,
     NotKnown,
+    StopMission,
     UxasPlans,
     VelocityOfAnother,
     WayOfAnother,
@@ -51,6 +54,9 @@ OURS = (
     LinesMissing,
     NotKnown,
     EpochTold,
+    ForgetFences,
+    ForgetWaypoints,
+    StopMission,
     UxasPlans,
     IcarousPlans,
     WayOfAnother,
@@ -93,7 +99,7 @@ class TextPort:
         self._tally = Tally(where.text, report)
         self.counts = self._tally.counts
         self._connections: dict[int, Connection] = {}
-        self._keys = itertools.count(1)
+        self.numbers = itertools.count(1)  # of the connections
         self._listener: Listener | None = None
         self._closed, self._now_s = False, 0.0
         if server if listens is None else listens:
@@ -185,6 +191,13 @@ class TextPort:
             one.drop(detail or why)
             self._tally.refuse(why, f"{one.name}: {detail}" if detail else one.name)
 
+    def refuse(self, key: int, why: str, detail: str) -> None:
+        """Tell a peer why it is refused, and end its connection, see `drop`."""
+        if key in self._connections:
+            one = self._connections[key]
+            one.refuse(detail, self._now_s)
+            self._tally.refuse(why, f"{one.name}: {detail}")
+
     def name(self, key: int) -> str:
         """Who is at the other end of a connection."""
         return self._connections[key].name if key in self._connections else f"connection {key}"
@@ -216,7 +229,7 @@ class TextPort:
         return False
 
     def _join(self, link: Link, now_s: float) -> int:
-        key = next(self._keys)
+        key = next(self.numbers)
         direction = Direction.UP if self._server else Direction.DOWN
         handshake: Handshake
         if isinstance(self._secret, str):

@@ -144,6 +144,9 @@ LAYOUTS: tuple[Layout, ...] = (
         "RESET_SFT",
     ),
     Layout("COMND", _DOWN, messages.HardReset, (), "RESET_HRD"),
+    Layout("COMND", _DOWN, messages.ForgetFences, (), "FORGET_GEOFN"),
+    Layout("COMND", _DOWN, messages.ForgetWaypoints, (), "FORGET_WAYPT"),
+    Layout("COMND", _DOWN, messages.StopMission, (), "STOP_MISSION"),
     Layout("COMND", _DOWN, messages.UxasPlans, (), "UXAS_PLANS"),
     Layout("COMND", _DOWN, messages.IcarousPlans, (), "ICAROUS_PLANS"),
     Layout(

@@ -91,6 +91,27 @@ class HardReset(Message):
 
 
 @dataclass(frozen=True)
+class ForgetFences(Message):
+    """COMND FORGET_GEOFN (our dialect): no zone is in force any more; the plan stays."""
+
+    tag: ClassVar[str] = "COMND"
+
+
+@dataclass(frozen=True)
+class ForgetWaypoints(Message):
+    """COMND FORGET_WAYPT (our dialect): there is no plan any more; the zones stay."""
+
+    tag: ClassVar[str] = "COMND"
+
+
+@dataclass(frozen=True)
+class StopMission(Message):
+    """COMND STOP_MISSION (our dialect): the mission is over; nothing is flown of it any more until another START_MISSION."""
+
+    tag: ClassVar[str] = "COMND"
+
+
+@dataclass(frozen=True)
 class UxasPlans(Message):
     """COMND UXAS_PLANS (our dialect): UxAS plans live: ICAROUS may ask it for ways by WPREQ."""
 

@@ -16,6 +16,8 @@ from cratous.services.certify.alerted import TOPIC, AlertReader
 from cratous.services.logs.log import Row
 
 TRACK_PERIOD_MS = 1000
+STATUS, REFUSED_PEER = "afrl.cmasi.ServiceStatus", "refused "
+"""What a peer that is refused is told by, and how that begins."""
 FOOTPRINT_PERIOD_MS = 2000
 FEW = 80
 PHASES = ("Planned", "Transit", "Waiting", "Active", "Suspended", "Complete", "Failed")
@@ -98,6 +100,8 @@ class FlightReader:
             _footprints(flight, row.time_ms, json.loads(row.body))
         if row.topic == TOPIC:
             self._alerts.add(json.loads(row.body), row.time_ms)
+        if row.topic == STATUS:
+            _refused(flight, row.time_ms, json.loads(row.body))
         if not row.topic.startswith("cratous."):
             return
         if short == "TruthState":
@@ -251,6 +255,13 @@ def _event(flight: Flight, short: str, body: dict[str, Any]) -> None:
     elif short == "ModeRefused":
         text = f"mode of ICAROUS refused: {body['Reason']} ({body['Epoch']})"
         _note(flight, time_ms, int(body["VehicleID"]), text)
+
+
+def _refused(flight: Flight, time_ms: int, body: dict[str, Any]) -> None:
+    """A peer of the bridge that UxAS's end has refused."""
+    said = {pair["Key"]: pair["Value"] for pair in body["Info"]}
+    if said.get("reason", "").startswith(REFUSED_PEER):
+        _note(flight, time_ms, None, f"bridge: {said['reason']}")
 
 
 def _note(flight: Flight, time_ms: int, vehicle: int | None, text: str, kind: str = OTHER) -> None:

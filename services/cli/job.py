@@ -46,12 +46,13 @@ class Settings:
 
 
 class InProcesses(NamedTuple):
-    """How a mission is flown in processes. rate: times real time; original: ICAROUS is behind clients of the
-    original's, which the user starts; amase: the address of an AMASE that flies in place of our simulator."""
+    """How a mission is flown in processes. rate: times real time; original: ICAROUS is behind clients of the original's, which
+    the user starts; amase: address of an AMASE that flies in place of our simulator; direct: group of the direct links."""
 
     rate: float = 1.0
     original: bool = False
     amase: Address | None = None
+    direct: Address | None = None
 
 
 class Onlooker(Protocol):

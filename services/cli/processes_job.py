@@ -35,6 +35,7 @@ from cratous.services.exporting.messages import Told
 from cratous.services.logs.log import LogWriter
 from cratous.services.processes.amase import Amase
 from cratous.services.processes.coverage import refuse_for_amase, told_of
+from cratous.services.processes.direct_links import direct_links
 from cratous.services.processes.flight import Flying, fly
 from cratous.services.processes.recorder import Recorder
 from cratous.services.results.names import LOG_NAME
@@ -68,6 +69,7 @@ def run_in_processes(
     digest = mission_hash(mission)
     mission = as_flown(mission if settings.daa else replace(mission, instances=()), how)
     told = told_of(mission, how.original)
+    direct = None if how.direct is None else direct_links(how.direct, mission.instances)
     with ExitStack() as stack:
         amase = None
         if how.amase is not None:
@@ -75,7 +77,15 @@ def run_in_processes(
             # nothing is planned for an AMASE that does not answer
             amase = stack.enter_context(closing(Amase(how.amase, tell)))
         flying = Flying(
-            path, digest, folder, how.rate, settings.allow_unproved, tell, how.original, amase
+            path,
+            digest,
+            folder,
+            how.rate,
+            settings.allow_unproved,
+            tell,
+            how.original,
+            amase,
+            direct,
         )
         return _run(mission, told, settings, flying)
 
@@ -129,6 +139,8 @@ def as_flown(mission: Mission, how: InProcesses) -> Mission:
     if how.original:
         who = f"flown in processes: {simulator}UxAS, and {count} clients of the original's"
         known = "which ICAROUS is behind them is not known here; "
+    if how.direct is not None:
+        who += f"; their ICAROUS tell each other their states directly, at {how.direct.text}"
     note = f"{who}; {known}between two states, up to {STATES_MS} ms apart, aircraft are taken to fly straight"
     simulation = replace(mission.simulation, step_ms=STATES_MS)
     notes = (*mission.notes, note, UNCERTIFIED)

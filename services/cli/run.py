@@ -47,6 +47,10 @@ Tell = Callable[[str], None]
     "--simulator", metavar="amase://HOST:PORT",
     help="As --processes, with an OpenAMASE that runs there in place of `cratous sim`, at its rate.",
 )  # fmt: skip
+@click.option(
+    "--direct", metavar="GROUP:PORT",
+    help="With --processes: ICAROUS tell each other their states too, by UDP multicast on this machine. [not]",
+)  # fmt: skip
 @own_option("Also hold the log of the flight against requirements of your own.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="No progress, only the result.")
@@ -94,6 +98,10 @@ def run(
         raise click.UsageError("--rate is of --processes")
     if how["original_clients"] and not how["processes"]:
         raise click.UsageError("--original-clients is of --processes")
+    if how["direct"] is not None and not how["processes"]:
+        raise click.UsageError("--direct is of --processes")
+    if how["direct"] is not None and how["original_clients"]:
+        raise click.UsageError("--direct is not of --original-clients, which have no such link")
     if how["processes"]:
         if seed or seeds is not None:
             raise click.UsageError(
@@ -104,8 +112,11 @@ def run(
         )
         command += ["--rate", f"{rate:g}"] if rate is not None else []
         command += ["--original-clients"] * how["original_clients"]
+        command += ["--direct", how["direct"]] if how["direct"] is not None else []
         settings = Settings(daa, allow_unproved, shlex.join(command), own)
-        processes = InProcesses(rate or 1.0, how["original_clients"], _amase(how["simulator"]))
+        processes = InProcesses(
+            rate or 1.0, how["original_clients"], _amase(how["simulator"]), _group(how["direct"])
+        )
         return fly_and_show(mission, seed, out, settings, as_json, quiet, processes)
     if seeds is not None:
         if seed:
@@ -123,6 +134,15 @@ def _amase(text: str | None) -> Any:
     from cratous.services.processes.amase import amase_address
 
     return amase_address(text)
+
+
+def _group(text: str | None) -> Any:
+    """The address of a group; None without one."""
+    if text is None:
+        return None
+    from cratous.bridge.port import address
+
+    return address(f"udp://{text}", ("udp",), item="--direct")
 
 
 def fly_and_show(

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 from cratous.bridge.text_protocol import (
     Attitude,
+    ForgetFences,
     HardReset,
     Heartbeat,
     LinesMissing,
@@ -122,8 +123,8 @@ class UxasEnd:
                 return self._zones(state, zones)
             case Beat():
                 return self._beat(state, message)
-            case Watch(now_ms):
-                return self._watch(state, now_ms)
+            case Watch(now_ms, of):
+                return self._watch(state, now_ms, of)
         peer = state.peer(message.vehicle_id)
         if peer is None:
             return state, ()
@@ -137,10 +138,10 @@ class UxasEnd:
             out = (*to_others(state, after, self.projection), *out)
         return state, out
 
-    def _watch(self, state: State, now_ms: int) -> Step:
+    def _watch(self, state: State, now_ms: int, of: frozenset[int] | None) -> Step:
         """Say so when an instance has fallen silent."""
         out: list[FromLinkEnd] = []
-        for peer in state.peers:
+        for peer in (one for one in state.peers if of is None or one.vehicle_id in of):
             note = f"silent since {peer.heard_ms} ms"
             state, said = self._stepped(state, peer, _sign(peer, PASSED, now_ms, note))
             out += said
@@ -240,6 +241,8 @@ class UxasEnd:
         for peer in state.peers:
             others = of_others(state, peer.vehicle_id, self.projection)
             anew = [HardReset(), *fences, *link_lines.onward(peer.way, peer.reached), *others]
+            if not zones:  # the way stays
+                anew = [ForgetFences()]
             out += down_to(peer, fences if more else anew)
             state = state.with_peer(replace(peer, again=()))
         return replace(state, zones=zones), tuple(out)

@@ -124,9 +124,10 @@ class GateIs(NamedTuple):
 
 
 class Watch(NamedTuple):
-    """Look for instances that have fallen silent."""
+    """Look for instances that have fallen silent. of: those of these vehicles alone, None: all."""
 
     now_ms: int
+    of: frozenset[int] | None = None
 
 
 # to the executive -------------------------------------------------------------------------------

@@ -7,10 +7,13 @@ from dataclasses import dataclass
 from cratous.bridge.text_protocol import (
     FenceDone,
     FenceVertex,
+    ForgetFences,
+    ForgetWaypoints,
     HardReset,
     Message,
     SoftReset,
     StartMission,
+    StopMission,
     VelocityOfAnother,
     WayOfAnother,
     Waypoint,
@@ -82,6 +85,12 @@ def _hear(told: Told, message: Message, projection: Projection, original: bool) 
         return replace(told, resume=Position(north, east, message.alt_m))
     if isinstance(message, HardReset):
         return Told()
+    if isinstance(message, ForgetFences):
+        return replace(told, zones=(), vertices=())
+    if isinstance(message, ForgetWaypoints):
+        return replace(told, waypoints=(), next_index=0, gathering=(), resume=None)
+    if isinstance(message, StopMission):
+        return replace(told, started=False)
     if isinstance(message, FenceVertex):
         kept = told.vertices if message.vertex > 1 else ()
         return replace(told, vertices=(*kept, message))

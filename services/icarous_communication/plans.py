@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from cratous.core.avoidance.manoeuvre import Motion
@@ -29,7 +30,8 @@ class Plan(NamedTuple):
     (START) if that is known, and a way back; where each is, and which point of the track it is; goal: index
     of the one that the vehicle makes for; since_ms: given at; settled: the vehicle flies it; back: index of
     the last that is none of the mission's (-1: they all are); resume: where it comes back to its way, if
-    that is where it was left; told: point of the track with which what is told to its ICAROUS begins.
+    that is where it was left; told: point of the track with which what is told to its ICAROUS begins; begun: tasks
+    that were being done when the way back began.
     """
 
     command: Any
@@ -43,6 +45,7 @@ class Plan(NamedTuple):
     back: int = -1
     resume: Position | None = None
     told: int = 0
+    begun: tuple[int, ...] = ()
 
     @property
     def speed_m_s(self) -> float:
@@ -63,6 +66,28 @@ def next_part(plan: Plan, most: int, spare: int) -> Plan:
     if plan.told + most - at > spare or plan.told + most >= len(plan.track.points):
         return plan
     return plan._replace(told=max(at - 1, 0))
+
+
+def being_done(plan: Plan | None, tasks: Iterable[int]) -> tuple[int, ...]:
+    """Those of the tasks of a state that the vehicle does, and is not still on its way to.
+
+    A task begins at the first waypoint of the way that bears its number in AssociatedTasks; states bear it already while
+    that waypoint is made for. Of a task of no waypoint that is known nothing tells where it begins: it is being done.
+    """
+    if plan is None:
+        return tuple(tasks)
+    own = range(plan.back + 1, len(plan.waypoints))
+
+    def begun(task: int) -> bool:
+        bears = next((k for k in own if task in plan.waypoints[k].AssociatedTasks), None)
+        return bears is None or task in plan.begun or bears in range(plan.goal)
+
+    return tuple(task for task in tasks if begun(task))
+
+
+def begun_with(plan: Plan | None, tasks: tuple[int, ...]) -> Plan | None:
+    """A plan that may be a part of a way, as it begins within these tasks."""
+    return None if plan is None else plan._replace(begun=tasks)
 
 
 class Away(NamedTuple):
@@ -206,6 +231,13 @@ def resumed(
         points.append(_at(following, place, projection, numbers[k], numbers[k + 1]))
     command = plan.command.copy(CommandID=command_id, FirstWaypoint=numbers[0], WaypointList=points)
     return Resumed(command, len(way), resume)
+
+
+def leading_back(plan: Plan, away: Away, sent: Resumed, way: Plan | None) -> Plan | None:
+    """The plan of a way back, as it is flown after `plan`: the mission's own command is what the next way back leads to."""
+    if way is None:
+        return None
+    return way._replace(command=plan.command, back=sent.back, resume=sent.resume, begun=away.tasks)
 
 
 def _at(waypoint: Any, place: Position, projection: Projection, number: int, following: int) -> Any:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 
 from cratous.bridge.text_protocol import (
-    Dialect,
     IcarousPlans,
     RouteEnd,
     RoutePoint,
@@ -105,7 +104,7 @@ class Proposals:
         else:  # as the vehicle goes on from there
             track = craft.plan.track
             heading_rad = track.heading_rad(track.nearest(end, 0.0, track.length_m).s_m)
-        zones, _ = tellable(state.frame, state.zones.values(), Dialect.CRATOUS)
+        zones, _ = tellable(state.frame, state.zones.values())
         if zones != self._zones:
             self._zones, self._router = zones, Router(tuple(zones))
         begins = Position(*start, line.start_alt_m)

@@ -16,7 +16,6 @@ from typing import Any, NamedTuple
 from cratous.bridge import lmcp
 from cratous.bridge.port import is_due
 from cratous.bridge.text_protocol import (
-    Dialect,
     RouteEnd,
     RoutePoint,
     RouteRequest,
@@ -24,6 +23,7 @@ from cratous.bridge.text_protocol import (
 )
 from cratous.services.bus import Envelope
 from cratous.services.flight.messages import Down, Say
+from cratous.services.icarous_communication.doors import Dialects
 from cratous.services.icarous_communication.state import Note, Out, Refuse
 from cratous.services.mission.frames import compass
 from cratous.services.pipeline import planner
@@ -73,10 +73,10 @@ class Routes:
     """Of one service. kind: of PLANNERS; wait_s: for an answer."""
 
     def __init__(
-        self, name: str, contexts: Contexts, kind: int, wait_s: float, dialect: Dialect
+        self, name: str, contexts: Contexts, kind: int, wait_s: float, dialects: Dialects
     ) -> None:
         self._name, self._contexts, self._wait_s = name, contexts, wait_s
-        self._kind, self._dialect = PLANNERS[kind], dialect
+        self._kind, self._dialects = PLANNERS[kind], dialects
         self._requests: dict[int, Request] = {}
         self._waiting: deque[Wanted] = deque()
         self._out: dict[int, Outstanding] = {}
@@ -137,7 +137,7 @@ class Routes:
             self._mute.discard(vid)
         if one is None:
             return [Refuse("route that nobody waits for", f"vehicle {vid}: {line}")]
-        if self._dialect.ours and line.request != one.number:
+        if self._dialects.of(vid).ours and line.request != one.number:
             detail = f"vehicle {vid}: expected {one.number}, got {line.request}"
             return [Refuse("route of another request", detail)]
         if isinstance(line, RouteStart):

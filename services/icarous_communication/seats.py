@@ -28,6 +28,7 @@ class Seats:
         self._new: dict[int, float] = {}  # connections that may still say HELLO, and until when
         self._unnamed: list[int] = []
         self._vehicle: dict[int, int] = {}
+        self._only: dict[int, tuple[int, ...]] = {}  # for whom a connection may speak
 
     @property
     def come(self) -> int:
@@ -52,11 +53,16 @@ class Seats:
         """When `settle` has something to do."""
         return min(self._new.values(), default=None)
 
-    def opened(self, key: int, now_s: float) -> Refusal | None:
-        """A connection is open; why it is refused, if it is."""
+    def opened(self, key: int, now_s: float, only: tuple[int, ...] = ()) -> Refusal | None:
+        """A connection is open; why it is refused, if it is. only: the vehicles whose instances come in where it came,
+        none: any."""
         if self.come >= self._count:
             return Refusal("too many", f"more instances than NumberOfUAVs = {self._count}")
-        self._new[key] = now_s + GRACE_S
+        here = [k for k in (*self._new, *self._unnamed, *self._vehicle) if self._only[k] == only]
+        if only and len(here) >= len(only):
+            text = f"more instances than of the vehicles {', '.join(map(str, only))}, which come in here"
+            return Refusal("too many", text)
+        self._new[key], self._only[key] = now_s + GRACE_S, only
         return None
 
     def hello(self, key: int, vehicle_id: int) -> Refusal | None:
@@ -65,8 +71,9 @@ class Seats:
         if had is not None:
             text = f"a second HELLO: {vehicle_id} after {had}"
             return None if had == vehicle_id else Refusal("another HELLO", text)
-        if self._ids and vehicle_id not in self._ids:
-            expected = ", ".join(map(str, self._ids))
+        allowed = self._only.get(key) or self._ids
+        if allowed and vehicle_id not in allowed:
+            expected = ", ".join(map(str, allowed))
             text = f"HELLO of vehicle {vehicle_id}, expected one of {expected}"
             return Refusal("HELLO of a stranger", text)
         if vehicle_id in self._vehicle.values():
@@ -91,16 +98,20 @@ class Seats:
         ids = list(self._ids) or sorted(known)[: self._count]
         if not self._unnamed or len(ids) != self._count:
             return []
-        free = [vid for vid in ids if vid not in self._vehicle.values()]
-        given = list(zip(self._unnamed, free, strict=False))
-        for key, vid in given:
-            self._vehicle[key] = vid
-            self._unnamed.remove(key)
+        given = list[tuple[int, int]]()
+        for key in tuple(self._unnamed):
+            own = self._only.get(key) or ids
+            free = [vid for vid in own if vid not in self._vehicle.values()]
+            if free:
+                self._vehicle[key] = free[0]
+                self._unnamed.remove(key)
+                given.append((key, free[0]))
         return given
 
     def gone(self, key: int) -> int | None:
         """A connection has ended; for whom it spoke."""
         self._forget(key)
+        self._only.pop(key, None)
         return self._vehicle.pop(key, None)
 
     def missing(self) -> str:

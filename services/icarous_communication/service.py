@@ -15,6 +15,7 @@ from cratous.bridge.port import Report, Tally, is_due, often
 from cratous.bridge.redial import Redial
 from cratous.bridge.text_connection import PROGRAM_LIMITS, REFUSED, Bounds, Opened
 from cratous.bridge.text_port import Came, TextPort
+from cratous.bridge.text_ports import TextPorts
 from cratous.bridge.text_protocol import (
     Heartbeat,
     Hello,
@@ -42,6 +43,7 @@ from cratous.services.icarous_communication.step import (
     Step,
 )
 from cratous.services.pipeline.planner import OWN_PLANNER
+from cratous.services.pipeline.status import status
 from cratous.spec.errors import CratousError
 
 MISSION, STATE = "afrl.cmasi.MissionCommand", "afrl.cmasi.AirVehicleState"
@@ -93,34 +95,44 @@ class IcarousCommunicationService:
         ICAROUS may ask UxAS for ways."""
         self.name, self._bus, self._report, self._settings = name, bus, report, settings
         bounds = Bounds(silence_s=None, connections=4 * settings.instances)
-        self.port = TextPort(
-            settings.where,
-            server=True,
-            listens=not settings.to,
-            bounds=bounds,
-            dialect=settings.dialect,
-            secret=settings.keys or secret,
-            report=report,
+        self._doors = settings.doors
+        self.port = TextPorts(
+            [
+                TextPort(
+                    door.where,
+                    server=True,
+                    listens=not settings.to,
+                    bounds=bounds,
+                    dialect=door.dialect,
+                    secret=door.keys or secret,
+                    report=report,
+                )
+                for door in self._doors
+            ]
         )
-        self._step = Communication(name, settings.deviation_m, settings.dialect)
+        self._step = Communication(name, settings.deviation_m, settings.dialects)
         self._seats = Seats(settings.instances, settings.ids)
         self._routes, self._proposals = routes, proposals
         self._early: dict[int, list[Message]] = {}
         self._known: set[int] = set()
         self._tally = Tally(name, report)
         self._forgeries: Counter[int] = Counter()
+        self._refusals: Counter[str] = Counter()
+        self._refused: set[int] = set()
         self._started = False
         self._until_s: float | None = None
         self._say_s, self._said = 0.0, ""
-        self._redial = Redial(self.port, settings.to)
+        self._redial = Redial(self.port.ports[0], settings.to)
         if settings.to:
             text = ", ".join(one.text for one in settings.to)
             report("INFO", f"{name}: connects to {text}")
             return
-        host, port = self.port.bound
-        report("INFO", f"{name}: listens at {host}:{port}")
-        if settings.where.everywhere:
-            report("WARN", f"{name}: listens on all interfaces; whoever is there may connect")
+        for door, one in zip(self._doors, self.port.ports, strict=True):
+            host, port = one.bound
+            who = f", {door.dialect.value} for vehicles {door.ids}" if settings.others else ""
+            report("INFO", f"{name}: listens at {host}:{port}{who}")
+            if door.where.everywhere:
+                report("WARN", f"{name}: listens on all interfaces; whoever is there may connect")
 
     # of the bus -----------------------------------------------------------------------------------
 
@@ -182,6 +194,7 @@ class IcarousCommunicationService:
         arrived = self.port.step(now_s)
         for came in arrived:
             self._came(came, now_s)
+            self.port.ended(came)
         for key, vid in self._seats.settle(self._known, now_s):
             self._seated(key, vid)
         self._publish([] if self._routes is None else self._routes.look(now_s))
@@ -216,7 +229,8 @@ class IcarousCommunicationService:
         match came.what:
             case Opened():
                 self._redial.opened(key, now_s)
-                self._refuse(key, self._seats.opened(key, now_s))
+                only = self._doors[self.port.which(key)].ids if self._settings.others else ()
+                self._refuse(key, self._seats.opened(key, now_s, only))
             case LinkEvent() as event:
                 said = self._redial.ended(key, event.detail or event.kind, now_s)
                 if said:
@@ -291,6 +305,9 @@ class IcarousCommunicationService:
             self._publish([] if self._routes is None else self._routes.gone(vid))
         elif event.kind in ("dropped", REFUSED):
             self._tally.refuse("peer that speaks for no vehicle", event.detail)
+            if key not in self._refused:
+                self._say_refused(event.kind, event.detail)
+        self._refused.discard(key)
 
     def _seated(self, key: int, vid: int) -> None:
         """A connection speaks for a vehicle from now on."""
@@ -302,8 +319,23 @@ class IcarousCommunicationService:
             self._line(key, line)
 
     def _refuse(self, key: int, refusal: Refusal | None) -> None:
-        if refusal is not None:
-            self.port.drop(key, refusal.why, refusal.detail)
+        if refusal is None:
+            return
+        name = self.port.name(key)
+        self.port.refuse(key, refusal.why, refusal.detail)
+        self._seats.gone(key)  # it keeps no place while it is told why
+        self._early.pop(key, None)
+        self._refused.add(key)
+        self._say_refused(refusal.why, f"{name}: {refusal.detail}")
+
+    def _say_refused(self, why: str, text: str) -> None:
+        """That a peer is refused, on the bus: it stands in the report. Not each time, where strangers come again and again.
+        why: counted by it, so it holds nothing that the peer can choose."""
+        self._refusals[why] += 1
+        count = self._refusals[why]
+        if often(count):
+            said = f"refused {text} ({count} so far)"
+            self._publish([Say(status(0, "Warning", [("reason", said)]), self.name)])
 
     def _stepped(self, step: Callable[[State], Step]) -> None:
         """A step that a connection has caused; the bus keeps the state."""

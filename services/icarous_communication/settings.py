@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -9,6 +10,7 @@ from typing import Any, NamedTuple
 from cratous.bridge.port import Address, address
 from cratous.bridge.text_protocol.dialects import Dialect
 from cratous.bridge.text_protocol.keys import Keys, keys_of
+from cratous.services.icarous_communication.doors import FORMS, Dialects, Door, form_of
 from cratous.services.loading.uxas_settings import Attr, Entry, choice, flag, number, whole
 from cratous.spec.errors import BadInput
 
@@ -23,7 +25,8 @@ ATTRIBUTES: Mapping[str, Attr] = {
     "Connect": Attr(),
     "VehicleIDs": Attr(),
     "Timeout_s": number(60.0),
-    "Dialect": choice("v2", "v2", "cratous", "original", "thesis"),
+    "Dialect": choice("v2", *FORMS),
+    "OtherDialects": Attr(),
     "Keys": Attr(),
     "PlainBeyondLoopback": flag(False),
     "RouteTimeout_s": number(2.0, 0.1, 600.0),
@@ -44,7 +47,7 @@ class Settings(NamedTuple):
     to connect to instead of that, one of each instance; keys: of the vehicles, then the dialect is v2; ids: of the
     vehicles, none for the lowest known; wait_s: for the instances; dialect: of the peers, that of the lines inside v2's packets too;
     planner: RoutePlannerUsed, -1 for UxAS's own; answer_s: how long to wait for a route; live: ICAROUS may ask
-    UxAS's planner for a way back in a takeover."""
+    UxAS's planner for a way back in a takeover; others: where those come in that speak other dialects."""
 
     instances: int
     deviation_m: float = DEVIATION_M
@@ -57,6 +60,19 @@ class Settings(NamedTuple):
     planner: int = -1
     answer_s: float = 2.0
     live: bool = False
+    others: tuple[Door, ...] = ()
+
+    @property
+    def doors(self) -> tuple[Door, ...]:
+        """Where instances come in, those of the usual dialect first."""
+        elsewhere = {vid for door in self.others for vid in door.ids}
+        own = tuple(vid for vid in self.ids if vid not in elsewhere)
+        return (Door(self.where, self.dialect, own, self.keys), *self.others)
+
+    @property
+    def dialects(self) -> Dialects:
+        """Of all peers."""
+        return Dialects(self.dialect, {vid: one.dialect for one in self.others for vid in one.ids})
 
 
 def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
@@ -73,7 +89,7 @@ def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
     if allowed is not None and v["DeviationOrigin"] == "line":
         deviation_m = max(0.0, deviation_m - FROM_LINE_M)
     ids = _ids(entry, v["VehicleIDs"], count)
-    dialect = Dialect.CRATOUS if v["Dialect"] == "v2" else Dialect(v["Dialect"])
+    dialect = form_of(v["Dialect"])
     to = _to(entry, v["Connect"], count)
     if to and (v["Address"] or dialect is Dialect.ORIGINAL):
         raise BadInput(
@@ -84,7 +100,9 @@ def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
             "connect and do not listen",
             got=f'Address="{v["Address"]}" Dialect="{v["Dialect"]}"',
         )
-    keys = _keys(entry, v, ids, to or (where,))
+    others = _others(entry, v, ids, where)
+    own = tuple(vid for vid in ids if not any(vid in door.ids for door in others))
+    keys = _keys(entry, v, own, to or (where,))
     live = v["UseUxasRoutePlanner"]
     if live and not dialect.ours:
         item, expected = (
@@ -93,7 +111,53 @@ def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
         )
         raise entry.refusal("peers that cannot ask UxAS", item, expected, dialect.value)
     routes = v["RoutePlannerUsed"], v["RouteTimeout_s"], live
-    return Settings(count, deviation_m, where, ids, v["Timeout_s"], dialect, to, keys, *routes)
+    return Settings(
+        count, deviation_m, where, ids, v["Timeout_s"], dialect, to, keys, *routes, others
+    )
+
+
+_OTHER = re.compile(rf"(\d{{1,18}})=({'|'.join(FORMS)})@(tcp://\S+)")
+
+
+def _others(
+    entry: Entry, v: Mapping[str, Any], ids: tuple[int, ...], usual: Address
+) -> tuple[Door, ...]:
+    """Where the vehicles of OtherDialects come in: one door for each address."""
+    text, item = v["OtherDialects"], "OtherDialects"
+    found: dict[str, tuple[str, Address, list[int]]] = {}
+    known = {(usual.host, usual.port)}
+    left = set(ids)
+    for word in text.split():
+        match = _OTHER.fullmatch(word)
+        form = (
+            "ID=DIALECT@tcp://HOST:PORT for some of VehicleIDs, each once, not all, without Connect"
+        )
+        if match is None or int(match[1]) not in left or len(left) == 1 or v["Connect"]:
+            raise entry.refusal("not a vehicle and its dialect", item, form, word[:80])
+        left.discard(int(match[1]))
+        where = address(
+            match[3], ("tcp",), where=entry.where, item=f"{entry.type}.{item}", free=True
+        )
+        if match[3] not in found:
+            if where.port and (where.host, where.port) in known:
+                raise entry.refusal("one address twice", item, "another one", word[:80])
+            known.add((where.host, where.port))
+        dialect, _, vehicles = found.setdefault(match[3], (match[2], where, []))
+        if dialect != match[2]:
+            raise entry.refusal("two dialects at one address", item, dialect, word[:80])
+        vehicles.append(int(match[1]))
+    return tuple(_door(entry, v, *one) for one in found.values())
+
+
+def _door(entry: Entry, v: Mapping[str, Any], form: str, where: Address, ids: list[int]) -> Door:
+    own = tuple(sorted(ids))
+    if form == "v2":
+        keys = keys_of(own, Path(v["Keys"]) if v["Keys"] else None)
+        return Door(where, form_of(form), own, keys)
+    if not (where.loopback or v["PlainBeyondLoopback"]):
+        expected = 'v2, an address of loopback, or PlainBeyondLoopback="true"'
+        raise entry.refusal("no authentication", "OtherDialects", expected, f"{form}@{where.text}")
+    return Door(where, form_of(form), own)
 
 
 def _keys(
@@ -105,7 +169,7 @@ def _keys(
             return keys_of(ids, Path(v["Keys"]) if v["Keys"] else None)
         item = "VehicleIDs"
         expected = 'the vehicles whose keys v2 needs, or Dialect="cratous", "original" or "thesis"'
-    elif v["Keys"]:
+    elif v["Keys"] and "=v2@" not in v["OtherDialects"]:
         item, expected = "Keys", 'none, or Dialect="v2"'
     elif all(one.loopback for one in ends) or v["PlainBeyondLoopback"]:
         return None

@@ -8,13 +8,28 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from cratous.bridge.text_protocol import Dialect, GoToWaypoint, Message, SoftReset, Waypoint
+from cratous.bridge.text_protocol import (
+    Dialect,
+    FenceDone,
+    FenceVertex,
+    ForgetFences,
+    ForgetWaypoints,
+    GoToWaypoint,
+    HardReset,
+    Message,
+    SoftReset,
+    StopMission,
+    Waypoint,
+)
 from cratous.bridge.text_protocol.layouts import ORIGINAL_LIMITS
 from cratous.core.authority.timeliness import in_time
 from cratous.services.flight import link_end
 from cratous.services.flight.dynamics import AirState, turn_radius_m
+from cratous.services.flight.link_lines import onward
+from cratous.services.flight.link_peers import to_others
 from cratous.services.flight.messages import Down, Say
 from cratous.services.icarous.ending import TURN_MARGIN
+from cratous.services.icarous_communication.doors import Dialects
 from cratous.services.icarous_communication.plans import Away, Plan, position_of
 from cratous.services.mission.frames import Projection
 from cratous.services.uxas.daidalus.zones import surroundings
@@ -65,11 +80,17 @@ class Craft:
     handed: bool = False
     waiting: Any = None
 
+    @property
+    def listed(self) -> tuple[int, ...]:
+        """The tasks of its newest state."""
+        return () if self.body is None else tuple(self.body.AssociatedTasks)
+
 
 @dataclass(frozen=True)
 class State:
     """link: what the end remembers; frame: the plane, None before anything has a place; zones and crafts
-    by id; commands: given so far; fresh: vehicles whose instance has not yet said which epoch it is in; stale: who is not told as traffic."""
+    by id; commands: given so far; fresh: vehicles whose instance has not yet said which epoch it is in; stale: who is not told as traffic;
+    client_zones: which of the zones that are told, counted from 1, the original's clients are told."""
 
     link: link_end.State = field(default_factory=link_end.State)
     frame: Frame | None = None
@@ -78,6 +99,12 @@ class State:
     commands: int = 0
     fresh: frozenset[int] = frozenset()
     stale: frozenset[int] = frozenset()
+    client_zones: tuple[int, ...] = ()
+
+    @property
+    def plane(self) -> Projection:
+        """The projection of the frame, some other as long as there is none."""
+        return plane(self.frame or Frame(0.0, 0.0))
 
     def craft(self, vehicle_id: int) -> Craft:
         """What is known of a vehicle."""
@@ -109,25 +136,50 @@ def air_state(body: Any, projection: Projection) -> AirState:
     return AirState(place, math.atan2(east, north), math.hypot(north, east), climb)
 
 
-def tellable(
-    frame: Frame, bodies: Iterable[Any], dialect: Dialect
-) -> tuple[tuple[Zone, ...], list[Note]]:
-    """The zones that peers are told, whole, and about the others why not. The original's client publishes a fence
-    for each GEOFN_SEND, with whatever it holds of it, and counts them itself."""
+def tellable(frame: Frame, bodies: Iterable[Any]) -> tuple[tuple[Zone, ...], list[Note]]:
+    """The zones that peers are told, and about the others why not."""
     around = surroundings(frame, bodies, "MSL")
-    fit, why = around.zones, list(around.missing)
-    if dialect is Dialect.ORIGINAL:
-        most, corners = ORIGINAL_LIMITS.zones, ORIGINAL_LIMITS.vertices
-        fit = tuple(zone for zone in fit if len(zone.vertices) in range(corners + 1))
-        alone = "the original's client is not told of it"
-        why += [
-            f"zone {z.id}: more than {corners} vertices; {alone}"
-            for z in around.zones
-            if z not in fit
-        ]
-        why += [f"zone {z.id}: more than {most} zones; {alone}" for z in fit[most:]]
-        fit = fit[:most]
-    return fit, [Note("WARN", text) for text in why]
+    return around.zones, [Note("WARN", text) for text in around.missing]
+
+
+def held_by_client(zones: tuple[Zone, ...]) -> tuple[tuple[Zone, ...], list[Note]]:
+    """Those of them that the original's client is told, and about the others why not: it publishes a fence for each
+    GEOFN_SEND, with whatever it holds of it, and counts them itself."""
+    most, corners = ORIGINAL_LIMITS.zones, ORIGINAL_LIMITS.vertices
+    fit = tuple(zone for zone in zones if len(zone.vertices) in range(corners + 1))
+    alone = "the original's client is not told of it"
+    why = [f"zone {z.id}: more than {corners} vertices; {alone}" for z in zones if z not in fit]
+    why += [f"zone {z.id}: more than {most} zones; {alone}" for z in fit[most:]]
+    return fit[:most], [Note("WARN", text) for text in why]
+
+
+def known_zones(
+    state: State, frame: Frame, dialects: Dialects
+) -> tuple[State, tuple[Zone, ...], list[Note]]:
+    """The zones that peers are told, with those of the original's clients remembered, and about the others why not."""
+    zones, notes = tellable(frame, state.zones.values())
+    if Dialect.ORIGINAL in dialects.all:
+        held, more = held_by_client(zones)
+        notes = [*notes, *more]
+        numbers = tuple(k for k, zone in enumerate(zones, 1) if zone in held)
+        state = replace(state, client_zones=numbers)
+    return state, zones, notes
+
+
+def ended(state: State, vid: int) -> tuple[State, list[Out]]:
+    """A MissionCommand without waypoints: the mission of a vehicle that UxAS flies is over, and its instance is told."""
+    craft, peer = state.craft(vid), state.link.peer(vid)
+    if craft.plan is None or craft.away is not None:
+        return state, [Refuse("mission without waypoints", f"vehicle {vid}")]
+    state = state.put(vid, replace(craft, plan=None))
+    if peer is None:
+        return state, []
+    over = replace(peer, way=(), flies=(), marks_m=(), from_m=0.0, reached=0, steered=None)
+    state = replace(state, link=state.link.with_peer(over))
+    return state, [
+        *to_others(state.link, over, state.plane),
+        Down(vid, (StopMission(), ForgetWaypoints())),
+    ]
 
 
 def turn_radius_of(craft: Craft, air: AirState) -> float:
@@ -171,9 +223,34 @@ def moved(air: AirState, late_s: float) -> AirState:
     return air._replace(position=place)
 
 
-def placed(state: State, vid: int, line: Message, dialect: Dialect) -> Message:
-    """As a peer of another dialect than ours reads it: RESET_SFT with where the vehicle is, and WAYPT with a
-    running count for the original's client."""
+def placed(
+    state: State, vid: int, lines: tuple[Message, ...], dialect: Dialect
+) -> tuple[Message, ...]:
+    """As a peer of another dialect than ours reads them: RESET_SFT with where the vehicle is, and for the original's
+    client WAYPT with a running count, and the zones that it holds alone."""
+    if dialect.ours:
+        return lines
+    if lines == (ForgetFences(),):  # for which it has no word
+        peer = state.link.peer(vid)
+        assert peer is not None
+        lines = (HardReset(), *onward(peer.way, peer.reached))
+    if dialect is Dialect.ORIGINAL:
+        lines = tuple(_numbered(x, state.client_zones) for x in lines if _held(x, state))
+    return tuple(_placed(state, vid, line, dialect) for line in lines)
+
+
+def _held(line: Message, state: State) -> bool:
+    return not isinstance(line, FenceVertex | FenceDone) or line.zone in state.client_zones
+
+
+def _numbered(line: Message, told: tuple[int, ...]) -> Message:
+    """The client keeps its zones by their numbers, which have to be 1 to n."""
+    if isinstance(line, FenceVertex | FenceDone) and line.zone is not None:
+        return replace(line, zone=told.index(line.zone) + 1)
+    return line
+
+
+def _placed(state: State, vid: int, line: Message, dialect: Dialect) -> Message:
     if dialect is Dialect.ORIGINAL and isinstance(line, Waypoint):
         return replace(line, total=line.index + 1)
     if not isinstance(line, SoftReset) or line.lat_deg is not None:

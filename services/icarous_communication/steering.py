@@ -9,6 +9,7 @@ from typing import Any
 from cratous.bridge import lmcp
 from cratous.bridge.text_protocol import GoToWaypoint, Message, SetPosition, SetVelocity
 from cratous.core.authority.gate import UXAS, Gate
+from cratous.core.avoidance.manoeuvre import velocity_of
 from cratous.services.flight.commands import gated
 from cratous.services.flight.dynamics import GRAVITY_M_S2, AirState
 from cratous.services.flight.messages import Say
@@ -80,12 +81,27 @@ def command_of(vehicle_id: int, command_id: int, action: Any) -> Any:
     )
 
 
+def circle_m(speed_m_s: float) -> float:
+    """The radius of the circle of a hold [m]."""
+    return speed_m_s**2 / (GRAVITY_M_S2 * math.tan(HOLD_BANK_RAD))
+
+
+def flies(line: Message, air: AirState | None, projection: Projection) -> Message:
+    """A steering line as the velocity that it leads to: SETPOS that of the straight way to its place, at the present speed."""
+    if not isinstance(line, SetPosition) or air is None:
+        return line
+    north, east = projection.to_local(line.lat_deg, line.long_deg)
+    course = math.atan2(east - air.position.east_m, north - air.position.north_m)
+    v = velocity_of(course, air.speed_m_s, 0.0)
+    return SetVelocity(v.north_m_s, v.east_m_s, v.down_m_s)
+
+
 def _loiter(lat_deg: float, long_deg: float, alt_m: float, air: AirState) -> Any:
     place = lmcp.new("Location3D", Latitude=lat_deg, Longitude=long_deg, Altitude=alt_m)
     return lmcp.new(
         "LoiterAction",
         LoiterType="Circular",
-        Radius=air.speed_m_s**2 / (GRAVITY_M_S2 * math.tan(HOLD_BANK_RAD)),
+        Radius=circle_m(air.speed_m_s),
         Direction="Clockwise",
         Duration=-1,
         Airspeed=air.speed_m_s,

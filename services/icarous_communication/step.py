@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from cratous.bridge import lmcp
-from cratous.bridge.text_protocol import Dialect, GoToWaypoint, Heartbeat, Hello, Message, SetMode
+from cratous.bridge.text_protocol import GoToWaypoint, Heartbeat, Hello, Message, SetMode
 from cratous.core.authority.gate import ICAROUS, UXAS, gate_accepts, gate_after
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import Motion
@@ -36,12 +36,16 @@ from cratous.services.flight.messages import (
     ZonesKnown,
 )
 from cratous.services.icarous_communication import modes
+from cratous.services.icarous_communication.doors import Dialects
 from cratous.services.icarous_communication.plans import (
     Away,
     Plan,
     begins_as,
+    begun_with,
+    being_done,
     deviates,
     going_on,
+    leading_back,
     next_part,
     part,
     plan_of,
@@ -60,17 +64,19 @@ from cratous.services.icarous_communication.state import (
     State,
     air_state,
     at_the_time_of,
+    ended,
     goes_on,
+    known_zones,
     left_out,
     placed,
     plane,
-    tellable,
     turn_radius_of,
 )
 from cratous.services.icarous_communication.steering import (
     action_of,
     at_gate,
     command_of,
+    flies,
     hold,
     in_flight,
     taken_back,
@@ -79,7 +85,7 @@ from cratous.services.icarous_communication.steering import (
 from cratous.services.pipeline.status import status
 from cratous.services.uxas.daidalus.zones import frame_at
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import Frame, Position
+from cratous.spec.mission import Position
 
 Step = tuple[State, list[Out]]
 
@@ -87,11 +93,11 @@ Step = tuple[State, list[Out]]
 @dataclass(frozen=True)
 class Communication:
     """The step; what does not change. allowed_m: how far from its leg a vehicle may be before its tasks
-    are paused; dialect: of the peers; of those of another one than ours no heartbeat is to be expected."""
+    are paused; dialects: of the peers; of those of another one than ours no heartbeat is to be expected."""
 
     name: str
     allowed_m: float
-    dialect: Dialect = Dialect.CRATOUS
+    dialects: Dialects
 
     # what comes over the wire ---------------------------------------------------------------------
 
@@ -102,15 +108,14 @@ class Communication:
         state, out = self._end(state, Connected(now_ms, (vehicle_id,)))
         peer = state.link.peer(vehicle_id)
         assert peer is not None
-        anew = state.link.with_peer(modes.anew(peer))
-        state = replace(state, link=anew, fresh=state.fresh | {vehicle_id})
+        link = state.link.with_peer(modes.anew(peer))
+        state = replace(state, link=link, fresh=state.fresh | {vehicle_id})
         if not known:
             state, more = self._route(state, vehicle_id)
             out += more
-            if not self.dialect.ours:  # which says no epoch
+            if not self.dialects.ours(vehicle_id):  # which says no epoch
                 out += in_flight(self.name, vehicle_id, peer.gate, state.craft(vehicle_id).plan)
-        body = state.craft(vehicle_id).body
-        if body is None:
+        if (body := state.craft(vehicle_id).body) is None:
             return state, out
         state, more = self._seen(state, vehicle_id, body, now_ms)
         return state, [*out, *more]
@@ -124,11 +129,12 @@ class Communication:
         """A line has come from an instance."""
         if isinstance(line, SetMode):
             return self._mode(state, vehicle_id, line, now_ms)
-        state, out = self._end(state, Heard(vehicle_id, now_ms, line))
+        flown = flies(line, state.craft(vehicle_id).air, state.plane)
+        state, out = self._end(state, Heard(vehicle_id, now_ms, flown))
         state = self._free(state, vehicle_id)
         if isinstance(line, Heartbeat):
             state = state.put(vehicle_id, replace(state.craft(vehicle_id), handed=False))
-        if self.dialect is Dialect.ORIGINAL and isinstance(line, GoToWaypoint):
+        if self.dialects.original(vehicle_id) and isinstance(line, GoToWaypoint):
             return state, [*out, Refuse("GOTOWP of the original: its number is noise", str(line))]
         craft, peer = state.craft(vehicle_id), state.link.peer(vehicle_id)
         if craft.air is None or peer is None or state.frame is None:
@@ -150,18 +156,16 @@ class Communication:
 
     def watch(self, state: State, now_ms: int) -> Step:
         """Time has passed: who has fallen silent."""
-        if not self.dialect.ours:
-            return state, []
-        state, out = self._end(state, Watch(now_ms))
-        for peer in state.link.peers:
-            state, out = self._held(state, peer.vehicle_id, out)
+        peers = [one.vehicle_id for one in state.link.peers]
+        state, out = self._end(state, Watch(now_ms, frozenset(filter(self.dialects.ours, peers))))
+        for vid in peers:
+            state, out = self._held(state, vid, out)
         return state, out
 
     def _mode(self, state: State, vehicle_id: int, line: SetMode, now_ms: int) -> Step:
         """A SETMOD: the gate is moved as the line says, if it is the next step of this gate; the kernels
         of the link end decide whether that is true, and what follows."""
-        peer = state.link.peer(vehicle_id)
-        if peer is None:
+        if (peer := state.link.peer(vehicle_id)) is None:
             return state, []
         fresh = vehicle_id in state.fresh
         over = modes.forgotten(peer, line, fresh)
@@ -171,7 +175,7 @@ class Communication:
         said = modes.read(peer, line, fresh)
         state = replace(state, fresh=state.fresh - {vehicle_id} if said.believed else state.fresh)
         state, out = self._end(state, GateIs(vehicle_id, said.gate))
-        if modes.begins(peer, said, fresh and self.dialect.ours):
+        if modes.begins(peer, said, fresh and self.dialects.ours(vehicle_id)):
             out += in_flight(self.name, vehicle_id, said.gate, state.craft(vehicle_id).plan)
         state, more = self._end(state, Heard(vehicle_id, now_ms, said.line))
         return self._free(state, vehicle_id), [*out, *more]
@@ -180,14 +184,13 @@ class Communication:
 
     def configured(self, state: State, body: Any) -> Step:
         """An AirVehicleConfiguration."""
-        craft = replace(state.craft(body.ID), configuration=body)
-        return state.put(body.ID, craft), []
+        return state.put(body.ID, replace(state.craft(body.ID), configuration=body)), []
 
     def mission(self, state: State, command: Any, now_ms: int) -> Step:
         """A MissionCommand of somebody else's; while ICAROUS has the vehicle it waits for the handback."""
         vid, craft = int(command.VehicleID), state.craft(command.VehicleID)
         if not command.WaypointList:
-            return state, [Refuse("mission without waypoints", f"vehicle {vid}")]
+            return ended(state, vid)
         if craft.away is not None:
             text = f"vehicle {vid}: a mission has come while ICAROUS has it, and waits for the handback"
             come = self._by_uxas(state, vid, command)
@@ -200,8 +203,9 @@ class Communication:
         state, out = self._framed(state, command.WaypointList[0])
         assert state.frame is not None
         craft = state.craft(vid)
-        here = None if craft.air is None else craft.air.position
-        plan = plan_of(command, plane(state.frame), now_ms, here)
+        here = craft.air.position if craft.air else None
+        begun = being_done(craft.plan, craft.listed)
+        plan = begun_with(plan_of(command, plane(state.frame), now_ms, here), begun)
         if begins_as(plan, craft.plan):  # what a waypoint manager hands on is told already
             return state, out
         state, more = self._route(state.put(vid, replace(craft, plan=plan)), vid)
@@ -241,7 +245,7 @@ class Communication:
     def _reached(self, state: State, vid: int, plan: Plan) -> Step:
         """The waypoints that are behind, and, to a peer that holds a part alone, the next part."""
         out: list[Out] = []
-        if (most := self.dialect.part_waypoints) is not None:
+        if (most := self.dialects.of(vid).part_waypoints) is not None:
             onward = next_part(plan, most, SPARE_WAYPOINTS)
             if onward is not plan:
                 state = state.put(vid, replace(state.craft(vid), plan=onward))
@@ -255,8 +259,8 @@ class Communication:
     def _seen(self, state: State, vid: int, body: Any, now_ms: int) -> Step:
         """Everybody at the time of this vehicle's state, to its instance; who cannot be, is said once."""
         aircraft, stale = at_the_time_of(body, state.crafts)
-        roll, pitch = math.radians(body.Roll), math.radians(body.Pitch)
-        seen = Seen(vid, now_ms, int(body.Time), aircraft, roll, pitch)
+        angles = math.radians(body.Roll), math.radians(body.Pitch)
+        seen = Seen(vid, now_ms, int(body.Time), aircraft, *angles)
         notes = left_out(stale - state.stale)
         state, out = self._end(replace(state, stale=stale), seen)
         return state, [*notes, *out]
@@ -270,7 +274,7 @@ class Communication:
         if not deviates(plan, air.position, self.allowed_m):
             return state, []
         state = state.put(vid, replace(craft, away=away._replace(paused=True)))
-        point = None if self.dialect is Dialect.ORIGINAL else resume_point(plan, away.left)
+        point = None if self.dialects.original(vid) else resume_point(plan, away.left)
         state, out = self._end(state, Left(vid, point)) if point else (state, [])
         paused = [Say(lmcp.new("TaskPause", TaskID=task), self.name) for task in away.tasks]
         text = f"vehicle {vid} is more than {self.allowed_m:g} m from its leg; tasks pause"
@@ -280,8 +284,7 @@ class Communication:
 
     def _end(self, state: State, message: ToLinkEnd) -> Step:
         """Tell the end, and do what it answers."""
-        frame = state.frame or Frame(0.0, 0.0)
-        link, answers = UxasEnd(plane(frame)).handle(state.link, message)
+        link, answers = UxasEnd(state.plane).handle(state.link, message)
         state, out = replace(state, link=link), list[Out]()
         for answer in answers:
             match answer:
@@ -291,21 +294,21 @@ class Communication:
                 case TakeBack(vid, now_ms, _, epoch):
                     state, more = self._take_back(state, vid, epoch, now_ms)
                     out += more
-                case Down(vid, lines) if not self.dialect.ours:
-                    out.append(Down(vid, tuple(placed(state, vid, x, self.dialect) for x in lines)))
-                case Say() | Down():
+                case Down(vid, lines):
+                    out.append(Down(vid, placed(state, vid, lines, self.dialects.of(vid))))
+                case Say():
                     out.append(answer)
         return state, out
 
     def _suspend(self, state: State, vid: int, now_ms: int) -> Step:
         craft, peer = state.craft(vid), state.link.peer(vid)
         assert peer is not None
-        tasks = () if craft.body is None else tuple(craft.body.AssociatedTasks)
+        tasks = being_done(craft.plan, craft.listed)  # one that it is on its way to needs no pause
         left = Position(0.0, 0.0, 0.0) if craft.air is None else craft.air.position
         # an instance that comes again has had the vehicle all the time
         state = state.put(vid, replace(craft, away=craft.away or Away(left, tasks)))
-        note = Note("WARN", f"vehicle {vid}: ICAROUS has it, in epoch {peer.gate.epoch}")
-        return state, [note, *told(self.name, vid, now_ms, peer.gate)]
+        text = f"vehicle {vid}: ICAROUS has it, in epoch {peer.gate.epoch}"
+        return state, [Note("WARN", text), *told(self.name, vid, now_ms, peer.gate)]
 
     def _take_back(self, state: State, vid: int, epoch: int, now_ms: int) -> Step:
         """Tasks resume, the mission goes on, ICAROUS is told the way; without a mission it holds."""
@@ -332,13 +335,12 @@ class Communication:
             return state, [Say(craft.waiting, self.name), *out]
         if plan is None or away is None or air is None or state.frame is None:
             return self._hold(state, vid, [], "handed back without a mission")
-        projection = plane(state.frame)
         now = Motion(air.position, air.heading_rad, air.speed_m_s, air.climb_m_s)
         plan, radius_m = going_on(plan, away), turn_radius_of(craft, air)
-        sent = resumed(plan, away, now, radius_m, projection, COMMANDS_FROM + state.commands + 1)
-        way = plan_of(sent.command, projection, now_ms, air.position)
-        if way is not None:  # the mission's own command is what the next way back leads to
-            way = way._replace(command=plan.command, back=sent.back, resume=sent.resume)
+        sent = resumed(plan, away, now, radius_m, state.plane, COMMANDS_FROM + state.commands + 1)
+        way = leading_back(
+            plan, away, sent, plan_of(sent.command, state.plane, now_ms, air.position)
+        )
         after = replace(craft, away=None, holds=False, handed=True, plan=way)
         state = replace(state.put(vid, after), commands=state.commands + 1)
         state, out = self._route(state, vid)
@@ -348,9 +350,8 @@ class Communication:
         plan = state.craft(vid).plan
         if plan is None or state.link.peer(vid) is None:
             return state, []
-        points = part(plan, self.dialect.part_waypoints)
-        from_m = plan.track.s_m[plan.told]
-        return self._end(state, Route(vid, points, plan.speed_m_s, from_m))
+        points = part(plan, self.dialects.of(vid).part_waypoints)
+        return self._end(state, Route(vid, points, plan.speed_m_s, plan.track.s_m[plan.told]))
 
     def _held(self, state: State, vid: int, out: list[Out]) -> Step:
         """A vehicle that ICAROUS has and whose ICAROUS is not heard holds where it is."""
@@ -364,13 +365,13 @@ class Communication:
         said = Say(status(0, "Error", [("reason", f"vehicle {vid} holds: {why}")]), self.name)
         if craft.air is None or state.frame is None:
             return state, [*out, said]
-        state, command = self._command(state, vid, hold(craft.air, plane(state.frame)))
-        come = self._by_uxas(state, vid, command.body)
-        return state.put(vid, replace(craft, holds=True)), [*out, *come, command, said]
+        state, told_to = self._command(state, vid, hold(craft.air, state.plane))
+        out = [*out, *self._by_uxas(state, vid, told_to.body), told_to, said]
+        return state.put(vid, replace(craft, holds=True)), out
 
     def _by_uxas(self, state: State, vid: int, command: Any) -> list[Out]:
         """What UxAS commands a vehicle that has a gate here."""
-        peer, fresh = state.link.peer(vid), self.dialect.ours and vid in state.fresh
+        peer, fresh = state.link.peer(vid), self.dialects.ours(vid) and vid in state.fresh
         if peer is None or modes.unknown(peer, fresh):
             return []
         return [at_gate(self.name, vid, peer.gate, UXAS, command)]
@@ -381,9 +382,8 @@ class Communication:
         return state.put(vid, replace(craft, holds=False)) if craft.holds else state
 
     def _command(self, state: State, vid: int, action: Any) -> tuple[State, Say]:
-        number = COMMANDS_FROM + state.commands + 1
         state = replace(state, commands=state.commands + 1)
-        return state, Say(command_of(vid, number, action), self.name)
+        return state, Say(command_of(vid, COMMANDS_FROM + state.commands, action), self.name)
 
     def _framed(self, state: State, place: Any) -> Step:
         """The plane is that of the first place that is told; zones told before are in it from then on."""
@@ -395,6 +395,6 @@ class Communication:
         """All zones to all instances."""
         if state.frame is None:
             return state, []
-        zones, notes = tellable(state.frame, state.zones.values(), self.dialect)
+        state, zones, notes = known_zones(state, state.frame, self.dialects)
         state, out = self._end(state, ZonesKnown(zones))
         return state, [*out, *notes]

@@ -1,12 +1,27 @@
-"""With which waypoint ICAROUS goes on as it hands back: GOTOWP, said before SETMOD PASSIVE."""
+"""How ICAROUS says where it makes for: SETPOS while it flies straight to a waypoint, as the original's ICAROUS does where the
+direct path is free, and as it hands back GOTOWP, with which waypoint it goes on, before SETMOD PASSIVE."""
 
 from __future__ import annotations
 
-from cratous.bridge.text_protocol import Dialect, GoToWaypoint
+import math
+
+from cratous.bridge.text_protocol import Dialect, GoToWaypoint, Message, SetPosition, SetVelocity
+from cratous.core.avoidance.manoeuvre import smallest_turn
+from cratous.core.avoidance.way_ahead import near_line
 from cratous.services.icarous.foresight import points_back
 from cratous.services.icarous.messages import FromInstance, Sensed, Wish
+from cratous.services.icarous.return_to_path import bearing_rad, flat
 from cratous.services.icarous.state import State
+from cratous.services.icarous_communication.steering import circle_m
+from cratous.services.mission.frames import Projection
 from cratous.spec.authority.cycle import OFFER
+
+STRAIGHT_RAD = math.radians(0.5)
+LEVEL_M = 1.0
+SPEED_M_S = 0.5
+"""A manoeuvre is the straight way to a place if it is off it by no more than this: heading, altitude, and the present speed."""
+CIRCLES = 4.0
+"""A place is flown straight to until it is so many radii of the autopilot's circle away; nearer than two it circles."""
 
 
 def onward(
@@ -24,3 +39,29 @@ def onward(
     begins = points_back(state, sensed)[0]
     ahead = range(min(told.next_index, len(told.waypoints) - 1), len(told.waypoints))
     return tuple(GoToWaypoint(k) for k in ahead if told.waypoints[k] == begins)[:1]
+
+
+def steering(line: Message, state: State, sensed: Sensed, projection: Projection) -> Message:
+    """A line to UxAS as it is said: SETPOS of the waypoint in place of SETVEL, where what is flown is the straight, level way
+    to it, free of conflict over the look-ahead, and the waypoint is not so near that the vehicle would circle there."""
+    choice, told, motion = state.held, state.told, sensed.motion
+    if (
+        not isinstance(line, SetVelocity)
+        or choice is None
+        or not choice.clear
+        or not told.waypoints
+    ):
+        return line
+    goal = told.waypoints[min(state.goal, len(told.waypoints) - 1)]
+    here, there = flat(motion.position), flat(goal)
+    off_rad = smallest_turn(choice.heading_rad, bearing_rad(motion.position, goal))
+    if (
+        abs(off_rad) > STRAIGHT_RAD
+        or choice.climb_m_s
+        or abs(goal.alt_m - motion.position.alt_m) > LEVEL_M
+        or abs(choice.speed_m_s - motion.speed_m_s) > SPEED_M_S
+        or near_line(here, there, there, CIRCLES * circle_m(motion.speed_m_s))
+    ):
+        return line
+    lat, long = projection.to_geodetic(goal.north_m, goal.east_m)
+    return SetPosition(lat, long, goal.alt_m)

@@ -13,6 +13,8 @@ from typing import NamedTuple
 from cratous.bridge.text_protocol import (
     FenceDone,
     FenceVertex,
+    ForgetFences,
+    ForgetWaypoints,
     HardReset,
     LinesMissing,
     Message,
@@ -95,7 +97,9 @@ def take(lost: Parts, line: Message) -> Taken:
     match line:
         case HardReset():
             return Taken({}, (line,))
-        case SoftReset(None):
+        case ForgetFences():
+            return Taken({key: part for key, part in lost.items() if key[0] != ZONE}, (line,))
+        case SoftReset(None) | ForgetWaypoints():
             return Taken(_without(lost, (PLAN, 0)), (line,))
         case Waypoint(total=total, index=index):
             return _line(lost, (PLAN, 0), total, index, line)

@@ -38,7 +38,7 @@ from cratous.services.icarous import state as icarous
 from cratous.services.icarous.asking import Asking
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Foresees, Line, Sensed, Up, Wish
-from cratous.services.icarous_program.onward import onward
+from cratous.services.icarous_program.onward import onward, steering
 from cratous.services.icarous_program.recovery import (
     ASK_AGAIN_MS,
     Part,
@@ -372,7 +372,7 @@ class IcarousEnd:
                 case Up(_, told):
                     if isinstance(told, SetMode) and told.request is None:
                         answers += map(Tell, onward(said, instance, sensed, craft.dialect))
-                    answers.append(Tell(told))
+                    answers.append(Tell(steering(told, instance, sensed, craft.config.projection)))
         state, more = self._overdue(state, now_ms)
         answers += more
         if not self.craft.dialect.ours and state.gate.offered:

@@ -9,9 +9,10 @@ from __future__ import annotations
 import re
 import signal
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from cratous.bridge import envelope as wire
@@ -23,6 +24,7 @@ from cratous.services.exporting.messages import Told
 from cratous.services.processes.agreement import agrees
 from cratous.services.processes.amase import Amase, AmaseLost
 from cratous.services.processes.children import GRACE_S, Children, ProcessEnded, free_port
+from cratous.services.processes.direct_links import DirectLinks
 from cratous.services.processes.failing_bridge import FailingBridge
 from cratous.services.processes.files import (
     ORIGINAL_PORT,
@@ -57,8 +59,8 @@ class Stuck(CratousError):
 
 class Flying(NamedTuple):
     """How a flight in processes is set up. path: of the mission, for ICAROUS; digest: of that mission, the
-    hash of its report; folder: for what they are given and what they say; rate: times real time; original:
-    ICAROUS is behind clients of the original's, which others start; amase: what flies in place of our simulator."""
+    hash of its report; folder: for what they are given and what they say; rate: times real time; original: ICAROUS is behind
+    clients of the original's, which others start; amase: what flies in place of our simulator; direct: links of ICAROUS."""
 
     path: Path
     digest: str
@@ -68,6 +70,7 @@ class Flying(NamedTuple):
     tell: Tell
     original: bool = False
     amase: Amase | None = None
+    direct: DirectLinks | None = None
 
 
 class Ended(NamedTuple):
@@ -155,14 +158,14 @@ class _Flight:
             how.tell(
                 f"start the original's clients, for vehicle {who}: UxAS waits for {len(instances)}"
             )
-        doors = self._doors(instances)
+        doors, direct = self._doors(instances), how.direct
         for vehicle in () if how.original else instances:
-            where = f"127.0.0.1:{doors[vehicle]}"
             self._start(
                 f"icarous_{vehicle}", "icarous", "--vehicle", str(vehicle), "--mission",
-                str(how.path.resolve()), "--mission-hash", how.digest, "--connect", where,
-                "--wait", f"{STARTS_S:g}", *unproved, may_stand=self.failing is not None,
-                keys=self.keys.of(vehicle),
+                str(how.path.resolve()), "--mission-hash", how.digest,
+                "--connect", f"127.0.0.1:{doors[vehicle]}", "--wait", f"{STARTS_S:g}", *unproved, *(direct.words if direct else ()),
+                may_stand=self.failing is not None, keys=self.keys.of(vehicle),
+                more=direct.private if direct else {},
             )  # fmt: skip
         self._wait("UxAS's plan", self._planned)
         self._wait("the commands of UxAS at the simulator", self._all_commanded)
@@ -199,9 +202,14 @@ class _Flight:
         return self.failing.step(now_ms, self.flown)
 
     def _start(
-        self, name: str, *arguments: str, may_stand: bool = False, keys: Keys = Keys({})
+        self,
+        name: str,
+        *arguments: str,
+        may_stand: bool = False,
+        keys: Keys = Keys({}),
+        more: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
-        private = keys.environment()
+        private = {**keys.environment(), **more}
         pid = self.children.start(name, *arguments, may_stand=may_stand, private=private)
         self.how.tell(f"process {name}: pid {pid}")
 

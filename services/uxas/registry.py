@@ -229,7 +229,7 @@ def _icarous(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int
     given, routes = icarous_settings.settings_of(entry, v), None
     if given.planner in range(len(PLANNERS)):
         contexts = contexts_of(host)
-        routes = Routes(name, contexts, given.planner, given.answer_s, given.dialect)
+        routes = Routes(name, contexts, given.planner, given.answer_s, given.dialects)
     proposals = Proposals() if given.live else None
     return icarous_communication.IcarousCommunicationService(
         name, host.bus, host.log, given, secret_of_environment(), routes, proposals

@@ -17,6 +17,7 @@ from cratous.bridge.redial import Redial
 from cratous.bridge.text_connection import PARTING_S, REFUSED, Bounds, Opened
 from cratous.bridge.text_port import PATIENCE_S, Came, TextPort
 from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET
+from cratous.bridge.text_protocol.keys import new_keys
 from cratous.spec.errors import BadInput
 
 HEARTBEAT = tp.encode(tp.Heartbeat(1, 0.5))
@@ -295,6 +296,34 @@ def test_a_peer_of_another_dialect_is_refused_with_the_reason_on_both_ends(
     assert came[speaks][-1].what == LinkEvent(REFUSED, f"the other end refuses: {reason}")
     assert not any(isinstance(x.what, tp.Message) for found in came.values() for x in found)
     assert any("refused: line of another dialect" in text for text in said)
+
+
+@pytest.mark.parametrize("sealed", [False, True])
+def test_one_that_uxas_refuses_is_told_why_on_a_sealed_connection_too(
+    opened: list[Any], sealed: bool
+) -> None:
+    clock, keys = Clock(), new_keys([1])
+    secret = keys if sealed else DEFAULT_SECRET
+    one = TextPort(at(), server=True, secret=secret)
+    other = TextPort(at(one.bound[1]), server=False, secret=secret)
+    opened += [one, other]
+    key = other.dial(clock.now_s)
+    came: dict[bool, list[Came]] = {True: [], False: []}
+    end, refused = time.monotonic() + 30.0, False
+    while not all(found and isinstance(found[-1].what, LinkEvent) for found in came.values()):
+        assert time.monotonic() < end, came
+        came[True] += one.step(clock.now_s)
+        came[False] += other.step(clock.now_s)
+        if not refused and came[True] and came[False]:
+            refused = True
+            one.refuse(came[True][0].key, "vehicle taken", "a second instance for vehicle 1")
+            assert not one.send(came[True][0].key, tp.WaypointReached(4)), "nothing goes after that"
+            other.send(key, tp.SetMode("ACTIVE", 1))
+    reason = "a second instance for vehicle 1"
+    assert came[True][-1].what == LinkEvent(REFUSED, reason)
+    assert came[False][-1].what == LinkEvent(REFUSED, f"the other end refuses: {reason}")
+    assert not any(isinstance(x.what, tp.SetMode) for x in came[True]), "what it says is not heard"
+    assert one.counts.refused["vehicle taken"] == 1
 
 
 def test_a_refused_peer_that_goes_on_costs_no_more_than_its_time(opened: list[Any]) -> None:

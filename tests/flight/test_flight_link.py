@@ -19,9 +19,7 @@ from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Sensed, Wish
 from cratous.services.pipeline.plan import make_plan
 from cratous.spec.authority.cycle import TAKE_OVER
-from cratous.spec.mission import (
-    Simulation,
-)
+from cratous.spec.mission import Position, Simulation, Traffic, Velocity
 
 
 def test_link_cut_before_the_encounter(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -87,3 +85,28 @@ def test_an_instance_takes_no_vehicle_but_its_own(monkeypatch: pytest.MonkeyPatc
     )
     _, log = flown(mission)
     assert {g.VehicleID for g in of_type(log, "GateState")} == {2}
+
+
+def test_a_bridge_that_nobody_needs_leaves_plan_and_flight_as_they_are() -> None:
+    """The thesis: both programs, without affecting their internal processing."""
+    # the other aircraft passes 20 km away
+    far = Traffic(90, Position(2640.0, -20_000.0, 300.0), Velocity(22.0, 0.0, 0.0))
+    mission = replace(meeting(), traffic=(far,))
+    found = []
+    for instances in (mission.instances, ()):
+        one = replace(mission, instances=instances)
+        plan = make_plan(one)
+        result, log = flown(one, plan)
+        kinds = ("AirVehicleState", "TruthState", "TaskProgress", "MissionCommand")
+        said = [
+            str(
+                b.copy(Cooperative=False) if hasattr(b, "Cooperative") else b
+            )  # who has an instance
+            for b in log
+            if type(b).__name__ in kinds
+        ]
+        found.append((plan.items, result.outcome, said))
+    bridged, alone = found
+    assert mission.instances
+    assert len(bridged[2]) > 1000
+    assert bridged == alone

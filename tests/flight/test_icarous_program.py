@@ -235,21 +235,32 @@ def test_an_answer_of_a_former_connection_is_not_handed_back_onto() -> None:
     assert (state.instance.asking.allowed, state.instance.asking.proposal) == (True, ())
 
 
-def flown_round(end: IcarousEnd) -> list[tp.Message]:
-    """All that ICAROUS says of a flight along a plan, past an aircraft that comes head on, until it offers control."""
+def _course(line: tp.SetVelocity | tp.SetPosition, north_m: float, east_m: float) -> float:
+    """The course that a steering line leads to, from here [rad]."""
+    if isinstance(line, tp.SetVelocity):
+        return math.atan2(line.east_mps, line.north_mps)
+    north, east = PROJECTION.to_local(line.lat_deg, line.long_deg)
+    return math.atan2(east - east_m, north - north_m)
+
+
+def flown_round(end: IcarousEnd, beats: int = 0, alt_m: float = 300.0) -> list[tp.Message]:
+    """All that ICAROUS says of a flight along a plan, past an aircraft that comes head on, until it offers control, and for
+    so many heartbeats after that, in which nobody takes it. alt_m: of the vehicle, the plan and the other are at 300 m."""
     state, _ = tell(State(), *way(0, 1, 2, total=3), tp.WaypointReached(0), end=end)
     north_m, east_m, course, said = 0.0, 0.0, 0.0, list[tp.Message]()
     for k in range(400):
         lat, lon = PROJECTION.to_geodetic(north_m, east_m)
         speeds = 22 * math.cos(course), 22 * math.sin(course), 0.0
-        here = tp.OwnPosition(k / 2, lat, lon, 300.0, 300.0, *speeds, vehicle_id=1)
+        here = tp.OwnPosition(k / 2, lat, lon, alt_m, alt_m, *speeds, vehicle_id=1)
         state, answers = tell(state, here, traffic(3000.0 - 11 * k), end=end)
         said += lines(answers)
-        steered = [m for m in said if isinstance(m, tp.SetVelocity)]
+        steered = [m for m in said if isinstance(m, tp.SetVelocity | tp.SetPosition)]
         if any(isinstance(m, tp.SetMode) and m.mode == "PASSIVE" for m in said):
+            beats -= 1
+        if beats < 0:
             return said
         if steered:
-            off = math.atan2(steered[-1].east_mps, steered[-1].north_mps) - course
+            off = _course(steered[-1], north_m, east_m) - course
             course += max(-0.12, min(0.12, math.remainder(off, math.tau)))
         north_m, east_m = north_m + 11 * math.cos(course), east_m + 11 * math.sin(course)
     raise AssertionError("control is not offered")
@@ -267,3 +278,44 @@ def test_the_waypoint_with_which_it_goes_on_is_said_as_it_hands_back(dialect: tp
     following = said[k + 1]
     assert isinstance(following, tp.SetMode)
     assert following.mode == "PASSIVE"
+
+
+def test_where_the_straight_way_to_a_waypoint_is_flown_its_place_is_said() -> None:
+    """As the original's ICAROUS has it: SETPOS where the direct path is free, SETVEL while it avoids."""
+    said = flown_round(END, beats=12)
+    steered = [m for m in said if isinstance(m, tp.SetVelocity | tp.SetPosition)]
+    places = [m for m in steered if isinstance(m, tp.SetPosition)]
+    assert isinstance(steered[0], tp.SetVelocity), "the turn away is no way to a waypoint"
+    assert places
+    for place in places:
+        north, east = PROJECTION.to_local(place.lat_deg, place.long_deg)
+        assert min(abs(north - 2000.0 * k) for k in (1, 2)) < 0.1
+        assert abs(east) < 0.1
+        assert place.alt_m == pytest.approx(300.0)
+
+
+def test_a_place_at_another_altitude_is_not_flown_straight_to() -> None:
+    """A loiter at the place would climb; the manoeuvre that was looked at is level."""
+    said = flown_round(END, beats=12, alt_m=320.0)
+    assert not any(isinstance(m, tp.SetPosition) for m in said)
+    assert any(isinstance(m, tp.SetVelocity) for m in said)
+
+
+def test_what_it_is_told_to_forget_is_forgotten_and_nothing_else() -> None:
+    corners = ((0.0, 9000.0), (0.0, 9100.0), (100.0, 9100.0))
+    places = [PROJECTION.to_geodetic(*corner) for corner in corners]
+    fence = [tp.FenceVertex("KEEPOUT", 3, k, *p, 0.0, 900.0, 1) for k, p in enumerate(places, 1)]
+    state, _ = tell(State(), *way(0, 1, 2, total=3), *fence, tp.FenceDone(1))
+    told = state.instance.told
+    assert len(told.zones) == 1
+    assert (len(told.waypoints), told.started) == (3, True)
+    without, answers = tell(state, tp.ForgetFences())
+    assert not refused(answers)
+    assert (without.instance.told.zones, without.instance.told.waypoints) == ((), told.waypoints)
+    without, answers = tell(state, tp.ForgetWaypoints())
+    assert not refused(answers)
+    assert (without.instance.told.zones, without.instance.told.waypoints) == (told.zones, ())
+    without, answers = tell(state, tp.StopMission())
+    assert not refused(answers)
+    assert not without.instance.told.started
+    assert tell(without, tp.StartMission())[0].instance.told.started

@@ -7,7 +7,9 @@ import os
 import signal
 import time
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -19,14 +21,17 @@ from cratous.bridge.tcp_port import TcpPort
 from cratous.bridge.text_protocol.keys import DIRECT_VARIABLE, new_keys
 from cratous.services.loading import load
 from cratous.services.mission.frames import Projection
+from cratous.services.processes import flight as flights
 from cratous.services.processes.children import Children, free_port
 from cratous.services.processes.coverage import told_of
+from cratous.services.processes.direct_links import direct_links
 from cratous.services.processes.files import (
     Ports,
     write_configuration,
     write_messages,
     write_scenario,
 )
+from cratous.spec.errors import BadInput
 
 LIMIT_S = 600.0
 KILLED_MS, END_MS, RATE = 8_000, 120_000, 6.0
@@ -150,3 +155,67 @@ def test_without_direct_keys_a_direct_link_is_refused(
         (tmp_path / f"vehicle_{vid}.direct").write_text(f"{vid}{vid}" * 32)
     assert main([*words, "--keys", str(tmp_path), "--direct", "127.0.0.1:5600"]) == 2
     assert "no group" in capsys.readouterr().err
+
+
+def test_a_flight_gives_each_icarous_the_group_and_all_direct_keys_and_uxas_none(
+    root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mission = load(root / "examples/crossing/mission.yaml")
+    where = address(f"udp://239.255.77.5:{20000 + os.getpid() % 20000}", ("udp",))
+    links = direct_links(where, mission.instances)
+    started, had = dict[str, tuple[str, ...]](), dict[str, dict[str, str]]()
+    how: Any = SimpleNamespace(
+        tell=lambda _: None, folder=tmp_path, path=tmp_path, digest="0" * 64, rate=1.0,
+        allow_unproved=True, original=False, amase=None, direct=links,
+    )  # fmt: skip
+
+    class Started:
+        def start(self, name: str, *words: str, private: dict[str, str], **_: object) -> int:
+            started[name], had[name] = words, private
+            return 1
+
+    nobody: Any = SimpleNamespace(accepted=id)
+    plan: Any = SimpleNamespace(items=[])
+    one = flights._Flight(mission, plan, nobody, nobody, how, Started())  # type: ignore[arg-type]
+    monkeypatch.setattr(flights, "write_scenario", lambda *_: tmp_path)
+    monkeypatch.setattr(flights, "write_messages", lambda *_: None)
+    one._start_simulator = lambda _: 1  # type: ignore[method-assign]
+    one._connect = lambda _: nobody  # type: ignore[method-assign]
+    one._wait = one._control = lambda *_: None  # type: ignore[assignment,method-assign]
+    one.start()
+    direct = {DIRECT_VARIABLE.format(vid) for vid in mission.instances}
+    assert set(started) == {"uxas", "icarous_1", "icarous_2"}
+    for name, words in started.items():
+        ours = name != "uxas"
+        assert (("--direct", f"239.255.77.5:{where.port}") in pairwise(words)) is ours
+        assert direct <= set(had[name]) if ours else not direct & set(had[name])
+        assert not any(value in words for value in had[name].values()), "no key is an argument"
+    assert had["icarous_1"].keys() - direct != had["icarous_2"].keys() - direct
+
+
+@pytest.mark.parametrize(
+    ("group", "vehicles", "what"),
+    [
+        ("239.255.77.6:5600", [1], "between vehicles"),
+        ("239.255.77.6:5600", list(range(1, 30)), "between vehicles"),
+        ("127.0.0.1:5600", [1, 2], "no group"),
+    ],
+)
+def test_direct_links_that_cannot_be_are_refused_before_anything_starts(
+    group: str, vehicles: list[int], what: str
+) -> None:
+    with pytest.raises(BadInput, match=what):
+        direct_links(address(f"udp://{group}", ("udp",)), vehicles)
+
+
+def test_direct_links_are_of_processes_alone(
+    root: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from cratous.services.cli import main
+
+    mission = str(root / "examples/crossing/mission.yaml")
+    assert main(["run", mission, "--direct", "239.255.77.6:5600"]) == 2
+    assert "--direct is of --processes" in capsys.readouterr().err
+    words = ["--processes", "--original-clients", "--direct", "239.255.77.6:5600"]
+    assert main(["run", mission, *words]) == 2
+    assert "--direct is not of --original-clients" in capsys.readouterr().err

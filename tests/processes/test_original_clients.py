@@ -54,7 +54,7 @@ def test_no_icarous_is_started_where_clients_are_waited_for(
     plan: Any = SimpleNamespace(items=[])
     how: Any = SimpleNamespace(
         tell=told.append, folder=tmp_path, path=tmp_path, digest="0" * 64, rate=1.0,
-        allow_unproved=True, original=original, amase=None,
+        allow_unproved=True, original=original, amase=None, direct=None,
     )  # fmt: skip
     nobody: Any = SimpleNamespace()
     one = flights._Flight(crossing, plan, nobody, SimpleNamespace(accepted=id), how, nobody)  # type: ignore[arg-type]

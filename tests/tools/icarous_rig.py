@@ -25,9 +25,13 @@ class Fake:
     """A client of the text protocol that does what the test says."""
 
     def __init__(
-        self, port: int, hello: int | None = None, dialect: tp.Dialect = tp.Dialect.CRATOUS
+        self,
+        port: int,
+        hello: int | None = None,
+        dialect: tp.Dialect = tp.Dialect.CRATOUS,
+        host: str = "127.0.0.1",
     ) -> None:
-        self.sock = socket.create_connection(("127.0.0.1", port), timeout=5)
+        self.sock = socket.create_connection((host, port), timeout=5)
         self.sock.setblocking(False)
         self.handshake, self.hello, self.ended = ClientHandshake(), hello, False
         self.dialect = dialect

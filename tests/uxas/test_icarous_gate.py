@@ -84,3 +84,35 @@ def test_only_who_was_doing_a_task_comes_back_to_where_its_way_was_left(
     places = [PLANE.to_local(w.Latitude, w.Longitude) for w in added]
     assert any(math.dist(place, (500.0, 0.0)) < 50.0 for place in places) == bool(tasks), places
     assert (added[-1].NextWaypoint if added else command.FirstWaypoint) == 2
+
+
+@pytest.mark.parametrize("begun", [False, True])
+def test_a_task_pauses_where_its_first_waypoint_is_behind(
+    tmp_path: Path, opened: list[Any], begun: bool
+) -> None:
+    """A state bears the task's number already while the waypoint is made for at which the task begins."""
+    rig = Rig(tmp_path, 'NumberOfUAVs="1" DeviationAllowed="40" DeviationOrigin="path"', opened)
+    one = rig.fake(hello=1)
+    plan = way((0.0, 0.0), (2000.0, 0.0), (9000.0, 0.0))
+    plan.WaypointList[0].AssociatedTasks = []  # the task begins at the second
+
+    def at(north: float, east: float, now_ms: int, waypoint: int) -> Any:
+        craft = Aircraft(1, north, east, 0.0)
+        craft.waypoint = waypoint
+        tasks = [TASK] if waypoint > 1 else []
+        return craft.state(now_ms).copy(AssociatedTasks=tasks)
+
+    goal, north = (3, 4000.0) if begun else (2, 500.0)
+    rig.tell(at(-300.0, 0.0, 1000, 1), plan, at(-200.0, 0.0, 2000, 1), at(100.0, 0.0, 3000, 2))
+    rig.tell(at(north, 0.0, 4000, goal))
+    one.say(tp.SetMode("ACTIVE", 1))
+    rig.until(lambda: rig.got("AuthorityChange"))
+    rig.tell(at(north + 900.0, 600.0, 120_000, goal))
+    assert [p.TaskID for p in rig.got("TaskPause")] == [TASK] * begun
+    one.say(tp.SetMode("PASSIVE", 2))
+    rig.until(lambda: rig.got("MissionCommand"))
+    (command,) = rig.got("MissionCommand")
+    added = [w for w in command.WaypointList if w.Number > 3]
+    places = [PLANE.to_local(w.Latitude, w.Longitude) for w in added]
+    assert any(math.dist(place, (north, 0.0)) < 50.0 for place in places) is begun, places
+    assert [p.TaskID for p in rig.got("TaskResume")] == [TASK] * begun

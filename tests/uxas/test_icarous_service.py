@@ -113,6 +113,12 @@ def test_two_instances_for_one_vehicle_and_a_stranger_are_refused(
         other = rig.fake(hello=hello)
         rig.until(lambda other=other: other.read() is not None and other.ended)
         assert rig.said.has(why)
+        assert f"error,{'a second' if hello == 1 else 'HELLO of'}".encode() in other.raw, (
+            "it is told why"
+        )
+        told = [p.Value for s in rig.got("ServiceStatus") for p in s.Info if p.Key == "reason"]
+        assert told[-1].startswith("refused 127.0.0.1:")
+        assert why in told[-1]
     for hello in range(10, 14):  # what is counted does not grow with what strangers say
         other = rig.fake(hello=hello)
         rig.until(lambda other=other: other.read() is not None and other.ended)
@@ -346,3 +352,20 @@ def test_the_waypoint_with_which_icarous_goes_on_is_flown_to_where_none_with_a_t
     while number > 4:  # the way back
         number = known[number].NextWaypoint
     assert number == onward
+
+
+def test_others_are_told_where_one_flies_that_is_sent_to_a_place(
+    tmp_path: Path, opened: list[Any]
+) -> None:
+    rig = Rig(tmp_path, 'NumberOfUAVs="2"', opened)
+    one, two = rig.fake(hello=1), rig.fake(hello=2)
+    rig.tell(state(1), state(2, 3000.0), way((0.0, 0.0), (9000.0, 0.0)))
+    lat, lon = PLANE.to_geodetic(0.0, 4000.0)  # to the east
+    one.say(tp.SetMode("ACTIVE", 1), tp.SetPosition(lat, lon, 300.0))
+    rig.until(lambda: rig.got("VehicleActionCommand"))
+    (action,) = rig.got("VehicleActionCommand")[0].VehicleActionList
+    assert (action.LoiterType.name, action.Location.Latitude) == ("Circular", pytest.approx(lat))
+    rig.until(lambda: two.all(tp.VelocityOfAnother) or rig.tell(state(2, 3000.0, 1500)))
+    told = two.all(tp.VelocityOfAnother)[-1]
+    assert told.vehicle_id == 1
+    assert (told.north_mps, told.east_mps) == (pytest.approx(0.0, abs=0.1), pytest.approx(22.0))

@@ -1,0 +1,80 @@
+"""Several ports of the text protocol as one: each has an address, a dialect and keys of its own."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from typing import Any
+
+from cratous.bridge.link import LinkEvent
+from cratous.bridge.port import Counts
+from cratous.bridge.text_port import Came, TextPort
+from cratous.bridge.text_protocol.messages import Message
+
+
+class TextPorts:
+    """The connections of all of them, numbered as those of one; `bound` is of the first."""
+
+    def __init__(self, ports: Sequence[TextPort]) -> None:
+        """ports: at least one, none of which has a connection yet."""
+        self.ports, numbers = tuple(ports), itertools.count(1)
+        for port in self.ports:
+            port.numbers = numbers
+        self._of: dict[int, int] = {}
+
+    def which(self, key: int) -> int:
+        """Over which of the ports a connection came, by its place."""
+        return self._of.get(key, 0)
+
+    @property
+    def bound(self) -> tuple[str, int]:
+        """Host and port on which the first listens."""
+        return self.ports[0].bound
+
+    @property
+    def counts(self) -> Counts:
+        """Of all of them."""
+        found = Counts()
+        for port in self.ports:
+            found.add(port.counts)
+        return found
+
+    @property
+    def due_s(self) -> float | None:
+        """When `step` has something to do even if nothing arrives."""
+        return min((p.due_s for p in self.ports if p.due_s is not None), default=None)
+
+    def handles(self) -> list[tuple[Any, int]]:
+        """Sockets to poll, with what for."""
+        return [handle for port in self.ports for handle in port.handles()]
+
+    def step(self, now_s: float) -> list[Came]:
+        """What has come, port by port."""
+        found = []
+        for number, port in enumerate(self.ports):
+            for came in port.step(now_s):
+                self._of[came.key] = number
+                found.append(came)
+        return found
+
+    def send(self, key: int, message: Message) -> bool:
+        """Queue a message for a peer; False if it is gone or the message cannot stand on the wire."""
+        return self.ports[self.which(key)].send(key, message)
+
+    def refuse(self, key: int, why: str, detail: str) -> None:
+        """Tell a peer why it is refused, and end its connection, see `TextPort.refuse`."""
+        self.ports[self.which(key)].refuse(key, why, detail)
+
+    def name(self, key: int) -> str:
+        """Who is at the other end of a connection."""
+        return self.ports[self.which(key)].name(key)
+
+    def ended(self, came: Came) -> None:
+        """A connection whose end was dealt with needs no place any more."""
+        if isinstance(came.what, LinkEvent):
+            self._of.pop(came.key, None)
+
+    def close(self) -> None:
+        """Hand over what waits, close all sockets. Safe to call twice."""
+        for port in self.ports:
+            port.close()

@@ -1,0 +1,53 @@
+"""Where instances come in: an address, the dialect that is spoken there, and whose instances those are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from cratous.bridge.port import Address
+from cratous.bridge.text_protocol.dialects import Dialect
+from cratous.bridge.text_protocol.keys import Keys
+
+FORMS = "v2", "cratous", "original", "thesis"
+"""What may be spoken: `v2` are the lines of `cratous` in authenticated packets."""
+
+
+class Door(NamedTuple):
+    """An address at which the instances of some vehicles come in. ids: theirs, none for the lowest known; keys: then it is v2."""
+
+    where: Address
+    dialect: Dialect = Dialect.CRATOUS
+    ids: tuple[int, ...] = ()
+    keys: Keys | None = None
+
+
+@dataclass(frozen=True)
+class Dialects:
+    """What the peers of one service speak. usual: those of vehicles that are not in `others`."""
+
+    usual: Dialect = Dialect.CRATOUS
+    others: Mapping[int, Dialect] = field(default_factory=dict)
+
+    @property
+    def all(self) -> tuple[Dialect, ...]:
+        """Each that some peer may speak."""
+        return (self.usual, *self.others.values())
+
+    def of(self, vehicle_id: int) -> Dialect:
+        """That of the instance of a vehicle."""
+        return self.others.get(vehicle_id, self.usual)
+
+    def ours(self, vehicle_id: int) -> bool:
+        """Whether that of the instance of a vehicle has heartbeats and epochs."""
+        return self.of(vehicle_id).ours
+
+    def original(self, vehicle_id: int) -> bool:
+        """Whether a client of the original's flies a vehicle."""
+        return self.of(vehicle_id) is Dialect.ORIGINAL
+
+
+def form_of(text: str) -> Dialect:
+    """The dialect of the lines of one of FORMS."""
+    return Dialect.CRATOUS if text == "v2" else Dialect(text)
