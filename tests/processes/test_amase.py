@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import json
 import math
+import os
 import re
+import select
+import signal
+import socket
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -71,7 +77,12 @@ class Fake:
         child.kill()
         child.wait()
 
+    def signal(self, number: signal.Signals) -> None:
+        os.kill(self._children.running[f"amase{self._count}"].pid, number)
+
     def end(self) -> None:
+        with contextlib.suppress(ProcessLookupError):
+            self.signal(signal.SIGCONT)
         self._children.end()
 
 
@@ -94,6 +105,48 @@ def until(done: Callable[[], object]) -> None:
     while not done():
         assert time.monotonic() < end, "the time limit is over"
         time.sleep(0.005)
+
+
+class Way:
+    """The way to a port: what goes over it can be lost from now on, and nobody is told, as where a cable is cut."""
+
+    def __init__(self, port: int) -> None:
+        self._to, self._pairs, self._cut = (
+            port,
+            dict[socket.socket, socket.socket](),
+            set[socket.socket](),
+        )
+        self._server = socket.create_server(("127.0.0.1", 0))
+        self.port, self.met = self._server.getsockname()[1], 0
+        self._ends, self._lock = False, threading.Lock()
+        self._thread = threading.Thread(target=self._run)
+        self._thread.start()
+
+    def cut(self) -> None:
+        """Whoever is connected now hears nothing any more, and is not heard."""
+        with self._lock:
+            self._cut = set(self._pairs)
+
+    def _run(self) -> None:
+        while not self._ends:
+            for one in select.select([self._server, *self._pairs], (), (), 0.05)[0]:
+                if one is self._server:
+                    near, far = one.accept()[0], socket.create_connection(("127.0.0.1", self._to))
+                    self._pairs |= {near: far, far: near}
+                    self.met += 1
+                    continue
+                data = one.recv(65536)
+                with self._lock:
+                    if data and one not in self._cut:
+                        self._pairs[one].sendall(data)
+                if not data:
+                    self._pairs.pop(one)
+
+    def close(self) -> None:
+        self._ends = True
+        self._thread.join()
+        for one in (self._server, *self._pairs, *self._pairs.values()):
+            one.close()
 
 
 class Session:
@@ -134,10 +187,10 @@ class Session:
 
 
 @pytest.fixture
-def session() -> Iterator[Callable[[Fake], Session]]:
+def session() -> Iterator[Callable[[Fake | Way], Session]]:
     made: list[Session] = []
 
-    def make(fake: Fake) -> Session:
+    def make(fake: Fake | Way) -> Session:
         made.append(Session(fake.port))
         made[-1].until(lambda: made[-1].uxas.peers)
         return made[-1]
@@ -216,6 +269,69 @@ def test_one_that_is_killed_and_begun_again_flies_on_from_its_last_states(
     assert times == sorted(set(times))
     assert len(flight.amase.met_again) == 1
     assert "flies again" in flight.said[-1]
+
+
+def test_one_that_stands_still_is_lost_in_time_and_flies_on_when_it_goes_on(
+    crossing: Mission,
+    fake: Callable[..., Fake],
+    session: Callable[[Fake], Session],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Its connection stands, and it can be connected to; so it answers no sooner than it says something."""
+    monkeypatch.setattr(amase_module, "SILENT_S", 1.5)
+    simulator = fake()
+    flight = session(simulator)
+    flight.amase.begin(crossing, told_of(crossing))
+    flight.until(lambda: flight.amase.flies)
+    flight.command(steered(1, lmcp.new("FlightDirectorAction", Speed=22, Heading=90, Altitude=300)))
+    flight.until(lambda: flight.newest(1).Course > 20)
+    simulator.signal(signal.SIGSTOP)
+    stopped_s = time.monotonic()
+    flight.until(lambda: not flight.amase.flies)
+    assert 1.0 < time.monotonic() - stopped_s < 1.5 + PATIENCE_S / 4
+    assert "it has not told states of all aircraft of the mission for 1.5 s" in flight.said[0]
+    count, before = len(flight.states), flight.newest(1)
+    end_s = time.monotonic() + 4.0
+    flight.until(lambda: time.monotonic() > end_s)
+    assert len(flight.said) == 1
+    simulator.signal(signal.SIGCONT)
+    flight.until(lambda: flight.amase.flies)
+    assert 0 < next(b for b in flight.states[count:] if b.ID == 1).Time - before.Time < 600
+    flight.until(lambda: flight.newest(1).Course > 80)
+    assert [re.sub(r".*:\d+ ", "", one).split(",")[0] for one in flight.said[1:]] == [
+        "answers again", "flies again",
+    ]  # fmt: skip
+    assert len(flight.amase.met_again) == 1
+
+
+def test_a_way_to_it_that_is_gone_unsaid_is_another_one_soon(
+    crossing: Mission,
+    fake: Callable[..., Fake],
+    session: Callable[[Fake | Way], Session],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Neither end of the connection ends: it flies on there, and is flown again from the last states that came."""
+    monkeypatch.setattr(amase_module, "SILENT_S", 1.5)
+    way = Way(fake().port)
+    with contextlib.closing(way):
+        flight = session(way)
+        flight.amase.begin(crossing, told_of(crossing))
+        flight.until(lambda: flight.amase.flies and flight.states[-1].Time > 3000)
+        way.cut()
+        flight.until(lambda: not flight.amase.flies)
+        count, before = len(flight.states), {n: flight.newest(n) for n in (1, 2)}
+        flight.until(lambda: flight.amase.flies)
+        assert way.met == 2
+        for number, last in before.items():
+            again = next(body for body in flight.states[count:] if number == body.ID)
+            north, east = Projection(crossing.frame).to_local(
+                last.Location.Latitude, last.Location.Longitude
+            )
+            passed_s = (again.Time - last.Time) / 1000
+            assert 0 < passed_s < 0.6
+            assert apart_m(crossing, again, north, east) == pytest.approx(22 * passed_s, abs=0.5)
+        assert len(flight.amase.met_again) == 1
+        flight.close()
 
 
 def test_a_clock_that_goes_back_is_a_simulator_begun_anew(
