@@ -39,6 +39,7 @@ export class EditMap extends FlightMap {
     for (const task of this.recording.tasks) this.task(task);
     for (const route of this.recording.routes) this.route(String(route.vehicle), route);
     for (const start of this.starts) this.start(start);
+    this.names();
     for (const place of this.places) this.handle(place);
     if (this.drawing) {
       this.path(this.drawing, false);
@@ -58,7 +59,7 @@ export class EditMap extends FlightMap {
     this.fill(colorOf(this.recording, start.id), 1);
     pen.restore();
     const vehicle = this.recording.vehicles.find(one => one.id === start.id);
-    this.label(`${vehicle?.label || ""} ${start.id}`.trim(), x + 14, y - 8, colorOf(this.recording, start.id));
+    this.labels.add(start.id, `${vehicle?.label || ""} ${start.id}`.trim(), x, y, 14, -8, colorOf(this.recording, start.id), true);
   }
 
   square(north, east, ink, full) {
