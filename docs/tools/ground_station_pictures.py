@@ -79,7 +79,11 @@ def two(work: Path) -> None:
 def bands(work: Path) -> None:
     """Bands of a vehicle that another one flies at, with a third one near."""
     sky = Sky(work, SEES)
-    fly(sky, [Craft(2, 0.0, 0.0, 10.0), Craft(1, 6000.0, 0.0, 180.0), Craft(3, 5000.0, 9000.0, 250.0)], 90)
+    fly(
+        sky,
+        [Craft(2, 0.0, 0.0, 10.0), Craft(1, 6000.0, 0.0, 180.0), Craft(3, 5000.0, 9000.0, 250.0)],
+        90,
+    )
     made = [
         Entry(k, e.time_ms, e.source, e.topic, lmcp.to_json(e.body)) for k, e in enumerate(sky.all)
     ]
