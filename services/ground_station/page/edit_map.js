@@ -17,7 +17,9 @@ export class EditMap extends FlightMap {
     const { drawn } = found;
     if (drawn) {
       const tracks = Object.fromEntries(drawn.starts.map(start => [start.id, [[0, start.north_m, start.east_m, 0, 0]]]));
+      const { frame } = drawn, moved = JSON.stringify(frame) !== JSON.stringify(this.recording.frame);
       Object.assign(this.recording, { ...drawn, tracks, routes: this.recording.routes });
+      if (moved) this.lay(frame, () => this.redraw());
       this.starts = drawn.starts;
       this.places = found.places;
       if (!this.places.some(place => this.isPicked(place))) this.pick(null);

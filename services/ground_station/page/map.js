@@ -5,6 +5,7 @@ import { ring } from "./bands.js";
 import { UNSEEN_MS, alertsAt, authorityAt, bandsAt, lastAt, positionAt } from "./instant.js";
 import { Layer, color, colorOf, sized } from "./canvas.js";
 import { Labels } from "./labels.js";
+import * as overlays from "./overlays.js";
 import { words } from "./units.js";
 
 const EDGE = 50;
@@ -18,6 +19,7 @@ export class FlightMap {
     this.view = null;
     this.trails = new Layer();
     this.labels = new Labels();
+    this.beneath = [];
     this.drawn = { time: 0, to: {} }; // until when, and of each track to which row, the trails stand on their layer
     this.measured = {};
     this.grown();
@@ -40,7 +42,14 @@ export class FlightMap {
     this.xy = (north, east) => [width / 2 + (east - this.view.east) * this.view.scale, height / 2 - (north - this.view.north) * this.view.scale];
     this.pen = pen;
     this.width = width;
+    overlays.draw(this, this.beneath);
     this.grid(width, height, said);
+  }
+
+  // what lies beneath, once it is known in which frame; drawn: draws the map anew
+  async lay(frame, drawn) {
+    this.beneath = await overlays.overlays(frame);
+    if (this.beneath.length) drawn();
   }
 
   // whether all aircraft are where they were drawn
