@@ -242,6 +242,12 @@ def first_violation_s(
     return None
 
 
+@driver(checked_by=("violation_within", "uncertain_conflict"))
+def meets(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> bool:
+    """Whether there is a violation on any piece, whenever it begins."""
+    return first_violation_s(pieces, other, volume, halvings=0) is not None
+
+
 def _first_of_straight(
     pieces: Sequence[Piece], other: Intruder, volume: WellClear, halvings: int
 ) -> float | None:

@@ -148,8 +148,8 @@ def hold(work: Path) -> None:
         page.until("document.getElementById('confirm-command').open")
         page.value("document.getElementById('command-vehicle').value = 1")
         page.click("#command-yes")
-        page.until("document.getElementById('live-text').textContent.includes('circles')")
         until_ms(page, 200_000, 50)
+        page.until("document.getElementById('live-text').textContent.includes('circles')")
         taken(page, "ground-station-hold.png")
 
 
@@ -192,7 +192,7 @@ def attached(work: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     scenario = work / "crossing.xml"
-    whole = ["export", str(CROSSING), "--format", "amase", "--plan", "-o", str(scenario)]
+    whole = ["export", str(CROSSING), "--format", "amase", "-o", str(scenario)]
     subprocess.run([sys.executable, "-m", "cratous", *whole], cwd=ROOT, check=True)
     where = f"127.0.0.1:{port}"
     words = ["sim", str(scenario), "--listen", where, "--rate", "5", "--clients", "1"]
