@@ -7,7 +7,9 @@ function sides(x, y, dx, dy, wide, width) {
   if (x < 0 || x > width) return [[x + dx, y + dy]]; // what is not on the canvas is not named there
   const right = Math.max(2, Math.min(x + dx, width - wide - 4)), left = x - dx - wide;
   const other = dy < 0 ? RISE - dy : -dy, off = dy < 0 ? -HEIGHT : HEIGHT;
-  return [dy, other, dy + off, other - off].flatMap(down => [[right, y + down], [left, y + down]]).filter(one => one[0] >= 2);
+  // a line farther off last, and where it came from rather than that
+  const rows = [[dy, other], [dy + off, other - off]];
+  return rows.flatMap(row => [right, left].flatMap(at => row.map(down => [at, y + down]))).filter(one => one[0] >= 2);
 }
 
 export class Labels {
