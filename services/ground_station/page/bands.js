@@ -35,11 +35,11 @@ export function ring(map, x, y, row) {
     pen.moveTo(...at(heading, RADIUS - 14)); pen.lineTo(...at(heading, RADIUS + 12));
     map.stroke(color("ink"), 2.5);
   }
-  bands.forEach(([from, to, region], k) => {
+  for (const [from, to, region] of bands) {
     const word = region.toLowerCase(), [right, down] = at(from + wide(from, to) / 2, RADIUS + 14);
     const size = pen.measureText(word).width, middle = from + wide(from, to) / 2;
-    map.labels.add(`band ${k}`, word, right + size / 2 * (Math.sin(middle * TURN) - 1), down + 4, 0, 0, color(`band-${word}`), true);
-  });
+    map.labels.add(word, right + size / 2 * (Math.sin(middle * TURN) - 1), down + 4, 0, 0, color(`band-${word}`), true);
+  }
 }
 
 // all that is told beside the map of the vehicle whose bands are shown

@@ -61,7 +61,7 @@ export class EditMap extends FlightMap {
     this.fill(colorOf(this.recording, start.id), 1);
     pen.restore();
     const vehicle = this.recording.vehicles.find(one => one.id === start.id);
-    this.labels.add(start.id, `${vehicle?.label || ""} ${start.id}`.trim(), x, y, 14, -8, colorOf(this.recording, start.id), true);
+    this.labels.add(`${vehicle?.label || ""} ${start.id}`.trim(), x, y, 14, -8, colorOf(this.recording, start.id), true);
   }
 
   square(north, east, ink, full) {

@@ -140,7 +140,7 @@ export class FlightMap {
     if (zone.kind === "keep_out") this.fill(ink, 0.16);
     this.stroke(ink, 2, zone.kind === "keep_out" ? [] : [10, 5]);
     const [x, y] = this.xy(...zone.vertices[0]);
-    this.labels.add(`zone ${zone.id}`, `${zone.kind.replace("_", " ")} ${zone.id} ${zone.label || ""}`.trim(), x, y, 4, -4, ink);
+    this.labels.add(`${zone.kind.replace("_", " ")} ${zone.id} ${zone.label || ""}`.trim(), x, y, 4, -4, ink);
   }
 
   footprint(seen) {
@@ -158,7 +158,7 @@ export class FlightMap {
     this.pen.beginPath();
     this.pen.arc(x, y, Math.max(5, (task.radius_m || 0) * this.view.scale), 0, 7);
     this.stroke(color("ink"), 1.5, [], 0.8);
-    this.labels.add(`task ${task.id}`, `p${task.id} ${task.label || ""}`.trim(), x, y, 9, 16, color("ink"));
+    this.labels.add(`p${task.id} ${task.label || ""}`.trim(), x, y, 9, 16, color("ink"));
   }
 
   route(id, route) {
@@ -254,7 +254,7 @@ export class FlightMap {
     const away = who.away ? ` ${who.name}` : "";
     const rest = at.seen ? words.altitude(at.alt) : "not seen any more";
     const alerted = at.seen && alert ? ` alert ${alert.level}` : "";
-    this.labels.add(id, `${name} ${rest}${alerted}${at.seen && commands === "ICAROUS" ? " ICAROUS" : away}`, x, y, 15, -10, ink, true);
+    this.labels.add(`${name} ${rest}${alerted}${at.seen && commands === "ICAROUS" ? " ICAROUS" : away}`, x, y, 15, -10, ink, true);
   }
 
   zoom(by, x, y) {

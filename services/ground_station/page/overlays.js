@@ -13,7 +13,7 @@ export async function overlays(frame) {
 
 // names only of what is near enough to be seen as more than a dot
 export function draw(map, shapes) {
-  for (const [k, shape] of shapes.entries()) {
+  for (const shape of shapes) {
     const [x, y] = map.xy(...shape.places[0]);
     if (shape.places.length === 1) {
       map.pen.beginPath();
@@ -24,6 +24,6 @@ export function draw(map, shapes) {
       if (shape.area) map.fill(color("soft"), 0.08);
       map.stroke(color("soft"), 1, [], 0.7);
     }
-    if (shape.name && x >= 0 && x <= map.width) map.labels.add(`overlay ${k}`, shape.name, x, y, 5, -5, color("soft"));
+    if (shape.name && x >= 0 && x <= map.width) map.labels.add(shape.name, x, y, 5, -5, color("soft"));
   }
 }
