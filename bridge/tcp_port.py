@@ -156,6 +156,13 @@ class TcpPort:
             self._listener.close()
             self._listener, self._paused_s = None, None
 
+    def redial(self, why: str) -> None:
+        """Of a client: let go of the connection, or of the attempt to make one, and try again at once. What
+        waits for the peer is lost, and counted."""
+        for peer in list(self._peers.values()):
+            self._drop(peer, why)
+        self._again_s = self._now_s
+
     def close(self) -> None:
         """Try to hand over what waits, then close all sockets."""
         if self._closed:

@@ -210,20 +210,20 @@ def _relative(piece: Piece, other: Intruder, t_s: float) -> tuple[Vec2, Vec2, fl
 
 
 def out_of_reach(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> bool:
-    """True only if no piece can lose well clear: a bound on range and closing speed.
+    """True only if no piece can lose well clear, whichever way the intruder flies: a bound on range and closing speed.
 
     A violation needs |s| <= DTHR + TTHR |v|, and |s| shrinks by at most |v| per second.
     """
     first, last = pieces[0], pieces[-1]
     closing = max(math.hypot(p.velocity.north_m_s, p.velocity.east_m_s) for p in pieces)
-    closing += math.hypot(other.velocity.north_m_s, other.velocity.east_m_s)
-    far = math.hypot(
-        first.position.north_m - other.position.north_m,
-        first.position.east_m - other.position.east_m,
-    )
+    legs = other.way or (other,)
+    closing += max(math.hypot(leg.velocity.north_m_s, leg.velocity.east_m_s) for leg in legs)
+    begin = legs[0].position
+    far = math.hypot(first.position.north_m - begin.north_m, first.position.east_m - begin.east_m)
     reach = last.start_s + last.duration_s + volume.tthr_s
     spread = other.spread.after(last.start_s + last.duration_s)
     off = spread.wide_m + other.spread.wide_m_s * volume.tthr_s
+    off += other.hold_m if other.way else 0.0
     return far > 1 + volume.dthr_m + off + closing * reach
 
 
@@ -235,11 +235,20 @@ def first_violation_s(
 
     The instant is early by at most the piece's duration / 2^halvings.
     """
+    # most are far away, and need not be followed along their ways
+    if other.way and pieces and out_of_reach(pieces, other, volume):
+        return None
     for run, straight_on in meetings(pieces, other):
         found = _first_of_straight(run, straight_on, volume, halvings)
         if found is not None:
             return found
     return None
+
+
+@driver(checked_by=("violation_within", "uncertain_conflict"))
+def meets(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> bool:
+    """Whether there is a violation on any piece, whenever it begins."""
+    return first_violation_s(pieces, other, volume, halvings=0) is not None
 
 
 def _first_of_straight(

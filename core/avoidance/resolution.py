@@ -18,7 +18,14 @@ from typing import NamedTuple
 
 from cratous.core.avoidance.drift import NONE, Drift, Off, drift_of
 from cratous.core.avoidance.manoeuvre import Ability, Motion, fly_to, smallest_turn
-from cratous.core.avoidance.prediction import Intruder, Piece, after, first_violation_s, violated_s
+from cratous.core.avoidance.prediction import (
+    Intruder,
+    Piece,
+    after,
+    first_violation_s,
+    meets,
+    violated_s,
+)
 from cratous.core.geofence.clearance import leg_keeps
 from cratous.core.kernel import driver
 from cratous.spec.mission import Resolution, WellClear, Zone
@@ -97,7 +104,7 @@ def turn_back_s(now: Motion, ability: Ability) -> float:
 def keeps_clear(now: Motion, ability: Ability, scene: Scene, choice: Choice) -> bool:
     """True iff a manoeuvre is free of traffic and zones over the whole look-ahead, with the drift of its turn."""
     pieces = _pieces(now, ability, choice, scene.lookahead_s)
-    if first_conflict_s(pieces, scene) is not None:
+    if any(meets(pieces, other, scene.volume) for other in scene.intruders):
         return False
     drift = drift_of(now, ability, *choice[1:4], scene.here)
     return first_zone_s(pieces, scene.zones, turn_back_s(now, ability), drift) is None

@@ -13,8 +13,10 @@ import numpy as np
 
 from cratous.core.daa.records import Intruders, Looked, Looking, Manoeuvres, Regaining, Relative
 from cratous.core.daa.steps import until
-from cratous.core.daa.uncertainty import lost
+from cratous.core.daa.uncertainty import SUM_KIND, lost
+from cratous.core.daa.volume import in_conflict
 from cratous.core.kernel import Vec2, driver, kernel
+from cratous.core.well_clear.thresholds import Thresholds
 
 
 class Climb(NamedTuple):
@@ -156,7 +158,38 @@ def altitude_conflict(
     return False
 
 
-@driver(checked_by=("in_conflict", "climb", "height", "until"))
+@kernel(implements="daa.meaning.violated_at")
+def in_conflict_at_a_height(
+    kind: int, s: Vec2, v: Vec2, thresholds: Thresholds, t_s: float
+) -> bool:
+    """True iff the volume is violated at some t in [0, t_s] by one that flies straight on beside the other, at its
+    height; so if not, it is not violated at any other height either. Arguments as for `in_conflict`."""
+    return in_conflict(kind, s, v, 0, 0, thresholds, 0, t_s)
+
+
+@driver(checked_by=("in_conflict_at_a_height",))
+def in_reach(
+    own: np.ndarray, intruders: Intruders, i: int, regaining: Regaining, looking: Looking
+) -> bool:
+    """Whether intruder i matters at any altitude: only these change, the flight over ground does not."""
+    other, w, kind = intruders.states[i], intruders.volumes[i], intruders.kinds[i]
+    if kind == SUM_KIND:
+        return True
+    until_s = max(looking.lookahead_s, intruders.horizons[i])
+    v = Vec2(own[3] - other[3], own[4] - other[4])
+    s = Vec2(
+        own[0] - other[0] + v.x * looking.project_s, own[1] - other[1] + v.y * looking.project_s
+    )
+    volume = Thresholds(w[0], w[1], w[2], w[3], w[4])
+    if in_conflict_at_a_height(kind, s, v, volume, until_s):
+        return True
+    if not regaining.recovering:
+        return False
+    cylinder = Thresholds(regaining.radius_m, regaining.half_m, 0.0, 0.0, 0.0)
+    return in_conflict_at_a_height(3, s, v, cylinder, until_s)
+
+
+@driver(checked_by=("in_conflict", "in_conflict_at_a_height", "climb", "height", "until"))
 def safe_altitudes(
     ways: Manoeuvres, intruders: Intruders, chosen: np.ndarray, regaining: Regaining,
     looking: Looking, safe: np.ndarray,
@@ -177,6 +210,9 @@ def safe_altitudes(
     lead = 0
     cylinder = np.zeros(11)
     cylinder[0], cylinder[1] = regaining.radius_m, regaining.half_m
+    near = np.zeros(chosen.size, dtype=np.bool_)
+    for c in range(chosen.size):
+        near[c] = in_reach(ways.right[0], intruders, chosen[c], regaining, looking)
     for k in range(targets.size):
         red = False
         for c in range(chosen.size):
@@ -185,6 +221,8 @@ def safe_altitudes(
                 q = lead
             elif c <= lead:
                 q = c - 1
+            if not near[q]:
+                continue
             i = chosen[q]
             if begin_s <= horizons[i]:
                 red = altitude_conflict(

@@ -31,6 +31,10 @@ FLIGHT, PLANNER = "cratous.services.cli.serve_flight", "cratous.services.cli.ser
     "--attach", metavar="HOST:PORT",
     help="Watch a running system instead: a TCP bridge of UxAS, or AMASE.",
 )  # fmt: skip
+@click.option(
+    "--overlay", "overlays", metavar="FILE.geojson", multiple=True, type=click.Path(path_type=Path),
+    help="Show this beneath the map: coast, roads, airspace; again for more.",
+)  # fmt: skip
 @click.option("--out", type=click.Path(path_type=Path), help="MISSION: folder for results. [out]")
 @click.option("--seed", type=click.IntRange(0), help="MISSION: variant; 0 is as written.")
 @click.option("--no-daa", is_flag=True, help="MISSION: avoidance off; the requirements stay.")
@@ -41,6 +45,7 @@ def serve(
     port: int,
     edit: bool,
     attach: str | None,
+    overlays: tuple[Path, ...],
     **flight: Any,
 ) -> int:
     """Replay a RUN in the browser, or two side by side, or fly a MISSION there.
@@ -61,6 +66,9 @@ def serve(
     With --edit the mission is edited: on the map, as text, its relations with the place of an error
     while they are typed; it is planned as it stands, and saved to its file.
 
+    --overlay shows shapes of GeoJSON files beneath the map. They are a picture: nothing is planned, flown
+    or judged by them.
+
     Map with tracks, routes, zones, tasks and takeovers, altitudes over time, verdicts, and events to
     jump to. The address of the page names the instant, so it can be kept. Only this machine reaches
     it, and nothing comes from elsewhere.
@@ -73,6 +81,7 @@ def serve(
 
     Exit codes: 0 asked to end (Ctrl-C, SIGTERM), 2 bad input.
     """
+    from cratous.services.ground_station.overlays import overlays_of
     from cratous.spec.files.printable import printable
 
     if (run is None) == (attach is None):
@@ -85,6 +94,7 @@ def serve(
         raise click.UsageError("--edit needs a MISSION, and goes without --out, --seed, --no-daa")
     if not missions and any(_is_given(value) for value in flight.values()):
         raise click.UsageError("--out, --seed, --no-daa, --allow-unproved need a MISSION")
+    shapes = overlays_of(overlays)
     with ExitStack() as stack:
         if attach is not None:
             server, name = _watching(attach, port, stack), attach
@@ -97,6 +107,8 @@ def serve(
                 server = _flying(run, port, flight, stack)
             else:
                 server = _replaying(run, other, port, stack)
+
+        server.overlays = shapes
 
         def stop(*_: object) -> None:
             # from a thread: it waits for the loop that this signal interrupts

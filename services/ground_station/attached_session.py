@@ -62,6 +62,7 @@ class AttachedSession:
         self._flushed_ms = 0
         self._window_ms = WINDOW_MS
         self._vehicles: list[dict[str, Any]] = []
+        self._framed: Frame | None = None
         self._said = "nobody listens there yet; trying"
         self._connected = self._ending = self._shorter = False
         self._failed = ""
@@ -132,6 +133,9 @@ class AttachedSession:
             self._shown = self._shapes.changes
             fixed |= {"zones": [dict(one) for one in self._zones]}
             fixed |= {"tasks": [dict(one) for one in self._tasks]}
+        if (frame := self._positions.frame) != self._framed:
+            self._framed = frame
+            fixed["frame"] = to_data(frame)
         if (vehicles := self._positions.vehicles()) != self._vehicles:
             self._vehicles = fixed["vehicles"] = vehicles
         more = {"events": list(self._new_events), "routes": self._routes.take_new()}

@@ -22,8 +22,10 @@ from typing import Any, NamedTuple, Protocol
 from urllib.parse import parse_qs
 
 from cratous.services.ground_station.live_session import LiveSession, NotObeyed
+from cratous.services.ground_station.overlays import Shape, in_frame
 from cratous.spec.errors import BadInput
 from cratous.spec.files.printable import json_text
+from cratous.spec.mission import Frame
 
 HOST = "127.0.0.1"
 REQUEST_S = 10.0
@@ -195,6 +197,8 @@ class GroundStation(ThreadingHTTPServer):
             orders = {"/command": live.order} if live is not None and live.token else {}
             commands = Commands(orders, token="" if live is None else live.token)
         self.commands, self.token = commands, commands.token
+        self.overlays: tuple[Shape, ...] = ()
+        """What the map shows beneath all else."""
         self._places = threading.Semaphore(MOST_AT_ONCE)
         self._asking: dict[Any, None] = {}
         self._lock = threading.Lock()
@@ -323,6 +327,19 @@ class _Handler(BaseHTTPRequestHandler):
             return _json(HTTPStatus.BAD_REQUEST, {"error": told})
         return _json(HTTPStatus.OK, {**live.told(int(first)), "who": live.who(*self._sender())})
 
+    def _beneath(self, query: str) -> Answer:
+        """What the map shows beneath all else, in the frame with the origin that is asked for."""
+        given = parse_qs(query)
+        try:
+            latitude, longitude = (float(given[name][0]) for name in ("latitude", "longitude"))
+            if not (abs(latitude) <= 90 and abs(longitude) <= 180):
+                raise ValueError
+        except (LookupError, ValueError):
+            told = "expected latitude=DEG&longitude=DEG, the origin of a frame"
+            return _json(HTTPStatus.BAD_REQUEST, {"error": told})
+        shapes = in_frame(self.server.overlays, Frame(latitude, longitude))
+        return _json(HTTPStatus.OK, {"shapes": shapes})
+
     def _found(self) -> Answer:
         elsewhere = self._elsewhere()
         if elsewhere is not None:
@@ -332,6 +349,8 @@ class _Handler(BaseHTTPRequestHandler):
             return self.server.recorded.answer()
         if path == "/live.json" and self.server.live is not None:
             return self._told(self.server.live, query)
+        if path == "/overlays.json":
+            return self._beneath(query)
         if path in self.server.commands.polled:
             return _json(HTTPStatus.OK, self.server.commands.polled[path]())
         found = self.server.pages.get(path)

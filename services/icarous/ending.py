@@ -13,11 +13,10 @@ Straight flight is predicted, and no hold is looked at, where the vehicle is mor
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import NamedTuple
 
 from cratous.core.avoidance.manoeuvre import Way, looked_at
-from cratous.core.avoidance.prediction import Intruder, Piece, first_violation_s
+from cratous.core.avoidance.prediction import Intruder, Piece, first_violation_s, meets
 from cratous.core.avoidance.resolution import Scene
 from cratous.core.permit.remainder import hold_at, hold_permits, zones_permit
 from cratous.services.icarous.messages import Sensed
@@ -58,9 +57,14 @@ class Ahead(NamedTuple):
             times += [self._held_s(hold, other, self.held) for hold in self.holds]
         return min((t for t in times if t is not None), default=None)
 
-    def first_of_all_s(self, others: Sequence[Intruder]) -> float | None:
-        """The same of all intruders."""
-        return min((t for other in others if (t := self.first_s(other)) is not None), default=None)
+    def meets(self, other: Intruder) -> bool:
+        """Whether the way, or a hold that ends it, comes too near to an intruder: `first_s` without the instant."""
+        if any(meets(self.pieces, other, volume) for volume in self.volumes):
+            return True
+        return self.held is not None and not all(
+            hold_permits(hold.piece, other, self.held, hold.radius_m, self.rise_m)
+            for hold in self.holds
+        )
 
     def _held_s(self, hold: Hold, other: Intruder, volume: WellClear) -> float | None:
         if hold_permits(hold.piece, other, volume, hold.radius_m, self.rise_m):

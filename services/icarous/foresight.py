@@ -72,7 +72,8 @@ def way_back_is_free(
     """
     if not state.told.waypoints:
         scene = scene_of(config, state, sensed)
-        return predicted(config, state, sensed, scene).first_of_all_s(scene.intruders) is None
+        ahead = predicted(config, state, sensed, scene)
+        return not any(ahead.meets(other) for other in scene.intruders)
     return way_is_free(config, state, sensed, in_turn, points_back(state, sensed), lasting)
 
 
@@ -100,7 +101,7 @@ def way_is_free(
     asked = [o for o in scene.intruders if o.id in met or (lasting and o.id not in in_turn)]
     for way in ways_back(now, radius_m, points, horizon, pace):
         ahead = with_hold(way, flown, scene, config.daa.well_clear, TURN_MARGIN)
-        if ahead.first_of_all_s(scene.intruders) is not None:
+        if any(ahead.meets(other) for other in scene.intruders):
             return False
         if first_zone_s(ahead.pieces, scene.zones, 5.0) is not None:
             return False

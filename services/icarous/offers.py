@@ -51,10 +51,9 @@ def certified(sensed: Sensed, scene: Scene, choice: Choice, daa: Daa) -> Certifi
             refused = Refused(0, "a zone is in the way of the manoeuvre")
             continue
         alone = _with_hold(sensed, pieces, drift, None, daa)
-        against = [o.id for o in sensed.intruders if not alone.permits(o, sensed.now_ms, daa)]
-        if against:
-            reason = f"the manoeuvre is not permitted against {against[0]}"
-            refused = Refused(against[0], reason)
+        against = (o.id for o in sensed.intruders if not alone.permits(o, sensed.now_ms, daa))
+        if (first := next(against, None)) is not None:
+            refused = Refused(first, f"the manoeuvre is not permitted against {first}")
             continue
         bare.append(alone)
         circles = [_with_hold(sensed, pieces, drift, one, daa) for one in _circles(sensed, pieces)]

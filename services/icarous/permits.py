@@ -15,7 +15,7 @@ import math
 from collections.abc import Sequence
 
 from cratous.core.avoidance.manoeuvre import way_along
-from cratous.core.avoidance.prediction import Intruder, Piece, buffered, first_violation_s, later
+from cratous.core.avoidance.prediction import Intruder, Piece, buffered, later, meets
 from cratous.core.permit.encounter import (
     Encounter,
     encounter_looked,
@@ -134,7 +134,7 @@ def _permitted(pieces: Sequence[Piece], other: Intruder, daa: Daa) -> bool:
 
 def keeps_volume(pieces: Sequence[Piece], other: Intruder, daa: Daa) -> bool:
     """The way keeps the mission's own volume clear of one that flies straight on, which is soon said."""
-    return first_violation_s(pieces, other, daa.well_clear) is None
+    return not meets(pieces, other, daa.well_clear)
 
 
 def way_is_clear(pieces: Sequence[Piece], other: Intruder, daa: Daa) -> bool:

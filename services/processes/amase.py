@@ -3,7 +3,8 @@
 UxAS speaks with AMASE through here. AMASE's clock cannot be stopped over the network, so nothing of AMASE counts
 before the flight begins: then the mission's aircraft are taken out of AMASE, whatever it had loaded, put in where they
 are to be, and commanded, all at once. When the connection ends, AMASE is begun anew or its clock goes back, the same is
-done with the states that were told last, and the time of the flight goes on from there.
+done with the states that were told last, and the time of the flight goes on from there. A connection that stands while
+nothing comes over it has ended as well: nobody says so when a machine or the way to it is gone.
 """
 
 from __future__ import annotations
@@ -36,6 +37,8 @@ ANSWERS_S = 10.0
 """How long AMASE may take to let us in at first [s]."""
 RETURNS_S = 120.0
 """How long AMASE may be away before the flight ends [s], from its last state until states of all aircraft come again."""
+SILENT_S = 10.0
+"""AMASE that does not tell states of all aircraft of the mission for so long [s] is lost, and connected to anew."""
 FIRST_MS = 500
 """The time of the first states of a flight: AMASE tells them so often."""
 LIMITS = Limits(waiting_bytes=64 << 20)
@@ -90,6 +93,7 @@ class Amase:
         self._flown_ms = 0
         self._away_s: float | None = None
         self._was_there = False
+        self._now_s = self._news_s = time.monotonic()
         self._gone = ""
         self.met_again: list[str] = []
         """What is to be said of each time that AMASE was lost and met again."""
@@ -144,11 +148,13 @@ class Amase:
             self._told[one.id] = configuration, state
             self._uxas.send((_framed(configuration),))
         self._last = {number: state for number, (_, state) in self._told.items()}
+        self._news_s = time.monotonic()
         self._lost("")
 
     def step(self, now_s: float) -> tuple[list[Any], int]:
         """What the flight hears of its simulator, and how many messages came; AmaseLost if it cannot go on."""
         heard: list[Any] = []
+        self._now_s = now_s
         asked, told = self._uxas.step(now_s), self._port.step(now_s)
         if self._uxas.peers:
             self._uxas.shut()  # nobody else commands through here
@@ -162,6 +168,8 @@ class Amase:
                 self._lost("its connection has ended")
         for incoming in told:
             heard += self._from_amase(incoming)
+        if self._told and is_due(self._news_s + SILENT_S, now_s):
+            self._silent()
         if self._away_s is not None and is_due(self._away_s + RETURNS_S, now_s):
             raise AmaseLost(f"{self.name} {self._missing()} for {RETURNS_S:g} s")
         return heard, len(asked) + len(told)
@@ -169,7 +177,7 @@ class Amase:
     def _missing(self) -> str:
         if not self._port.peers:
             return "has not been met again"
-        if self._phase is Phase.CLEARING and not self._clear:
+        if self._phase is Phase.APART or (self._phase is Phase.CLEARING and not self._clear):
             return "has told no time: its clock has not run"
         if self._phase is Phase.CLEARING:
             return "has kept aircraft that were to be taken out"
@@ -187,10 +195,14 @@ class Amase:
 
     def _back(self) -> None:
         if not self._was_there:
-            self._was_there = True
-            if self._told:
-                self._tell(f"{self.name} answers again")
-                self._clearing()
+            # a process that stands still is connected to as well: it answers by its first message
+            self._was_there, self._news_s = True, self._now_s
+
+    def _silent(self) -> None:
+        """Nothing has come for too long: what was said over that connection may never arrive, so there is another."""
+        self._port.redial("silent")
+        self._lost(f"it has not told states of all aircraft of the mission for {SILENT_S:g} s")
+        self._was_there, self._news_s = False, self._now_s
 
     def _lost(self, why: str) -> None:
         """What is in AMASE counts no more; why: how it was lost, empty at the beginning of the flight."""
@@ -222,9 +234,18 @@ class Amase:
 
     # what AMASE tells -----------------------------------------------------------------------------
 
+    def _answers(self) -> list[Any]:
+        """The first message since it was lost; what else is on its way over the old connection counts no more."""
+        if self._told and self._port.peers:
+            if self._flown_ms:
+                self._tell(f"{self.name} answers again")
+            self._news_s = self._now_s
+            self._clearing()
+        return []
+
     def _from_amase(self, incoming: Incoming) -> list[Any]:
         if self._phase is Phase.APART:
-            return []
+            return self._answers()
         body = _body(incoming, self.name, NEEDED)
         kind = type(body).__name__
         if kind == "SessionStatus":
@@ -239,8 +260,11 @@ class Amase:
                 "load a scenario without others, as `cratous export --format amase` writes it"
             )
         self._instant[body.ID] = body
-        if self._phase is Phase.PLACING and self._instant.keys() == self._told.keys():
+        whole = self._instant.keys() == self._told.keys()
+        if self._phase is Phase.PLACING and whole:
             return self._placed()
+        if whole:
+            self._news_s = self._now_s
         return self._state(body) if self._phase is Phase.FLYING else []
 
     def _tick(self, body: Any) -> list[Any]:
@@ -250,6 +274,8 @@ class Amase:
             self._lost("its clock has gone back")
             return []
         self._newest_ms = body.ScenarioTime
+        if self._phase is not Phase.FLYING:
+            self._news_s = self._now_s
         if self._phase is Phase.CLEARING:
             # the first instant may have begun before it was told to; its scenario may put them in later
             if self._clear and not self._instant:

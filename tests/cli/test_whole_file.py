@@ -196,6 +196,7 @@ KEPT = {
     "services/cli/sim.py": "inside `replacing`",
     "services/daa/plot.py": "inside `replacing`",
     "docs/tools/geofence_pictures.py": "inside `replacing`",
+    "docs/tools/ground_station_pictures.py": "inside `replacing`, and a copy for the editor in a folder of its own",
     "docs/tools/moving_tasks.py": "inside `replacing`",
     "docs/tools/pictures_well_clear.py": "into memory",
     "services/results/former.py": "opened for reading",

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import json
 import math
 import re
+import signal
 import subprocess
 import sys
 import time
@@ -15,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from amase_tools import PATIENCE_S, Fake, Session, Way, until
 from simulator_tools import scenario
 from uxas_tools import ended
 
@@ -26,15 +29,14 @@ from cratous.services.cli import main
 from cratous.services.loading import load
 from cratous.services.mission.frames import Projection
 from cratous.services.processes import amase as amase_module
-from cratous.services.processes.amase import Amase, AmaseLost, amase_address
-from cratous.services.processes.children import Children, free_port
+from cratous.services.processes.amase import AmaseLost, amase_address
+from cratous.services.processes.children import free_port
 from cratous.services.processes.coverage import refuse_for_amase, told_of
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission, Position, Traffic, Velocity
 
 EMPTY = """<AMASE><ScenarioData><ScenarioName>empty</ScenarioName><ScenarioDuration>3600</ScenarioDuration>
 </ScenarioData><ScenarioEventList></ScenarioEventList></AMASE>"""
-PATIENCE_S = 60.0
 
 
 @pytest.fixture
@@ -46,33 +48,6 @@ def crossing(root: Path) -> Mission:
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
     """AMASE may be away for half a second."""
     monkeypatch.setattr(amase_module, "RETURNS_S", 0.5)
-
-
-class Fake:
-    """`cratous sim --compatibility amase`: AMASE's port and defects, which can be killed and begun again."""
-
-    def __init__(self, folder: Path, text: str) -> None:
-        self.port, self._text = free_port(), text
-        self._children, self._folder, self._count = Children(folder, folder), folder, 0
-
-    def start(self, clients: int = 0) -> None:
-        """clients: its clock stands until so many are there."""
-        self._count += 1
-        name = f"amase{self._count}"
-        (self._folder / "scenario.xml").write_text(self._text)
-        self._children.start(
-            name, "sim", str(self._folder / "scenario.xml"), "--listen", f"127.0.0.1:{self.port}",
-            "--rate", "4", "--compatibility", "amase", "--clients", str(clients),
-        )  # fmt: skip
-        until(lambda: "listening" in self._children.said(name))
-
-    def kill(self) -> None:
-        child: subprocess.Popen[bytes] = self._children.running[f"amase{self._count}"]
-        child.kill()
-        child.wait()
-
-    def end(self) -> None:
-        self._children.end()
 
 
 @pytest.fixture
@@ -89,55 +64,11 @@ def fake(tmp_path: Path) -> Iterator[Callable[[str], Fake]]:
         one.end()
 
 
-def until(done: Callable[[], object]) -> None:
-    end = time.monotonic() + PATIENCE_S
-    while not done():
-        assert time.monotonic() < end, "the time limit is over"
-        time.sleep(0.005)
-
-
-class Session:
-    """A flight's side of AMASE, and UxAS's; what each has heard."""
-
-    def __init__(self, port: int) -> None:
-        self.said: list[str] = []
-        self.amase = Amase(amase_address(f"amase://127.0.0.1:{port}"), self.said.append)
-        where = address(f"tcp://127.0.0.1:{self.amase.port}", ("tcp",))
-        self.uxas = TcpPort(where, server=False)
-        self.states: list[Any] = []
-        self.passed_on: list[Any] = []
-
-    def turn(self) -> None:
-        now_s = time.monotonic()
-        for one in self.uxas.step(now_s):
-            message = wire.parse(one.parts[0])
-            self.passed_on.append(lmcp.binary.received(message.payload, message.descriptor)[0])
-        heard, _ = self.amase.step(now_s)
-        self.states += [body for body in heard if type(body).__name__ == "AirVehicleState"]
-
-    def until(self, done: Callable[[], object]) -> None:
-        def turned() -> object:
-            self.turn()
-            return done()
-
-        until(turned)
-
-    def command(self, body: Any) -> None:
-        self.uxas.send((wire.enclose(body.all_names[0], lmcp.binary.pack(body)).pack(),))
-
-    def newest(self, number: int) -> Any:
-        return next(body for body in reversed(self.states) if number == body.ID)
-
-    def close(self) -> None:
-        self.uxas.close()
-        self.amase.close()
-
-
 @pytest.fixture
-def session() -> Iterator[Callable[[Fake], Session]]:
+def session() -> Iterator[Callable[[Fake | Way], Session]]:
     made: list[Session] = []
 
-    def make(fake: Fake) -> Session:
+    def make(fake: Fake | Way) -> Session:
         made.append(Session(fake.port))
         made[-1].until(lambda: made[-1].uxas.peers)
         return made[-1]
@@ -216,6 +147,69 @@ def test_one_that_is_killed_and_begun_again_flies_on_from_its_last_states(
     assert times == sorted(set(times))
     assert len(flight.amase.met_again) == 1
     assert "flies again" in flight.said[-1]
+
+
+def test_one_that_stands_still_is_lost_in_time_and_flies_on_when_it_goes_on(
+    crossing: Mission,
+    fake: Callable[..., Fake],
+    session: Callable[[Fake], Session],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Its connection stands, and it can be connected to; so it answers no sooner than it says something."""
+    monkeypatch.setattr(amase_module, "SILENT_S", 1.5)
+    simulator = fake()
+    flight = session(simulator)
+    flight.amase.begin(crossing, told_of(crossing))
+    flight.until(lambda: flight.amase.flies)
+    flight.command(steered(1, lmcp.new("FlightDirectorAction", Speed=22, Heading=90, Altitude=300)))
+    flight.until(lambda: flight.newest(1).Course > 20)
+    simulator.signal(signal.SIGSTOP)
+    stopped_s = time.monotonic()
+    flight.until(lambda: not flight.amase.flies)
+    assert 1.0 < time.monotonic() - stopped_s < 1.5 + PATIENCE_S / 4
+    assert "it has not told states of all aircraft of the mission for 1.5 s" in flight.said[0]
+    count, before = len(flight.states), flight.newest(1)
+    end_s = time.monotonic() + 4.0
+    flight.until(lambda: time.monotonic() > end_s)
+    assert len(flight.said) == 1
+    simulator.signal(signal.SIGCONT)
+    flight.until(lambda: flight.amase.flies)
+    assert 0 < next(b for b in flight.states[count:] if b.ID == 1).Time - before.Time < 600
+    flight.until(lambda: flight.newest(1).Course > 80)
+    assert [re.sub(r".*:\d+ ", "", one).split(",")[0] for one in flight.said[1:]] == [
+        "answers again", "flies again",
+    ]  # fmt: skip
+    assert len(flight.amase.met_again) == 1
+
+
+def test_a_way_to_it_that_is_gone_unsaid_is_another_one_soon(
+    crossing: Mission,
+    fake: Callable[..., Fake],
+    session: Callable[[Fake | Way], Session],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Neither end of the connection ends: it flies on there, and is flown again from the last states that came."""
+    monkeypatch.setattr(amase_module, "SILENT_S", 1.5)
+    way = Way(fake().port)
+    with contextlib.closing(way):
+        flight = session(way)
+        flight.amase.begin(crossing, told_of(crossing))
+        flight.until(lambda: flight.amase.flies and flight.states[-1].Time > 3000)
+        way.cut()
+        flight.until(lambda: not flight.amase.flies)
+        count, before = len(flight.states), {n: flight.newest(n) for n in (1, 2)}
+        flight.until(lambda: flight.amase.flies)
+        assert way.met == 2
+        for number, last in before.items():
+            again = next(body for body in flight.states[count:] if number == body.ID)
+            north, east = Projection(crossing.frame).to_local(
+                last.Location.Latitude, last.Location.Longitude
+            )
+            passed_s = (again.Time - last.Time) / 1000
+            assert 0 < passed_s < 0.6
+            assert apart_m(crossing, again, north, east) == pytest.approx(22 * passed_s, abs=0.5)
+        assert len(flight.amase.met_again) == 1
+        flight.close()
 
 
 def test_a_clock_that_goes_back_is_a_simulator_begun_anew(

@@ -65,7 +65,10 @@ export class AltitudeChart {
       pen.fillText(words.altitude(level), 2, y(level) + 4);
     }
     const every = niceStep(end / 1000 / 8) * 1000;
-    for (let t = 0; t <= end; t += every) pen.fillText(`${t / 1000} s`, x(t) - 8, height - 4);
+    for (let t = 0; t <= end; t += every) {
+      const said = `${t / 1000} s`;
+      pen.fillText(said, Math.min(x(t) - 8, width - pen.measureText(said).width - 2), height - 4);
+    }
     pen.lineWidth = 2;
     for (const [id, track] of Object.entries(this.recording.tracks)) {
       pen.strokeStyle = colorOf(this.recording, id);

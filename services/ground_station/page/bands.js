@@ -38,7 +38,7 @@ export function ring(map, x, y, row) {
   for (const [from, to, region] of bands) {
     const word = region.toLowerCase(), [right, down] = at(from + wide(from, to) / 2, RADIUS + 14);
     const size = pen.measureText(word).width, middle = from + wide(from, to) / 2;
-    map.label(word, right + size / 2 * (Math.sin(middle * TURN) - 1), down + 4, color(`band-${word}`));
+    map.labels.add(word, right + size / 2 * (Math.sin(middle * TURN) - 1), down + 4, 0, 0, color(`band-${word}`), true);
   }
 }
 

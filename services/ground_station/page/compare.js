@@ -35,6 +35,7 @@ class Pane {
     this.recording = recording;
     this.alone = alone; // places of the events that the other run does not have
     this.map = new FlightMap(this.by("map"), recording, view => { station.state.view = view; station.draw(true); });
+    this.map.lay(recording.frame, () => station.draw(true));
     this.chart = new AltitudeChart(this.by("altitude"), recording, time => station.go(time));
     const said = recording.verdicts;
     this.by("overall").textContent = said.overall ?? "not judged";

@@ -17,7 +17,9 @@ export class EditMap extends FlightMap {
     const { drawn } = found;
     if (drawn) {
       const tracks = Object.fromEntries(drawn.starts.map(start => [start.id, [[0, start.north_m, start.east_m, 0, 0]]]));
+      const { frame } = drawn, moved = JSON.stringify(frame) !== JSON.stringify(this.recording.frame);
       Object.assign(this.recording, { ...drawn, tracks, routes: this.recording.routes });
+      if (moved) this.lay(frame, () => this.redraw());
       this.starts = drawn.starts;
       this.places = found.places;
       if (!this.places.some(place => this.isPicked(place))) this.pick(null);
@@ -39,6 +41,7 @@ export class EditMap extends FlightMap {
     for (const task of this.recording.tasks) this.task(task);
     for (const route of this.recording.routes) this.route(String(route.vehicle), route);
     for (const start of this.starts) this.start(start);
+    this.names();
     for (const place of this.places) this.handle(place);
     if (this.drawing) {
       this.path(this.drawing, false);
@@ -58,7 +61,7 @@ export class EditMap extends FlightMap {
     this.fill(colorOf(this.recording, start.id), 1);
     pen.restore();
     const vehicle = this.recording.vehicles.find(one => one.id === start.id);
-    this.label(`${vehicle?.label || ""} ${start.id}`.trim(), x + 14, y - 8, colorOf(this.recording, start.id));
+    this.labels.add(`${vehicle?.label || ""} ${start.id}`.trim(), x, y, 14, -8, colorOf(this.recording, start.id), true);
   }
 
   square(north, east, ink, full) {

@@ -33,6 +33,7 @@ class Station extends Playback {
     this.charted = -CHARTS_MS;
     this.later = null;
     if (recording.live) this.fly();
+    this.map.lay(recording.frame, () => this.draw(true));
   }
 
   get end_ms() { return this.recording.end_ms; }
@@ -56,6 +57,7 @@ class Station extends Playback {
     by("slider").max = recording.end_ms;
     if (updates.some(update => update.more?.events)) panels.events(recording, go);
     if (updates.some(update => update.set?.verdicts)) this.verdicts();
+    if (updates.some(update => update.set?.frame)) this.map.lay(recording.frame, () => this.draw(true));
     if (this.follow) this.state.time = recording.end_ms;
     this.draw(true);
   }

@@ -4,6 +4,8 @@ import { alertColor } from "./band_style.js";
 import { ring } from "./bands.js";
 import { UNSEEN_MS, alertsAt, authorityAt, bandsAt, lastAt, positionAt } from "./instant.js";
 import { Layer, color, colorOf, sized } from "./canvas.js";
+import { Labels } from "./labels.js";
+import * as overlays from "./overlays.js";
 import { words } from "./units.js";
 
 const EDGE = 50;
@@ -16,6 +18,8 @@ export class FlightMap {
     this.changed = changed; // called when the user moved the map
     this.view = null;
     this.trails = new Layer();
+    this.labels = new Labels();
+    this.beneath = [];
     this.drawn = { time: 0, to: {} }; // until when, and of each track to which row, the trails stand on their layer
     this.measured = {};
     this.grown();
@@ -38,7 +42,14 @@ export class FlightMap {
     this.xy = (north, east) => [width / 2 + (east - this.view.east) * this.view.scale, height / 2 - (north - this.view.north) * this.view.scale];
     this.pen = pen;
     this.width = width;
+    overlays.draw(this, this.beneath);
     this.grid(width, height, said);
+  }
+
+  // what lies beneath, once it is known in which frame; drawn: draws the map anew
+  async lay(frame, drawn) {
+    this.beneath = await overlays.overlays(frame);
+    if (this.beneath.length) drawn();
   }
 
   // whether all aircraft are where they were drawn
@@ -64,6 +75,7 @@ export class FlightMap {
     if (at && at.seen) ring(this, ...this.xy(at.north, at.east), said.row);
     const alerts = alertsAt(recording, state);
     for (const id of Object.keys(recording.tracks)) this.aircraft(id, state, words, alerts[id]);
+    this.names();
     return true;
   }
 
@@ -100,6 +112,9 @@ export class FlightMap {
     this.pen.fillText(text, x, y);
   }
 
+  // what is named on the map, once all else is drawn
+  names() { this.labels.draw(text => this.pen.measureText(text).width, this.width, (...one) => this.label(...one)); }
+
   grid(width, height, words) {
     const step = words.step(110 / this.view.scale), pen = this.pen;
     const east0 = this.view.east - width / 2 / this.view.scale, north0 = this.view.north - height / 2 / this.view.scale;
@@ -125,7 +140,7 @@ export class FlightMap {
     if (zone.kind === "keep_out") this.fill(ink, 0.16);
     this.stroke(ink, 2, zone.kind === "keep_out" ? [] : [10, 5]);
     const [x, y] = this.xy(...zone.vertices[0]);
-    this.label(`${zone.kind.replace("_", " ")} ${zone.id} ${zone.label || ""}`.trim(), x + 4, y - 4, ink);
+    this.labels.add(`${zone.kind.replace("_", " ")} ${zone.id} ${zone.label || ""}`.trim(), x, y, 4, -4, ink);
   }
 
   footprint(seen) {
@@ -143,7 +158,7 @@ export class FlightMap {
     this.pen.beginPath();
     this.pen.arc(x, y, Math.max(5, (task.radius_m || 0) * this.view.scale), 0, 7);
     this.stroke(color("ink"), 1.5, [], 0.8);
-    this.label(`p${task.id} ${task.label || ""}`.trim(), x + 9, y + 16, color("ink"));
+    this.labels.add(`p${task.id} ${task.label || ""}`.trim(), x, y, 9, 16, color("ink"));
   }
 
   route(id, route) {
@@ -239,7 +254,7 @@ export class FlightMap {
     const away = who.away ? ` ${who.name}` : "";
     const rest = at.seen ? words.altitude(at.alt) : "not seen any more";
     const alerted = at.seen && alert ? ` alert ${alert.level}` : "";
-    this.label(`${name} ${rest}${alerted}${at.seen && commands === "ICAROUS" ? " ICAROUS" : away}`, x + 15, y - 10, ink);
+    this.labels.add(`${name} ${rest}${alerted}${at.seen && commands === "ICAROUS" ? " ICAROUS" : away}`, x, y, 15, -10, ink, true);
   }
 
   zoom(by, x, y) {

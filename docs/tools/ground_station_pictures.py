@@ -1,0 +1,226 @@
+"""Takes the pictures of the ground station in `docs/img`, in a headless Chromium, of what is flown, planned and watched.
+
+    PYTHONPATH=src:tests/tools:tests/mission_editor python docs/tools/ground_station_pictures.py [NAME...]
+
+NAME: one of two, bands, live, hold, command, edit, attached, or replay; without any, all. Look at each one.
+"""
+
+from __future__ import annotations
+
+import base64
+import contextlib
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import chromium_tools
+from chromium_tools import READY, Page, browsing, playing
+from daidalus_sky import SEES, Craft, Sky, fly
+from ground_station_tools import Served, attaching, editing, flying, serving
+from log_tools import write as write_log
+from test_editor_page import write as type_into
+
+from cratous.bridge import lmcp
+from cratous.core.files.whole_file import replacing
+from cratous.services.logs.entry import Entry
+
+ROOT = Path(__file__).resolve().parents[2]
+FOLDER = ROOT / "docs" / "img"
+CROSSING = Path("examples/crossing/mission.yaml")
+STATE = "document.getElementById('live-state')?.textContent"
+NEWEST_MS = "Number(document.getElementById('slider').max)"
+
+
+def taken(page: Page, name: str, width_px: int = 1280, height_px: int = 800) -> None:
+    """What the page shows, as a file of docs/img."""
+    page.call(
+        "Emulation.setDeviceMetricsOverride",
+        width=width_px, height=height_px, deviceScaleFactor=1, mobile=False,
+    )  # fmt: skip
+    time.sleep(1.0)  # it draws anew for another size
+    shot = page.call("Page.captureScreenshot", format="png")
+    with replacing(FOLDER / name) as unnamed:
+        unnamed.write_bytes(base64.b64decode(shot["data"]))
+    print(FOLDER / name)
+
+
+def flown(work: Path, *more: str) -> Path:
+    """The results of the crossing."""
+    out = work / ("bare" if more else "out")
+    words = ["run", str(CROSSING), "--allow-unproved", "--quiet", "--out", str(out), *more]
+    subprocess.run([sys.executable, "-m", "cratous", *words], cwd=ROOT, check=False)
+    return out / "crossing"
+
+
+def replay(work: Path) -> None:
+    """A takeover, replayed."""
+    with playing(flown(work), work / "replay", 30.0) as page:
+        page.value("location.hash = '#t=30&theme=light&aircraft=2'")
+        taken(page, "ground-station.png")
+
+
+def two(work: Path) -> None:
+    """With and without ICAROUS, where the latter loses well clear."""
+    flown(work)
+    flown(work, "--no-daa")
+    with (
+        serving(Path("out/crossing"), Path("bare/crossing")) as (_, port),
+        browsing(work / "two") as page,
+    ):
+        page.go(f"http://127.0.0.1:{port}/#t=83.5&theme=light")
+        page.until("document.querySelector('#differences tr')")
+        taken(page, "ground-station-two.png", 1280, 900)
+
+
+def bands(work: Path) -> None:
+    """Bands of a vehicle that another one flies at, with a third one near."""
+    sky = Sky(work, SEES)
+    fly(
+        sky,
+        [Craft(2, 0.0, 0.0, 10.0), Craft(1, 6000.0, 0.0, 180.0), Craft(3, 5000.0, 9000.0, 250.0)],
+        90,
+    )
+    made = [
+        Entry(k, e.time_ms, e.source, e.topic, lmcp.to_json(e.body)) for k, e in enumerate(sky.all)
+    ]
+    log = write_log(work / "log.sqlite", made)
+    with playing(log, work / "bands", 20.0) as page:
+        page.value("location.hash = '#t=20&theme=light&aircraft=2'")
+        page.value("document.getElementById('bands-note').parentElement.scrollIntoView()")
+        taken(page, "ground-station-bands.png")
+
+
+@contextlib.contextmanager
+def commanded(work: Path, name: str) -> Iterator[tuple[Served, Page]]:
+    """The crossing in flight, standing at its begin, and the page that commands it."""
+    with flying(CROSSING, work / name, ROOT) as live, browsing(work / f"{name}-page") as page:
+        page.go(live.url)
+        page.until(f"{STATE} === 'paused' && !document.getElementById('fly').disabled")
+        yield live, page
+
+
+def until_ms(page: Page, time_ms: int, rate: int) -> None:
+    """Fly to a time and stand."""
+    choose(page, "live-rate", str(rate))
+    page.click("#fly")
+    page.until(f"{NEWEST_MS} >= {time_ms}")
+    page.click("#fly")
+    page.until(f"{STATE} === 'paused'")
+
+
+def click_map(page: Page, across: float, down: float) -> None:
+    """Click on the map, at parts of its width and height."""
+    x, y, width, height = page.value(
+        "(b => [b.x, b.y, b.width, b.height])(document.getElementById('map').getBoundingClientRect())"
+    )
+    place = {"x": x + across * width, "y": y + down * height}
+    for kind in ("mousePressed", "mouseReleased"):
+        page.call("Input.dispatchMouseEvent", type=kind, button="left", clickCount=1, **place)
+
+
+def choose(page: Page, name: str, value: str) -> None:
+    """Pick an item of a list."""
+    page.value(
+        f"(s => {{ s.value = {value!r}; s.dispatchEvent(new Event('change')); }})"
+        f"(document.getElementById({name!r}))"
+    )
+
+
+def live(work: Path) -> None:
+    """A flight, paused while ICAROUS has a vehicle."""
+    with commanded(work, "live") as (_, page):
+        until_ms(page, 24_000, 5)
+        page.until("document.getElementById('verdicts-at').textContent.startsWith('so far, at ')")
+        taken(page, "ground-station-live.png")
+
+
+def hold(work: Path) -> None:
+    """A vehicle that holds where it was sent."""
+    with commanded(work, "hold") as (_, page):
+        until_ms(page, 120_000, 50)
+        choose(page, "operate", "hold_at")
+        page.until("document.getElementById('operate-hint').textContent.startsWith('Click')")
+        click_map(page, 0.6, 0.45)
+        page.until("document.getElementById('confirm-command').open")
+        page.value("document.getElementById('command-vehicle').value = 1")
+        page.click("#command-yes")
+        until_ms(page, 200_000, 50)
+        page.until("document.getElementById('live-text').textContent.includes('circles')")
+        taken(page, "ground-station-hold.png")
+
+
+def command(work: Path) -> None:
+    """A keep-out zone of the operator's."""
+    with commanded(work, "command") as (_, page):
+        until_ms(page, 24_000, 5)
+        choose(page, "operate", "keep_out")
+        page.until("document.getElementById('operate-hint').textContent.startsWith('Click')")
+        for across, down in ((0.66, 0.62), (0.86, 0.62), (0.86, 0.9)):
+            click_map(page, across, down)
+        page.key("Enter")
+        page.until("document.getElementById('confirm-command').open")
+        page.click("#command-yes")
+        page.until("document.getElementById('events')?.textContent.includes('zone')")
+        page.until(f"{STATE} === 'paused'")
+        taken(page, "ground-station-command.png")
+
+
+def edit(work: Path) -> None:
+    """Relations with an error in them, beside the plan of what they were."""
+    copy = Path("relations.yaml")
+    copy.write_bytes((ROOT / "examples/relations/mission.yaml").read_bytes())
+    with editing(copy) as served, browsing(work / "edit") as page:
+        page.go(served.url)
+        page.until("document.getElementById('relations-tree')?.textContent.includes('p1')")
+        page.click("#plan")
+        page.until("document.querySelectorAll('#gantt .bar').length >= 2")
+        page.value(
+            "document.querySelector('#gantt .bar[data-task=\"1\"]').dispatchEvent(new Event('click'))"
+        )
+        page.until("document.body.textContent.includes('with vehicle 2: ')")
+        type_into(page, "relations", "|(.(p1 p2) +(p3 p4))_[240000-1200000] ~(p5 p6)")
+        page.until("document.getElementById('relations-error').textContent !== ''")
+        taken(page, "ground-station-edit.png", 1400, 1000)
+
+
+def attached(work: Path) -> None:
+    """A simulation that is watched."""
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    scenario = work / "crossing.xml"
+    whole = ["export", str(CROSSING), "--format", "amase", "-o", str(scenario)]
+    subprocess.run([sys.executable, "-m", "cratous", *whole], cwd=ROOT, check=True)
+    where = f"127.0.0.1:{port}"
+    words = ["sim", str(scenario), "--listen", where, "--rate", "5", "--clients", "1"]
+    simulator = subprocess.Popen([sys.executable, "-m", "cratous", *words], cwd=ROOT)
+    try:
+        with attaching(f"tcp://{where}") as page_port, browsing(work / "attached") as page:
+            page.go(f"http://127.0.0.1:{page_port}/")
+            page.until(READY)
+            page.until(f"{NEWEST_MS} > 20000")
+            taken(page, "ground-station-attached.png")
+    finally:
+        simulator.kill()
+        simulator.wait()
+
+
+ALL: dict[str, Callable[[Path], None]] = {
+    "replay": replay, "two": two, "bands": bands, "live": live, "hold": hold, "command": command,
+    "edit": edit, "attached": attached,
+}  # fmt: skip
+
+
+def main() -> None:
+    """Take those that are named, or all."""
+    chromium_tools.LIMIT_S = 400.0
+    for name in sys.argv[1:] or ALL:
+        with TemporaryDirectory(prefix="cratous-") as work, contextlib.chdir(work):
+            ALL[name](Path(work))
+
+
+if __name__ == "__main__":
+    main()
