@@ -35,6 +35,8 @@ from cratous.spec.mission import Mission, Position, Traffic, Velocity
 EMPTY = """<AMASE><ScenarioData><ScenarioName>empty</ScenarioName><ScenarioDuration>3600</ScenarioDuration>
 </ScenarioData><ScenarioEventList></ScenarioEventList></AMASE>"""
 PATIENCE_S = 60.0
+WHOLE_RATE = 8
+"""Times real time at which a whole mission is flown: a heartbeat is then 62 ms."""
 
 
 @pytest.fixture
@@ -55,14 +57,14 @@ class Fake:
         self.port, self._text = free_port(), text
         self._children, self._folder, self._count = Children(folder, folder), folder, 0
 
-    def start(self, clients: int = 0) -> None:
-        """clients: its clock stands until so many are there."""
+    def start(self, clients: int = 0, rate: int = 4) -> None:
+        """clients: its clock stands until so many are there; rate: times real time."""
         self._count += 1
         name = f"amase{self._count}"
         (self._folder / "scenario.xml").write_text(self._text)
         self._children.start(
             name, "sim", str(self._folder / "scenario.xml"), "--listen", f"127.0.0.1:{self.port}",
-            "--rate", "4", "--compatibility", "amase", "--clients", str(clients),
+            "--rate", str(rate), "--compatibility", "amase", "--clients", str(clients),
         )  # fmt: skip
         until(lambda: "listening" in self._children.said(name))
 
@@ -79,9 +81,9 @@ class Fake:
 def fake(tmp_path: Path) -> Iterator[Callable[[str], Fake]]:
     made: list[Fake] = []
 
-    def make(text: str = EMPTY) -> Fake:
+    def make(text: str = EMPTY, rate: int = 4) -> Fake:
         made.append(Fake(tmp_path, text))
-        made[-1].start()
+        made[-1].start(rate=rate)
         return made[-1]
 
     yield make
@@ -147,6 +149,17 @@ def session() -> Iterator[Callable[[Fake], Session]]:
         one.close()
 
 
+@pytest.fixture
+def begun(
+    crossing: Mission, fake: Callable[..., Fake], session: Callable[[Fake], Session]
+) -> tuple[Fake, Session]:
+    """An AMASE that has been given the crossing's aircraft, and the flight's side of it."""
+    simulator = fake()
+    flight = session(simulator)
+    flight.amase.begin(crossing, told_of(crossing))
+    return simulator, flight
+
+
 def apart_m(mission: Mission, state: Any, north_m: float, east_m: float) -> float:
     north, east = Projection(mission.frame).to_local(
         state.Location.Latitude, state.Location.Longitude
@@ -184,11 +197,9 @@ def test_aircraft_are_put_in_whatever_has_been_loaded_and_the_time_is_that_of_th
 
 
 def test_one_that_is_killed_and_begun_again_flies_on_from_its_last_states(
-    crossing: Mission, fake: Callable[..., Fake], session: Callable[[Fake], Session]
+    crossing: Mission, begun: tuple[Fake, Session]
 ) -> None:
-    simulator = fake()
-    flight = session(simulator)
-    flight.amase.begin(crossing, told_of(crossing))
+    simulator, flight = begun
     flight.until(lambda: flight.amase.flies)
     flight.command(steered(1, lmcp.new("FlightDirectorAction", Speed=22, Heading=90, Altitude=300)))
     flight.until(lambda: flight.newest(1).Course > 20)
@@ -219,11 +230,9 @@ def test_one_that_is_killed_and_begun_again_flies_on_from_its_last_states(
 
 
 def test_a_clock_that_goes_back_is_a_simulator_begun_anew(
-    crossing: Mission, fake: Callable[..., Fake], session: Callable[[Fake], Session]
+    crossing: Mission, begun: tuple[Fake, Session]
 ) -> None:
-    simulator = fake()
-    flight = session(simulator)
-    flight.amase.begin(crossing, told_of(crossing))
+    simulator, flight = begun
     flight.until(lambda: flight.states and flight.states[-1].Time > 3000)
     other = TcpPort(address(f"tcp://127.0.0.1:{simulator.port}", ("tcp",)), server=False)
     for state in ("Reset", "Running"):
@@ -240,11 +249,9 @@ def test_a_clock_that_goes_back_is_a_simulator_begun_anew(
 
 @pytest.mark.usefixtures("impatient")
 def test_one_that_does_not_come_back_ends_the_flight(
-    crossing: Mission, fake: Callable[..., Fake], session: Callable[[Fake], Session]
+    crossing: Mission, begun: tuple[Fake, Session]
 ) -> None:
-    simulator = fake()
-    flight = session(simulator)
-    flight.amase.begin(crossing, told_of(crossing))
+    simulator, flight = begun
     flight.until(lambda: flight.amase.flies)
     simulator.kill()
     with pytest.raises(
@@ -329,7 +336,7 @@ def test_nobody_there_is_bad_input_before_anything_is_planned(
 def test_a_mission_is_flown_to_its_end_though_amase_is_begun_anew(
     root: Path, tmp_path: Path, fake: Callable[..., Fake]
 ) -> None:
-    simulator = fake()
+    simulator = fake(rate=WHOLE_RATE)
     said, out = tmp_path / "said", tmp_path / "out"
     words = [
         sys.executable, "-m", "cratous", "run", str(root / "examples/crossing/mission.yaml"), "--simulator",
@@ -344,7 +351,7 @@ def test_a_mission_is_flown_to_its_end_though_amase_is_begun_anew(
                 assert time.monotonic() < end_s
                 time.sleep(0.05)
             simulator.kill()
-            simulator.start()
+            simulator.start(rate=WHOLE_RATE)
             code = running.wait(600)
     report = json.loads((out / "crossing/report.json").read_text())
     # heartbeats may be late, and nothing holds of theorems about a gate on board
