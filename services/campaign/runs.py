@@ -39,7 +39,7 @@ class Run:
 
     @property
     def decides(self) -> dict[str, Any]:
-        """What decides it, made anew each time: the text of a mission takes longer to write than to draw."""
+        """The inputs that determine a run, drawn again each time: writing a mission's text takes longer than drawing it."""
         return self.deciding()
 
     @property
