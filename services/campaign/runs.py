@@ -39,7 +39,7 @@ class Run:
 
     @property
     def decides(self) -> dict[str, Any]:
-        """The inputs that determine a run, drawn again each time: writing a mission's text takes longer than drawing it."""
+        """The inputs that determine a run, computed again each time: a mission's text takes longer to write than to draw."""
         return self.deciding()
 
     @property

@@ -134,7 +134,7 @@ def is_told(entry: Entry) -> bool:
 
 
 def told_text(entry: Entry) -> str:
-    """The recording's title in lists."""
+    """A message's type and sender, as shown in lists."""
     short = entry.topic.rpartition(".")[2]
     return f"{short} from {entry.source}" if entry.source else short
 

@@ -218,7 +218,7 @@ class GroundStation(ThreadingHTTPServer):
         super().process_request(request, client_address)
 
     def _cut_off(self) -> None:
-        """Disconnect the client that has been idle longest, when all places are taken by clients that send no request."""
+        """Disconnect the client whose request has been pending longest, so that idle clients cannot take all places."""
         with self._lock:
             oldest = next(iter(self._asking), None)
             if oldest is not None:
