@@ -210,10 +210,7 @@ def _said_at(time_ms: int, item: str, text: str, *value: Any) -> Said:
 
 
 def _plans(run: dict[str, Any]) -> list[Said]:
-    return [
-        _said_at(event["time_ms"], "plan", event["text"], event["text"])
-        for event in _events(run, PLAN)
-    ]
+    return [_told(event, "plan") for event in _events(run, PLAN)]
 
 
 def _routes(run: dict[str, Any]) -> list[Said]:
@@ -250,14 +247,13 @@ def _who(phase: dict[str, Any]) -> str:
 def _others(run: dict[str, Any]) -> list[Said]:
     """Events that no other kind tells."""
     return [
-        _said_at(
-            event["time_ms"],
-            event["text"] if event["vehicle"] is None else f"vehicle {event['vehicle']}",
-            event["text"],
-            event["text"],
-        )
+        _told(event, event["text"] if event["vehicle"] is None else f"vehicle {event['vehicle']}")
         for event in _events(run, OTHER)
     ]
+
+
+def _told(event: dict[str, Any], item: str) -> Said:
+    return _said_at(event["time_ms"], item, event["text"], event["text"])
 
 
 def _events(run: dict[str, Any], kind: str) -> list[dict[str, Any]]:
