@@ -177,8 +177,7 @@ def test_uxas_connects_to_an_icarous_that_listens_and_again_after_a_cut(
         assert sim.wait(lambda: any("not heard" in text for text in reasons(sim)), 30.0)
         again = "connected again"
         assert sim.wait(lambda: any(b.Note == again for b in sim.all("BridgeStatus")), 60.0)
-        # it is handed back, beyond the crossing of the ways; how a mission ends the first test shows
-        assert sim.fly(500, lambda: 3 in sim.own.passed), said(tmp_path)
+        assert sim.fly(700, lambda: 4 in sim.own.passed), said(tmp_path)
         assert sim.nearest_m > 150.0
         assert [c.Owner.name for c in sim.all("AuthorityChange")][-1] == "UxAS"
         for one in (pilot, uxas):
