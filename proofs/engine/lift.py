@@ -97,7 +97,7 @@ def _names(term: z3.ExprRef) -> frozenset[str]:
     known = _NAMES.get(term.get_id())
     if known is None:
         if z3.is_const(term) and term.decl().kind() == z3.Z3_OP_UNINTERPRETED:
-            found = frozenset([str(term)])
+            found = frozenset([term.decl().name()])
         else:
             found = frozenset().union(*[_names(part) for part in term.children()])
         # the term is kept, so that its id stays its own

@@ -96,7 +96,7 @@ def fields_of_both(a: Any, b: Any) -> list[tuple[Any, Any]]:
 
 def free_names(term: z3.ExprRef) -> set[str]:
     """The names of the values in a term."""
-    return {str(value) for value in free_values([term])}
+    return {value.decl().name() for value in free_values([term])}
 
 
 def free_values(terms: Iterable[z3.ExprRef]) -> list[z3.ExprRef]:
@@ -109,9 +109,11 @@ def free_values(terms: Iterable[z3.ExprRef]) -> list[z3.ExprRef]:
         if part.get_id() in seen:
             continue
         seen.add(part.get_id())
-        if z3.is_const(part) and part.decl().kind() == z3.Z3_OP_UNINTERPRETED:
-            found[str(part)] = part
-        todo += part.children()
+        below = part.children()
+        todo += below
+        # its name as it is: `str` would have the term laid out to print it
+        if not below and z3.is_app(part) and (what := part.decl()).kind() == z3.Z3_OP_UNINTERPRETED:
+            found[what.name()] = part
     return [found[name] for name in sorted(found)]
 
 

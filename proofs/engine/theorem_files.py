@@ -17,6 +17,8 @@ from cratous.proofs.engine.claim import Claim
 from cratous.spec.errors import BadInput
 
 FOLDER = PRODUCT.theorems
+_LISTED: dict[Path, dict[str, Path]] = {}
+"""The theorems of each folder, as they were listed last."""
 
 
 def theorem_files(folder: Path = FOLDER) -> dict[str, Path]:
@@ -34,7 +36,14 @@ def theorem_files(folder: Path = FOLDER) -> dict[str, Path]:
                 places = f"{place(found[name])} and {place(path)}"
                 raise BadInput(f"two theorems are called {name!r}", where=places)
             found[name] = path
-    return dict(sorted(found.items()))
+    _LISTED[folder] = dict(sorted(found.items()))
+    return dict(_LISTED[folder])
+
+
+def _listed(name: str, folder: Path) -> Path | None:
+    """The file of this name in a folder, which is only listed anew where it was not there."""
+    found = _LISTED.get(folder, {}).get(name)
+    return found if found is not None and found.is_file() else theorem_files(folder).get(name)
 
 
 def package_of(folder: Path) -> str:
@@ -50,7 +59,7 @@ def find(name: str, folder: Path) -> Path:
     package, _, plain = name.rpartition(".")
     places = [place for place in (folder, FOLDER) if package in ("", package_of(place))]
     for one in places:
-        found = theorem_files(one).get(plain)
+        found = _listed(plain, one)
         if found is not None:
             return found
     known = [n for one in {folder, FOLDER} for n in theorem_files(one)]
@@ -79,29 +88,16 @@ def load_lemma(name: str, folder: Path) -> Callable[[Claim], None]:
 def load_claim(name: str, folder: Path = FOLDER) -> tuple[Callable[[Claim], None], str]:
     """The function `claim` of a theorem file, and its sentence."""
     path = find(name, folder)
-    text = path.read_text(encoding="utf-8")
-    inside = "cratous.proofs" if path.is_relative_to(FOLDER) else package_of(folder)
-    home = FOLDER if path.is_relative_to(FOLDER) else folder
-    module_name = ".".join((inside, "theorems", *path.relative_to(home).with_suffix("").parts))
-    module = sys.modules.get(module_name)
-    if module is None or getattr(module, "__file__", None) != str(path):
-        module = types.ModuleType(module_name)
-        module.__file__ = str(path)
-        try:
-            parsed = ast.parse(text)
-            theorem_subset.check(parsed, path)
-            # from the text, never from byte code: what is proved is what is written
-            exec(compile(text, str(path), "exec", dont_inherit=True), module.__dict__)
-        except ImportError as error:
-            raise BadInput(
-                f"the theorem imports what is not there: {error}", where=place(path)
-            ) from error
-        except SyntaxError as error:
-            line = f"{place(path)}:{error.lineno}"
-            raise BadInput(f"the theorem is no Python: {error.msg}", where=line) from error
-        theorem_values.check_values(module.__dict__, parsed, path)
-        sys.modules[module_name] = module
-    sentence = " ".join((ast.get_docstring(ast.parse(text)) or "").split())
+    try:
+        module, parsed = _module(path, folder)
+    except ImportError as error:
+        raise BadInput(
+            f"the theorem imports what is not there: {error}", where=place(path)
+        ) from error
+    except SyntaxError as error:
+        line = f"{place(path)}:{error.lineno}"
+        raise BadInput(f"the theorem is no Python: {error.msg}", where=line) from error
+    sentence = " ".join((ast.get_docstring(parsed) or "").split())
     if not sentence:
         raise BadInput(
             "the theorem has no docstring", where=place(path), expected="the sentence it proves"
@@ -109,3 +105,22 @@ def load_claim(name: str, folder: Path = FOLDER) -> tuple[Callable[[Claim], None
     if not callable(getattr(module, "claim", None)):
         raise BadInput("the theorem states nothing", where=place(path), expected="def claim(c)")
     return module.claim, sentence
+
+
+def _module(path: Path, folder: Path) -> tuple[types.ModuleType, ast.Module]:
+    """The module of a theorem file, which is run once, and its syntax as it stands there now."""
+    text = path.read_text(encoding="utf-8")
+    parsed = ast.parse(text)
+    inside = "cratous.proofs" if path.is_relative_to(FOLDER) else package_of(folder)
+    home = FOLDER if path.is_relative_to(FOLDER) else folder
+    name = ".".join((inside, "theorems", *path.relative_to(home).with_suffix("").parts))
+    module = sys.modules.get(name)
+    if module is None or getattr(module, "__file__", None) != str(path):
+        module = types.ModuleType(name)
+        module.__file__ = str(path)
+        theorem_subset.check(parsed, path)
+        # from the text, never from byte code: what is proved is what is written
+        exec(compile(text, str(path), "exec", dont_inherit=True), module.__dict__)
+        theorem_values.check_values(module.__dict__, parsed, path)
+        sys.modules[name] = module
+    return module, parsed

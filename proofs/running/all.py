@@ -11,6 +11,7 @@ from cratous.core.kernel.sources import ours
 from cratous.proofs.engine import worker_processes
 from cratous.proofs.engine.outcomes import Ran
 from cratous.proofs.engine.prover import Theorem
+from cratous.proofs.running.compiling import PER_PROCESS, begin_compiler
 from cratous.proofs.running.readings import Compared, Row, compare
 from cratous.proofs.running.theorem import Function, Functions
 
@@ -29,8 +30,11 @@ def compare_all(
             masks[key] = masks.get(key, frozenset()) | bits
             rows[key] = (*rows.get(key, ()), *one.rows.get(key, ()))[:ROWS]
     names = sorted(masks)
-    parts = [names[k::jobs] for k in range(min(jobs, len(names)))]
-    # a process for many: each imports the compiler
+    if machine and names:
+        begin_compiler()
+    # some take far longer than others, so none is left alone with many
+    count = min(PER_PROCESS * jobs, len(names))
+    parts = [names[k::count] for k in range(count)]
     tasks = [partial(_some, part, masks, rows, machine) for part in parts]
     return {
         key: found for _, some in worker_processes.each(tasks, jobs) for key, found in some.items()

@@ -7,6 +7,7 @@ is counted apart.
 from __future__ import annotations
 
 import contextlib
+import functools
 import importlib
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -31,10 +32,21 @@ def compile_ahead(masks: Mapping[Function, frozenset[int]], jobs: int) -> None:
     which says why.
     """
     names = sorted(masks)
+    if not names:
+        return
+    begin_compiler()
     count = min(PER_PROCESS * jobs, len(names))
     tasks = [partial(_some, names[k::count], masks) for k in range(count)]
     for _ in worker_processes.each(tasks, jobs):
         pass
+
+
+@functools.cache
+def begin_compiler() -> None:
+    """Have the compiler ready in this process, so that each one forked from it need not begin it again."""
+    from numba import njit
+
+    njit(lambda x: x)(0.0)
 
 
 def _some(names: Sequence[Function], masks: Mapping[Function, frozenset[int]]) -> None:

@@ -12,8 +12,8 @@ from typing import Any, get_type_hints
 import z3
 
 from cratous.proofs.engine.lift import Lifted, lift
-from cratous.proofs.engine.symbolic import RANGE, SymBool, SymInt, SymMask, SymReal, _raw
-from cratous.proofs.engine.terms import leaves
+from cratous.proofs.engine.symbolic import RANGE, SymMask, _raw
+from cratous.proofs.engine.terms import fresh, leaves
 from cratous.proofs.mutation.inputs import run
 from cratous.proofs.running.copies import with_root
 
@@ -105,15 +105,7 @@ def checked_root(value: Any) -> Any:
 
 def symbol(kind: Any, name: str, mask: bool) -> Any:
     """An arbitrary value of a parameter's type."""
-    if mask:
-        return SymMask(z3.BitVec(name, 64))
-    if kind is float:
-        return SymReal(z3.Real(name))
-    if kind is bool:
-        return SymBool(z3.Bool(name))
-    if kind is int:
-        return SymInt(z3.Int(name))
-    return kind(*[symbol(h, f"{name}.{f}", False) for f, h in get_type_hints(kind).items()])
+    return SymMask(z3.BitVec(name, 64)) if mask else fresh(name, kind)
 
 
 @dataclass(frozen=True)
@@ -170,10 +162,16 @@ def differences(
 ) -> list[tuple[tuple[Any, ...], Any, Any]]:
     """Where the lifted term, or what it owes, disagrees with the running function: row, term, function."""
     one = term or term_of(function, masks)
+    return disagreeing(function, [(row, *one(row)) for row in rows])
+
+
+def disagreeing(
+    function: Callable[..., Any], evaluated: Iterable[tuple[tuple[Any, ...], list[Any], bool, bool]]
+) -> list[tuple[tuple[Any, ...], Any, Any]]:
+    """The same for a term that was evaluated: each row with what the term says of it."""
     running = with_root(function, checked_root)
     found: list[tuple[tuple[Any, ...], Any, Any]] = []
-    for row in rows:
-        got, _, defined = one(row)
+    for row, got, _, defined in evaluated:
         wanted = run(running, row)
         if isinstance(wanted, str):
             if defined:

@@ -8,6 +8,7 @@ by zero, 64 bits) say nothing of machine code and doubles.
 
 from __future__ import annotations
 
+import functools
 import math
 import types
 import warnings
@@ -96,10 +97,11 @@ class _Comparison:
         except (LiftError, KeyError, RecursionError, TypeError) as error:
             self.left_out.append(f"{TERM}: {error}")
             return [False] * len(rows)
-        for row, got, wanted in lifted.differences(self.function, rows, self.masks, term):
+        evaluated = [(row, *term(row)) for row in rows]
+        for row, got, wanted in lifted.disagreeing(self.function, evaluated):
             self.differs(TERM, got, RATIONALS, wanted, row)
         self.counts[TERM] = len(rows)
-        return [term(row)[1] for row in rows]
+        return [fits for _, _, fits, _ in evaluated]
 
     def doubles(self, rational: list[Row], fits: list[bool]) -> None:
         """Hold doubles against rationals where nothing is rounded on the way."""
@@ -229,9 +231,14 @@ def _as(value: Any, kinds: Any, real: Callable[[Any], Any]) -> Any:
 
 def _one(value: Any, kind: Any, real: Callable[[Any], Any]) -> Any:
     if isinstance(value, tuple):
-        fields = list(get_type_hints(kind).values())
-        return type(value)(*_as(value, fields, real))
+        return type(value)(*_as(value, _fields(kind), real))
     return real(value) if kind is float else value
+
+
+@functools.cache
+def _fields(kind: Any) -> tuple[Any, ...]:
+    """The types of a record's fields."""
+    return tuple(get_type_hints(kind).values())
 
 
 def _same(one: Any, other: Any) -> bool:

@@ -74,7 +74,7 @@ def _in_circle(element: Element, paragraphs: list[Line], across: float) -> Figur
 
 
 def _chord(across: float, count: int, line: int) -> float:
-    """How wide a line of `count` may be in a circle, by its edge that lies farther out."""
+    """The widest line that fits the circle at this height: limited by the line's edge farther from the centre."""
     edge = abs(line - (count - 1) / 2) * LINE + LINE / 2
     left = (across / 2 - PAD / 2) ** 2 - edge**2
     return 2 * sqrt(left) if left > 0 else 0.0

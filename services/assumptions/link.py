@@ -63,7 +63,7 @@ class PeriodWatch:
         )
 
     def message(self, message: Message) -> None:
-        """With each heartbeat, or sample of where somebody is, time goes on."""
+        """Advance the time: every heartbeat and every position sample does."""
         kind, now_ms, _, body = message
         if kind not in ("Heartbeat", "TruthState"):
             return
@@ -111,7 +111,7 @@ class DeliveryWatch:
         return (number - 1) * self._period_ms
 
     def message(self, message: Message) -> None:
-        """With each heartbeat, or sample of where somebody is, time goes on."""
+        """Advance the time: every heartbeat and every position sample does."""
         kind, now_ms, _, body = message
         if kind not in ("Heartbeat", "TruthState"):
             return

@@ -24,7 +24,7 @@ class EndWatch:
         self._record = Record("s", self._most_ms / 1000, (in_time,), waits="no message was seen")
 
     def message(self, message: Message) -> None:
-        """Any message; those that say where somebody is are counted, for they come at each step."""
+        """Take any message; position messages are counted, since one comes at each step."""
         now_ms = max(0, message.time_ms)
         ok = in_time(0, now_ms, self._most_ms)
         if message.kind == "TruthState" or not ok:

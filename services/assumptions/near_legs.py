@@ -51,7 +51,7 @@ class Path(NamedTuple):
 
 
 class NearLegsWatch:
-    """Every vehicle of ours, from each command of UxAS on, while UxAS flies it."""
+    """Watches each mission vehicle from every UxAS command on, while UxAS is in command."""
 
     kinds = ("GateState", "GatedCommand", "TruthState")
 

@@ -70,7 +70,7 @@ class Record:
             self.broken = Break(since_ms, vehicle_id, text)
 
     def unseen_between(self, who: str, last_ms: int, now_ms: int, step_ms: int) -> None:
-        """Note if more than a step [ms] lies between two samples of an aircraft; the first such gap is kept."""
+        """Note a gap of more than one step [ms] between two samples of an aircraft; only the first is kept."""
         if not self.gaps and not in_time(last_ms, now_ms, step_ms):
             self.gaps.append(
                 f"{who} was not seen from {last_ms / 1000:.2f} s to {now_ms / 1000:.2f} s"

@@ -60,7 +60,7 @@ def argued(folder: Path, named: dict[str, str], subject: Subject) -> Argued:
 
 
 def _hold(called: str, file: Path, made: bytes, found: Argued) -> None:
-    """Hold one file against its text as it was made again."""
+    """Compare one file with its regenerated text."""
     with file.open("rb") as stream:
         there = stream.read(len(made) + 1)
     said, ours = _seal(there), _seal(made)

@@ -66,7 +66,7 @@ def _of(row: Data, one: Assumption) -> Iterator[str]:
 
 
 def assumptions_not_judged(report: Data, meta: Mapping[str, Any]) -> list[str]:
-    """What of the assumptions nobody looked into here, in words."""
+    """The assumptions that were not checked here, in words."""
     if ASSUMPTIONS not in report:
         return ["assumptions of the system theorems: the report was made before they were watched"]
     told = ASSUMPTIONS in meta

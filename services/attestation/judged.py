@@ -58,7 +58,7 @@ def held(report: Data, judgement: Any) -> Held:
 
 
 def _unconfirmed(one: Any, report: Data, judgement: Any) -> tuple[bool, str]:
-    """Whether a row is refused, and what is said of it."""
+    """Whether a row is refused, and the reason in words."""
     if one.foreign:
         return True, f"{one.monitor}, a row that is none on this mission, or there twice"
     if not one.judge:

@@ -69,7 +69,7 @@ def _judged(row: Data) -> Data:
 
 
 def own_not_judged(report: Data) -> list[str]:
-    """What of them nobody looked into here, in words."""
+    """The user's requirements that were not checked here, in words."""
     if not report.get(OWN):
         return []
     from cratous.services.requirements.own_files import files_of, other_libraries

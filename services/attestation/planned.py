@@ -94,7 +94,7 @@ def _sentences(report: Data, said: set[str]) -> list[str]:
 
 
 def plan_not_judged(report: Data) -> list[str]:
-    """What of the plan nobody looked into here, in words."""
+    """The parts of the plan that were not checked here, in words."""
     number = sum(row["source"] == "plan" for row in report["constraints"])
     found = [f"{number} verdicts on the plan (cratous certify makes them again)"]
     if not is_settled(report):

@@ -88,7 +88,7 @@ def view_faults(place: Place, named: dict[str, str], subject: Subject) -> list[s
 
 
 def not_judged(report: Data) -> list[str]:
-    """What nobody looked into here, in words."""
+    """What was not checked here, in words."""
     found = [
         f"all else in {REPORT_NAME} but its verdicts: margins, times, notes, checks, kernels, tracks, counts of "
         "messages, error of the frame (cratous certify)",

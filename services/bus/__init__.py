@@ -47,7 +47,7 @@ class Envelope:
 
     @property
     def to(self) -> str:
-        """The address that it bears on the wire: its own, or its type."""
+        """The address used on the wire: the message's own, or else its type."""
         return self.address or self.topic
 
 
@@ -195,7 +195,7 @@ class Bus:
         )
 
     def put(self, envelope: Envelope) -> None:
-        """Queue a message with the sender that it names (from outside); numbered anew."""
+        """Queue a message from outside under the sender that it names, with a new sequence number."""
         if envelope.seq != self._seq:
             envelope = replace(envelope, seq=self._seq)
         self._seq += 1

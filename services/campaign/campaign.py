@@ -113,7 +113,7 @@ class Conduct:
             yield self.task(run)
 
     def _take(self, task: Attempt, answer: dict[str, Any], died: int, course: Course) -> None:
-        """Store what came of an attempt, or have another one."""
+        """Store the result of an attempt, or schedule another attempt."""
         run = task["id"]
         lost = ["its worker died"] * died + ([answer["lost"]] if "lost" in answer else [])
         for why in lost:

@@ -14,7 +14,7 @@ SQUARE = ((0, 0), (0, 500), (500, 500), (500, 0))
 
 
 def changing_mission(name: str, seed: int, most_changes: int) -> dict[str, Any]:
-    """The mission file of a seed as data, with one change up to so many."""
+    """The mission file of a seed as data, with between one and the given number of changes."""
     random = Random(f"{seed} changes")
     vehicles = [_vehicle(number, random) for number in range(1, random.randrange(2, 4) + 1)]
     ids = [v["id"] for v in vehicles]

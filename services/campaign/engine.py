@@ -27,7 +27,7 @@ CHANGED = (
 
 
 class Answer(NamedTuple):
-    """What came of an attempt; died: attempts at it that its engine lost and made again by itself."""
+    """The result of an attempt; died: attempts that the engine lost and repeated on its own."""
 
     task: Attempt
     answer: dict[str, Any]
@@ -64,7 +64,7 @@ def here() -> Iterator[Engine]:
 
 
 def engine(workers: int, scheduler: str | None) -> AbstractContextManager[Engine]:
-    """The engine for so many local workers, or for the scheduler at an address."""
+    """The engine for a number of local workers, or for the scheduler at an address."""
     return here() if workers == 1 and scheduler is None else _cluster(workers, scheduler)
 
 
@@ -128,7 +128,7 @@ def _client(distributed: Any, address: Any) -> Any:
 
 
 class _Starts:
-    """How often attempts at each key were begun: a worker says so, and a dead one's is begun anew."""
+    """How often an attempt at each key was started: workers report starts, and a dead worker's attempt is restarted."""
 
     def __init__(self, client: Any, topic: str) -> None:
         self.topic, self._begun = topic, dict[str, int]()

@@ -130,7 +130,7 @@ class Flier:
 
 
 def main(function: str, memory_mb: int) -> None:
-    """What the process does: say the version, then answer each line until there is none."""
+    """The process's main loop: print the version, then answer each input line until the input ends."""
     import gc
     import importlib
     import queue

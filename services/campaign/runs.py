@@ -39,7 +39,7 @@ class Run:
 
     @property
     def decides(self) -> dict[str, Any]:
-        """What decides it, made anew each time: the text of a mission takes longer to write than to draw."""
+        """The inputs that determine a run, computed again each time: a mission's text takes longer to write than to draw."""
         return self.deciding()
 
     @property

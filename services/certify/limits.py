@@ -19,7 +19,7 @@ LIMITS = (
 
 
 def of_states(mission: Mission) -> list[str]:
-    """What ICAROUS was given to see, so that nobody takes it for sensed, or its errors for those of real sensors."""
+    """How ICAROUS obtained its traffic states, so that they are not mistaken for measurements of real sensors."""
     return said_of_states(bool(mission.instances), mission.sensing is not None)
 
 

@@ -62,7 +62,7 @@ def together(files: Sequence[OwnFile], meta: Data, given: Iterable[OwnFile]) -> 
 
 
 def with_own(report: Data, files: Sequence[OwnFile], log: Path, told: Told) -> Data:
-    """The same report with these files held against its log, and summed up anew."""
+    """The same report with these requirement files evaluated on its log, and its verdict recomputed."""
     from cratous.services.requirements.lint import lint
 
     made = {key: value for key, value in report.items() if key != OWN}

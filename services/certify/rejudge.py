@@ -172,7 +172,7 @@ def _compared(report: dict[str, Any], left: Container[str], former: bool) -> dic
 
 
 def log_faults(log: Path, written: dict[str, Any]) -> list[str]:
-    """What shows that the log is not as it was written, or not the one that the report is about."""
+    """Evidence that the log was altered, or is not the one that the report is about."""
     subject(log)
     with SqliteLog(log) as source:
         digest, closing = source.digest(), source.closing()

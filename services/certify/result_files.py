@@ -23,7 +23,7 @@ SINCE_MANIFESTS = "environment"
 
 
 def no_result(name: str) -> str:
-    """What is said of an entry of the folder that no run wrote."""
+    """The message about an entry of the folder that no run wrote."""
     return f"{name}: no file of the results"
 
 
@@ -65,7 +65,7 @@ class Files:
         self._hold_manifest(required=SINCE_MANIFESTS in meta)
 
     def rewrite(self) -> list[str]:
-        """Make anew what differs; returns the names."""
+        """Regenerate the files that differ; returns their names."""
         for name, text in self._anew.items():
             write_atomically(self._folder / name, text)
         write_atomically(self._folder / MANIFEST_NAME, self._manifest())

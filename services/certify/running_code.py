@@ -66,7 +66,7 @@ def _recorded(distribution: importlib.metadata.Distribution) -> dict[str, str]:
 
 
 def against(files: dict[str, bytes], recorded: dict[str, str], version: str) -> str:
-    """What the files are to a release: `release X`, `differs from release X: ...`, or that there is none."""
+    """How the files compare with a release: `release X`, `differs from release X: ...`, or that there is no release."""
     if not recorded:
         return NO_RELEASE
     now = {

@@ -83,7 +83,7 @@ class Asked(NamedTuple):
 
     @property
     def anything(self) -> bool:
-        """Whether anything is to be written."""
+        """Whether any output was requested."""
         return self.named or self.sign or self.out is not None
 
     @property

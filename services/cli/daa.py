@@ -57,7 +57,7 @@ def _steps(
     file: Path, config: str, ownship: str, dimensions: tuple[int, ...],
     urgency: str | None = None, urgent: str = "", *, quiet: bool = False,
 ) -> Generator[Any, None, None]:  # fmt: skip
-    """The steps of a file, one after the other; quiet: nothing is told of how far it is."""
+    """The steps of a file in order; quiet: no progress is shown."""
     from cratous.core.ledger import require
     from cratous.services.cli.progress import waiting
     from cratous.services.daa import named_or_file, run

@@ -72,7 +72,7 @@ class Onlooker(Protocol):
 
 
 def silent(_text: str) -> None:
-    """Tell nobody."""
+    """Report no progress."""
 
 
 def new_bus() -> Any:

@@ -81,7 +81,7 @@ class Waiting:
             click.echo(printable(text), err=True)
 
     def end(self, stream: Any) -> None:
-        """Nothing more is said; a bar goes."""
+        """Show no more progress; a bar is removed."""
         with self._drawing:
             self._over.set()
             self._clear(stream)

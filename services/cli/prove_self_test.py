@@ -12,7 +12,7 @@ from cratous.services.cli.progress import Bar
 
 
 def self_test(as_json: bool, verbose: bool, jobs: int | None) -> bool:
-    """Try every case, print by kind what came of it; True iff each is judged as it must be."""
+    """Run every case and print the results by kind; True iff each verdict is the expected one."""
     from cratous.proofs.ledger import jobs_default
     from cratous.proofs.self_test.case import cases
     from cratous.proofs.self_test.trial import Trial, attempts

@@ -199,7 +199,7 @@ def run_one(
 
 
 def summary(report: dict[str, Any], folder: Path | None) -> dict[str, Any]:
-    """What a machine wants to know of one run."""
+    """The machine-readable summary of one run."""
     return {
         "mission": report["mission"]["name"],
         "seed": report["mission"]["seed"],

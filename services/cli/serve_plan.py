@@ -34,7 +34,7 @@ def main() -> int:
 
 
 def _listen(asked: Asked) -> None:
-    """Take what is asked; a search ends with whoever asked for it."""
+    """Accept requests; a search is cancelled when its client disconnects."""
     try:
         for line in sys.stdin:
             asked.put(json.loads(line))

@@ -128,7 +128,7 @@ def _records(direction: Direction, *pieces: bytes, original: bool = False) -> li
 
 
 def _cut(direction: Direction, data: bytes, whole: list[Record], original: bool = False) -> str:
-    """The first place where cutting the bytes changes what they say; empty if there is none."""
+    """The first place at which splitting the bytes changes the messages read; empty if none does."""
     for at in range(1, len(data)):
         found = _records(direction, data[:at], data[at:], original=original)
         if found != whole:

@@ -22,7 +22,7 @@ def not_negative(case: dict[str, Any], name: str) -> float:
 
 
 def vector(case: dict[str, Any], name: str, size: int) -> tuple[float, ...]:
-    """A list of so many finite numbers."""
+    """A list of the given number of finite numbers."""
     return numbers(_there(case, name), name, size)
 
 

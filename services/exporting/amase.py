@@ -45,7 +45,7 @@ def _event(body: Any, time_s: float) -> str:
 
 
 def traffic_events(one: Traffic, plane: Projection) -> list[tuple[Any, int]]:
-    """What there is of an aircraft that nobody commands, with the time of each [ms]."""
+    """The events of an uncommanded aircraft, each with its time [ms]."""
     north, east = one.velocity.north_m_s, one.velocity.east_m_s
     speed = math.hypot(north, east)
     profile = lmcp.new(

@@ -31,7 +31,7 @@ REFUSED = "refused: "
 
 
 def obey(config: Config, state: State, due: Sequence[Change], out: Out) -> State:
-    """Do what is commanded now, in its order; each with what came of it."""
+    """Carry out the commands that are due, in order; each with its result."""
     for change in due:
         done: Out = []
         why = _not_commanded(config, state, change.vehicle)

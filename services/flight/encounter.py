@@ -287,7 +287,7 @@ class _Ours:
         self._icarous = replace(self._icarous, told=told)
 
     def _take_back(self, epoch: int, now_ms: int) -> bool:
-        """Command the way back and the rest; False if there is none that keeps the zones."""
+        """Command the way back and the remaining path; False if no way back keeps clear of the zones."""
         back = self._routes.back(self._chain, self.state.air)
         if back is None:
             return False

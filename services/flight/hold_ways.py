@@ -25,7 +25,7 @@ HERE_M = 1.0
 
 
 class Into(NamedTuple):
-    """A way into a hold, or why there is none. pose: where its circle is come to; way_m: how far that is."""
+    """A path into a hold, or why none exists. pose: where it joins the circle; way_m: its length [m]."""
 
     track: Track | None
     pose: Pose

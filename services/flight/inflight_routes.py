@@ -78,7 +78,7 @@ class Ways:
         return self.new_transit(chain, state)
 
     def new_transit(self, chain: Chain, state: AirState) -> Track | None:
-        """A new way to the item from where the vehicle is; None if there is none."""
+        """A new transit to the item from the vehicle's present position; None if none exists."""
         item = chain.item
         assert item is not None
         way = self.way_to(chain, state, chains.start_pose(item))

@@ -83,6 +83,6 @@ def _flown_by(task: int, chains: Mapping[int, Chain]) -> tuple[int, float]:
 
 
 def nothing_of(plan: Plan, tasks: Iterable[tuple[int, str]]) -> PartialPlan:
-    """A plan by which nobody does anything any more. tasks: all that are left, and why of each."""
+    """An empty plan: no vehicle has work left. tasks: the remaining tasks, each with the reason."""
     empty = replace(plan, items=(), rows=(), chosen=())
     return partial(empty, tuple(LeftOut(task, why) for task, why in tasks), True)

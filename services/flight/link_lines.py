@@ -124,7 +124,7 @@ def asked_way(asked: RouteRequest, projection: Projection) -> tuple[AirState, Po
 def proposal(
     way: tuple[Position, ...], speed_m_s: float, number: int, projection: Projection
 ) -> list[Message]:
-    """The RPRSP lines of a way; one without places says that there is none."""
+    """The RPRSP lines of a route; one without places means that no route exists."""
     norths, easts = [p.north_m for p in way], [p.east_m for p in way]
     places = zip(*projection.to_geodetic_many(norths, easts), way, strict=True)
     points = (
@@ -185,7 +185,7 @@ def states(
 
 
 def traffic(aircraft: Aircraft, places: Places) -> dict[int, Traffic]:
-    """An OBJCT of each aircraft, one object for all who are told of it."""
+    """One OBJCT message per aircraft, shared by all recipients."""
     lines = {}
     for vid, s in aircraft:
         v, (lat, lon) = s.velocity, places[vid]

@@ -158,7 +158,7 @@ class Planned(NamedTuple):
 
 
 class NotPlanned(NamedTuple):
-    """There is no plan as it was asked for. why: the reasons, in words; of: those of a task, where told apart."""
+    """No plan satisfies the request. why: the reasons, in words; of: the reasons per task, where known."""
 
     why: str
     of: tuple[tuple[int, str], ...] = ()
@@ -296,7 +296,7 @@ class Commanded(NamedTuple):
 
 
 class Wished(NamedTuple):
-    """The vehicle's own ICAROUS wants something of the gate."""
+    """The vehicle's own ICAROUS requests a change of authority from the gate."""
 
     now_ms: int
     wish: Wish

@@ -17,7 +17,7 @@ from cratous.spec.mission import GroundedVehicle, Mission
 
 
 def take_off(mission: Mission, vehicle_id: int) -> TakeOff | None:
-    """What the mission wants of one vehicle, None if it starts in the air."""
+    """The take-off parameters of one vehicle, None if it starts in the air."""
     waiting = [one.id for one in grounded(mission)]
     if vehicle_id not in waiting:
         return None

@@ -208,7 +208,7 @@ class VehicleNode:
         return after, (*said, *more)
 
     def _offered(self, state: State, message: Held) -> Step:
-        """ICAROUS has a certificate for what it commands next, or says why there is none."""
+        """Record ICAROUS's certificate for its next command, or the reason why it has none."""
         now_ms, offer = message
         if self.ground is None or not gate_accepts(state.gate, ICAROUS, state.gate.epoch):
             return state, ()
@@ -233,7 +233,7 @@ class VehicleNode:
         return self._kept(state, kept, now_ms)
 
     def _wished(self, state: State, message: Wished) -> Step:
-        """Let the gate do what the vehicle's ICAROUS wants."""
+        """Apply the request of the vehicle's ICAROUS at the gate."""
         now_ms, wish = message
         after = replace(state, gate=gate_wished(state.gate, wish.act))
         if after.gate.owner != state.gate.owner:

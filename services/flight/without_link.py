@@ -22,7 +22,7 @@ CHOICES = {
 
 
 def lost_link(mission: Mission, vehicle_id: int) -> LostLink | None:
-    """What the mission wants of one vehicle, None if it does not say."""
+    """The lost-link behaviour that the mission sets for one vehicle, None if it sets none."""
     loss = mission.link_loss
     if loss is None:
         return None

@@ -126,7 +126,7 @@ def in_turn(times: Sequence[Sequence[float]]) -> tuple[int, ...]:
 
 
 def _why_none(count: int, able: int, radius_m: float) -> str:
-    """Why so many roads cannot be blocked by so many vehicles, nothing if they can."""
+    """Why the roads cannot be blocked with this number of vehicles; empty if they can."""
     if not count:
         return f"{ROADS} has told of no road that crosses the circle of {radius_m:g} m"
     crossed = f"{count} roads cross the circle of {radius_m:g} m"
@@ -136,7 +136,7 @@ def _why_none(count: int, able: int, radius_m: float) -> str:
 
 
 def _zone(context: Context, places: Sequence[Pose]) -> str:
-    """The zone in which a place to block lies, nothing if in none."""
+    """The zone that contains a blocking position; empty if there is none."""
     for k, pose in enumerate(places):
         bad = first_bad_leg((Position(*pose[:3]),), context.inputs.zones)
         if bad is not None:

@@ -186,7 +186,7 @@ def options_of(
 def _option(
     context: Context, task: Task, vehicle: Vehicle, pose: Pose, world: Known
 ) -> Option | str:
-    """The run-in of a vehicle to a state, or why there is none."""
+    """A vehicle's approach to a state, or why none exists."""
     flyer, limits, zones = flyer_of(vehicle), limits_of(vehicle), context.inputs.zones
     wind = wind_of(world.get("state", vehicle.id), pose.heading_rad)
     waiting = waiting_of(flyer, limits, wind)

@@ -77,7 +77,7 @@ def heard(state: Following, vehicle: int, now_ms: int) -> Following:
 
 
 def place_of(part: Part) -> Vec2:
-    """Where a vehicle is to be at the common time."""
+    """A vehicle's position at the common time."""
     return Vec2(*part.option.path[-2][:2])
 
 

@@ -385,7 +385,7 @@ class RendezvousTaskService(FollowingTaskService):
         )
 
     def _undone(self, state: Following, why: str, out: list[Any]) -> Step:
-        """They do not meet: it is said why, and who waits is sent on in its plan."""
+        """The rendezvous fails: report the reason and send waiting vehicles on with their plans."""
         out.append(self._warning(f"its vehicles do not meet: {why}"))
         for part in state.parts:
             _, more = self._advance(part.state, WITHDRAWN, 0, None)

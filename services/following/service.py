@@ -321,7 +321,7 @@ class FollowingTaskService(TaskService):
         return self._over(state, body, out) if kept.done else (state, out)
 
     def _lost(self, state: Following, part: Part, error: BadInput, out: list[Any]) -> Step:
-        """Nothing tells any more where the entity is: nobody is there, which is said once."""
+        """The entity's position is lost: treat it as absent, and report that once."""
         asked = self._asked(part.context)
         if part.blocked != LOST:
             out.append(self._warning(f"vehicle {part.vehicle} does not follow: {error}"))

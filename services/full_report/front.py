@@ -29,7 +29,7 @@ TRUSTED = (
 
 
 def verdict_page(report: Data) -> Section:
-    """The verdict, what it is worth, the requirements, the pictures, how it is made again."""
+    """The verdict and its basis, the requirements, the pictures, and how to reproduce the report."""
     return Section("verdict", "0 Verdict", tuple(_verdict(report)))
 
 

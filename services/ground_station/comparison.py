@@ -164,7 +164,7 @@ def _parting(
 
 
 def _from(rows: list[list[float]], k: int) -> tuple[str, int]:
-    """What is told of a track whose row k is not in the other one, and when."""
+    """The text and time for a track whose row k is missing from the other track."""
     if k < len(rows):
         time_ms, north_m, east_m, alt_m = rows[k]
         return f"north {north_m:.1f} m, east {east_m:.1f} m, altitude {alt_m:.1f} m", int(time_ms)
@@ -205,15 +205,12 @@ def _authority(run: dict[str, Any]) -> list[Said]:
 
 
 def _said_at(time_ms: int, item: str, text: str, *value: Any) -> Said:
-    """What is said at an instant: the instant is compared with the value."""
+    """An entry at an instant; the instant is part of the compared value."""
     return Said(item, text, time_ms, (time_ms, *value))
 
 
 def _plans(run: dict[str, Any]) -> list[Said]:
-    return [
-        _said_at(event["time_ms"], "plan", event["text"], event["text"])
-        for event in _events(run, PLAN)
-    ]
+    return [_told(event, "plan") for event in _events(run, PLAN)]
 
 
 def _routes(run: dict[str, Any]) -> list[Said]:
@@ -250,14 +247,13 @@ def _who(phase: dict[str, Any]) -> str:
 def _others(run: dict[str, Any]) -> list[Said]:
     """Events that no other kind tells."""
     return [
-        _said_at(
-            event["time_ms"],
-            event["text"] if event["vehicle"] is None else f"vehicle {event['vehicle']}",
-            event["text"],
-            event["text"],
-        )
+        _told(event, event["text"] if event["vehicle"] is None else f"vehicle {event['vehicle']}")
         for event in _events(run, OTHER)
     ]
+
+
+def _told(event: dict[str, Any], item: str) -> Said:
+    return _said_at(event["time_ms"], item, event["text"], event["text"])
 
 
 def _events(run: dict[str, Any], kind: str) -> list[dict[str, Any]]:

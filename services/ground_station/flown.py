@@ -145,7 +145,7 @@ def _footprints(flight: Flight, to_local: Any) -> list[dict[str, Any]]:
 
 
 class Links:
-    """What the bridge said of its links."""
+    """The link events reported by the bridge."""
 
     def __init__(self) -> None:
         self.found: list[dict[str, Any]] = []

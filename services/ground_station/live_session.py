@@ -185,7 +185,7 @@ class LiveSession:
         self._process.say({key: asked[key] for key in ("do", "rate") if key in asked})
 
     def _command(self, command: Any) -> None:
-        """Fly anew with a command, up to where it is known."""
+        """Restart the flight with a command, and fly it up to the time of the command."""
         if self._commanded is None:
             raise NotObeyed(409, "this flight takes no commands that change its mission")
         if self._direct is not None and self._is_direct(command):

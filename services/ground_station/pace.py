@@ -11,7 +11,7 @@ STEP_MS = 1000
 
 
 class Ended(Exception):
-    """The flight is not to go on."""
+    """The flight is to stop."""
 
 
 class Pace:

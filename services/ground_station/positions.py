@@ -67,7 +67,7 @@ class Positions:
     """
 
     def __init__(self, most: int | None = None) -> None:
-        """most: of so many aircraft at most, by default of all."""
+        """most: the largest number of aircraft to keep, by default all."""
         self._most, self.left_out = most, 0
         self._new: dict[str, list[list[float]]] = {}
         self._tracks: dict[str, dict[int, list[float]]] = {}

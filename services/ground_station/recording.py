@@ -71,7 +71,7 @@ def _log(source: Source) -> dict[str, Any]:
 
 
 def _flown(entries: Iterator[Entry], mission: Mission) -> dict[str, Any]:
-    """A flight of ours, by its mission and what its messages say."""
+    """A CRATOUS flight, from its mission and its messages."""
     flown = FlownRecording(mission)
     try:
         for entry in entries:
@@ -134,7 +134,7 @@ def is_told(entry: Entry) -> bool:
 
 
 def told_text(entry: Entry) -> str:
-    """How it is listed."""
+    """A message's type and sender, as shown in lists."""
     short = entry.topic.rpartition(".")[2]
     return f"{short} from {entry.source}" if entry.source else short
 

@@ -156,7 +156,7 @@ class Watched(Protocol):
     token: str
 
     def told(self, first: int) -> dict[str, Any]:
-        """The updates from a number on, and how it stands."""
+        """The updates from a given number on, and the present status."""
 
     def who(self, token: str, page: str) -> str:
         """What a page may do that asks."""
@@ -222,7 +222,7 @@ class GroundStation(ThreadingHTTPServer):
         super().process_request(request, client_address)
 
     def _cut_off(self) -> None:
-        """Let go of the client that has been asking the longest: whoever takes all places and asks nothing."""
+        """Disconnect the client whose request has been pending longest, so that idle clients cannot take all places."""
         with self._lock:
             oldest = next(iter(self._asking), None)
             if oldest is not None:
@@ -231,7 +231,7 @@ class GroundStation(ThreadingHTTPServer):
                     oldest.shutdown(socket.SHUT_RDWR)
 
     def asked(self, request: Any) -> None:
-        """A client has said what it wants."""
+        """A client has sent its request."""
         with self._lock:
             self._asking.pop(request, None)
 

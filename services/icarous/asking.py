@@ -56,7 +56,7 @@ class Asking(NamedTuple):
     said: tuple[str, ...] = ()
 
     def tells(self, text: str) -> Asking:
-        """The same with a sentence for the log, once until it is said."""
+        """The same state with a sentence for the log, added once until it is logged."""
         return self if text in self.said else self._replace(said=(*self.said, text))
 
     def idle(self) -> Asking:

@@ -52,7 +52,7 @@ class Told:
     steered: tuple[tuple[int, Velocity], ...] = ()
 
     def alone(self) -> Told:
-        """The same without what was told of other vehicles."""
+        """The same inbox without the messages about other vehicles."""
         return replace(self, others=(), of_others=(), steered=())
 
     def way_of(self, vehicle_id: int) -> tuple[Position, ...]:

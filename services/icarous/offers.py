@@ -38,7 +38,7 @@ class Refused(NamedTuple):
 
 
 def certified(sensed: Sensed, scene: Scene, choice: Choice, daa: Daa) -> Certificate | Refused:
-    """A certificate for the manoeuvre that is commanded now, or why there is none."""
+    """A certificate for the manoeuvre being commanded, or why none can be given."""
     whole = fly_to(sensed.motion, sensed.ability, *choice[1:5], scene.lookahead_s)
     drift = drift_of(sensed.motion, sensed.ability, *choice[1:4], scene.here)
     near_s = turn_back_s(sensed.motion, sensed.ability)

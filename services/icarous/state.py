@@ -116,7 +116,7 @@ class State:
 
     @property
     def avoided(self) -> frozenset[int]:
-        """Because of whom it has taken over."""
+        """The intruder because of which ICAROUS took over."""
         return frozenset(one.intruder_id for one in self.met)
 
     def find(self, intruder_id: int) -> Met | None:

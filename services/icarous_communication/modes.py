@@ -92,11 +92,11 @@ def forged(name: str, peer: Peer, now_ms: int, why: str) -> Say:
 
 
 def unknown(peer: Peer, fresh: bool) -> bool:
-    """True as long as an end that was started anew has not heard in which epoch the vehicle is."""
+    """True until a restarted end has received the vehicle's current epoch."""
     return fresh and peer.gate == UNTOUCHED and not epoch_given(peer.gate, peer.end.epoch)
 
 
 def begins(peer: Peer, said: Said, fresh: bool) -> bool:
-    """True if an end that was started anew hears by this line that UxAS commands."""
+    """True if this line tells a restarted end that UxAS is in command."""
     may = gate_accepts(said.gate, UXAS, said.gate.epoch)
     return said.believed and unknown(peer, fresh) and may

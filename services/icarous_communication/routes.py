@@ -190,7 +190,7 @@ class Routes:
         return [Down(vid, (line,))]
 
     def _overdue(self, vid: int) -> list[Out]:
-        """No answer in time: it is not asked again before it has ended one, or is connected anew."""
+        """No answer in time: ask again only after it has finished a request or has reconnected."""
         self._mute.add(vid)
         why = _of(vid, f"no answer within {self._wait_s:g} s")
         return self._own(self._out.pop(vid).wanted, why)
@@ -216,7 +216,7 @@ class Routes:
         return self._complete(one.wanted.ticket)
 
     def _own(self, wanted: Wanted, why: str) -> list[Out]:
-        """UxAS's own planner plans a way, and that is said."""
+        """Have UxAS's own planner plan the route, and report that."""
         request = self._requests[wanted.ticket]
         body = request.asked.body
         constraint = body.RouteRequests[wanted.position]

@@ -342,7 +342,7 @@ class IcarousEnd:
         return None
 
     def _beat(self, state: State, line: OwnPosition, now_ms: int) -> Step:
-        """One heartbeat of the instance, and what it wants of the gate."""
+        """One heartbeat of the instance, and its request to the gate."""
         seen, direct = kept(state.seen, now_ms), kept(state.direct, now_ms)
         selves = by_themselves(seen, direct, now_ms)
         gone = (state.seen.keys() | state.selves) - seen.keys() - direct.keys()

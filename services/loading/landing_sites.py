@@ -31,7 +31,7 @@ def landing_sites(document: Document, places: Places) -> tuple[LandingSite, ...]
 
 
 def site_problems(document: Document, sites: tuple[LandingSite, ...]) -> Iterator[BadInput]:
-    """Sites that nobody lands at or that are called alike, and a landing that names none of them."""
+    """Problems with landing sites: unused ones, duplicate names, and landings that name an unknown site."""
     loss = document.data.get("link_loss", {})
     lands, names = loss.get("choice") == WithoutLink.LAND.value, [site.name for site in sites]
     told = ", ".join(names) or "none"

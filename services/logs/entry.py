@@ -82,7 +82,7 @@ def to_data(entry: Entry) -> Any:
 
 
 def to_raw_data(body: bytes) -> dict[str, str]:
-    """JSON form of bytes that nobody can decode."""
+    """JSON form of bytes that cannot be decoded."""
     return {RAW: base64.b64encode(body).decode("ascii")}
 
 

@@ -86,7 +86,7 @@ class Source:
 
 
 class DatabaseSource(Source):
-    """A log of ours in SQLite."""
+    """A CRATOUS log in SQLite."""
 
     def __init__(self, path: Path) -> None:
         self._log = SqliteLog(path)

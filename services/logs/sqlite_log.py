@@ -53,7 +53,7 @@ def damaged(path: Path, error: Exception, read: int | None = None) -> BadInput:
 
 
 class SqliteLog:
-    """One log of ours, open for reading; a context manager."""
+    """A CRATOUS log, open for reading; a context manager."""
 
     kind = "sqlite"
 

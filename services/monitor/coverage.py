@@ -47,7 +47,7 @@ def sample(task: Task) -> list[tuple[float, float]]:
 
 
 class _Area:
-    """The squares of one area that nobody has seen yet."""
+    """The cells of one area that have not been observed yet."""
 
     def __init__(self, task: Task) -> None:
         import numpy as np

@@ -68,7 +68,7 @@ def pair_item(own: int, other: int) -> str:
 
 
 def alone_item(own: int) -> str:
-    """The row on a vehicle that has nobody to keep clear of."""
+    """The row of a vehicle that has no traffic to keep well clear of."""
     return f"well clear of {own}"
 
 

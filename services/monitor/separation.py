@@ -230,7 +230,7 @@ class SeparationWatch:
         )
 
     def verdicts(self, seen: Watched, ending: Ending) -> list[Verdict]:
-        """One verdict a pair that was seen; and that a protected vehicle had nobody to meet."""
+        """One verdict for each observed pair, and one for each protected vehicle without traffic."""
         wanted = pairs_of(self._mission, seen.end_ms)
         found = []
         for key, pair in sorted(self.pairs.items()):

@@ -64,7 +64,7 @@ def _unable(mission: Mission, task: Task, now_ms: int, down: Mapping[int, Down])
 
 
 def _since(mission: Mission, task: Task, end_ms: int, down: Mapping[int, Down]) -> int:
-    """From when on nobody could do the task, up to the end; nobody can at the end."""
+    """The time from which no vehicle could do the task until the end of the mission."""
     happened, _ = split(mission.changes, end_ms)
     landed = (place.since_ms for place in down.values())
     instants = sorted({0, *(change.at_ms for change in happened), *landed}, reverse=True)

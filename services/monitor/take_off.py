@@ -72,7 +72,7 @@ class TakeOffWatch:
         self._end_ms: int | None = None
 
     def state(self, body: Any) -> None:
-        """A vehicle says how it leaves the ground."""
+        """Take a vehicle's take-off state."""
         seen = self._seen.get(body.VehicleID)
         if seen is None:
             return

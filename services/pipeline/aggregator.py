@@ -124,7 +124,7 @@ class RouteAggregatorService:
         return state._replace(collecting=left), ()
 
     def _answered(self, state: Open, body: Any) -> Step:
-        """A planner's response belongs to the block that its id lies in; else to nobody here."""
+        """Assign a planner's response to the request whose block of ids contains its id; ignore it otherwise."""
         for mine in state.collecting.values():
             if mine.block.owns(body.ResponseID):
                 return self._collect(state, mine._replace(block=mine.block.plus(body)))

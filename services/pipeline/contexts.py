@@ -151,7 +151,7 @@ class Contexts:
         return isinstance(self._found.get(request_id), CratousError)
 
     def refusal(self, request_id: int) -> list[Any]:
-        """What to say of a refused request; the first time only, so that it is said once."""
+        """The message about a refused request, returned the first time only."""
         found = self._found.get(request_id)
         if not isinstance(found, CratousError) or request_id in self._told:
             return []

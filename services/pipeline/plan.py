@@ -131,7 +131,7 @@ def _nothing_wanted(inputs: Inputs) -> Plan:
 
 
 def requests_on(bus: Bus) -> MissionRequests:
-    """Who asks for plans on a bus; joins it when first asked for."""
+    """The client that requests plans on a bus; it joins the bus at first use."""
     if MissionRequests.name not in bus.names():
         bus.add(MissionRequests())
     found: MissionRequests = bus.state(MissionRequests.name)

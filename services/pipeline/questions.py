@@ -54,7 +54,7 @@ class Asked(NamedTuple):
         ]
 
     def plus(self, response: Any) -> Asked:
-        """With a planner's response; whom nobody asked, or what has come already, changes nothing."""
+        """Add a planner's response; unrequested and duplicate responses change nothing."""
         if response.VehicleID not in self.waiting:
             return self
         more = tuple(

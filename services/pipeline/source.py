@@ -22,7 +22,7 @@ class Known(Protocol):
         """True if there is an object of a sort with this id."""
 
     def get(self, sort: str, number: int) -> Any:
-        """The newest message about it, None if there is none."""
+        """The newest message about the id, None if there is none."""
 
     def ids(self, sort: str) -> list[int]:
         """All of a sort."""

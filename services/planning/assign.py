@@ -277,7 +277,7 @@ def _go_on(run: _Run, made: list[Instance]) -> None:
 
 
 def _repair(run: _Run, instance: Instance, again: int) -> None:
-    """Have windows of a new incumbent's chains dealt out anew by the exact search."""
+    """Reassign windows of a new incumbent's chains with the exact search."""
     assert run.best is not None
     k, moves = run.best
     cost, better, nodes = repaired(instance, moves, REPAIRS, run.limits.seed + again, run.over)

@@ -270,7 +270,7 @@ def _shown(problem: AssignmentProblem, branch: Part, proof: dict[str, Any]) -> t
 def _no_chain_below(
     problem: AssignmentProblem, branch: Part, bound: int, nodes: int
 ) -> tuple[int, str]:
-    """All chains listed anew: none of them costs less than the bound."""
+    """Enumerate all chains again: none costs less than the bound."""
     instance = arrays(problem, branch)
     rules = settler(problem, branch, instance)
     if rules.ahead is None:

@@ -168,7 +168,7 @@ def point_ways(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float
 
 
 def _apart(loiter: Loiter, task: Task) -> Loiter:
-    """A loiter around the point itself, no nearer than the standoff with its margin."""
+    """A loiter around the point itself, at least the standoff distance and its margin away."""
     least = task.standoff_m + STANDOFF_MARGIN_M
     if task.standoff_m <= 0 or loiter.shape != "circular" or loiter.radius_m >= least:
         return loiter

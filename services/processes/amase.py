@@ -205,7 +205,7 @@ class Amase:
         self._was_there, self._news_s = False, self._now_s
 
     def _lost(self, why: str) -> None:
-        """What is in AMASE counts no more; why: how it was lost, empty at the beginning of the flight."""
+        """Discard AMASE's state; why: how the connection was lost, empty at the start of the flight."""
         if self._phase is Phase.FLYING:
             at = f"at {self._flown_ms / 1000:.1f} s"
             self._tell(f"{self.name} is lost {at}: {why}; waiting {RETURNS_S:g} s for it")

@@ -44,7 +44,7 @@ class ProcessEnded(CratousError):
 
 
 def free_port() -> int:
-    """A port of loopback that nobody listens at now."""
+    """A loopback port on which no process is listening."""
     with socket.create_server(("127.0.0.1", 0)) as probe:
         return int(probe.getsockname()[1])
 

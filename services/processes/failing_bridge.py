@@ -49,7 +49,7 @@ class _Half:
             self._part = b""
 
     def forge(self) -> None:
-        """A mode that comes now and nobody sent, if one does."""
+        """A forged mode line that arrives now, if there is one."""
         line = self.way.forged()
         if line and not self._greeting:
             self.unsent += self._forger.packet(line)

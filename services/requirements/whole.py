@@ -59,7 +59,7 @@ class Columns:
 
 
 def is_worth(formulas: Iterable[Formula], samples: int) -> bool:
-    """Whether so many samples are taken sooner by machine code than one by one."""
+    """Whether machine code evaluates this number of samples sooner than the interpreter does."""
     work = sum(1 for formula in formulas for _ in parts(formula)) * samples
     if not KEPT < work <= WORTH:
         return work > WORTH

@@ -29,7 +29,7 @@ from cratous.spec.errors import BadInput
 
 
 def _nobody(_text: str) -> None:
-    """Tell nobody."""
+    """Report nothing."""
 
 
 @contextmanager

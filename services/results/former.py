@@ -55,7 +55,7 @@ def _json(path: Path) -> dict[str, Any]:
 
 
 def _flown(path: Path) -> str:
-    """The mission that a log of ours was made for."""
+    """The mission that a CRATOUS log was recorded for."""
     if path.is_symlink() or not path.is_file():
         return ""
     try:

@@ -182,7 +182,7 @@ def _is_new(space: Path) -> bool:
 
 
 def remove(space: Path) -> None:
-    """Remove a hidden folder of ours, unless results are in it."""
+    """Remove a hidden folder that CRATOUS made, unless it contains results."""
     if (space / READY).exists() or (space / OLD).exists():
         return
     shutil.rmtree(space / FILLING, ignore_errors=True)

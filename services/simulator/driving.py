@@ -130,7 +130,7 @@ def corner(chassis: Chassis, turn_rad: float, before_m: float, after_m: float) -
 
 
 def bends(chassis: Chassis, m: Motion, course_rad: float) -> float:
-    """How fast it may be so that it comes onto a course [m/s]: 0 where that lies behind."""
+    """The highest speed at which it can still turn onto a course [m/s]; 0 if the course lies behind it."""
     error = abs(bound_pi(course_rad - m.heading_rad))
     if error >= pi / 2:
         return 0.0

@@ -108,7 +108,7 @@ class Server:
             self._close()
 
     def _begun(self) -> World:
-        """The world anew; a compatible one has done what is due at time 0."""
+        """A new world; in compatibility mode the events at time 0 have already taken place."""
         world = self._make()
         if world.compatible:
             for body in world.begin():
@@ -204,7 +204,7 @@ class Server:
                 port.send((payload,), but if port is of else "")
 
     def _take(self, incoming: Incoming, port: TcpPort) -> None:
-        """What a client has sent; what cannot be taken is reported, and goes to nobody."""
+        """Process a client's message; one that cannot be processed is reported and not forwarded."""
         try:
             message = wire.parse(incoming.parts[0])
             if message.content_type != wire.LMCP:

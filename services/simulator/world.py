@@ -287,7 +287,7 @@ class World:
             self.unheard[kind] += 1
 
     def _configure(self, body: Any, where: str) -> None:
-        """A new vehicle; one that is known stays as it was."""
+        """Add a new vehicle; a known one is left unchanged."""
         flies = type(body).__name__ == "AirVehicleConfiguration"
         if body.ID in (self.drivers if flies else self._airframes):
             raise BadInput(

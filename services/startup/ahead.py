@@ -76,7 +76,7 @@ def _cores() -> int:
 
 
 def _start(module: list[str]) -> subprocess.Popen[bytes]:
-    """A module of ours with its arguments, as a process that does not outlive this one."""
+    """Start a CRATOUS module with arguments, as a process that does not outlive this one."""
     from cratous.bridge.text_protocol.keys import without_keys
 
     place = str(Path(cratous.__file__).absolute().parents[1])

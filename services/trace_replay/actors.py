@@ -64,7 +64,7 @@ class Held(NamedTuple):
 
 
 class NeverSent(Exception):
-    """The trace delivers what nobody has sent."""
+    """The trace delivers a message that was never sent."""
 
 
 class _HoldingBridge(Bridge):
@@ -163,7 +163,7 @@ class Actors(Flight):
         self._exchange()
 
     def track(self, _event: Event) -> None:
-        """A breeze becomes known: UxAS plans anew, and has new tracks to fly."""
+        """A wind change becomes known: UxAS replans and has new tracks to fly."""
         executive = self.executive.config
         known, change = scene.with_breeze(executive.mission, self.now_ms)
         self.executive = Executive(replace(executive, mission=known))

@@ -43,7 +43,7 @@ def mission() -> Mission:
 
 
 def with_breeze(known: Mission, now_ms: int) -> tuple[Mission, Change]:
-    """The mission with a breeze that begins now, another one than before: UxAS plans anew for it."""
+    """The mission with a new wind from now on, different from the last, so that UxAS replans."""
     strength = BREEZE_M_S * (1 + len(known.changes) % 2)
     change = WindChange(now_ms, WIND, north_m_s=strength)
     return replace(known, changes=(*known.changes, change)), change

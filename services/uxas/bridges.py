@@ -162,7 +162,7 @@ class Bridge:
         return topic
 
     def _received(self, payload: bytes, where: str) -> tuple[Any, bytes]:
-        """Object and message of a payload; what a client does not quite right is said."""
+        """Object and message of a payload; a client's deviations from the protocol are reported."""
         body, payload, notes = lmcp.binary.received(payload, where)
         for note in notes:
             self._notes[note] += 1

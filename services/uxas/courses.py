@@ -41,5 +41,5 @@ def circle_course(here: Vec2, centre: Vec2, radius_m: float, clockwise: bool, ga
 
 
 def passed(here: Vec2, before: Vec2, to: Vec2) -> bool:
-    """Whether the end of a leg lies abeam or behind."""
+    """Whether the end of a leg is abeam or behind."""
     return (before.x - to.x) * (here.x - to.x) + (before.y - to.y) * (here.y - to.y) <= 0

@@ -117,7 +117,7 @@ class Satellite(_Side):
         self._bus.satellite = self
 
     def _join(self, push: str) -> None:
-        """Until a probe of ours comes back: then nothing of what follows can be missed."""
+        """Wait until a probe message comes back: from then on no message can be missed."""
         nonce = f"hub.probe.{os.getpid()}.{time.monotonic_ns()}"
         probe = wire.AddressedMessage(nonce, PROBE, nonce, "", "0", "0", b"?").pack()
         end_s = time.monotonic() + _JOIN_S

@@ -209,7 +209,7 @@ class ServiceManager:
         return f"{kind}[{number}]" if kind in self._host.bus.names() else kind
 
     def _create(self, envelope: Envelope) -> list[Any]:
-        """Make the service; what is to be said of it."""
+        """Create the service; returns what to report about it."""
         body = envelope.body
         number = body.ServiceID
         where = f"CreateNewService {number}"

@@ -21,7 +21,7 @@ FLOAT = 1e-6
 
 
 class OperatingRegionStateService:
-    """Keeps the zones by id, each as it was told by others."""
+    """Keeps the zones by id, each as last received."""
 
     name = "OperatingRegionStateService"
     subscribes: tuple[str, ...] = (

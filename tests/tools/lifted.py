@@ -3,7 +3,7 @@
 from cratous.proofs.mutation.inputs import inputs
 from cratous.proofs.running import lifted
 
-SAMPLES = 500
+SAMPLES = 200
 MASKS = {
     "eligible": {0, 1},
     "tasks_with": {0, 1},

@@ -89,7 +89,7 @@ def bands(message: Any, kind: str) -> tuple[Band, ...]:
 
 
 def blocked(kind: str, value: float, found: Iterable[Band], avoids: tuple[str, ...]) -> bool:
-    """True if a value lies in a band of a region that is to be avoided."""
+    """True if a value lies in a band whose region must be avoided."""
     inside = heading_blocked if kind == "Heading" else value_blocked
     return any(inside(value, b.low, b.high) for b in found if b.region in avoids)
 
