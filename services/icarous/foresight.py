@@ -18,7 +18,7 @@ from cratous.services.icarous.return_to_path import (
     ways_back,
 )
 from cratous.services.icarous.state import Config, State
-from cratous.spec.mission import Position
+from cratous.spec.mission import Daa, Position
 
 ON_PATH_M = 30.0
 """Nearer than this to its path a vehicle is taken to fly along it; else straight on [m]."""
@@ -34,6 +34,11 @@ def scene_of(config: Config, state: State, sensed: Sensed) -> Scene:
     volume = buffered(daa.well_clear, daa.buffer)
     zones = state.told.zones
     return Scene(sensed.intruders, zones, volume, daa.lookahead_s, sensed.here, daa.looks_first)
+
+
+def looked_s(daa: Daa) -> float:
+    """How far ahead all that `predicted` gives is at most held against others [s]."""
+    return daa.lookahead_s + buffered(daa.well_clear, daa.buffer).tthr_s
 
 
 def predicted(config: Config, state: State, sensed: Sensed, scene: Scene) -> Ahead:
