@@ -210,6 +210,8 @@ class Instance:
         """All predicted losses of well clear, what is still permitted, and the conflict to act on."""
         scene = scene_of(self.config, state, sensed)
         ahead = predicted(self.config, state, sensed, scene)
+        if ahead.beside is not None and ahead.beside is not state.beside:
+            state = replace(state, beside=ahead.beside)
         limits = nearest(sensed.ability, scene.volume, self.config.heartbeat_ms)
         own, seen = self.config.vehicle_id, sensed.intruders
         found = threats(own, ahead, seen, state.threats, sensed.now_ms, limits, in_turn)
