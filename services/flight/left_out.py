@@ -57,8 +57,12 @@ def leave_out(
             found[task] = why
         if task in found and before.get(task) != why:
             vehicle, served = _flown_by(task, chains)
-            phase = "Waiting" if until else "Failed"
-            said.append(task_progress(task, vehicle, now_ms, phase, served, why))
+            # one that waits is nobody's for now
+            said.append(
+                task_progress(task, NOBODY, now_ms, "Waiting", served, why)
+                if until
+                else task_progress(task, vehicle, now_ms, "Failed", served, why)
+            )
     return found, said
 
 
