@@ -260,10 +260,12 @@ def _aside_m(p: Position, leg: Leg) -> float:
 def _is_beside(p: Position, leg: Leg, margin_m: float) -> bool:
     """Whether a place is horizontally no farther from a leg than the margin."""
     a, b = (Vec2(end.north_m, end.east_m) for end in leg)
-    return bool(exact(edge_against, Vec2(p.north_m, p.east_m), a, b, margin_m) != FARTHER)
+    place = exact(edge_against, Vec2(p.north_m, p.east_m), a, b, margin_m)
+    return bool(place != FARTHER)
 
 
 def _is_level(alt_m: float, begins_m: float, ends_m: float, margin_m: float) -> bool:
     """Whether an altitude is no farther from those between the ends of a leg than the margin."""
     low, high = Vec2(begins_m, 0.0), Vec2(ends_m, 0.0)
-    return bool(exact(edge_against, Vec2(alt_m, 0.0), low, high, margin_m) != FARTHER)
+    place = exact(edge_against, Vec2(alt_m, 0.0), low, high, margin_m)
+    return bool(place != FARTHER)

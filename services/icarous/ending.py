@@ -134,7 +134,8 @@ def _holds(
         for side in (1, -1)
     )
     disc_m, places = radius_m + off_m, beside
-    if before is not None and before[:3] == (beside, disc_m, scene.zones):
+    question = beside, disc_m, scene.zones
+    if before is not None and before[:3] == question:
         asked = before
     else:
         obey = all(zones_permit(centre, scene.zones, disc_m) for centre in beside)

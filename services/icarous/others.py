@@ -153,14 +153,12 @@ def _along(
     if not speed:
         return ()
     (north_m, east_m, alt_m), t_s, first = other.position, 0.0, bisect_right(track.s_m, at_m)
-    ahead = track.points[first - 1 :], track.points[first:], track.s_m[first:]
+    last = bisect_right(track.s_m, at_m + until_s * speed) + 1
+    ahead = track.points[first - 1 : last], track.points[first:last], track.s_m[first:last]
     for a, b, end_m, (north, east) in zip(*ahead, track.directions[first - 1 :], strict=False):
-        if t_s > until_s:
-            break
-        left_s, down = (end_m - at_m) / speed, 0.0
-        if a.alt_m != b.alt_m:
-            leg_s = math.hypot(b.north_m - a.north_m, b.east_m - a.east_m) / speed
-            down = (a.alt_m - b.alt_m) / leg_s
+        left_s = (end_m - at_m) / speed
+        leg_s = math.hypot(b.north_m - a.north_m, b.east_m - a.east_m) / speed
+        down = (a.alt_m - b.alt_m) / leg_s
         v = Velocity(north * speed, east * speed, down)
         pieces.append(Piece(t_s, left_s, Position(north_m, east_m, alt_m), v))
         north_m, east_m = north_m + v.north_m_s * left_s, east_m + v.east_m_s * left_s
