@@ -191,7 +191,9 @@ def _changed(speed_m_s: float, pace: Pace, left_m: float) -> tuple[float, float,
 def looked_at(way: Way, horizon_s: float) -> Way:
     """The same way, no farther than horizon_s [s]."""
     pieces = tuple(
-        piece._replace(duration_s=min(piece.duration_s, horizon_s - piece.start_s))
+        piece
+        if piece.duration_s <= horizon_s - piece.start_s
+        else piece._replace(duration_s=horizon_s - piece.start_s)
         for piece in way.pieces
         if piece.start_s < horizon_s
     )

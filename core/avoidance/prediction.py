@@ -46,6 +46,8 @@ class Spread(NamedTuple):
 
     def after(self, t_s: float) -> Spread:
         """The same, counted from t_s [s] later on."""
+        if self == EXACT:
+            return self
         grows_s = min(t_s, self.steady_s)
         wide, high = self.wide_m + grows_s * self.wide_m_s, self.high_m + grows_s * self.high_m_s
         if t_s >= self.steady_s:
@@ -90,10 +92,8 @@ def straight(p: Position, v: Velocity, start_s: float, duration_s: float) -> Pie
 
 def after(piece: Piece, t_s: float) -> Position:
     """Where the piece is t_s after its start."""
-    p, v = piece.position, piece.velocity
-    return Position(
-        p.north_m + v.north_m_s * t_s, p.east_m + v.east_m_s * t_s, p.alt_m - v.down_m_s * t_s
-    )
+    (north, east, alt), (north_s, east_s, down_s) = piece.position, piece.velocity
+    return Position(north + north_s * t_s, east + east_s * t_s, alt - down_s * t_s)
 
 
 def legs_of(other: Intruder) -> tuple[Piece, ...]:
@@ -107,6 +107,9 @@ def legs_of(other: Intruder) -> tuple[Piece, ...]:
 
 def later(other: Intruder, t_s: float) -> Intruder:
     """The intruder as it will be t_s [s] from now, if it flies as it is taken to."""
+    if not other.way:
+        begun = straight(other.position, other.velocity, 0.0, math.inf)
+        return other._replace(position=after(begun, t_s), spread=other.spread.after(t_s))
     rest = [leg for leg in legs_of(other) if leg.start_s + leg.duration_s > t_s]
     first = rest[0]
     gone_s = t_s - first.start_s
@@ -135,35 +138,46 @@ def meetings(
     """The pieces cut where the intruder begins another leg, and where its spread stops to grow: each run of them with
     the intruder as it flies then, as one that has flown and will fly straight on. No instant of the pieces is left out,
     none comes twice but the cuts."""
-    steady_s = other.spread.steady_s
-    if not other.way and steady_s == math.inf:
+    if not other.way and other.spread.steady_s == math.inf:
         yield tuple(pieces), other
         return
+    for part, met, held_m in _parts(pieces, other):
+        run = tuple(_within(piece, part) for piece in met)
+        yield run, _straight_on(other, part, held_m)
+
+
+def _parts(
+    pieces: Sequence[Piece], other: Intruder
+) -> Iterator[tuple[Piece, Sequence[Piece], float]]:
+    """Each straight flight of an intruder of which some pieces are in the time, with these, and how far from it the
+    intruder holds [m]. All that is flown after the last piece is left out."""
+    steady_s = other.spread.steady_s
     begins = [piece.start_s for piece in pieces]
     ends = [piece.start_s + piece.duration_s for piece in pieces]
     ordered = begins == sorted(begins) and ends == sorted(ends)
     for leg in legs_of(other):
-        if ordered and ends and leg.start_s >= ends[-1]:
+        start_s, duration_s = leg.start_s, leg.duration_s
+        if ordered and ends and start_s >= ends[-1]:
             return
-        held_m = other.hold_m if other.way and leg.duration_s == math.inf else 0.0
-        for part in _cut(leg, steady_s):
+        held_m = other.hold_m if other.way and duration_s == math.inf else 0.0
+        for part in (leg,) if steady_s == math.inf else _cut(leg, steady_s):
             met = pieces
             if ordered:  # those in the time of the part follow each other
                 before_s = part.start_s + part.duration_s
                 met = pieces[bisect_right(ends, part.start_s) : bisect_left(begins, before_s)]
-            run = tuple(_within(piece, part) for piece in met if _overlap(piece, part))
-            if run:
-                spread = other.spread.after(steady_s) if part.start_s >= steady_s else other.spread
-                yield (
-                    run,
-                    other._replace(
-                        position=after(part, -part.start_s),
-                        velocity=leg.velocity,
-                        way=(),
-                        hold_m=held_m,
-                        spread=spread._replace(steady_s=math.inf),
-                    ),
-                )
+            met = [piece for piece in met if _overlap(piece, part)]
+            if met:
+                yield part, met, held_m
+
+
+def _straight_on(other: Intruder, part: Piece, held_m: float) -> Intruder:
+    """An intruder as it flies in a part, as one that has flown and will fly straight on."""
+    spread = other.spread
+    if spread.steady_s != math.inf:
+        spread = spread.after(spread.steady_s) if part.start_s >= spread.steady_s else spread
+        spread = spread._replace(steady_s=math.inf)
+    place = after(part, -part.start_s)
+    return Intruder(other.id, place, part.velocity, other.cooperates, (), held_m, spread)
 
 
 def _cut(leg: Piece, at_s: float) -> tuple[Piece, ...]:
@@ -187,9 +201,9 @@ def _overlap(piece: Piece, leg: Piece) -> bool:
 
 def _within(piece: Piece, leg: Piece) -> Piece:
     """The part of a piece in the time of a leg."""
-    start = max(piece.start_s, leg.start_s)
-    end = min(piece.start_s + piece.duration_s, leg.start_s + leg.duration_s)
-    return Piece(start, end - start, after(piece, start - piece.start_s), piece.velocity)
+    begins, end = piece.start_s, piece.start_s + piece.duration_s
+    start, end = max(begins, leg.start_s), min(end, leg.start_s + leg.duration_s)
+    return Piece(start, end - start, after(piece, start - begins), piece.velocity)
 
 
 def _relative(piece: Piece, other: Intruder, t_s: float) -> tuple[Vec2, Vec2, float, float]:
@@ -210,21 +224,74 @@ def _relative(piece: Piece, other: Intruder, t_s: float) -> tuple[Vec2, Vec2, fl
 
 
 def out_of_reach(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> bool:
-    """True only if no piece can lose well clear, whichever way the intruder flies: a bound on range and closing speed.
+    """True only if no piece can lose well clear of one that flies straight on: a bound on range and closing speed.
 
     A violation needs |s| <= DTHR + TTHR |v|, and |s| shrinks by at most |v| per second.
     """
     first, last = pieces[0], pieces[-1]
     closing = max(math.hypot(p.velocity.north_m_s, p.velocity.east_m_s) for p in pieces)
-    legs = other.way or (other,)
-    closing += max(math.hypot(leg.velocity.north_m_s, leg.velocity.east_m_s) for leg in legs)
-    begin = legs[0].position
-    far = math.hypot(first.position.north_m - begin.north_m, first.position.east_m - begin.east_m)
+    closing += math.hypot(other.velocity.north_m_s, other.velocity.east_m_s)
+    far = math.hypot(
+        first.position.north_m - other.position.north_m,
+        first.position.east_m - other.position.east_m,
+    )
     reach = last.start_s + last.duration_s + volume.tthr_s
     spread = other.spread.after(last.start_s + last.duration_s)
     off = spread.wide_m + other.spread.wide_m_s * volume.tthr_s
-    off += other.hold_m if other.way else 0.0
     return far > 1 + volume.dthr_m + off + closing * reach
+
+
+def ways_out_of_reach(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> bool:
+    """True only if no piece can lose well clear: a bound on how far the places of the pieces are from those of the
+    intruder's legs until they end, and on the closing speed. See `out_of_reach`."""
+    until_s = max(piece.start_s + piece.duration_s for piece in pieces)
+    if until_s == math.inf:
+        return False
+    legs = [leg for leg in legs_of(other) if leg.start_s < until_s]
+    last = legs[-1]
+    legs[-1] = last._replace(duration_s=min(last.duration_s, until_s - last.start_s))
+    own, its = _extent(pieces), _extent(legs)
+    north = max(own[0] - its[1], its[0] - own[1], 0.0)
+    east = max(own[2] - its[3], its[2] - own[3], 0.0)
+    return math.hypot(north, east) > _reach_m(
+        other, volume, until_s, _fastest(pieces) + _fastest(legs), 0.0
+    )
+
+
+def _extent(pieces: Sequence[Piece]) -> tuple[float, float, float, float]:
+    """The least and the greatest north, and east, of where pieces lead [m]."""
+    norths, easts = list[float](), list[float]()
+    for _, duration_s, (north, east, _), (north_s, east_s, _) in pieces:
+        norths += (north, north + north_s * duration_s)
+        easts += (east, east + east_s * duration_s)
+    return min(norths), max(norths), min(easts), max(easts)
+
+
+def _fastest(pieces: Sequence[Piece]) -> float:
+    """The greatest horizontal speed of pieces [m/s]."""
+    return max(math.hypot(piece.velocity[0], piece.velocity[1]) for piece in pieces)
+
+
+def _reach_m(
+    other: Intruder, volume: WellClear, until_s: float, closing: float, lasts_s: float
+) -> float:
+    """From how far on no loss comes in a time [s] in which both close in at most so fast [m/s]; see `out_of_reach`."""
+    spread = other.spread.after(until_s)
+    off = spread.wide_m + other.spread.wide_m_s * volume.tthr_s
+    return 1 + volume.dthr_m + other.hold_m + off + closing * (lasts_s + volume.tthr_s)
+
+
+def leg_out_of_reach(
+    pieces: Sequence[Piece], leg: Piece, other: Intruder, volume: WellClear
+) -> bool:
+    """The same of one leg of the intruder and the pieces in its time, from where both are as the first of them begins
+    that is flown on it: no farther than they close in from there."""
+    first, ends_s = min(pieces), max(piece.start_s + piece.duration_s for piece in pieces)
+    at_s, until_s = max(first.start_s, leg.start_s), min(ends_s, leg.start_s + leg.duration_s)
+    own, its = after(first, at_s - first.start_s), after(leg, at_s - leg.start_s)
+    far = math.hypot(own.north_m - its.north_m, own.east_m - its.east_m)
+    closing = _fastest(pieces) + math.hypot(leg.velocity[0], leg.velocity[1])
+    return far > _reach_m(other, volume, until_s, closing, until_s - at_s)
 
 
 @driver(checked_by=("violation_within", "uncertain_conflict"))
@@ -235,11 +302,15 @@ def first_violation_s(
 
     The instant is early by at most the piece's duration / 2^halvings.
     """
-    # most are far away, and need not be followed along their ways
-    if other.way and pieces and out_of_reach(pieces, other, volume):
+    if not other.way and other.spread.steady_s == math.inf:
+        return _first_of_straight(pieces, other, volume, halvings)
+    if not pieces or ways_out_of_reach(pieces, other, volume):
         return None
-    for run, straight_on in meetings(pieces, other):
-        found = _first_of_straight(run, straight_on, volume, halvings)
+    for part, met, held_m in _parts(pieces, other):
+        if leg_out_of_reach(met, part, other, volume):
+            continue
+        run = tuple(_within(piece, part) for piece in met)
+        found = _first_of_straight(run, _straight_on(other, part, held_m), volume, halvings)
         if found is not None:
             return found
     return None

@@ -66,6 +66,9 @@ class GivenUpWatch:
             self._delivery.message(message)
             return
         vid, now_ms = message.body.VehicleID, message.time_ms
+        if message.kind == "TaskProgress" and not vid:
+            self._left(message.body.TaskID, now_ms)
+            return
         leg = self._legs.get(vid)
         if leg is None:
             return
@@ -79,9 +82,15 @@ class GivenUpWatch:
             self._time(vid, leg, now_ms)
             since_ms = None if leg.since_ms is None else now_ms
             self._legs[vid] = _Leg(message.body.TaskID, since_ms=since_ms)
-        elif message.body.Phase.name in SETTLED and message.body.TaskID == leg.task_id:
-            self._time(vid, leg, now_ms)
-            self._legs[vid] = _Leg(since_ms=leg.since_ms)
+        elif message.body.Phase.name in SETTLED:
+            self._left(message.body.TaskID, now_ms, vid)
+
+    def _left(self, task_id: int, now_ms: int, only: int = 0) -> None:
+        """A task is settled for a vehicle that was on its way to it, or waits and is nobody's."""
+        for vid, leg in self._legs.items():
+            if leg.task_id == task_id and vid == (only or vid):
+                self._time(vid, leg, now_ms)
+                self._legs[vid] = _Leg(since_ms=leg.since_ms)
 
     def _changes(self, vid: int, leg: _Leg, message: Message) -> None:
         now_ms = message.time_ms

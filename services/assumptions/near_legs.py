@@ -31,6 +31,14 @@ KERNELS = (
     comes_within, edge_against, gate_accepts, in_time, keep_in_leg_ok, keep_out_leg_ok, locate,
 )  # fmt: skip
 Leg = tuple[Position, Position]
+Asked = dict[tuple[Position, Leg, float], bool]
+"""Places that were held against legs, each with a margin, and whether they are near."""
+Levels = dict[tuple[float, float, float, float], bool]
+"""Altitudes that were held against those of the ends of legs, each with a margin, and whether they are near."""
+LEVELS_MOST = 1000
+"""So many are remembered: level flight asks the same all the while."""
+ROUNDING_M = 1e-3
+"""How far a distance is off at most that is about right [m]."""
 
 
 class Path(NamedTuple):
@@ -63,6 +71,8 @@ class NearLegsWatch:
         self._free_ms = dict.fromkeys(self._gates, 0)
         self._before: dict[int, tuple[int, Position]] = {}
         self._kept: dict[tuple[Leg, Zone, float], bool] = {}
+        self._near: dict[int, Asked] = {}
+        self._level: Levels = {}
         zones = mission.zones or any(change.zone for change in mission.changes)
         none = "" if zones and self._gates else "no zone for a vehicle that is protected"
         waits = "no flight on a path that UxAS commanded was seen"
@@ -159,21 +169,28 @@ class NearLegsWatch:
             self._paths[number] = path._replace(s_m=max(path.s_m, min(last, track.length_m)))
         ends = (before[1], here)
         zones = [b.zone for b in zones_of(self._mission, before[0] + 1) if b.binds(before[0])]
-        near, why = self._beside(ends, path.legs(min(first, last), max(first, last)), zones)
+        asked = self._near.get(number, {})
+        near, why = self._beside(ends, path.legs(min(first, last), max(first, last)), zones, asked)
         if why and self._record.broken is None:
             # a lap that is commanded anew begins ahead: the vehicle is on its last legs
-            near, why = self._beside(ends, path.legs(0.0, track.length_m), zones)
+            near, why = self._beside(ends, path.legs(0.0, track.length_m), zones, asked)
+        # where it is now it was before the next sample
+        self._near[number] = {key: is_near for key, is_near in asked.items() if key[0] == here}
         if why:
             text = f"vehicle {number} is {near:.4g} m off the leg that UxAS commanded at {path.since_ms / 1000:.2f} s"
             self._record.check(False, before[0], number, f"{text}, {why}")
         self._record.see(near)
 
-    def _beside(self, ends: Leg, legs: list[Leg], zones: list[Zone]) -> tuple[float, str]:
+    def _beside(
+        self, ends: Leg, legs: list[Leg], zones: list[Zone], asked: Asked
+    ) -> tuple[float, str]:
         """How far the nearest leg that keeps the zones is [m]; else the nearest, and why none will do."""
         found = sorted(((_off_m(ends, leg), leg) for leg in legs), key=lambda one: one[0])
         why = ""
         for off_m, leg in found:
-            margin = next((m for m in MARGINS_M if _is_near(ends, leg, m)), None)
+            # a margin that is less than the distance is not enough, and need not be asked for
+            margins = (m for m in MARGINS_M if m >= off_m - ROUNDING_M)
+            margin = next((m for m in margins if self._are_near(ends, leg, m, asked)), None)
             if margin is None:
                 if off_m > 2 * MARGINS_M[-1]:
                     break  # nor are the others
@@ -183,6 +200,27 @@ class NearLegsWatch:
                 return off_m, ""
             why = why or f"which keeps zone {bad[0]} by less than {margin:g} m"
         return found[0][0], why or "more than any margin of a leg"
+
+    def _are_near(self, ends: Leg, leg: Leg, margin_m: float, asked: Asked) -> bool:
+        """Whether both ends of what was flown are no farther from the leg than the margin; of each it is asked once."""
+        for p in ends:
+            key = (p, leg, margin_m)
+            if key not in asked:
+                asked[key] = self._is_near(p, leg, margin_m)
+            if not asked[key]:
+                return False
+        return True
+
+    def _is_near(self, p: Position, leg: Leg, margin_m: float) -> bool:
+        """Whether a place is no farther from a leg than the margin, beside and in altitude; exact on the given numbers."""
+        if not all(map(math.isfinite, p)):
+            return False
+        key = (p.alt_m, leg[0].alt_m, leg[1].alt_m, margin_m)
+        if key not in self._level:
+            if len(self._level) >= LEVELS_MOST:
+                self._level.clear()
+            self._level[key] = _is_level(*key)
+        return self._level[key] and _is_beside(p, leg, margin_m)
 
     def _keeps(self, leg: Leg, zone: Zone, margin_m: float) -> bool:
         """Whether a leg keeps a zone by a margin; asked once."""
@@ -219,15 +257,15 @@ def _aside_m(p: Position, leg: Leg) -> float:
     return math.hypot(p.north_m - a.north_m - share * north, p.east_m - a.east_m - share * east)
 
 
-def _is_near(ends: Leg, leg: Leg, margin_m: float) -> bool:
-    """Whether both ends of what was flown are no farther from the leg than the margin; exact on the given numbers."""
-    if not all(math.isfinite(x) for p in ends for x in p):
-        return False
-    a, b = (Vec2(p.north_m, p.east_m) for p in leg)
-    low, high = (Vec2(p.alt_m, 0.0) for p in leg)
-    for p in ends:
-        beside = exact(edge_against, Vec2(p.north_m, p.east_m), a, b, margin_m)
-        level = exact(edge_against, Vec2(p.alt_m, 0.0), low, high, margin_m)
-        if FARTHER in (beside, level):
-            return False
-    return True
+def _is_beside(p: Position, leg: Leg, margin_m: float) -> bool:
+    """Whether a place is horizontally no farther from a leg than the margin."""
+    a, b = (Vec2(end.north_m, end.east_m) for end in leg)
+    place = exact(edge_against, Vec2(p.north_m, p.east_m), a, b, margin_m)
+    return bool(place != FARTHER)
+
+
+def _is_level(alt_m: float, begins_m: float, ends_m: float, margin_m: float) -> bool:
+    """Whether an altitude is no farther from those between the ends of a leg than the margin."""
+    low, high = Vec2(begins_m, 0.0), Vec2(ends_m, 0.0)
+    place = exact(edge_against, Vec2(alt_m, 0.0), low, high, margin_m)
+    return bool(place != FARTHER)

@@ -276,7 +276,9 @@ def bars(flight: Flight) -> list[dict[str, Any]]:
     """The time line as bars: per vehicle what it did from when to when."""
     found: list[dict[str, Any]] = []
     for k, phase in enumerate(flight.phases):
-        if phase["phase"] not in BARS:
+        if (
+            phase["phase"] not in BARS or not phase["vehicle"]
+        ):  # nobody's task is no bar of a vehicle
             continue
         later = (p["time_ms"] for p in flight.phases[k + 1 :] if p["vehicle"] == phase["vehicle"])
         found.append(

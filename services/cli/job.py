@@ -360,7 +360,7 @@ def left_out_lines(plan: Plan) -> list[str]:
     left = left_out_of(plan)
     lines = [f"in part: {one.text}" for one in in_part_of(plan)]
     for one in left:
-        lines.append(f"left out: {one.text}")
+        lines.append(f"{'waits for a vehicle' if one.waits else 'left out'}: {one.text}")
         lines += [f"  task {one.task_id} could be done: {r.text}" for r in one.remedies if r.tried]
     if left and not (isinstance(plan, PartialPlan) and plan.sure):
         lines.append("whether more could be done is not certain")

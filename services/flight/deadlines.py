@@ -8,7 +8,7 @@ from cratous.services.flight.executive_state import Asked, Config, Out, State
 from cratous.services.flight.expectation import expected_times
 from cratous.services.flight.speed_control import FASTEST, broken_rows, trimmed_speed_m_s
 from cratous.services.flight.task_transitions import fail
-from cratous.services.flight.timing import opens_ms
+from cratous.services.flight.timing import LOWER, opens_ms
 from cratous.spec.constraint_rows import Row
 from cratous.spec.executive import FOR_DEADLINE, PLAN_ANEW, STANDS_BY
 from cratous.spec.mission.plan import PlanItem
@@ -29,9 +29,11 @@ def expected(state: State, factor: float, now_ms: int) -> tuple[dict[int, int], 
 
 def opens(state: State, item: PlanItem, now_ms: int, margin_ms: int = 0) -> int:
     """When an item's task is expected to be allowed to begin, and a margin if it must wait."""
-    starts, ends = expected(state, 1.0, now_ms)
-    starts.pop(item.task_id, None)
-    at_ms = opens_ms(item.task_id, state.plan.rows, starts, ends)
+    at_ms, rows = 0, [r for r in state.plan.rows if r.i == item.task_id and r.kind in LOWER]
+    if rows:
+        starts, ends = expected(state, 1.0, now_ms)
+        starts.pop(item.task_id, None)
+        at_ms = opens_ms(item.task_id, rows, starts, ends)
     if at_ms > 0:
         at_ms += margin_ms
     return max(at_ms, item.start_ms) if item.wait_ms > 0 else at_ms
@@ -60,6 +62,8 @@ def watch(state: State) -> tuple[State, Late]:
 
 def _broken(state: State, factor: float) -> list[tuple[int, Row]]:
     """Unsettled tasks whose upper bounds would be broken at this pace, with the row."""
+    if all(row.kind in LOWER for row in state.plan.rows):
+        return []
     starts, ends = expected(state, factor, state.now_ms)
     settled = dict(state.ends).keys() | dict(state.failed).keys()
     return broken_rows(state.plan.rows, starts, ends, settled)

@@ -250,9 +250,11 @@ class Executive:
             {**dict(state.left_out), **dict(state.failed)},
         )
         chains = {chain.vehicle.id: chain for chain in state.chains}
+        waited, told = left_out.no_longer_awaited(dict(state.left_out), chains, now_ms)
+        state = replace(state, left_out=tuple({**dict(state.left_out), **waited}.items()))
         tasks, said = left_out.unfinished(changes.left(state), settled, chains, now_ms, why)
         for task in tasks:
             state = state.has_failed(task, why)
-        out += [Say(one, task_transitions.NAME) for one in said]
+        out += [Say(one, task_transitions.NAME) for one in (*told, *said)]
         out += [Say(mission_end(now_ms, how), task_transitions.NAME), Over(how)]
         return state

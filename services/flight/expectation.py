@@ -11,6 +11,21 @@ from cratous.services.flight.timing import opens_ms
 from cratous.spec.constraint_rows import Row
 from cratous.spec.mission.plan import PlanItem
 
+MEASURED_MOST = 1000
+_measured: dict[int, tuple[PlanItem, float, float]] = {}
+"""Items by identity, with the lengths of their ways: the same are asked for at each heartbeat."""
+
+
+def _lengths_m(item: PlanItem) -> tuple[float, float]:
+    """The lengths of the way to an item and of its path [m]."""
+    known = _measured.get(id(item))
+    if known is None or known[0] is not item:
+        if len(_measured) >= MEASURED_MOST:
+            _measured.clear()
+        known = item, polyline_length_m(item.transit), polyline_length_m(item.path)
+        _measured[id(item)] = known
+    return known[1], known[2]
+
 
 def expected_times(
     chains: Mapping[int, Chain],
@@ -44,11 +59,12 @@ def expected_times(
     for _, vid, item, arrived in sorted(todo, key=lambda t: (t[0], t[1])):
         if item.task_id in failed:
             continue
-        way = 0.0 if arrived else polyline_length_m(item.transit)
+        transit_m, path_m = _lengths_m(item)
+        way = 0.0 if arrived else transit_m
         speed = item.speed_m_s / 1000
         opens = opens_ms(item.task_id, rows, starts, ends)
         start = max(math.floor(free[vid] + way / (speed * factor)), opens)
         starts[item.task_id] = start
-        free[vid] = start + polyline_length_m(item.path) / speed
+        free[vid] = start + path_m / speed
         ends[item.task_id] = math.floor(free[vid])
     return starts, ends

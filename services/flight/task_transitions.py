@@ -18,7 +18,7 @@ from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.commands import task_progress
 from cratous.services.flight.dynamics import turn_radius_m
 from cratous.services.flight.executive_state import Config, Out, State
-from cratous.services.flight.left_out import leave_out, nothing_of
+from cratous.services.flight.left_out import awaited, leave_out, nothing_of
 from cratous.services.flight.messages import Say
 from cratous.services.flight.notices import mission_change
 from cratous.services.flight.remaining_path import last_lap
@@ -51,10 +51,11 @@ def progress(chain: Chain, at_ms: int, phase: str, note: str = "", served: float
 
 
 def begin(config: Config, state: State, out: Out) -> State:
-    """Set every vehicle on its way by the plan in force. What that leaves out fails by name."""
+    """Set every vehicle on its way by the plan in force. What that leaves out fails by name, or waits."""
     settled = (dict(state.starts), dict(state.ends), dict(state.failed))
     before, chains = dict(state.left_out), state.by_vehicle()
-    left, said = leave_out(state.plan, settled, before, chains, state.now_ms)
+    until = awaited(state.to_come)
+    left, said = leave_out(state.plan, settled, before, chains, state.now_ms, until)
     out.extend(Say(body, NAME) for body in said)
     state = replace(state, left_out=tuple(left.items()))
     for vehicle in state.mission.vehicles:

@@ -20,7 +20,7 @@ from cratous.core.avoidance.prediction import Intruder, Piece, first_violation_s
 from cratous.core.avoidance.resolution import Scene
 from cratous.core.permit.remainder import hold_at, hold_permits, zones_permit
 from cratous.services.icarous.messages import Sensed
-from cratous.spec.mission import Position, WellClear
+from cratous.spec.mission import Position, WellClear, Zone
 
 TURN_MARGIN = 1.1
 """A way back, and a loiter, is made of turns this much wider than the tightest."""
@@ -37,11 +37,20 @@ class Hold(NamedTuple):
     radius_m: float
 
 
+class Beside(NamedTuple):
+    """Discs of a radius [m] beside the end of a way that were held against zones, and whether both obey them all."""
+
+    centres: tuple[Position, ...]
+    radius_m: float
+    zones: tuple[Zone, ...]
+    obey: bool
+
+
 class Ahead(NamedTuple):
     """The way that is predicted, the volumes that it keeps clear, and the holds of which one may end it.
 
     volumes: each is kept by the way; held: the volume whose cylinder the holds keep clear; rise_m: how far a
-    hold may be off its height [m].
+    hold may be off its height [m]; beside: what was asked of zones for the holds.
     """
 
     pieces: tuple[Piece, ...]
@@ -49,6 +58,7 @@ class Ahead(NamedTuple):
     holds: tuple[Hold, ...] = ()
     held: WellClear | None = None
     rise_m: float = 0.0
+    beside: Beside | None = None
 
     def first_s(self, other: Intruder) -> float | None:
         """When the way, or the hold that ends it, first comes too near to an intruder [s], or None."""
@@ -84,11 +94,18 @@ def horizon_s(scene: Scene) -> float:
     return scene.lookahead_s + scene.volume.tthr_s
 
 
-def with_hold(way: Way, sensed: Sensed, scene: Scene, own: WellClear, margin: float) -> Ahead:
+def with_hold(
+    way: Way,
+    sensed: Sensed,
+    scene: Scene,
+    own: WellClear,
+    margin: float,
+    before: Beside | None = None,
+) -> Ahead:
     """What is looked at of a predicted way, and where it ends sooner the holds of which one follows.
 
     way: followed to `horizon_s`; own: the mission's volume, without buffer; margin: a loiter is flown this
-    much wider than the tightest turn. A way to its end keeps the buffered cylinder, and the mission's own
+    much wider than the tightest turn; before: what was asked of zones last, which is not asked again. A way to its end keeps the buffered cylinder, and the mission's own
     thresholds of time: how long it goes on is known.
     """
     pieces, beyond = looked_at(way, scene.lookahead_s)
@@ -96,11 +113,15 @@ def with_hold(way: Way, sensed: Sensed, scene: Scene, own: WellClear, margin: fl
         return Ahead(pieces, (scene.volume,))
     around = cylinder(scene.volume.dthr_m, scene.volume.zthr_m)
     rise_m = TRACKING_S * sensed.ability.max_climb_m_s
-    holds = _holds(beyond, sensed, scene, margin) if beyond is not None else ()
-    return Ahead(pieces, (own, around), holds, around, rise_m)
+    if beyond is None:
+        return Ahead(pieces, (own, around), (), around, rise_m, before)
+    holds, beside = _holds(beyond, sensed, scene, margin, before)
+    return Ahead(pieces, (own, around), holds, around, rise_m, beside)
 
 
-def _holds(beyond: Piece, sensed: Sensed, scene: Scene, margin: float) -> tuple[Hold, ...]:
+def _holds(
+    beyond: Piece, sensed: Sensed, scene: Scene, margin: float, before: Beside | None
+) -> tuple[tuple[Hold, ...], Beside]:
     """Where the loiter at the end may be. beyond: straight flight from the end on, for the time that is left."""
     motion = sensed.motion
     radius_m = margin * motion.speed_m_s / sensed.ability.turn_rate_rad_s
@@ -108,16 +129,22 @@ def _holds(beyond: Piece, sensed: Sensed, scene: Scene, margin: float) -> tuple[
     end, v = beyond.position, beyond.velocity
     heading = math.atan2(v.east_m_s, v.north_m_s)
     until_s = beyond.start_s + beyond.duration_s
-    beside = [
+    beside = tuple(
         Position(
             end.north_m - side * radius_m * math.sin(heading),
             end.east_m + side * radius_m * math.cos(heading),
             end.alt_m,
         )
         for side in (1, -1)
-    ]
-    if all(zones_permit(centre, scene.zones, radius_m + off_m) for centre in beside):
-        places, disc_m = beside, radius_m + off_m
-    else:  # a wider circle, on either side
-        places, disc_m = [end], 2 * WIDEST * radius_m + off_m
-    return tuple(Hold(hold_at(place, beyond.start_s, until_s), disc_m) for place in places)
+    )
+    disc_m, places = radius_m + off_m, beside
+    question = beside, disc_m, scene.zones
+    if before is not None and before[:3] == question:
+        asked = before
+    else:
+        obey = all(zones_permit(centre, scene.zones, disc_m) for centre in beside)
+        asked = Beside(beside, disc_m, scene.zones, obey)
+    if not asked.obey:  # a wider circle, on either side
+        places, disc_m = (end,), 2 * WIDEST * radius_m + off_m
+    holds = tuple(Hold(hold_at(place, beyond.start_s, until_s), disc_m) for place in places)
+    return holds, asked

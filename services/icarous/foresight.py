@@ -18,7 +18,7 @@ from cratous.services.icarous.return_to_path import (
     ways_back,
 )
 from cratous.services.icarous.state import Config, State
-from cratous.spec.mission import Position
+from cratous.spec.mission import Daa, Position
 
 ON_PATH_M = 30.0
 """Nearer than this to its path a vehicle is taken to fly along it; else straight on [m]."""
@@ -36,11 +36,17 @@ def scene_of(config: Config, state: State, sensed: Sensed) -> Scene:
     return Scene(sensed.intruders, zones, volume, daa.lookahead_s, sensed.here, daa.looks_first)
 
 
+def looked_s(daa: Daa) -> float:
+    """How far ahead all that `predicted` gives is at most held against others [s]."""
+    return daa.lookahead_s + buffered(daa.well_clear, daa.buffer).tthr_s
+
+
 def predicted(config: Config, state: State, sensed: Sensed, scene: Scene) -> Ahead:
     """The own way ahead: along the waypoints and into the hold at their end while on the path (within ON_PATH_M),
     and in the hold for PASSED_S past the last one; else straight on."""
     told, motion, lookahead_s = state.told, sensed.motion, scene.lookahead_s
     pace = pace_of(told, sensed) if state.paces(sensed.now_ms) else None
+    paced, own = at_pace(sensed, pace), config.daa.well_clear
     here, index = flat(motion.position), told.next_index
     if 0 < index < len(told.waypoints):
         ahead = told.waypoints[index:]
@@ -50,12 +56,12 @@ def predicted(config: Config, state: State, sensed: Sensed, scene: Scene) -> Ahe
             if len(ahead) > 1 and there_within(here, goal, motion.speed_m_s, REACHED_S):
                 ahead = ahead[1:]
             way = way_along(motion, ahead, horizon_s(scene), pace=pace)
-            return with_hold(way, at_pace(sensed, pace), scene, config.daa.well_clear, TURN_MARGIN)
+            return with_hold(way, paced, scene, own, TURN_MARGIN, state.beside)
     passed = bool(told.waypoints) and index >= len(told.waypoints)
     if passed and there_within(here, flat(told.waypoints[-1]), motion.speed_m_s, PASSED_S):
         # until another way is told the vehicle circles here
         way = way_along(motion, (), horizon_s(scene), pace=pace)
-        return with_hold(way, at_pace(sensed, pace), scene, config.daa.well_clear, TURN_MARGIN)
+        return with_hold(way, paced, scene, own, TURN_MARGIN, state.beside)
     v = velocity_of(motion.heading_rad, motion.speed_m_s, motion.climb_m_s)
     return Ahead((Piece(0.0, lookahead_s, motion.position, v),), (scene.volume,))
 

@@ -11,6 +11,7 @@ is decided by the kernels of `core.authority.cycle`.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -25,11 +26,13 @@ from cratous.core.authority.cycle import (
 from cratous.core.authority.gate import ICAROUS, gate_accepts
 from cratous.core.authority.link_loss import FINAL, LANDED, LINKED, loss_lets_go, loss_takes
 from cratous.core.authority.take_off import departure_lets_go, departure_takes
+from cratous.core.authority.timeliness import in_time
 from cratous.core.avoidance.manoeuvre import velocity_of
 from cratous.core.avoidance.resolution import Choice
 from cratous.services.icarous import asking, link_loss, messages, permits, take_off
 from cratous.services.icarous.ending import TURN_MARGIN
 from cratous.services.icarous.foresight import (
+    looked_s,
     points_back,
     predicted,
     scene_of,
@@ -39,7 +42,7 @@ from cratous.services.icarous.foresight import (
 from cratous.services.icarous.geofence_monitor import zone_ahead_s
 from cratous.services.icarous.inbox import beaten, hear
 from cratous.services.icarous.offers import Refused, certified
-from cratous.services.icarous.others import with_ways
+from cratous.services.icarous.others import to_their_ends, with_ways
 from cratous.services.icarous.pace import change_ms, pace_of
 from cratous.services.icarous.proposal import describe, manoeuvre
 from cratous.services.icarous.return_to_path import PERSIST_MS, RELAPSE_MS, onto
@@ -110,8 +113,9 @@ class Instance:
             able = sensed._replace(
                 motion=sensed.motion._replace(speed_m_s=sensed.ability.min_speed_m_s)
             )
+        until_s = self._needed_s(state, watches, sensed.now_ms)
         ways, others = with_ways(
-            state.ways, state.told, able, self.config.daa, beat_s, state.courses
+            state.ways, state.told, able, self.config.daa, beat_s, state.courses, until_s
         )
         state, sensed = replace(state, told=beaten(state.told)), sensed._replace(intruders=others)
         # one whose way is known is where that leads, in a turn too
@@ -135,6 +139,16 @@ class Instance:
         beat = Heartbeat(sequence=state.beats, time_s=sensed.now_ms / 1000)
         return state, (*up, *lost, *out, messages.Up(self.config.vehicle_id, beat))
 
+    def _needed_s(self, state: State, watches: bool, now_ms: int) -> float:
+        """How far the ways of others are needed at a heartbeat [s]: as far as is looked, unless permits or courses are
+        held against them."""
+        daa, plan = self.config.daa, self.config.lost_link
+        linked = plan is None or in_time(state.told.heard_ms, now_ms, plan.after_ms)
+        linked = linked and state.no_link.loss.mode == LINKED
+        if not watches or state.met or not linked or take_off.departs(self.config, state):
+            return math.inf
+        return looked_s(daa) + 1.0
+
     def _watch(self, state: State, sensed: messages.Sensed, in_turn: frozenset[int]) -> Step:
         """MONITOR: take over if a conflict is foreseen that is ours to act on, or the link is lost, or to take off."""
         if take_off.departs(self.config, state):
@@ -148,6 +162,7 @@ class Instance:
         cycled = cycle_watched(state.cycle, takes, sensed.now_ms, RELAPSE_MS)
         if cycled.act == NOTHING:
             return replace(state, cycle=cycled.cycle), said
+        sensed = sensed._replace(intruders=to_their_ends(state.ways, sensed.intruders))
         if conflict is None or state.no_link.loss.mode != LINKED:
             state, out = self._by_itself(state, sensed, in_turn, cycled, NO_LINK)
             return state, (*said, *out)
@@ -195,6 +210,8 @@ class Instance:
         """All predicted losses of well clear, what is still permitted, and the conflict to act on."""
         scene = scene_of(self.config, state, sensed)
         ahead = predicted(self.config, state, sensed, scene)
+        if ahead.beside is not None and ahead.beside is not state.beside:
+            state = replace(state, beside=ahead.beside)
         limits = nearest(sensed.ability, scene.volume, self.config.heartbeat_ms)
         own, seen = self.config.vehicle_id, sensed.intruders
         found = threats(own, ahead, seen, state.threats, sensed.now_ms, limits, in_turn)

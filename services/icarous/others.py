@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from cratous.core.authority.timeliness import in_time
 from cratous.core.avoidance.manoeuvre import Motion, fly_to, smallest_turn
-from cratous.core.avoidance.prediction import Intruder, Piece, after
+from cratous.core.avoidance.prediction import Intruder, Piece
 from cratous.core.avoidance.way_ahead import turns
 from cratous.core.routing.polylines import Track
 from cratous.services.icarous.deviation import keeps_to
@@ -46,10 +46,17 @@ Ways = tuple[Followed, ...]
 
 
 def with_ways(
-    before: Ways, told: Told, sensed: Sensed, daa: Daa, beat_s: float, courses: Tracks = ()
+    before: Ways,
+    told: Told,
+    sensed: Sensed,
+    daa: Daa,
+    beat_s: float,
+    courses: Tracks = (),
+    until_s: float = math.inf,
 ) -> tuple[Ways, tuple[Intruder, ...]]:
     """The ways that were told, and everybody as is to be reckoned with: by the way that was told while it is kept to.
-    before, courses: what this and everybody's course were at the last heartbeat; beat_s: from one to the next [s]."""
+    before, courses: what this and everybody's course were at the last heartbeat; beat_s: from one to the next [s];
+    until_s: no leg of a way that was told is needed that begins later than this [s from now]."""
     if not in_time(told.heard_ms, sensed.now_ms, LINK_LOST_MS):
         return (), sensed.intruders
     steered, was = dict(told.steered), dict(courses)
@@ -74,10 +81,21 @@ def with_ways(
         kept = keeps_to(old.track.at(at_m), other.position, daa, seen=other.spread)
         off_rad = smallest_turn(old.track.heading_rad(at_m), _course_rad(other.velocity))
         kept = kept and not turns(off_rad, _turn_rate(other, sensed), ASTRAY_S)
-        way = _along(old.track, at_m, other) if kept else ()
+        way = _along(old.track, at_m, other, until_s) if kept else ()
         hold_m = _hold_m(other, sensed) if way else 0.0
         others.append(other._replace(way=way, hold_m=hold_m))
     return tuple(ways), tuple(others)
+
+
+def to_their_ends(ways: Ways, others: tuple[Intruder, ...]) -> tuple[Intruder, ...]:
+    """The same with each way to its end that `with_ways` has given for a while only; ways: as it gave them."""
+    known = {one.vehicle_id: one for one in ways}
+    return tuple(
+        other._replace(way=_along(known[other.id].track, known[other.id].at_m, other))
+        if other.way and other.id in known
+        else other
+        for other in others
+    )
 
 
 def _speed_m_s(other: Intruder) -> float:
@@ -126,19 +144,23 @@ def _course_rad(v: Velocity) -> float:
     return math.atan2(v.east_m_s, v.north_m_s)
 
 
-def _along(track: Track, at_m: float, other: Intruder) -> tuple[Piece, ...]:
-    """Flight along a track from at_m on at the present speed, as far beside it as the vehicle is now."""
+def _along(
+    track: Track, at_m: float, other: Intruder, until_s: float = math.inf
+) -> tuple[Piece, ...]:
+    """Flight along a track from at_m on at the present speed, as far beside it as the vehicle is now. until_s: legs that
+    begin later than this [s] are left out."""
     speed, pieces = _speed_m_s(other), list[Piece]()
     if not speed:
         return ()
-    place, t_s, first = other.position, 0.0, bisect_right(track.s_m, at_m)
-    ahead = track.points[first - 1 :], track.points[first:], track.s_m[first:]
+    (north_m, east_m, alt_m), t_s, first = other.position, 0.0, bisect_right(track.s_m, at_m)
+    last = bisect_right(track.s_m, at_m + until_s * speed) + 1
+    ahead = track.points[first - 1 : last], track.points[first:last], track.s_m[first:last]
     for a, b, end_m, (north, east) in zip(*ahead, track.directions[first - 1 :], strict=False):
-        left_m = end_m - at_m
+        left_s = (end_m - at_m) / speed
         leg_s = math.hypot(b.north_m - a.north_m, b.east_m - a.east_m) / speed
         down = (a.alt_m - b.alt_m) / leg_s
         v = Velocity(north * speed, east * speed, down)
-        piece = Piece(t_s, left_m / speed, place, v)
-        pieces.append(piece)
-        place, t_s, at_m = after(piece, piece.duration_s), t_s + piece.duration_s, end_m
+        pieces.append(Piece(t_s, left_s, Position(north_m, east_m, alt_m), v))
+        north_m, east_m = north_m + v.north_m_s * left_s, east_m + v.east_m_s * left_s
+        alt_m, t_s, at_m = alt_m - down * left_s, t_s + left_s, end_m
     return tuple(pieces)

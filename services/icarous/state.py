@@ -14,6 +14,7 @@ from cratous.core.permit.encounter import Encounter
 from cratous.services.icarous.asking import Asking
 from cratous.services.icarous.band_history import Bands
 from cratous.services.icarous.course import Course
+from cratous.services.icarous.ending import Beside
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.lost import LostLink, NoLink
 from cratous.services.icarous.others import Ways
@@ -92,7 +93,7 @@ class State:
     it makes for; beats: heartbeats so far; met: the intruders because of which it has taken over; search: of the
     manoeuvre that is over soonest; ways: of the other vehicles of ours; asking: UxAS for a way back; bands: what detect
     and avoid said last, while a loss is foreseen or ICAROUS flies; no_link: what it does while UxAS is not heard;
-    rising: how far it is off the ground, where it started there; pace_ms: until when UxAS, after a handback, may be bringing the vehicle to the speed that was told [ms]."""
+    beside: what was asked of zones for the hold at the end of the way; rising: how far it is off the ground, where it started there; pace_ms: until when UxAS, after a handback, may be bringing the vehicle to the speed that was told [ms]."""
 
     cycle: Cycle = START
     told: Told = field(default_factory=Told)
@@ -109,6 +110,7 @@ class State:
     no_link: NoLink = field(default_factory=NoLink)
     pace_ms: int = 0
     rising: Rising = field(default_factory=Rising)
+    beside: Beside | None = None
 
     def paces(self, now_ms: int) -> bool:
         """Whether UxAS, which has just taken it back, may still bring the vehicle to the speed that was told."""

@@ -10,6 +10,9 @@ from cratous.spec.mission import Mission, Vehicle
 from cratous.spec.mission.changes import VEHICLE_JOINS, VEHICLE_LOST, split, without_vehicles
 from cratous.spec.records import replace
 
+JOINS_LATER = "joins only at"
+"""Said of a vehicle that is not there yet."""
+
 
 def absent(mission: Mission, now_ms: int) -> dict[int, str]:
     """The vehicles that take no part at an instant, each with the reason."""
@@ -20,7 +23,7 @@ def absent(mission: Mission, now_ms: int) -> dict[int, str]:
         if change is not None:
             lost = change.kind == VEHICLE_LOST
             at_ms = _lost_ms(mission, vehicle.id, now_ms) if lost else change.at_ms
-            how = "was lost at" if lost else "joins only at"
+            how = "was lost at" if lost else JOINS_LATER
             found[vehicle.id] = f"it {how} {at_ms / 1000:.2f} s"
         elif in_wind(vehicle, wind) is None:
             found[vehicle.id] = _too_windy(vehicle, wind)

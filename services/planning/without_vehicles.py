@@ -5,7 +5,9 @@ Said of all that planning begins with, before any search.
 
 from __future__ import annotations
 
+from cratous.services.mission.availability import JOINS_LATER
 from cratous.services.planning.inputs import Inputs
+from cratous.spec.mission.plan import NOT_THERE_YET
 
 
 def why_none(inputs: Inputs) -> tuple[str, ...]:
@@ -25,7 +27,10 @@ def unable(inputs: Inputs) -> dict[int, str]:
     """A reason for each task that no vehicle can do or reach, or that has ended undone."""
     return {
         **{task: f"it ended undone: {why}" for task, why in inputs.undone.items()},
-        **{task: f"no vehicle can do it: {why}" for task, why in without_options(inputs).items()},
+        **{
+            task: f"{NOT_THERE_YET if _not_there_yet(inputs, task) else 'no vehicle can do it'}: {why}"
+            for task, why in without_options(inputs).items()
+        },
         **{task: f"no vehicle can reach it: {why}" for task, why in without_routes(inputs).items()},
     }
 
@@ -77,6 +82,17 @@ def without_routes(inputs: Inputs) -> dict[int, str]:
             said = "; ".join((*causes, *_absent(inputs, task_id)))
             reasons[task_id] = said
     return reasons
+
+
+def _not_there_yet(inputs: Inputs, task_id: int) -> bool:
+    """Whether of the vehicles that may do a task none takes part, and one joins later."""
+    eligible = inputs.mission.task(task_id).eligible
+    here = any(not eligible or vehicle.id in eligible for vehicle in inputs.mission.vehicles)
+    return not here and any(
+        JOINS_LATER in why
+        for vehicle, why in inputs.absent.items()
+        if not eligible or vehicle in eligible
+    )
 
 
 def _absent(inputs: Inputs, task_id: int) -> list[str]:

@@ -113,6 +113,10 @@ class Remedy(NamedTuple):
     tried: bool = False
 
 
+NOT_THERE_YET = "no vehicle that may do it is there yet"
+"""Why a task is left out for now whose vehicle joins later."""
+
+
 class LeftOut(NamedTuple):
     """A task that is asked for and not planned.
 
@@ -126,6 +130,11 @@ class LeftOut(NamedTuple):
     waiting: tuple[int, ...] = ()
     instead: tuple[int, ...] = ()
     remedies: tuple[Remedy, ...] = ()
+
+    @property
+    def waits(self) -> bool:
+        """Whether it is left out for now, until a vehicle that may do it joins."""
+        return self.reason.startswith(NOT_THERE_YET)
 
     @property
     def text(self) -> str:

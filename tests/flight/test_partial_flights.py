@@ -47,10 +47,10 @@ def flown(mission: Mission) -> tuple[Any, dict[str, str], list[Any]]:
     return result, {v.item: str(v.outcome) for v in monitor.details()}, said
 
 
-def failures(said: list[Any]) -> list[tuple[int, int, int]]:
-    """(task, vehicle, instant) of each failure told."""
+def failures(said: list[Any], phase: str = "Failed") -> list[tuple[int, int, int]]:
+    """(task, vehicle, instant) of each failure told, or of another phase."""
     told = [body for body in said if type(body).__name__ == "TaskProgress"]
-    return [(b.TaskID, b.VehicleID, b.Time) for b in told if b.Phase.name == "Failed"]
+    return [(b.TaskID, b.VehicleID, b.Time) for b in told if b.Phase.name == phase]
 
 
 def test_the_example_does_what_can_be_done_and_names_the_rest() -> None:
@@ -80,7 +80,7 @@ def test_a_task_left_out_is_taken_up_again_when_it_can_be_done() -> None:
     mission = load(LOST)
     back = Change(40_000, VEHICLE_JOINS, vehicle=2)
     result, rows, said = flown(replace(mission, changes=(*mission.changes, back)))
-    assert failures(said) == [(2, 2, 20_000)]
+    assert (failures(said), failures(said, "Waiting")) == ([], [(2, 0, 20_000)])
     assert set(result.ends) == {1, 2}
     assert (result.outcome, result.failed) == ("complete", {})
     assert rows["task 2 served"] == "holds"
