@@ -43,7 +43,9 @@ def any_served(c: Claim) -> Served:
         numbers = (c.whole(f"{name}_{one}") for one in ("taken", "answered"))
         return Line(*numbers, c.boolean(f"{name}_busy"), c.whole(f"{name}_sent_ms"))
 
-    return Served(c.boolean("counted"), line("line"), line("kept"), c.whole("stage"), c.whole("answers"))
+    return Served(
+        c.boolean("counted"), line("line"), line("kept"), c.whole("stage"), c.whole("answers")
+    )
 
 
 def any_event(c: Claim) -> Event:

@@ -25,6 +25,7 @@ from cratous.core.authority.cycle import (
 from cratous.core.authority.gate import ICAROUS, gate_accepts
 from cratous.core.authority.link_loss import FINAL, LANDED, LINKED, loss_lets_go, loss_takes
 from cratous.core.authority.take_off import departure_lets_go, departure_takes
+from cratous.core.authority.timeliness import in_time
 from cratous.core.avoidance.manoeuvre import velocity_of
 from cratous.core.avoidance.resolution import Choice
 from cratous.services.icarous import asking, link_loss, messages, permits, take_off
@@ -133,7 +134,17 @@ class Instance:
         else:
             state, out = self._fly(state, sensed, in_turn)
         beat = Heartbeat(sequence=state.beats, time_s=sensed.now_ms / 1000)
-        return state, (*up, *lost, *out, messages.Up(self.config.vehicle_id, beat))
+        state, hears = self._hears(state, sensed.now_ms)
+        return state, (*up, *lost, *hears, *out, messages.Up(self.config.vehicle_id, beat))
+
+    def _hears(self, state: State, now_ms: int) -> tuple[State, tuple[messages.Hears, ...]]:
+        """Whether UxAS is heard still, or again, for the record."""
+        last_ms = state.told.heard_ms
+        heard = in_time(last_ms, now_ms, LINK_LOST_MS)
+        if not self.config.records or heard != state.unheard:
+            return state, ()
+        told = messages.Hears(self.config.vehicle_id, now_ms, heard, last_ms)
+        return replace(state, unheard=not heard), (told,)
 
     def _watch(self, state: State, sensed: messages.Sensed, in_turn: frozenset[int]) -> Step:
         """MONITOR: take over if a conflict is foreseen that is ours to act on, or the link is lost, or to take off."""

@@ -27,7 +27,7 @@ def test_models_hold_every_type() -> None:
         "PERCEIVE": 3,
         "DAIDALUS": 10,
     }
-    assert len(lmcp.types) == 193
+    assert len(lmcp.types) == 194
     for name in lmcp.types:
         obj = lmcp.new(name)
         assert lmcp.full_names(obj)[0] == name
