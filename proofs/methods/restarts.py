@@ -40,8 +40,8 @@ def any_served(c: Claim) -> Served:
     """Any, its numbers of any size."""
 
     def line(name: str) -> Line:
-        numbers = (c.whole(f"{name}_{one}") for one in ("taken", "answered"))
-        return Line(*numbers, c.boolean(f"{name}_busy"), c.whole(f"{name}_sent_ms"))
+        taken, answered = c.whole(f"{name}_taken"), c.whole(f"{name}_answered")
+        return Line(taken, answered, c.boolean(f"{name}_busy"), c.whole(f"{name}_sent_ms"))
 
     return Served(
         c.boolean("counted"), line("line"), line("kept"), c.whole("stage"), c.whole("answers")
@@ -50,8 +50,10 @@ def any_served(c: Claim) -> Served:
 
 def any_event(c: Claim) -> Event:
     """Anything that may happen; a service that is started anew may have another limit."""
-    numbers = [c.whole(name) for name in ("kind", "of_ticket", "now_ms", "limit_ms")]
-    return Event(*numbers, c.boolean("fails"))
+    kind, ticket, now_ms, limit_ms = (
+        c.whole(name) for name in ("kind", "of_ticket", "now_ms", "limit_ms")
+    )
+    return Event(kind, ticket, now_ms, limit_ms, c.boolean("fails"))
 
 
 def each_event(c: Claim, one: Event) -> Any:

@@ -65,7 +65,13 @@ class PermittedWatch:
         if mission.instances and isinstance(mission.simulation, FaultySimulation):
             none = "with faults of the bridge the log does not say at which heartbeats ICAROUS has looked"
         kernels = (cylinder_violation, gate_accepts, in_time)
-        self._record = Record("of the cylinder", 1.0, kernels, none, waits="nothing that ICAROUS has looked at was seen")
+        self._record = Record(
+            "of the cylinder",
+            1.0,
+            kernels,
+            none,
+            waits="nothing that ICAROUS has looked at was seen",
+        )
 
     def message(self, message: Message) -> None:
         """Who commands, what is in hand, a heartbeat, what is sensed, or where an aircraft is."""

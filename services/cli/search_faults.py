@@ -59,9 +59,10 @@ def search_faults(
     from cratous.services.cli.progress import waiting
     from cratous.services.trace_replay.files import Trace, place, write
 
-    says_of = {name: fault.says for name, fault in (*FAULTS.items(), *HAND_FAULTS.items())}
+    broken: dict[str, Any] = {**FAULTS, **HAND_FAULTS}
+    says_of = {name: fault.says for name, fault in broken.items()}
     designs: dict[str, Any] = {SAFE: Design(), SAFE_HAND: HandDesign()}
-    designs |= {name: fault.design for name, fault in (*FAULTS.items(), *HAND_FAULTS.items())}
+    designs |= {name: fault.design for name, fault in broken.items()}
     known = [SAFE, *FAULTS, SAFE_HAND, *HAND_FAULTS]
     played = (SAFE, *FAULTS)
     for name in names:

@@ -16,6 +16,7 @@ def claim(c: Claim) -> None:
     c.show(c.implies(nobody, c.negation(passes)), "for an owner that there is not nobody acts")
     offer = c.use(gate_offer, gate)
     alone = c.all_of(
-        c.define(authority.may_command, gate, 1), c.negation(c.define(authority.may_command, gate, 0))
+        c.define(authority.may_command, gate, 1),
+        c.negation(c.define(authority.may_command, gate, 0)),
     )
     c.show(c.same(c.negation(c.same(offer, gate)), alone), "who opens an offer")
