@@ -18,6 +18,7 @@ from cratous.spec.system.ending import MOST_PATIENCE
 
 LEAST_MS = 1500
 """The way back has to be free for so long at least [ms]; a test holds it to that of the instance."""
+LINKED = "Linked"
 HEARD_MS = 2000
 """UxAS counts as heard by ICAROUS for so long after a line [ms]; a test holds it to that of the instance."""
 
@@ -29,16 +30,26 @@ def not_told(mission: Mission, told: bool) -> str:
     return "" if told else "this ICAROUS does not say whether it hears UxAS"
 
 
+def coarse(mission: Mission) -> str:
+    """Why a silence may not have been told, "" if each is: who acts without the link tells of those that last."""
+    loss = mission.link_loss
+    if loss is None or in_time(0, loss.after_ms, HEARD_MS):
+        return ""
+    return f"a silence of up to {loss.after_ms / 1000:g} s is not told (link_loss)"
+
+
 class HeardWatch:
     """Each ICAROUS hears UxAS at each of its heartbeats."""
 
-    kinds = ("Heartbeat", "UxasHeard")
+    kinds = ("Heartbeat", "UxasHeard", "LinkLossState")
 
     def __init__(self, mission: Mission, told: bool = True) -> None:
         self._instances = frozenset(mission.instances)
         none = not_told(mission, told)
         waits = "no heartbeat of ICAROUS was seen"
         self._record = Record("s", HEARD_MS / 1000, (in_time,), none, waits=waits)
+
+        self._record.gaps += [why for why in (coarse(mission),) if why and not none]
 
     def message(self, message: Message) -> None:
         """A heartbeat that came from an ICAROUS, or what one says of UxAS."""
@@ -48,12 +59,18 @@ class HeardWatch:
         if kind == "Heartbeat":
             if body.Direction.name == "Up":
                 self._record.see(None)
-        elif kind == "UxasHeard" and source in ("", f"icarous/{body.VehicleID}"):
-            silent_ms = max(0, body.Time - body.Last)
-            self._record.see(silent_ms / 1000 if not body.Heard else None)
-            text = f"no line of UxAS reached the ICAROUS of {body.VehicleID} from {body.Last / 1000:.2f} s to {body.Time / 1000:.2f} s"
-            fine = bool(body.Heard) and in_time(body.Last, body.Time, HEARD_MS)
-            self._record.check(fine, body.Last + HEARD_MS, body.VehicleID, text)
+        elif source not in ("", f"icarous/{body.VehicleID}"):
+            return
+        elif kind == "UxasHeard":
+            self._told(body.VehicleID, bool(body.Heard), body.Last, body.Time)
+        else:
+            self._told(body.VehicleID, body.Mode.name == LINKED, body.Heard, body.Time)
+
+    def _told(self, number: int, heard: bool, last_ms: int, now_ms: int) -> None:
+        self._record.see(None if heard else max(0, now_ms - last_ms) / 1000)
+        since_s, until_s = last_ms / 1000, now_ms / 1000
+        text = f"no line of UxAS reached the ICAROUS of {number} from {since_s:.2f} s to {until_s:.2f} s"
+        self._record.check(heard, last_ms + HEARD_MS, number, text)
 
     def end(self, at_ms: int) -> None:
         """Nothing is open."""
@@ -73,13 +90,13 @@ class Away(NamedTuple):
 class WayBackWatch:
     """Of each takeover: whether control was offered, and if it was not at the end, for how long."""
 
-    kinds = ("GateState", "UxasHeard")
+    kinds = ("GateState", "UxasHeard", "LinkLossState")
 
     def __init__(self, mission: Mission, told: bool = True) -> None:
         self._away: dict[int, Away] = {}
         self._instances = frozenset(mission.instances)
         self._unheard: set[int] = set()
-        self._gone_ms = gone_ms(mission)
+        self._gone_ms, self._coarse = gone_ms(mission), coarse(mission)
         # the way is first looked at one heartbeat after the takeover, and control is offered at one
         self._wait_ms = MOST_PATIENCE * LEAST_MS + 2 * mission.simulation.heartbeat_ms
         none = not_told(mission, told)
@@ -95,6 +112,8 @@ class WayBackWatch:
         number = body.VehicleID
         if kind == "UxasHeard":
             self._hears(number, bool(body.Heard), now_ms)
+        elif kind == "LinkLossState":
+            self._hears(number, body.Mode.name == LINKED, now_ms)
         elif kind == "GateState":
             gate = reported(body)
             if not has_it(gate):
@@ -127,6 +146,8 @@ class WayBackWatch:
             since_s, until_s = away.since_ms / 1000, until_ms / 1000
             if number in self._unheard:
                 self._record.gaps.append(f"the ICAROUS of {number} did not hear UxAS at the end")
+            elif self._coarse:
+                self._record.gaps.append(self._coarse)
             elif in_time(away.since_ms, until_ms, self._wait_ms):
                 self._record.gaps.append(
                     f"vehicle {number} was under ICAROUS from {since_s:.2f} s to {until_s:.2f} s, too short to tell"

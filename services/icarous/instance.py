@@ -138,10 +138,11 @@ class Instance:
         return state, (*up, *lost, *hears, *out, messages.Up(self.config.vehicle_id, beat))
 
     def _hears(self, state: State, now_ms: int) -> tuple[State, tuple[messages.Hears, ...]]:
-        """Whether UxAS is heard still, or again, for the record."""
+        """Whether UxAS is heard still, or again, for the record; one that acts without the link says so anyway."""
         last_ms = state.told.heard_ms
         heard = in_time(last_ms, now_ms, LINK_LOST_MS)
-        if not self.config.records or heard != state.unheard:
+        says_so = self.config.lost_link is not None
+        if says_so or not self.config.records or heard != state.unheard:
             return state, ()
         told = messages.Hears(self.config.vehicle_id, now_ms, heard, last_ms)
         return replace(state, unheard=not heard), (told,)
