@@ -100,6 +100,14 @@ class Design:
     restarted: Callable[[Gate], Gate] | None = None
     names: Callable[[State], int] = taken_epoch
 
+    def first(self) -> State:
+        """UxAS flies."""
+        return State()
+
+    def steps(self, state: State) -> Iterator[Step]:
+        """Everything that can happen next."""
+        return steps(self, state)
+
 
 def steps(design: Design, state: State) -> Iterator[Step]:
     """Everything that can happen next."""

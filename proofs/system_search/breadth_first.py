@@ -2,35 +2,44 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Hashable, Iterator
+from typing import Any, NamedTuple, Protocol
 
-from cratous.proofs.system_search.authority import Design, State, Step, steps
 from cratous.spec.errors import BadInput
-from cratous.spec.system.trace import Entry
 
 MOST_STATES = 2_000_000
+
+
+class Composition(Protocol):
+    """A design to search: states with `returned`, and steps with `entry`, `after` and `wrong`."""
+
+    def first(self) -> Any:
+        """The state at the start."""
+
+    def steps(self, state: Any) -> Iterator[Any]:
+        """Everything that can happen next."""
 
 
 class Found(NamedTuple):
     """trace: what happens up to the fault, or nothing; wrong: what is wrong then.
 
     states: how many were seen; complete: every state within the bound was; back: the shortest way to a
-    state in which UxAS flies again after ICAROUS has flown, or nothing.
+    state that says that it has `returned` (UxAS flies again after ICAROUS has flown), or nothing.
     """
 
-    trace: tuple[Entry, ...]
+    trace: tuple[Any, ...]
     wrong: str
     states: int
     complete: bool
-    back: tuple[Entry, ...]
+    back: tuple[Any, ...]
 
     @property
     def returned(self) -> bool:
-        """UxAS flies again after ICAROUS has flown, in one of the states."""
+        """What was lost has come back, in one of the states."""
         return bool(self.back)
 
 
-def search(design: Design, most_steps: int, most_states: int = 100_000) -> Found:
+def search(design: Composition, most_steps: int, most_states: int = 100_000) -> Found:
     """The shortest trace of at most `most_steps` steps to a fault of this design.
 
     Raises BadInput if a bound is not positive or above what memory allows.
@@ -43,12 +52,13 @@ def search(design: Design, most_steps: int, most_states: int = 100_000) -> Found
             raise BadInput(
                 "the bound is out of range", item=name, expected=f"1 to {most}", got=str(value)
             )
-    came: dict[State, tuple[State, Step] | None] = {State(): None}
-    edge, back = [State()], tuple[Entry, ...]()
+    first = design.first()
+    came: dict[Hashable, tuple[Any, Any] | None] = {first: None}
+    edge, back = [first], tuple[Any, ...]()
     for _ in range(most_steps):
-        later: list[State] = []
+        later: list[Any] = []
         for state in edge:
-            for step in steps(design, state):
+            for step in design.steps(state):
                 if step.wrong:
                     trace = (*_way(came, state), step.entry)
                     return Found(trace, step.wrong, len(came), False, back)
@@ -63,9 +73,9 @@ def search(design: Design, most_steps: int, most_states: int = 100_000) -> Found
     return Found((), "", len(came), True, back)
 
 
-def _way(came: dict[State, tuple[State, Step] | None], state: State) -> tuple[Entry, ...]:
+def _way(came: dict[Hashable, tuple[Any, Any] | None], state: Any) -> tuple[Any, ...]:
     """What happened on the way to a state, in order."""
-    found: list[Entry] = []
+    found: list[Any] = []
     at = came[state]
     while at is not None:
         found.append(at[1].entry)

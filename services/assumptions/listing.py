@@ -43,16 +43,15 @@ class State(StrEnum):
 class Assumption(NamedTuple):
     """text: what is assumed; theorems: files of `proofs/theorems` (system or permit); guarantees: G1 to G5;
     lost: what of them has no ground any more when it is broken; stands: what still holds then; watch: what is
-    looked at in a flight, empty if nothing can be; why_not: then the reason."""
+    looked at in a flight."""
 
     name: str
     text: str
     theorems: tuple[str, ...]
     guarantees: tuple[str, ...]
-    lost: str = ""
-    stands: str = ""
-    watch: str = ""
-    why_not: str = ""
+    lost: str
+    stands: str
+    watch: str
 
 
 LISTING = (
@@ -148,10 +147,12 @@ LISTING = (
     ),
     Assumption(
         "delivery to ICAROUS",
-        "each line from UxAS to ICAROUS is delivered within two heartbeats",
+        "at each heartbeat of ICAROUS a line from UxAS has been delivered to it in the last two seconds",
         TAKEOVER_ENDS,
         ("G4", "G5"),
-        why_not="what goes to ICAROUS is in the log when it is sent; whether it came is not",
+        "that a takeover ends within its bound: what is not heard is offered nothing",
+        BY_EPOCH,
+        "what each ICAROUS says of it: when it no longer hears UxAS, and since when",
     ),
     Assumption(
         "offers taken",
@@ -176,7 +177,9 @@ LISTING = (
         "the way back is free from some heartbeat on, at each",
         TAKEOVER_ENDS,
         ("G4",),
-        why_not="what an instance foresees is not in the log",
+        "that a takeover ends within its bound, or at all",
+        "the limit ends the mission, and G4 counts a takeover that is open then",
+        "takeovers that are open at the end: for how long ICAROUS, which hears UxAS, has offered nothing",
     ),
     Assumption(
         "end of the flight",
@@ -271,7 +274,10 @@ LISTING = (
         "the time that is named",
         (*HAND, *CLEAR, *FENCED),
         ("G1", "G2"),
-        why_not="what is looked at, the trajectory of a certificate and its tracks are not in the log",
+        "that a vehicle is clear as long as ICAROUS has looked ahead, and until the certificate in hand expires",
+        SAMPLED,
+        "each sample: no aircraft that is seen in the mission's own cylinder, nor with a certificate in hand a zone broken, "
+        "while all others fly as was predicted (what was looked at is not in the log)",
     ),
 )
 """All of them, in the order in which they are shown."""

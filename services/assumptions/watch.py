@@ -7,13 +7,14 @@ from typing import Any
 from cratous.services.assumptions.ahead import AheadWatch
 from cratous.services.assumptions.authority import CommandWatch, SteeringWatch
 from cratous.services.assumptions.given_up import GivenUpWatch
+from cratous.services.assumptions.heard import HeardWatch, WayBackWatch
 from cratous.services.assumptions.link import (
     ChangeWatch,
     ClockWatch,
     DeliveryWatch,
     PeriodWatch,
 )
-from cratous.services.assumptions.listing import LISTING, Assumption, State
+from cratous.services.assumptions.listing import LISTING, Assumption
 from cratous.services.assumptions.mission_end import AwayWatch, EndWatch, SettledWatch
 from cratous.services.assumptions.motion import IntruderWatch, TrackingWatch
 from cratous.services.assumptions.near_legs import NearLegsWatch
@@ -23,14 +24,25 @@ from cratous.services.assumptions.observed import (
     Record,
     Watch,
 )
+from cratous.services.assumptions.permitted import PermittedWatch
 from cratous.services.assumptions.sensed import SensedWatch
 from cratous.spec.mission import Mission
 
 
 class AssumptionWatch:
-    """All assumptions of one flight. Feed it messages with `tap`, ask for `rows` at the end."""
+    """All assumptions of one flight. Feed it messages with `tap`, ask for `rows` at the end.
 
-    def __init__(self, mission: Mission) -> None:
+    on_board: each ICAROUS says what it hears, as those of `cratous run` in one process do.
+    """
+
+    def __init__(self, mission: Mission, on_board: bool = True) -> None:
+        ahead, intruder, tracking = (
+            AheadWatch(mission),
+            IntruderWatch(mission),
+            TrackingWatch(mission),
+        )
+        sensed = SensedWatch(mission)
+        others = (ahead, intruder, tracking, sensed)
         self._watches: tuple[Watch, ...] = (
             CommandWatch(mission),
             SteeringWatch(mission),
@@ -42,11 +54,11 @@ class AssumptionWatch:
             AwayWatch(mission),
             SettledWatch(),
             GivenUpWatch(mission),
-            IntruderWatch(mission),
-            TrackingWatch(mission),
-            AheadWatch(mission),
+            HeardWatch(mission, on_board),
+            WayBackWatch(mission, on_board),
+            *others,
             NearLegsWatch(mission),
-            SensedWatch(mission),
+            PermittedWatch(mission, others),
         )
         self._records: dict[str, Record] = {}
         for watch in self._watches:
@@ -85,15 +97,10 @@ class AssumptionWatch:
 
         at_ms: when the messages end; over: the mission has ended by then.
         """
-        return [
-            _row(one, self._records[one.name].observed(at_ms, over) if one.watch else None)
-            for one in LISTING
-        ]
+        return [_row(one, self._records[one.name].observed(at_ms, over)) for one in LISTING]
 
 
-def _row(one: Assumption, seen: Observed | None) -> dict[str, Any]:
-    if seen is None:
-        seen = Observed(State.NOT_OBSERVED, None, None, None, "", one.why_not, 0, ())
+def _row(one: Assumption, seen: Observed) -> dict[str, Any]:
     broken = seen.broken
     return {
         "name": one.name,

@@ -50,15 +50,6 @@ def _of(row: Data, one: Assumption) -> Iterator[str]:
         yield f"{name} says otherwise what is lost and what stands"
     if (row["since_ms"] is not None) != broken:
         yield f"{name} is {row['state']}, since {row['since_ms']} ms"
-    if not one.watch and (row["state"], row["note"], row["checks"]) != (
-        State.NOT_OBSERVED,
-        one.why_not,
-        0,
-    ):
-        said = (
-            f"{row['state']}, after {row['checks']} checks, with the note {row['note'] or 'none'!r}"
-        )
-        yield f"{name} cannot be watched, and is {said}"
     if row["state"] != State.NOT_OBSERVED and not row["checks"]:
         yield f"{name} is {row['state']} without a check"
     if (row["state"] == State.HELD) == bool(row["note"]):

@@ -83,9 +83,11 @@ def watch(log: Path) -> Watched:
     """What a fresh monitor says that sees the messages of a log."""
     from cratous.services.monitor import Monitor
 
-    command = read_meta(log).get("command")
+    meta = read_meta(log)
+    command = meta.get("command")
     original = isinstance(command, str) and with_original_clients(command)
-    monitor = Monitor(*subject(log), says_beats=not original)
+    on_board = "processes" not in meta
+    monitor = Monitor(*subject(log), says_beats=not original, on_board=on_board)
     for envelope in read_envelopes(log):
         monitor.tap(envelope)
     return Watched(monitor.verdicts(), monitor.assumptions(), monitor.commands(), monitor.end_ms)

@@ -273,10 +273,12 @@ def accept_plan(
     writer.note("plan", to_data(plan))
 
 
-def watching(mission: Mission, plan: Plan, tell: Tell, says_beats: bool = True) -> Monitor:
+def watching(
+    mission: Mission, plan: Plan, tell: Tell, says_beats: bool = True, on_board: bool = True
+) -> Monitor:
     """A monitor of the flight that tells what is violated and which assumption breaks.
 
-    says_beats: whether the protocol of ICAROUS has heartbeats.
+    says_beats, on_board: as of `Monitor`.
     """
     from cratous.services.assumptions.said import sentence as assumed
     from cratous.services.certify.blame import blame_rows
@@ -291,7 +293,12 @@ def watching(mission: Mission, plan: Plan, tell: Tell, says_beats: bool = True) 
         tell(f"VIOLATION {sentence(verdict)}" + (f"; {who}" if who else ""))
 
     monitor = Monitor(
-        mission, plan, violated, lambda row: tell(f"ASSUMPTION {assumed(row)}"), says_beats
+        mission,
+        plan,
+        violated,
+        lambda row: tell(f"ASSUMPTION {assumed(row)}"),
+        says_beats,
+        on_board,
     )
     return monitor
 

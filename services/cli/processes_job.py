@@ -104,7 +104,7 @@ def _run(mission: Mission, told: Told, settings: Settings, flying: Flying) -> di
             plan, checks = plan_and_check(mission, planning)
             tell_plan(mission, plan, checks, tell)
             accept_plan(plan, checks, planning, folder, writer)
-            monitor = watching(mission, plan, tell, says_beats=not flying.original)
+            monitor = watching(mission, plan, tell, says_beats=not flying.original, on_board=False)
             bus.tap(writer.tap)
             bus.tap(monitor.tap)
             ended = fly(mission, plan, told, Recorder(mission, bus), flying)

@@ -12,7 +12,9 @@ import click
 from cratous.spec.errors import BadInput
 from cratous.spec.files.printable import json_text
 
-SAFE = "safe"
+SAFE, SAFE_HAND = "safe", "safe-certificate"
+HAND_STEPS = 6
+"""Traces of a certificate are no longer: each step has more possibilities."""
 
 
 @click.command()
@@ -36,11 +38,12 @@ SAFE = "safe"
 def search_faults(
     names: tuple[str, ...], steps: int, states: int, traces: Path | None, as_json: bool
 ) -> None:
-    """Search broken designs of authority for the shortest trace to a fault.
+    """Search broken designs of authority, and of the certificate in hand, for the shortest trace to a fault.
 
     The steps are the kernels that run: the gate, ICAROUS, the UxAS end, over a link that loses, repeats,
-    delays and reorders, and on which SETMOD lines are forged; each design named has one step replaced.
-    `safe` is the design as it runs. All of them without a name. The search is bounded: that nothing is
+    delays and reorders, and on which SETMOD lines are forged; and the hand behind the gate, to which offers
+    come late and twice. Each design named has one step replaced. `safe` and `safe-certificate` are the designs as
+    they run. All of them without a name. --traces writes those of authority. The search is bounded: that nothing is
     found within the bound is no proof (`cratous prove --only 'system*'` has the proofs).
 
     Example: cratous search-faults no-acknowledgement safe
@@ -50,26 +53,36 @@ def search_faults(
     """
     from cratous.proofs.system_search.authority import Design
     from cratous.proofs.system_search.breadth_first import search
+    from cratous.proofs.system_search.certificate_faults import HAND_FAULTS
+    from cratous.proofs.system_search.certificates import HandDesign
     from cratous.proofs.system_search.faults import FAULTS
     from cratous.services.cli.progress import waiting
     from cratous.services.trace_replay.files import Trace, place, write
 
-    known = [SAFE, *FAULTS]
+    broken: dict[str, Any] = {**FAULTS, **HAND_FAULTS}
+    says_of = {name: fault.says for name, fault in broken.items()}
+    designs: dict[str, Any] = {SAFE: Design(), SAFE_HAND: HandDesign()}
+    designs |= {name: fault.design for name, fault in broken.items()}
+    known = [SAFE, *FAULTS, SAFE_HAND, *HAND_FAULTS]
+    played = (SAFE, *FAULTS)
     for name in names:
         if name not in known:
             raise BadInput("no such design", item="NAME", expected=", ".join(known), got=name)
-    files = {} if traces is None else place(traces, names or known)
+    files = {}
+    if traces is not None:
+        files = place(traces, [name for name in names or known if name in played])
     rows: list[dict[str, Any]] = []
     code = 0
     for name in names or known:
-        safe = name == SAFE
+        safe = name in (SAFE, SAFE_HAND)
         begun = time.monotonic()
         with waiting(
             f"searching the design {name}, {len(rows)} of {len(names or known)} done", as_json
         ):
-            found = search(Design() if safe else FAULTS[name].design, steps, states)
-        says = "the design as it runs" if safe else FAULTS[name].says
-        took = {"steps": steps, "seconds": round(time.monotonic() - begun, 2)}
+            most = steps if name in played else min(steps, HAND_STEPS)
+            found = search(designs[name], most, states)
+        says = says_of.get(name, "the design as it runs")
+        took = {"steps": most, "seconds": round(time.monotonic() - begun, 2)}
         texts = {"trace": [entry.text for entry in found.trace], "returned": found.returned}
         counts = {"wrong": found.wrong, "states": found.states, "complete": found.complete}
         rows.append({"name": name, "says": says, **texts, **counts, **took})
@@ -99,5 +112,6 @@ def _show(row: dict[str, Any]) -> None:
     if not row["complete"]:
         click.echo(f"  not decided: the bound of states was reached ({seen})")
         return
-    back = "UxAS flies again after ICAROUS has" if row["returned"] else "control never returns"
+    lost = "a certificate" if row["name"] == SAFE_HAND else "control"
+    back = f"{lost} that was lost returns" if row["returned"] else f"{lost} never returns"
     click.echo(f"  nothing wrong within the bound, which is no proof; {back} ({seen})")

@@ -70,6 +70,7 @@ from cratous.services.flight.notices import (
     link_loss_state,
     take_off_state,
     truth,
+    uxas_heard,
 )
 from cratous.services.flight.result import FlightResult
 from cratous.services.flight.take_off import take_off
@@ -81,6 +82,7 @@ from cratous.services.icarous.messages import (
     Foresees,
     FromInstance,
     Guides,
+    Hears,
     Line,
     Offers,
     Sensed,
@@ -362,6 +364,8 @@ class Flight:
                     self._publish(link_loss_state(answer), f"icarous/{vid}")
                 case TakesOff(vid):
                     self._publish(take_off_state(answer), f"icarous/{vid}")
+                case Hears(vid):
+                    self._publish(uxas_heard(answer), f"icarous/{vid}")
                 case Guides(vid):
                     projection = self.icarous[vid].config.projection
                     self._publish(guidance(answer, projection), f"icarous/{vid}")

@@ -10,7 +10,7 @@ from cratous.core.authority.gate import ICAROUS, UXAS, Gate, epoch_given
 from cratous.services.flight.commands import SENDERS
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.holding import Change
-from cratous.services.icarous.messages import Foresees, Guides, TakesOff, WithoutLink
+from cratous.services.icarous.messages import Foresees, Guides, Hears, TakesOff, WithoutLink
 from cratous.services.logs.records import fingerprint, to_data
 from cratous.services.mission.frames import Projection, compass, place_and_velocity
 from cratous.spec.mission.plan import Plan
@@ -117,6 +117,17 @@ def conflict(foreseen: Foresees) -> Any:
 def link_loss_state(said: WithoutLink) -> Any:
     """What a vehicle flies while UxAS is not heard, or that it is heard again, as a `LinkLossState`."""
     return _mode_told("LinkLossState", said, Chosen=said.chosen)
+
+
+def uxas_heard(said: Hears) -> Any:
+    """That a vehicle's ICAROUS does not hear UxAS any more, or hears it again, as a `UxasHeard`."""
+    return lmcp.new(
+        "UxasHeard",
+        VehicleID=said.vehicle_id,
+        Time=said.now_ms,
+        Heard=said.heard,
+        Last=said.last_ms,
+    )
 
 
 def take_off_state(said: TakesOff) -> Any:

@@ -137,7 +137,18 @@ class Instance:
         else:
             state, out = self._fly(state, sensed, in_turn)
         beat = Heartbeat(sequence=state.beats, time_s=sensed.now_ms / 1000)
-        return state, (*up, *lost, *out, messages.Up(self.config.vehicle_id, beat))
+        state, hears = self._hears(state, sensed.now_ms)
+        return state, (*up, *lost, *hears, *out, messages.Up(self.config.vehicle_id, beat))
+
+    def _hears(self, state: State, now_ms: int) -> tuple[State, tuple[messages.Hears, ...]]:
+        """Whether UxAS is heard still, or again, for the record; one that acts without the link says so anyway."""
+        last_ms = state.told.heard_ms
+        heard = in_time(last_ms, now_ms, LINK_LOST_MS)
+        says_so = self.config.lost_link is not None
+        if says_so or not self.config.records or heard != state.unheard:
+            return state, ()
+        told = messages.Hears(self.config.vehicle_id, now_ms, heard, last_ms)
+        return replace(state, unheard=not heard), (told,)
 
     def _needed_s(self, state: State, watches: bool, now_ms: int) -> float:
         """How far the ways of others are needed at a heartbeat [s]: as far as is looked, unless permits or courses are

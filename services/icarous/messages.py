@@ -101,6 +101,16 @@ class TakesOff(NamedTuple):
     reason: str
 
 
+class Hears(NamedTuple):
+    """To the record: whether UxAS has been heard within the time after which nothing is offered to it, said when that
+    changes; last_ms: when a line of its came last."""
+
+    vehicle_id: int
+    now_ms: int
+    heard: bool
+    last_ms: int
+
+
 class Guides(NamedTuple):
     """To the record: the alerts and bands of a vehicle that flies so at now_ms [ms]."""
 
@@ -141,4 +151,6 @@ class Up(NamedTuple):
 
 
 ToInstance = Line | Sensed
-FromInstance = Wish | Foresees | Guides | WithoutLink | TakesOff | Offers | Uncertified | Steer | Up
+FromInstance = (
+    Wish | Foresees | Hears | Guides | WithoutLink | TakesOff | Offers | Uncertified | Steer | Up
+)

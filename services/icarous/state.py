@@ -93,7 +93,8 @@ class State:
     it makes for; beats: heartbeats so far; met: the intruders because of which it has taken over; search: of the
     manoeuvre that is over soonest; ways: of the other vehicles of ours; asking: UxAS for a way back; bands: what detect
     and avoid said last, while a loss is foreseen or ICAROUS flies; no_link: what it does while UxAS is not heard;
-    beside: what was asked of zones for the hold at the end of the way; rising: how far it is off the ground, where it started there; pace_ms: until when UxAS, after a handback, may be bringing the vehicle to the speed that was told [ms]."""
+    beside: what was asked of zones for the hold at the end of the way; rising: how far it is off the ground, where it started there; pace_ms: until when UxAS, after a handback, may be bringing the vehicle to the speed that was told [ms];
+    unheard: UxAS was not heard at the last heartbeat."""
 
     cycle: Cycle = START
     told: Told = field(default_factory=Told)
@@ -109,6 +110,7 @@ class State:
     bands: Bands | None = None
     no_link: NoLink = field(default_factory=NoLink)
     pace_ms: int = 0
+    unheard: bool = False
     rising: Rising = field(default_factory=Rising)
     beside: Beside | None = None
 

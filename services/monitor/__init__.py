@@ -35,7 +35,8 @@ class Monitor:
     """Watches one mission. Feed it envelopes with `tap`, ask for `verdicts` and `assumptions` at the end.
 
     on_violation is called once for each new violation, at the moment it is seen; on_broken likewise with the
-    row of each assumption of the theorems that breaks. says_beats: whether the protocol of ICAROUS has heartbeats.
+    row of each assumption of the theorems that breaks. says_beats: whether the protocol of ICAROUS has heartbeats;
+    on_board: whether each ICAROUS says if it hears UxAS, as in a flight in one process.
     """
 
     def __init__(
@@ -45,6 +46,7 @@ class Monitor:
         on_violation: Callable[[Verdict], None] | None = None,
         on_broken: Callable[[dict[str, Any]], None] | None = None,
         says_beats: bool = True,
+        on_board: bool = True,
     ) -> None:
         self.mission = mission
         self.not_covered = tuple(v.id for v in mission.vehicles if not v.protected)
@@ -59,7 +61,7 @@ class Monitor:
         self.hand = HandWatch.of(mission)
         self.link_loss = LinkLossWatch(mission, self.landing.down, self.presence)
         self.take_off = TakeOffWatch(mission, self.presence)
-        self._assumed = AssumptionWatch(mission)
+        self._assumed = AssumptionWatch(mission, on_board)
         self._last_ms, self._over = 0, False
         self._tell, self._tell_broken = on_violation, on_broken
         self._told = [0, 0]

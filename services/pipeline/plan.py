@@ -23,7 +23,7 @@ from cratous.services.pipeline.contexts import Context, Contexts
 from cratous.services.pipeline.mission_source import MissionSource
 from cratous.services.pipeline.planner import RoutePlannerVisibilityService
 from cratous.services.pipeline.tasks import TaskService
-from cratous.services.pipeline.validator import AutomationRequestValidatorService
+from cratous.services.pipeline.validator import LINE, AutomationRequestValidatorService
 from cratous.services.planning import stages, without_vehicles
 from cratous.services.planning.inputs import Inputs
 from cratous.services.planning.left_out import NothingDone
@@ -161,6 +161,7 @@ def services_on(
     finally:
         for service in services:
             bus.remove(service.name)
+        requests.shared.pop(LINE, None)  # the next request is of another mission
 
 
 def _answered(requests: MissionRequests, contexts: Contexts) -> Plan:

@@ -5,7 +5,7 @@ Every request gets a ticket when it comes. When its turn comes it is held agains
 to initialise themselves waits (not for a kind that nobody does: `unserved`), any other is answered with the reasons. One is in the pipeline at a
 time; each is answered once, in order, by its response, by an error, or because its time ran out.
 A TaskAutomationRequest keeps its RequestID; the others, and one whose id has just been another's, are
-numbered in the order in which they come.
+numbered in the order in which they come. A validator that is started anew in the same process goes on with the line of the one before it.
 
 A request is published as it came. What its tasks, vehicles and relations mean is the planning
 services' to say, so that a client's request reaches planners of any kind; where it means something
@@ -37,6 +37,8 @@ MANAGER = "TaskManagerService"
 CMASI_TASK, REMOVE = "afrl.cmasi.Task", "afrl.cmasi.RemoveTasks"
 REMEMBERED = 4096
 """RequestIDs that are not given again."""
+LINE = "line of requests"
+"""Under this what has not been answered is kept, for another validator that joins the bus."""
 REQUESTS = (
     "afrl.cmasi.AutomationRequest",
     "afrl.impact.ImpactAutomationRequest",
@@ -85,13 +87,28 @@ class AutomationRequestValidatorService:
     )
 
     def __init__(self, shared: dict[str, Any], contexts: Contexts, limit_ms: int) -> None:
-        """shared: keeps the RequestIDs that were given, also for another validator on the bus."""
+        """shared: keeps the RequestIDs that were given and the line as it stands, also for another validator on the bus."""
         self._shared, self._contexts, self._limit_ms = shared, contexts, limit_ms
 
     def start(self) -> Requests:
-        return Requests(Line(0, 0, False, 0), {}, False, frozenset())
+        """Where the validator before it has stopped."""
+        kept: Requests | None = self._shared.get(LINE)
+        return kept or Requests(Line(0, 0, False, 0), {}, False, frozenset())
+
+    def begin(self, state: Requests) -> Step:
+        """What the validator before it was still to be woken for."""
+        line = state.line
+        wakes = (Wake(0, line.answered), Wake(self._limit_ms, line.answered)) if state.asked else ()
+        return state, wakes
 
     def handle(self, state: Requests, envelope: Envelope, now_ms: int) -> Step:
+        return self._kept(self._handled(state, envelope, now_ms))
+
+    def _kept(self, step: Step) -> Step:
+        self._shared[LINE] = step[0]
+        return step
+
+    def _handled(self, state: Requests, envelope: Envelope, now_ms: int) -> Step:
         body, topic = envelope.body, envelope.topic
         out: list[Any] = []
         if topic in REQUESTS:
@@ -122,7 +139,7 @@ class AutomationRequestValidatorService:
         out: list[Any] = []
         if isinstance(key, tuple):
             state = state._replace(unserved=state.unserved.due(key))
-        return self._pump(state, out, now_ms), out
+        return self._kept((self._pump(state, out, now_ms), out))
 
     def _step(
         self, state: Requests, event: int, ticket: int, now_ms: int

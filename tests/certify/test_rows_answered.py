@@ -30,7 +30,6 @@ from cratous.spec.mission.changes import ZONE, ZONE_ENDS, ZoneEnd
 
 Report = dict[str, Any]
 Edit = Callable[[Report], None]
-FREE = next(one.name for one in LISTING if not one.watch)
 SENTENCE = "`.(p1 p2)`: p2 starts no earlier than p1 ends"
 
 
@@ -220,13 +219,6 @@ ASSUMED: dict[str, tuple[Edit, str]] = {
     "another text": (entry("clock", text="clocks are good"), "clock has another text"),
     "more guarantees": (entry("clock", guarantees=["G1"]), "clock has another text, other theorems"),
     "fewer theorems": (entry("clock", theorems=[]), "clock has another text, other theorems"),
-    "held, and not to be watched": (
-        entry(FREE, state="held", note=""), f"{FREE} cannot be watched, and is held",
-    ),
-    "not to be watched, for another reason": (
-        entry(FREE, note="all is well"),
-        f"{FREE} cannot be watched, and is not observed, after 0 checks, with the note 'all is well'",
-    ),
     "held without a check": (
         entry("clock", state="held", note="", checks=0), "clock is held without a check",
     ),

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from assumption_logs import LIMIT_MS, WHOLE, Change, flown, judged, tampered
 from flight_tools import meeting
+from mission_tools import must_fly
 from tampering import (
     Log,
     alter,
@@ -23,15 +24,27 @@ from tampering import (
 )
 
 from cratous.bridge import lmcp
+from cratous.services.assumptions.heard import HEARD_MS, LEAST_MS
 from cratous.services.assumptions.listing import LISTING
 from cratous.services.assumptions.said import sentence
 from cratous.services.assumptions.watch import AssumptionWatch
+from cratous.services.icarous.instance import LINK_LOST_MS
+from cratous.services.icarous.return_to_path import PERSIST_MS
 from cratous.services.monitor import Monitor
 from cratous.services.pipeline.plan import make_plan
-from cratous.spec.mission import FaultySimulation, Mission, Zone, ZoneKind
+from cratous.spec.mission import (
+    FaultySimulation,
+    Mission,
+    Position,
+    Simulation,
+    Velocity,
+    Zone,
+    ZoneKind,
+)
 from cratous.spec.mission.bridge_faults import BridgeFaults
 
-WATCHED = {one.name for one in LISTING if one.watch}
+WATCHED = {one.name for one in LISTING}
+STILL = Velocity(0.0, 0.0, 0.0)
 
 
 def with_faults(**faults: Any) -> Mission:
@@ -59,8 +72,7 @@ def test_a_flight_in_which_all_hold() -> None:
         assert row["observed"] is None or row["observed"] <= row["bound"]
     assert rows["intruder in its tube"]["bound"] == 150 * 0.25 / 2
     assert 0 < min(rows[n]["observed"] for n in ("tracking", "flown as looked at")) < 2
-    unwatched = {one.name: ("not observed", one.why_not) for one in LISTING if not one.watch}
-    assert {name: (rows[name]["state"], rows[name]["note"]) for name in unwatched} == unwatched
+    assert 0.5 < rows["permitted as offered"]["observed"] < 1
 
 
 TAKEN = {"VehicleID": 1, "Owner": "ICAROUS", "Epoch": 1}
@@ -166,6 +178,23 @@ def still_away(log: Log) -> None:
     remove("AuthorityChange", taken_ms() + 1, VehicleID=1, Owner="UxAS")(log)
 
 
+def never_offered(log: Log) -> None:
+    """ICAROUS keeps the vehicle up to the end."""
+    for _ in range(2):
+        remove("GateState", taken_ms() + 1, VehicleID=1)(log)
+
+
+def overlooked(log: Log, at_ms: int = 10_000) -> None:
+    """Another aircraft, which nobody has told ICAROUS of, flies straight through vehicle 1 at an instant."""
+    there = log[at(log, "TruthState", at_ms, VehicleID=1)]
+    for one in [o for o in log if o.topic.endswith("TruthState") and o.body.VehicleID == 1]:
+        s = (one.time_ms - there.time_ms) / 1000
+        place = {"North": there.body.North + 50.0 * s, "East": there.body.East - 40.0 * s}
+        speed = {"VelocityNorth": 50.0, "VelocityEast": -40.0, "VelocityDown": 0.0}
+        body = {"VehicleID": 91, "Altitude": there.body.Altitude, **place, **speed}
+        log.insert(log.index(one), other(one, **body))
+
+
 OFFERED = {"VehicleID": 1, "Offered": True}
 BREAKS: dict[str, tuple[Change, str]] = {
     "first command": (alter({"Sender": "ICAROUS"}, "GatedCommand"), "one of ICAROUS in epoch 0"),
@@ -178,6 +207,21 @@ BREAKS: dict[str, tuple[Change, str]] = {
     "clock": (time_goes_back, "a GatedCommand of 20.00 s after a message of"),
     "heartbeat period": (no_beats, "no heartbeat to the ICAROUS of 1 from 9.50 s to 10."),
     "delivery from ICAROUS": (late_beat, "heartbeat 21 of 10.00 s had not come by 11."),
+    "delivery to ICAROUS": (
+        lambda log: sent(
+            log,
+            20_000,
+            "icarous/1",
+            kind="UxasHeard",
+            VehicleID=1,
+            Time=20_000,
+            Heard=False,
+            Last=17_500,
+        ),
+        "no line of UxAS reached the ICAROUS of 1 from 17.50 s to 20.00 s",
+    ),
+    "way back free": (never_offered, "heard UxAS, and offered nothing"),
+    "permitted as offered": (overlooked, "above or below aircraft 91, though at the heartbeat of"),
     "offers taken": (not_taken, "had not been taken by"),
     "takeovers told": (told_late, "a command of UxAS in epoch 0; epoch 1 began at"),
     "end of the flight": (days_later, "a MissionEnd at"),
@@ -276,7 +320,11 @@ def test_the_tube_counts_altitude_by_its_own_bound() -> None:
     [
         ({"delay_ms": 5000}, {"delivery from ICAROUS"}),
         ({"loss": 0.4}, {"delivery from ICAROUS"}),
-        ({"cut_ms": 20_000}, {"delivery from ICAROUS", "heartbeat period"}),
+        (
+            {"cut_ms": 20_000},
+            {"delivery from ICAROUS", "delivery to ICAROUS", "heartbeat period"},
+        ),
+        ({"stops_reading_ms": 20_000, "reads_again_ms": 23_500}, {"delivery to ICAROUS"}),
     ],
 )
 def test_faults_of_the_bridge_break_what_is_assumed_of_the_link(
@@ -286,8 +334,11 @@ def test_faults_of_the_bridge_break_what_is_assumed_of_the_link(
     rows = judged(mission, list(flown(mission)))
     found = {name for name, row in rows.items() if row["state"] == "broken"}
     assert broken <= found <= broken | {"offers taken", "takeovers told", "intruder in its tube"}
-    (row,) = [rows[name] for name in ("delivery from ICAROUS",)]
-    assert row["observed"] > row["bound"] == 1.0
+    for name in {"delivery from ICAROUS"} & broken:
+        assert rows[name]["observed"] > rows[name]["bound"] == 1.0
+    for name in {"delivery to ICAROUS"} & broken:
+        assert rows[name]["observed"] > rows[name]["bound"] == 2.0
+        assert 0 <= rows[name]["since_ms"] - 21_000 <= 1000
     if "cut_ms" in faults:
         assert rows["heartbeat period"]["since_ms"] == 20_000 + 500
     for name in ("epochs kept", "epochs told", "first command", "clock"):
@@ -310,6 +361,77 @@ def test_without_icarous_nothing_is_said_to_hold_of_it() -> None:
     for name in ("delivery from ICAROUS", "heartbeat period", "intruder in its tube", "tracking"):
         assert rows[name]["state"] == "not observed"
         assert rows[name]["note"] == "no vehicle has an ICAROUS instance"
+
+
+def test_a_certificate_that_is_not_so_is_seen_under_icarous_too() -> None:
+    row = tampered(lambda log: overlooked(log, taken_ms() + 8000))["permitted as offered"]
+    assert row["state"] == "broken"
+    assert "aircraft 91, though a certificate is in hand until" in row["note"]
+    assert taken_ms() < row["since_ms"] <= taken_ms() + 8000
+
+
+def test_what_is_hit_after_it_flew_otherwise_is_not_blamed_on_what_was_permitted() -> None:
+    def change(log: Log) -> None:
+        aside(90, 5000, East=20.0)(log)
+        overlooked(log)
+
+    row = tampered(change)["permitted as offered"]
+    assert row["state"] == "not observed"
+    assert "after 'flown as looked at' was broken" in row["note"]
+
+
+def test_a_certificate_ends_in_the_log_where_it_says_so() -> None:
+    """Without one nothing was promised: what then comes near breaks nothing of this."""
+
+    def change(log: Log) -> None:
+        for k, one in enumerate(log):
+            if one.topic.endswith("HandState"):
+                log[k] = other(one, Expiry=taken_ms())
+        overlooked(log, taken_ms() + 8000)
+
+    row = tampered(change)["permitted as offered"]
+    assert row["state"] == "held"
+
+
+def test_how_long_a_takeover_waits_is_told_from_one_that_was_too_short() -> None:
+    log = [copy.copy(one) for one in flown(WHOLE)]
+    never_offered(log)
+    end = log.pop(at(log, "MissionEnd"))
+    soon_ms = taken_ms() + 20_000
+    cut = [*(one for one in log if one.time_ms <= soon_ms)]
+    cut.append(replace(other(end, Time=soon_ms), time_ms=soon_ms))
+    row = judged(WHOLE, cut)["way back free"]
+    assert (row["state"], "too short to tell" in row["note"]) == ("not observed", True)
+    deaf = [copy.copy(one) for one in log]
+    sent(deaf, taken_ms() + 1000, "icarous/1", kind="UxasHeard", VehicleID=1,
+         Time=taken_ms() + 1000, Heard=False, Last=taken_ms())  # fmt: skip
+    row = judged(WHOLE, [*deaf, end])["way back free"]
+    assert (row["state"], "did not hear UxAS" in row["note"]) == ("not observed", True)
+
+
+def test_an_intruder_that_stays_beside_the_way_leaves_no_way_back() -> None:
+    """It hovers where the task is: control is never offered for long, and the limit ends the flight."""
+    base = meeting()
+    stands = replace(base.traffic[0], position=Position(2600.0, 0.0, 300.0), velocity=STILL)
+    goal = must_fly(1, (2600.0, 0.0, 300.0), label="there")
+    short = Simulation(limit_ms=200_000)
+    mission = replace(base, traffic=(stands,), tasks=(goal,), simulation=short)
+    rows = judged(mission, list(flown(mission)))
+    assert rows["way back free"]["state"] == "broken", rows["way back free"]
+    assert rows["delivery to ICAROUS"]["state"] == "held"
+
+
+def test_the_bounds_are_those_that_icarous_goes_by() -> None:
+    assert (LEAST_MS, HEARD_MS) == (PERSIST_MS, LINK_LOST_MS)
+
+
+def test_an_icarous_that_does_not_say_what_it_hears_leaves_that_open() -> None:
+    watch = AssumptionWatch(WHOLE, on_board=False)
+    for one in flown(WHOLE):
+        watch.tap(one.topic.rpartition(".")[2], one)
+    rows = {row["name"]: row for row in watch.rows(LIMIT_MS, True)}
+    for name in ("delivery to ICAROUS", "way back free"):
+        assert rows[name]["note"] == "this ICAROUS does not say whether it hears UxAS"
 
 
 def test_an_intruder_or_a_vehicle_that_is_not_seen_is_not_said_to_be_in_its_place() -> None:

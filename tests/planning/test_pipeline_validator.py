@@ -81,24 +81,54 @@ def test_time_runs_out_and_the_next_begins_and_a_late_response_is_not_passed_on(
     assert len(alone.got("AutomationResponse")) == 2
 
 
-def test_started_anew_it_answers_no_request_of_before_and_takes_no_answer_to_one_for_its_own(
-    alone: Rig,
-) -> None:
+def anew(rig: Rig, limit_ms: int = 1000) -> None:
+    """KillService, and another validator."""
+    number = next(n for n, name in rig.one.manager.services.items() if name == NAME)
+    rig.tell(lmcp.new("KillService", ServiceID=number))
+    text = f'<Service Type="{NAME}" MaxResponseTime_ms="{limit_ms}"/>'
+    rig.tell(lmcp.new("CreateNewService", XmlConfiguration=text))
+
+
+def test_started_anew_it_answers_each_request_of_before_once_in_its_turn(alone: Rig) -> None:
     alone.tell(request(5), request(5))
+    anew(alone)
+    alone.tell(request(5))
+    respond(alone, 1)
+    anew(alone)
+    respond(alone, 1)  # again: it has its answer
+    respond(alone, 2)
+    respond(alone, 3)
+    anew(alone)
+    answers = alone.got("AutomationResponse")
+    assert [a.MissionCommandList[0].CommandID for a in answers] == [1, 2, 3]
+    assert [u.RequestID for u in alone.got("UniqueAutomationRequest")] == [1, 2, 3]
+    alone.wait(5000)
+    assert len(alone.got("AutomationResponse")) == 3
+
+
+@pytest.mark.parametrize("limit_ms", [300, 1000, 4000])
+def test_started_anew_it_tells_that_the_time_of_a_request_of_before_ran_out(
+    alone: Rig, limit_ms: int
+) -> None:
+    alone.tell(request(5))
+    alone.wait(400)
+    anew(alone, limit_ms)
+    alone.wait(limit_ms)
+    assert infos(alone) == [f"no response within MaxResponseTime_ms = {limit_ms}"]
+    respond(alone, 1)
+    alone.wait(9000)
+    assert len(alone.got("AutomationResponse")) == 1
+
+
+def test_what_comes_while_it_is_not_there_has_no_answer(alone: Rig) -> None:
+    alone.tell(request(5))
     service = alone.bus._services[NAME]
     alone.bus.remove(NAME)
+    respond(alone, 1)
+    alone.tell(request(5))
     alone.bus.add(service)
-    alone.tell(*vehicle(1), must_fly(5), lmcp.new("TaskInitialized", TaskID=5), request(5))
-    first, again = (unique.RequestID for unique in alone.got("UniqueAutomationRequest"))
-    assert first != again
-    respond(alone, first)
-    assert not alone.got("AutomationResponse")
-    respond(alone, again)
-    respond(alone, again)
-    (answer,) = alone.got("AutomationResponse")
-    assert answer.MissionCommandList[0].CommandID == again
     alone.wait(5000)
-    assert len(alone.got("AutomationResponse")) == 1
+    assert infos(alone) == ["no response within MaxResponseTime_ms = 1000"]
 
 
 def test_an_error_status_ends_the_request_that_it_names_and_no_other(alone: Rig) -> None:
@@ -272,10 +302,9 @@ def test_tasks_that_the_relations_do_not_name_are_not_done_and_the_response_says
 
 def test_ids_do_not_come_twice_when_the_validator_is_made_again(alone: Rig) -> None:
     alone.tell(request(5))
-    number = next(n for n, name in alone.one.manager.services.items() if name == NAME)
-    alone.tell(lmcp.new("KillService", ServiceID=number))
-    alone.tell(lmcp.new("CreateNewService", XmlConfiguration=f'<Service Type="{NAME}"/>'))
-    alone.tell(lmcp.new("TaskInitialized", TaskID=5), request(5))
+    anew(alone)
+    respond(alone, 1)
+    alone.tell(request(5))
     assert [u.RequestID for u in alone.got("UniqueAutomationRequest")] == [1, 2]
 
 

@@ -12,8 +12,11 @@ from click.testing import CliRunner
 from cratous.core.authority.cycle import Cycle
 from cratous.core.authority.gate import Gate
 from cratous.core.authority.link_end import LinkEnd
+from cratous.core.permit.hand import hand_after, hand_step
 from cratous.proofs.system_search.authority import Design, State, steps
 from cratous.proofs.system_search.breadth_first import search
+from cratous.proofs.system_search.certificate_faults import HAND_FAULTS
+from cratous.proofs.system_search.certificates import HandDesign, Held
 from cratous.proofs.system_search.faults import FAULTS
 from cratous.services.cli import main
 from cratous.services.cli.search_faults import search_faults
@@ -73,6 +76,38 @@ def test_the_theorems_and_the_search_are_about_the_same_kernels() -> None:
             if isinstance(node, ast.ImportFrom) and "core.authority" in str(node.module):
                 proved |= {alias.name for alias in node.names}
     assert searched <= proved
+
+
+def test_the_safe_certificate_is_safe_and_one_is_in_hand_again_after_a_surprise() -> None:
+    found = search(HandDesign(), 6)
+    assert (found.wrong, found.trace) == ("", ())
+    assert found.complete
+    assert found.returned
+    assert found.states > 10_000
+
+
+@pytest.mark.parametrize("name", sorted(HAND_FAULTS))
+def test_each_fault_of_a_certificate_is_found_by_a_shortest_trace(name: str) -> None:
+    design = HAND_FAULTS[name].design
+    found = search(design, 6)
+    assert found.wrong
+    reached = {Held()}
+    for entry in found.trace:
+        reached = {
+            one.after
+            for state in reached
+            for one in design.steps(state)
+            if one.entry == entry and bool(one.wrong) == (entry is found.trace[-1])
+        }
+        assert reached
+    assert not search(design, len(found.trace) - 1).wrong
+
+
+def test_the_theorem_and_the_search_are_about_the_same_hand() -> None:
+    text = (THEOREMS / "the_hand_is_clear_until_a_surprise_or_its_expiry.py").read_text()
+    assert HandDesign().step is hand_step
+    assert "hand_after" in text
+    assert hand_after.step is hand_step
 
 
 def test_bounds_are_asked_for() -> None:

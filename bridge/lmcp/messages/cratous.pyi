@@ -540,3 +540,23 @@ class TakeOffState(LmcpObject):
         Heard: int = ...,
         Reason: str = ...,
     ) -> None: ...
+
+class UxasHeard(LmcpObject):
+    """cratous.UxasHeard: CRATOUS type 20."""
+
+    VehicleID: int
+    """int64, default 0."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    Heard: bool
+    """bool, default false."""
+    Last: int
+    """int64 [milliseconds], default 0."""
+    def __init__(
+        self,
+        *,
+        VehicleID: int = ...,
+        Time: int = ...,
+        Heard: bool = ...,
+        Last: int = ...,
+    ) -> None: ...
