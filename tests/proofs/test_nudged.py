@@ -66,7 +66,7 @@ def test_places_are_made_of_the_seed():
 
 
 def test_calls_that_no_run_has_are_left_to_the_solver(tmp_path):
-    (tmp_path / "made.py").write_text("\"\"\"A sentence.\"\"\"\ndef claim(c):\n    c.real('x')\n")
+    (tmp_path / "made.py").write_text('"""A sentence."""\ndef claim(c):\n    c.real(\'x\')\n')
     claim = Watched()
     assert nudged.taken("made", claim, tmp_path) is not None
     claim.asked = True
