@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, get_type_hints
 
 import z3
 
-from cratous.core.kernel import REGISTRY, entry_of, qualified
+from cratous.core.kernel import entry_of, qualified
 from cratous.proofs.engine.argument_values import FEW, Another, Given, Possible, Taken
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.obligation_hash import Hasher
@@ -89,13 +89,17 @@ def varied(claim: Claim, ask: Asked) -> tuple[tuple[str, str], ...]:
 
 
 def _beside_their_definitions(claim: Claim) -> set[str]:
-    """The kernels, steps of folds too, that implement what the theorem looks at."""
+    """The kernels in use that implement what the theorem looks at, and those that are steps of others."""
     looked = {visit.function for visit in claim.visits} | claim.stubs.keys()
     names = {f"{f.__module__}.{f.__qualname__}" for f in looked if hasattr(f, "__qualname__")}
-    found: set[str] = set()
-    for name, entry in REGISTRY.items():
-        if entry.implements and f"{name.partition('.')[0]}.spec.{entry.implements}" in names:
-            found |= {name, *map(qualified, getattr(entry.function, "kernels", ()))}
+    used = {run.function for run in getattr(claim, "runs", ()) if run.role == "kernel"}
+    found = {qualified(kernel) for fold in getattr(claim, "folds", ()) for kernel in fold.kernels}
+    for function in used:
+        entry, name = entry_of(function), qualified(function)
+        if entry is not None and (
+            entry.supports or f"{name.partition('.')[0]}.spec.{entry.implements}" in names
+        ):
+            found.add(name)
     return found
 
 
