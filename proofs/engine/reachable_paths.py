@@ -89,15 +89,17 @@ def varied(claim: Claim, ask: Asked) -> tuple[tuple[str, str], ...]:
 
 
 def _beside_their_definitions(claim: Claim) -> set[str]:
-    """The kernels in use that implement what the theorem looks at, and those that are steps of others."""
+    """The kernels in use that implement what is defined where the theorem looks, and those that are steps."""
     looked = {visit.function for visit in claim.visits} | claim.stubs.keys()
-    names = {f"{f.__module__}.{f.__qualname__}" for f in looked if hasattr(f, "__qualname__")}
+    modules = {f.__module__ for f in looked if hasattr(f, "__qualname__")}
     used = {run.function for run in getattr(claim, "runs", ()) if run.role == "kernel"}
     found = {qualified(kernel) for fold in getattr(claim, "folds", ()) for kernel in fold.kernels}
     for function in used:
         entry, name = entry_of(function), qualified(function)
+        # the module, since a fold of which it is a step may implement another definition there
+        meant = "" if entry is None else entry.implements.rpartition(".")[0]
         if entry is not None and (
-            entry.supports or f"{name.partition('.')[0]}.spec.{entry.implements}" in names
+            entry.supports or f"{name.partition('.')[0]}.spec.{meant}" in modules
         ):
             found.add(name)
     return found
