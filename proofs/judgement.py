@@ -143,6 +143,7 @@ def judge(
         frozenset(theorem.name for theorem in theorems if theorem.proved),
         read,
         {theorem.name: theorem.uses for theorem in theorems},
+        frozenset(t.name for t in theorems if not t.proved or (t.ran and t.ran.doubles)),
     )
     unmeant = tuple(definitions.problems(entries, home, proofs))
     return Judgement(inventory, structural, unmeant, grounds(entries, home, proofs), statements)

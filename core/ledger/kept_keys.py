@@ -42,16 +42,27 @@ def keys_of(home: Home, known: Mapping[str, Entry], rests: Rests, data: Mapping[
         found: Found = json.loads(file.read_text(encoding="utf-8"))
         if _is_found(found, known):
             return found
-    keys, theorems = Keys(home), data["theorems"]
-    made = {
-        name: keys.of(entry, data["kernels"][name]["theorems"], theorems)
-        for name, entry in known.items()
-    }
+    keys = Keys(home)
+    made = _made(keys, known, data)
     whole = not any(MISSING in key.values() for key in made.values())
     # a file that was edited meanwhile may stand in the keys and not in the stamp
     if whole and not _elsewhere(keys.tree.asked) and _stamp(home, known, rests, data) == stamp:
         _keep(file, made)
     return made
+
+
+def made_anew(
+    home: Home, known: Mapping[str, Entry], rests: Rests, data: Mapping[str, Any]
+) -> Found:
+    """The same as `keys_of`, without a look at what was kept, and kept nowhere."""
+    return _made(Keys(home), known, data)
+
+
+def _made(keys: Keys, known: Mapping[str, Entry], data: Mapping[str, Any]) -> Found:
+    return {
+        name: keys.of(entry, data["kernels"][name]["theorems"], data["theorems"])
+        for name, entry in known.items()
+    }
 
 
 def _is_found(found: Any, known: Mapping[str, Entry]) -> bool:

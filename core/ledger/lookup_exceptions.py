@@ -58,7 +58,7 @@ EXCUSES: dict[str, tuple[tuple[str, ...], str]] = {
     "core.ledger.tables._table": (("read_text",), TABLE),
     "core.ledger.tables._maker": (("read_bytes",), TABLE),
     "core.ledger.tables._kept": (("vars",), TABLE),
-    "core.ledger.module_trees.Tree._read": (("read_bytes",), TABLE),
+    "core.ledger.module_trees.Tree._read": (("open",), TABLE),
     "core.ledger.module_trees._data": (("read_bytes",), TABLE),
     "core.readings.exact._scalar_filter": (("exec",), MADE),
     "core.readings.exact.integers.decider": (("exec",), MADE),

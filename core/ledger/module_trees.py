@@ -107,8 +107,8 @@ class Tree:
         top, *parts = module.split(".")
         if top not in self.packages:
             return None
-        base = os.path.join(self.packages[top], *parts)
-        inside = os.path.join(base, "__init__.py")
+        base = os.sep.join((os.fspath(self.packages[top]), *parts))
+        inside = f"{base}{os.sep}__init__.py"
         if not parts:
             return inside if os.path.isfile(inside) else None
         for name in (inside, f"{base}.py"):  # of the two, Python runs the folder
@@ -126,7 +126,8 @@ class Tree:
     def _read(self, file: str, module: str) -> Table:
         data = self.edits.get(Path(file)) if self.edits else None
         if data is None:
-            data = Path(file).read_bytes()
+            with open(file, "rb") as text:
+                data = text.read()
         return table(data, module, os.path.basename(file) == "__init__.py")
 
     def unit(self, place: Place) -> Unit:
@@ -150,7 +151,7 @@ class Tree:
         said = [one.digest for name in self.every_module if (one := self.table(name)) is not None]
         for package, root in self.packages.items():
             for part in self.parts.get(package, ()):
-                said += [_data(file) for file in (root / part).rglob("*") if file.suffix in DATA]
+                said += map(_data, _data_files(root / part))
         return " ".join(sorted(said))
 
     # -- names ------------------------------------------------------------------------------------
@@ -306,6 +307,11 @@ def _modules(package: str, root: Path, part: str) -> Iterator[str]:
                 yield ".".join(around)
             elif file.endswith(".py"):
                 yield ".".join((*around, file.removesuffix(".py")))
+
+
+def _data_files(folder: Path) -> Iterator[Path]:
+    for at, _, files in os.walk(folder):
+        yield from (Path(at, file) for file in files if file.endswith(DATA))
 
 
 @functools.cache

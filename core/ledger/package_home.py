@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
@@ -87,8 +87,29 @@ def package(name: str) -> Home:
             "this is a module, not a package", item=name, expected="a top-level folder of modules"
         )
     root = Path(next(iter(module.__path__))).resolve()
+    for place, leads_to in _elsewhere(root, map(Path, module.__path__)):
+        raise BadInput(
+            "a module of the package lies elsewhere than its name says",
+            where=place,
+            expected="files and folders of its own, in one folder, and no symbolic links to modules",
+            got=leads_to,
+        )
     add_package(name, root)
     return Home(name, root)
+
+
+def _elsewhere(root: Path, folders: Iterable[Path]) -> Iterator[tuple[str, str]]:
+    """Further folders of a package, and symbolic links in it that modules are found by.
+
+    Where a link leads is no part of a key, and can be another file for whoever looks next.
+    """
+    for folder in folders:
+        if folder.resolve() != root:
+            yield f"{root}: __path__", str(folder)
+    for around, below, names in os.walk(root):
+        for name in (*below, *(name for name in sorted(names) if name.endswith(".py"))):
+            if Path(around, name).is_symlink():
+                yield str(Path(around, name)), os.readlink(Path(around, name))
 
 
 # -- theorems --------------------------------------------------------------------------------

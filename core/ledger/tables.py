@@ -80,10 +80,14 @@ def table(data: bytes, module: str, package: bool) -> Table:
     parts = module.split(".")
     around = parts if package else parts[:-1]
     key = hashlib.sha256(_maker() + repr(around).encode() + data).hexdigest()
-    return _table(data, tuple(around), key)
+    if key not in _TABLES:
+        _TABLES[key] = _table(data, tuple(around), key)
+    return _TABLES[key]
 
 
-@functools.cache
+_TABLES: dict[str, Table] = {}
+
+
 def _table(data: bytes, around: tuple[str, ...], key: str) -> Table:
     kept = private_cache() / "tables" / key[:2] / key
     try:

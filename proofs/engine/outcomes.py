@@ -38,7 +38,8 @@ class Outcome:
 class Ran:
     """A theorem that was run.
 
-    points: numbers for its values at which its premises held and all was decided; differences: what was
+    points: numbers for its values at which its premises held and all was decided; doubles: those of them
+    that CPython's doubles are, every one; differences: what was
     to be shown and is false there, and readings of its functions that differ; not_run: why it could not
     be run itself; left_out: readings of its functions that could not be compared.
     """
@@ -47,6 +48,7 @@ class Ran:
     differences: tuple[str, ...] = ()
     not_run: str = ""
     left_out: tuple[str, ...] = ()
+    doubles: int = 0
 
 
 def restored(data: dict[str, Any] | None) -> Ran | None:
@@ -54,4 +56,5 @@ def restored(data: dict[str, Any] | None) -> Ran | None:
     if data is None:
         return None
     texts = {key: tuple(map(str, data[key])) for key in ("differences", "left_out")}
-    return Ran(points=int(data["points"]), not_run=str(data["not_run"]), **texts)
+    points, doubles = int(data["points"]), int(data["doubles"])
+    return Ran(points=points, not_run=str(data["not_run"]), doubles=doubles, **texts)

@@ -23,6 +23,7 @@ from cratous.core.kernel import entry_of, qualified
 from cratous.core.kernel.sources import altered, ours, place, position
 from cratous.core.ledger.package_home import Home
 from cratous.proofs.engine import definition_subset, plain_numbers, reachable_paths
+from cratous.proofs.engine.argument_values import Taken
 from cratous.proofs.engine.cache import Answer, Cache
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.counterexample import Model, Watched, story, telling
@@ -41,6 +42,7 @@ from cratous.spec.errors import BadInput
 RLIMIT = 60_000_000
 FACTS_RLIMIT = 3_000_000
 PATH_RLIMIT = 1_000_000
+VALUES_RLIMIT = 300_000
 STATE_CPU_S = 300
 """CPU seconds after which a statement is ended: many times what any takes."""
 THEIRS = (
@@ -233,10 +235,11 @@ def prove(
     rlimit: int = RLIMIT,
     cache: Cache = _NO_CACHE,
     tell: Callable[[int, int], None] | None = None,
+    taken: Taken | None = None,
 ) -> Theorem:
     """Decide a stated claim; the returned theorem says what was proved and what was not.
 
-    tell: called with (done, all) after each obligation. Raises ValueError for a claim that names
+    tell: called with (done, all) after each obligation; taken: see `argument_values`. Raises ValueError for a claim that names
     no kernel or shows nothing.
     """
     claim.settle()
@@ -255,6 +258,15 @@ def prove(
     def possible(terms: list[z3.BoolRef]) -> str:
         return _satisfiable(terms, min(rlimit, PATH_RLIMIT), memory)
 
+    def near(terms: list[z3.BoolRef]) -> str:
+        return _satisfiable(terms, min(rlimit, VALUES_RLIMIT), memory)
+
+    def another(terms: list[z3.BoolRef], value: z3.ExprRef) -> z3.ExprRef | None:
+        _, model, context = _ask(terms, min(rlimit, PATH_RLIMIT), memory.seen)
+        if model is None:
+            return None
+        return model.eval(value.translate(context), model_completion=True).translate(value.ctx)
+
     theorem = Theorem(
         name,
         sentence,
@@ -265,7 +277,7 @@ def prove(
         tuple(claim.assumptions),
         _KEY,
         reachable_paths.paths(claim, possible),
-        reachable_paths.varied(claim, possible),
+        reachable_paths.varied(claim, reachable_paths.Asked(near, another, taken)),
     )
     return replace(theorem, ended=tuple(memory.ended), _key=_KEY)
 

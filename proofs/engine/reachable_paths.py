@@ -1,24 +1,23 @@
 """What a theorem's premises leave of the kernels that it uses: their paths, and their arguments.
 
-A theorem about one value of an argument says nothing of the others, whatever its sentence says. So of
-each use of a kernel it is asked whether each argument can take two different values under the
-premises; what the solver cannot show to vary does not.
+A theorem about a few values of an argument says nothing of the others, whatever its sentence says. So of
+each use of a kernel it is asked whether each argument can take more than that under the premises (see
+`argument_values`); what the solver cannot show to vary does not.
 """
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterable
-from typing import Any, get_type_hints
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, NamedTuple, get_type_hints
 
 import z3
 
 from cratous.core.kernel import entry_of, qualified
+from cratous.proofs.engine.argument_values import FEW, Another, Given, Possible, Taken
 from cratous.proofs.engine.claim import Claim
-from cratous.proofs.engine.terms import free_names, free_values, known, leaves
-
-Possible = Callable[[list[z3.BoolRef]], str]
-"""sat, unsat or unknown."""
+from cratous.proofs.engine.obligation_hash import Hasher
+from cratous.proofs.engine.terms import free_names, known, leaves
 
 
 def paths(claim: Claim, possible: Possible) -> tuple[tuple[str, tuple[bool, ...]], ...]:
@@ -48,31 +47,88 @@ ALL = "all"
 NOT = "not"
 
 
-def varied(claim: Claim, possible: Possible) -> tuple[tuple[str, str], ...]:
+class Asked(NamedTuple):
+    """How it is found out what arguments take: by the solver, and by runs of the statement, if it can be run."""
+
+    possible: Possible
+    another: Another
+    taken: Taken | None = None
+
+
+def varied(claim: Claim, ask: Asked) -> tuple[tuple[str, str], ...]:
     """Of every use of a kernel, in order: how its arguments vary.
 
     ALL; or the integers and truth values that are written down, where all others vary (a row of a
-    table); or NOT.
+    table); or NOT, with how many values it is told of an argument that has a few (NOT 2). Of kernels whose
+    definition is not in the theorem it is not asked: NOT, since it vouches for none of them.
     """
-    premises = list(claim.premises)
-    restricted = set().union(*[free_names(premise) for premise in premises])
+    given = Given(_restricting(claim), ask.possible)
+    restricted = set().union(*[free_names(premise) for premise in given.premises])
     uses = [run for run in getattr(claim, "runs", ()) if run.role == "kernel"]
-    terms = {t.get_id(): t for run in uses for t in map(known, leaves(run.args)) if free_names(t)}
-    free = {key for key, t in terms.items() if z3.is_const(t) and str(t) not in restricted}
-    asked = [term for key, term in terms.items() if key not in free]
-    varying = free | (_two_values(premises, asked, possible) if asked else set())
-    return tuple((qualified(run.function), _how(run, varying)) for run in uses)
+    may_vouch = _beside_their_definitions(claim)
+    places = {
+        (number, position): term
+        for number, run in enumerate(uses)
+        if qualified(run.function) in may_vouch
+        for position, term in enumerate(map(known, leaves(run.args)))
+        if free_names(term)
+    }
+    terms = {term.get_id(): term for term in places.values()}
+    varying = {key for key, t in terms.items() if z3.is_const(t) and str(t) not in restricted}
+    open_ = {place: term for place, term in places.items() if term.get_id() not in varying}
+    if open_ and ask.taken is not None:
+        seed = Hasher().key("places", [*claim.premises, *claim.facts, *terms.values()])
+        varying |= {places[place].get_id() for place in ask.taken(seed, open_)}
+    asked = [term for key, term in terms.items() if key not in varying]
+    varying |= given.many(asked) if asked else set()
+    rest = [term for term in asked if term.get_id() not in varying]
+    few = given.counts(rest, ask.another) if rest else {}
+    varying |= {key for key, n in few.items() if n > FEW and not z3.is_real(terms[key])}
+    found = [(qualified(run.function), run) for run in uses]
+    return tuple((n, _how(run, varying, few) if n in may_vouch else NOT) for n, run in found)
 
 
-def _how(run: Any, varying: set[int]) -> str:
+def _beside_their_definitions(claim: Claim) -> set[str]:
+    """The kernels in use that implement what is defined where the theorem looks, and those that are steps."""
+    looked = {visit.function for visit in claim.visits} | claim.stubs.keys()
+    modules = {f.__module__ for f in looked if hasattr(f, "__qualname__")}
+    used = {run.function for run in getattr(claim, "runs", ()) if run.role == "kernel"}
+    found = {qualified(kernel) for fold in getattr(claim, "folds", ()) for kernel in fold.kernels}
+    for function in used:
+        entry, name = entry_of(function), qualified(function)
+        # the module, since a fold of which it is a step may implement another definition there
+        meant = "" if entry is None else entry.implements.rpartition(".")[0]
+        if entry is not None and (
+            entry.supports or f"{name.partition('.')[0]}.spec.{meant}" in modules
+        ):
+            found.add(name)
+    return found
+
+
+def _restricting(claim: Claim) -> list[z3.BoolRef]:
+    """The premises; with what is known of the results that they speak of, roots and closed functions."""
+    premises = list(claim.premises)
+    own = {claim.prefix + name for name in claim.names}
+    results = set().union(*[free_names(premise) for premise in premises]) - own
+    return [*premises, *claim.facts] if results else premises
+
+
+def _how(run: Any, varying: set[int], few: Mapping[int, int]) -> str:
     kinds = [kind for one in _kinds(run.function) for kind in _leaf_kinds(one)]
     terms = [known(leaf) for leaf in leaves(run.args)]
     written = [
         kind in (int, bool) and not free_names(t) for t, kind in zip(terms, kinds, strict=True)
     ]
-    if not all(w or t.get_id() in varying for w, t in zip(written, terms, strict=True)):
-        return NOT
+    left = [t for t, w in zip(terms, written, strict=True) if not w and t.get_id() not in varying]
+    if left:
+        counts = [few.get(t.get_id(), 1) for t in left]
+        return NOT if min(counts) < 2 else f"{NOT} {min(counts)}"
     return ", ".join(str(t) for t, w in zip(terms, written, strict=True) if w) or ALL
+
+
+def values_left(how: Iterable[str]) -> int:
+    """The most values that these uses leave an argument of which they leave a few; 0 where none does."""
+    return max((int(one.removeprefix(NOT)) for one in how if one.startswith(f"{NOT} ")), default=0)
 
 
 def _kinds(function: Callable[..., Any]) -> list[Any]:
@@ -87,22 +143,10 @@ def _leaf_kinds(kind: Any) -> list[Any]:
 
 
 def of_more_than_one(how: Iterable[str]) -> bool:
-    """These uses are not all for one value of some argument."""
+    """These uses are not all for a few values of some argument."""
     found = set(how)
     if ALL in found:
         return True
-    rows = [row.split(", ") for row in found - {NOT}]
+    rows = [row.split(", ") for row in found if not row.startswith(NOT)]
     # a table: each argument that is written down takes two values at least
     return len(rows) > 1 and all(len(set(column)) > 1 for column in zip(*rows, strict=False))
-
-
-def _two_values(
-    premises: list[z3.BoolRef], terms: list[z3.ExprRef], possible: Possible
-) -> set[int]:
-    """Those terms that take two values where the premises hold; all are asked at once first."""
-    others = [(v, z3.Const(f"{v}!other", v.sort())) for v in free_values([*premises, *terms])]
-    twice = [*premises, *[z3.substitute(premise, *others) for premise in premises]]
-    apart = {term.get_id(): term != z3.substitute(term, *others) for term in terms}
-    if possible([*twice, *apart.values()]) == "sat":
-        return set(apart)
-    return {key for key, differs in apart.items() if possible([*twice, differs]) == "sat"}

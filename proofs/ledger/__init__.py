@@ -36,6 +36,7 @@ from cratous.proofs.engine.solver_order import ask_apart
 from cratous.proofs.engine.subset import Finding, lint_all
 from cratous.proofs.ledger.proof_recall import Recall
 from cratous.proofs.running.all import compare_all, told
+from cratous.proofs.running.nudged import taken
 from cratous.proofs.running.theorem import Functions, run
 from cratous.spec.errors import BadInput
 
@@ -99,7 +100,9 @@ def _work(
     try:
         claim, sentence = prover.state(name, folder)
         tell = partial(_tell, name, out)
-        theorem = prover.prove(name, claim, sentence, cache=cache, tell=tell)
+        theorem = prover.prove(
+            name, claim, sentence, cache=cache, tell=tell, taken=taken(name, claim, folder)
+        )
         functions = None
         if theorem.proved:
             ran, functions = run(name, claim, folder)

@@ -13,6 +13,7 @@ from cratous.core.kernel.sources import ours
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.outcomes import Ran
 from cratous.proofs.engine.symbolic import SymMask
+from cratous.proofs.engine.terms import leaves
 from cratous.proofs.engine.theorem_files import load_claim, load_lemma
 from cratous.proofs.running.copies import Undecided
 from cratous.proofs.running.late_values import now
@@ -68,7 +69,7 @@ def _ran(
     called: dict[Function, list[tuple[Any, ...]]],
 ) -> Ran:
     found: list[str] = []
-    points = 0
+    points = doubles = 0
     given = witnesses(claim)
     lemma = functools.cache(lambda other: load_lemma(other, folder))
     for number in range(len(given) + DRAWN_AT_MOST):
@@ -85,12 +86,21 @@ def _ran(
             if len(found) < ENOUGH:
                 found.append(f"run as Python: {error}: {_numbers(on.shown)}")
         except NotRun as error:
-            return Ran(points, tuple(found), str(error))
+            return Ran(points, tuple(found), str(error), doubles=doubles)
         except (TypeError, AttributeError) as error:
-            return Ran(points, tuple(found), f"{type(error).__name__}: {error}")
+            return Ran(points, tuple(found), f"{type(error).__name__}: {error}", doubles=doubles)
         else:
             points += 1
-    return Ran(points, tuple(found))
+            doubles += all(map(_is_double, leaves(now(tuple(on.shown.values())))))
+    return Ran(points, tuple(found), doubles=doubles)
+
+
+def _is_double(value: Any) -> bool:
+    """A number that a double is, or an integer or truth value."""
+    try:
+        return not isinstance(value, Fraction) or Fraction(float(value)) == value
+    except OverflowError:
+        return False
 
 
 def _numbers(shown: dict[str, Any]) -> str:

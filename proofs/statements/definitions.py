@@ -17,7 +17,8 @@ from typing import Any
 from cratous.core.kernel import REGISTRY, Entry, Fold, supported
 from cratous.core.kernel.sources import position, reached
 from cratous.core.ledger.package_home import Home
-from cratous.proofs.engine.reachable_paths import of_more_than_one
+from cratous.proofs.engine.argument_values import FEW
+from cratous.proofs.engine.reachable_paths import of_more_than_one, values_left
 from cratous.proofs.statements.closed_definitions import full_name
 from cratous.proofs.statements.relations import Relations
 from cratous.proofs.statements.restated import restates
@@ -28,19 +29,32 @@ class Proofs:
     """What was proved of a home: its theorems by name, and what their statements relate.
 
     kernels: those that each theorem is about; proved: the theorems that are; varied: how the
-    arguments of their uses of kernels vary, by name and number.
+    arguments of their uses of kernels vary, by name and number; run: all but those that are proved and
+    were run at no point of doubles; None where that was not looked at.
     """
 
     kernels: Mapping[str, tuple[str, ...]]
     proved: frozenset[str]
     relations: Mapping[str, Relations]
     varied: Mapping[str, Mapping[tuple[str, int], str]]
+    run: frozenset[str] | None = None
 
     def holds_of_any(self, theorem: str, pair: tuple[str, str]) -> bool:
-        """The theorem relates the two by a use whose arguments are not fixed to one value."""
+        """The theorem relates the two by a use whose arguments are not fixed to a few values."""
+        return of_more_than_one(self._how(theorem, pair))
+
+    def left(self, theorem: str, pair: tuple[str, str]) -> int:
+        """How many values it leaves an argument of which it leaves a few; 0 where it leaves none or one."""
+        return values_left(self._how(theorem, pair))
+
+    def _how(self, theorem: str, pair: tuple[str, str]) -> list[str]:
         uses = self.relations[theorem].uses
         varied = self.varied.get(theorem, {})
-        return of_more_than_one(how for use, how in varied.items() if (*pair, *use) in uses)
+        return [how for use, how in varied.items() if (*pair, *use) in uses]
+
+    def was_run(self, theorem: str) -> bool:
+        """If it is proved, it was run at a point of doubles where its premises hold."""
+        return self.run is None or theorem in self.run
 
     def about(self, name: str) -> list[str]:
         """The theorems about a kernel, in order."""
@@ -123,13 +137,8 @@ def _of_meaning(entry: Entry, home: Home, proofs: Proofs) -> Iterator[str]:
                 f"implements {named}, which none of its theorems holds it against: a goal relates "
                 "the two, and does not hold of other functions as well"
             )
-        elif not any(
-            proofs.holds_of_any(theorem, (full_name(entry.function), full)) for theorem in theorems
-        ):
-            yield (
-                f"implements {named}, which none of its theorems holds it against for more than one "
-                "value of each argument: use arbitrary values (c.real) that no premise fixes"
-            )
+        else:
+            yield from _of_points((full_name(entry.function), full), entry, theorems, proofs)
         same = is_restated(entry, home)
         if same and not entry.restates:
             yield (
@@ -138,6 +147,27 @@ def _of_meaning(entry: Entry, home: Home, proofs: Proofs) -> Iterator[str]:
             )
         if same is False and entry.restates:
             yield f"implements {named}, which has another formula: it restates nothing"
+
+
+def _of_points(
+    pair: tuple[str, str], entry: Entry, theorems: list[str], proofs: Proofs
+) -> Iterator[str]:
+    """What is wrong with the points at which its theorems hold it against its definition."""
+    several = [theorem for theorem in theorems if proofs.holds_of_any(theorem, pair)]
+    named = f"implements {entry.implements!r}, which none of its theorems"
+    if not several:
+        left = max((proofs.left(theorem, pair) for theorem in theorems), default=0)
+        points = f"more than {FEW} points, all apart" if left > FEW else f"{left} points"
+        what = f"a few values: its premises leave an argument {points}"
+        yield (
+            f"{named} holds it against for more than {what if left else 'one value of each argument'}: "
+            "use arbitrary values (c.real) that no premise fixes"
+        )
+    elif not any(map(proofs.was_run, several)):
+        yield (
+            f"{named} was run with on doubles: no point of doubles was found at which the premises "
+            "of one hold (see docs/proofs/running.md)"
+        )
 
 
 def _of_step(entry: Entry, proofs: Proofs) -> Iterator[str]:

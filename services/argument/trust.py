@@ -19,6 +19,8 @@ TRUSTED = (
     "z3",
     "CPython",
     "what a package does while it is imported",
+    "what Python runs before any of ours",
+    "where the modules of a package lie",
     "what is not looked into",
     "how far a theorem reaches",
     "numba",

@@ -13,7 +13,7 @@ from cratous.spec.well_clear import Plane, dot, position, time_of_closest_approa
 
 
 def to_side(side: int, amount: float) -> float:
-    """An amount to the right, or up, as one to that side."""
+    """An amount to the right, or up, as one to that side; any number below 0 is the side -1, any other 1."""
     if side < 0:
         return -amount
     return amount

@@ -1,15 +1,20 @@
 """What a theorem owes where it does not look into a function, and what its premises leave of arguments."""
 
 from math import sqrt
+from unittest.mock import patch
 
 import pytest
 import z3
 
+from cratous.core.daa import coordination
+from cratous.core.kernel import qualified
 from cratous.proofs.claim import Claim
 from cratous.proofs.engine import closed, reachable_paths
 from cratous.proofs.engine.cache import Cache
 from cratous.proofs.engine.counterexample import Watched
 from cratous.proofs.engine.prover import _Memory, _satisfiable
+from cratous.spec.daa import coordination as daa_coordination
+from cratous.spec.well_clear import Plane
 
 
 def inverse(x: float) -> float:
@@ -110,7 +115,34 @@ def _how(state) -> list[str]:
     claim, memory = Watched(), _Memory(Cache(None))
     state(claim)
     ask = lambda terms: _satisfiable(terms, 100_000, memory)  # noqa: E731
-    return [how for _, how in reachable_paths.varied(claim, ask)]
+    with patch.object(reachable_paths, "_beside_their_definitions", lambda claim: VOUCHED):
+        return [
+            how for _, how in reachable_paths.varied(claim, reachable_paths.Asked(ask, _another))
+        ]
+
+
+def test_of_a_kernel_whose_definition_is_not_there_nothing_is_asked():
+    def refuse(*asked):
+        raise AssertionError(asked)
+
+    def state(c: Claim) -> None:
+        s, v = c.vector("s"), c.vector("v")
+        c.premise(s.x * s.x <= 4)
+        c.use(coordination.horizontal_side, s, v)
+
+    claim = Watched()
+    state(claim)
+    ask = reachable_paths.Asked(refuse, refuse)
+    assert [how for _, how in reachable_paths.varied(claim, ask)] == [reachable_paths.NOT]
+    claim.define(daa_coordination.horizontal_side, Plane(1, 2), Plane(2, 3))
+    with pytest.raises(AssertionError):
+        reachable_paths.varied(claim, ask)
+
+
+def _another(terms, value):
+    solver = z3.Solver()
+    solver.add(*terms)
+    return solver.model().eval(value, model_completion=True) if solver.check() == z3.sat else None
 
 
 def test_how_arguments_vary():
@@ -127,10 +159,52 @@ def test_how_arguments_vary():
 
 
 @pytest.mark.parametrize(
+    ("premise", "how"),
+    [
+        (lambda c, x, n: x * x == 1, "not 2"),
+        (lambda c, x, n: x * x * x == x, "not 3"),
+        (lambda c, x, n: x * (2**70 * x - 1) == 0, "not 2"),
+        (lambda c, x, n: c.all_of(x >= 0, x <= 1), "all"),
+        (lambda c, x, n: x * x <= 4, "all"),
+        (lambda c, x, n: 2**60 * x * x <= 1, "all"),
+        (lambda c, x, n: n * n == 4, "not 2"),
+        (lambda c, x, n: c.all_of(n >= 0, n <= 1), "all"),
+        (lambda c, x, n: c.all_of(n >= 0, n <= 3), "all"),
+    ],
+)
+def test_a_few_values_of_an_argument_are_told_from_many(premise, how):
+    def state(c: Claim) -> None:
+        x, n = c.real("x"), c.integer("n")
+        c.premise(premise(c, x, n))
+        c.use(two, x, n)
+
+    assert _how(state) == [how]
+
+
+def masked(mask: int) -> bool:
+    """Whatever."""
+    return mask & 1 == 0
+
+
+VOUCHED = {qualified(two), qualified(masked)}
+
+
+def test_a_mask_takes_more_than_a_few_values():
+    def state(c: Claim, most: int) -> None:
+        mask = c.mask("mask")
+        c.premise(mask & c.bits(2**64 - 1 - most) == c.bits(0))
+        c.use(masked, mask)
+
+    assert [_how(lambda c, most=most: state(c, most)) for most in (7, 15)] == [["not 8"], ["all"]]
+
+
+@pytest.mark.parametrize(
     ("how", "more"),
     [
         ([], False),
         (["not", "all"], True),
+        (["not 2"], False),
+        (["not 2", "not 3"], False),
         (["3"], False),
         (["3", "3"], False),
         (["3", "4"], True),

@@ -120,6 +120,17 @@ def test_a_definition_that_no_theorem_uses() -> None:
     for fixed in (NOT, "3"):
         said = _said(later, _proofs("later", used, how=fixed))
         assert "holds it against for more than one value of each argument" in said
+    for few, points in (("not 2", "2 points"), ("not 9", "more than 8 points, all apart")):
+        said = _said(later, _proofs("later", used, how=few))
+        assert f"its premises leave an argument {points}" in said
+
+
+def test_a_theorem_that_was_run_at_no_point_of_doubles() -> None:
+    later = named("later")
+    proofs = _proofs("later", definition_name(later, PRODUCT))
+    assert problems({"later": later}, PRODUCT, replace(proofs, run=frozenset(["one"]))) == []
+    said = _said(later, replace(proofs, run=frozenset()))
+    assert "no point of doubles was found" in said
 
 
 def test_a_definition_that_no_theorem_holds_it_against() -> None:

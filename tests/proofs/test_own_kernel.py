@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -233,3 +234,28 @@ def test_faults_of_the_package_s_kernel_are_looked_for(package: Path, root: Path
     assert found["survived"] == found["undecided"] == 0
     assert found["holds"]
     assert (record.read_bytes() if record.is_file() else b"") == before
+
+
+def _to_another_file(package: Path) -> None:
+    (package / "my_pkg" / "reserve.py").rename(package / "reserve.py")
+    (package / "my_pkg" / "reserve.py").symlink_to(package / "reserve.py")
+
+
+def _to_another_folder(package: Path) -> None:
+    (package / "my_pkg" / "theorems").rename(package / "theorems")
+    (package / "my_pkg" / "theorems").symlink_to(package / "theorems")
+
+
+def _of_two_folders(package: Path) -> None:
+    (package / "more").mkdir()
+    (package / "my_pkg" / "__init__.py").write_text(f"__path__.append({str(package / 'more')!r})\n")
+
+
+@pytest.mark.parametrize("change", [_to_another_file, _to_another_folder, _of_two_folders])
+def test_a_package_whose_modules_lie_elsewhere_is_refused(
+    package: Path, root: Path, change: Callable[[Path], None]
+) -> None:
+    change(package)
+    done = _run(package, root, "cratous prove --package my_pkg")
+    assert done.returncode != 0
+    assert "a module of the package lies elsewhere than its name says" in done.stdout + done.stderr
