@@ -8,6 +8,7 @@ still read and hashed at each start, and any difference makes the walks be done 
 from __future__ import annotations
 
 import contextlib
+import gc
 import hashlib
 import json
 import os
@@ -43,15 +44,28 @@ def keys_of(home: Home, known: Mapping[str, Entry], rests: Rests, data: Mapping[
         if _is_found(found, known):
             return found
     keys, theorems = Keys(home), data["theorems"]
-    made = {
-        name: keys.of(entry, data["kernels"][name]["theorems"], theorems)
-        for name, entry in known.items()
-    }
+    with _no_garbage():
+        made = {
+            name: keys.of(entry, data["kernels"][name]["theorems"], theorems)
+            for name, entry in known.items()
+        }
     whole = not any(MISSING in key.values() for key in made.values())
     # a file that was edited meanwhile may stand in the keys and not in the stamp
     if whole and not _elsewhere(keys.tree.asked) and _stamp(home, known, rests, data) == stamp:
         _keep(file, made)
     return made
+
+
+@contextlib.contextmanager
+def _no_garbage() -> Iterator[None]:
+    """Inside, nothing looks for garbage among a million nodes of syntax, of which hardly any is."""
+    was = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was:
+            gc.enable()
 
 
 def _is_found(found: Any, known: Mapping[str, Entry]) -> bool:

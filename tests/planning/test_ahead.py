@@ -229,7 +229,8 @@ def test_who_has_begun_plans_nothing_that_the_gate_refuses(
     from cratous.services.cli import main
 
     def refused(**_: Any) -> None:
-        assert [process.name for process in begun] == [coming.ROUTES, coming.ASSIGNMENT]
+        names = [process.name for process in begun]
+        assert names == [ahead.SQUARES, coming.ROUTES, coming.ASSIGNMENT]
         raise Refused("the code is not what was proved")
 
     monkeypatch.setattr(ahead, "MANY_TASKS", 1)
