@@ -200,9 +200,15 @@ class _Renaming(ast.NodeTransformer):
                 return given
             each = zip(given.elts, parts, strict=True)
             return ast.Tuple([self._typed(*one) for one in each], ast.Load())
-        value = _MISSING
-        if isinstance(given, ast.Constant):
-            value = given.value
+        value: Any = None
+        sign = isinstance(given, ast.UnaryOp) and isinstance(given.op, ast.USub)
+        written = given.operand if isinstance(given, ast.UnaryOp) and sign else given
+        if isinstance(written, ast.Constant):
+            value = written.value
+            if sign and type(value) is int and value:
+                value = -value
+            elif sign:
+                return given
         elif isinstance(given, ast.Name) and given.id in self.renamed:
             value = self.function.__globals__[given.id]
         if kind is float and type(value) is int and float(value) == value:
@@ -232,7 +238,6 @@ class _Renaming(ast.NodeTransformer):
         return self.generic_visit(ast.Assign([node.target], node.value))  # type: ignore[return-value]
 
 
-_MISSING = object()
 _TYPED = {int: "int64", bool: "bool_"}
 """What makes a value out of a written number, whose type alone says its value."""
 
