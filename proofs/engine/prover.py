@@ -21,7 +21,6 @@ import z3
 
 from cratous.core.kernel import entry_of, qualified
 from cratous.core.kernel.sources import altered, ours, place, position
-from cratous.core.ledger.package_home import Home
 from cratous.proofs.engine import definition_subset, plain_numbers, reachable_paths
 from cratous.proofs.engine.argument_values import Taken
 from cratous.proofs.engine.cache import Answer, Cache
@@ -36,7 +35,9 @@ from cratous.proofs.engine.outcomes import Outcome, Owed, Ran, restored
 from cratous.proofs.engine.smtlib import Seen, logic_of, question, smt2, sorts
 from cratous.proofs.engine.solver_order import check, solvers
 from cratous.proofs.engine.statement_errors import raised_there, slip_in
-from cratous.proofs.engine.theorem_files import FOLDER, find, load_claim, load_lemma, theorem_files
+from cratous.proofs.engine.theorem_files import (
+    FOLDER, find, home_folder, load_claim, load_lemma, theorem_files,
+)  # fmt: skip
 from cratous.spec.errors import BadInput
 
 RLIMIT = 60_000_000
@@ -392,15 +393,6 @@ def prove_file(
     """State and prove the theorem of one file."""
     claim, sentence = state(name, folder)
     return prove(name, claim, sentence, rlimit=rlimit, cache=cache, tell=tell)
-
-
-def home_folder(home: Home) -> Path:
-    """Where the theorems of a home lie; raises BadInput if there is no such folder."""
-    if not home.theorems.is_dir():
-        raise BadInput(
-            "the package has no theorems", where=home.name, expected="a folder `theorems`"
-        )
-    return home.theorems
 
 
 __all__ = [

@@ -1,9 +1,8 @@
 """Proves all theorems and writes what came of it into the ledger.
 
-Its files hold facts only (no times, no machine): they are the same on every machine that proves the
-same code with the same solver, so CI can compare them byte by byte. Theorems are proved on all
-cores, each in a process forked from the same state, so that the result does not depend on how
-they are spread.
+Its files hold facts only (no times, no machine): they are the same on every machine that proves the same code with
+the same solver, so CI can compare them byte by byte. Theorems are proved on all cores, each in a process forked from
+the same state, so that the result does not depend on how they are spread.
 """
 
 from __future__ import annotations
@@ -378,13 +377,13 @@ def changed_theorems(home: Home = PRODUCT) -> list[str]:
     """
     data, keys = gate.read(home.records), gate.Keys(home)
     entries = gate.load_all(home)
-    stale = set()
+    stale, found = set(), []
     for name, entry in entries.items():
-        record = data["kernels"].get(name)
-        now = keys.of(entry, record["theorems"], data["theorems"]) if record else None
-        if record is None or not record["proved"] or now != record["key"]:
+        record = data["kernels"].get(name) or {"proved": False}
+        if not record["proved"] or record["key"] != keys.of(
+            entry, record["theorems"], data["theorems"]
+        ):
             stale.add(name)
-    found = []
     for name in prover.theorem_files(prover.home_folder(home)):
         record = data["theorems"].get(name)
         met = record is None or record["status"] != "proved" or stale & set(record["kernels"])
