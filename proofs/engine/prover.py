@@ -35,9 +35,7 @@ from cratous.proofs.engine.outcomes import Outcome, Owed, Ran, restored
 from cratous.proofs.engine.smtlib import Seen, logic_of, question, smt2, sorts
 from cratous.proofs.engine.solver_order import check, solvers
 from cratous.proofs.engine.statement_errors import raised_there, slip_in
-from cratous.proofs.engine.theorem_files import (
-    FOLDER, find, home_folder, load_claim, load_lemma, theorem_files,
-)  # fmt: skip
+from cratous.proofs.engine.theorem_files import FOLDER, find, load_claim, load_lemma, theorem_files
 from cratous.spec.errors import BadInput
 
 RLIMIT = 60_000_000
@@ -396,6 +394,6 @@ def prove_file(
 
 
 __all__ = [
-    "FOLDER", "RLIMIT", "Outcome", "Owed", "Theorem", "home_folder", "load_claim", "logic_of",
+    "FOLDER", "RLIMIT", "Outcome", "Owed", "Theorem", "load_claim", "logic_of",
     "prove", "prove_file", "question", "smt2", "sorts", "state", "theorem_files",
 ]  # fmt: skip
