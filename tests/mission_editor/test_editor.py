@@ -66,7 +66,10 @@ def test_bad_changes_are_refused_with_what_and_where(editor: Served, mission: Pa
     assert got.status == 422
     assert got.data()["item"] == "tasks[9]"
     for asked in (
-        {"do": "fly"}, {"do": "add", "list": "vehicles", "item": {}}, {"do": "move", "key": "tasks"},
+        {"do": "fly"}, {"do": "add", "list": "changes", "item": {}}, {"do": "add", "list": "vehicles", "item": {}},
+        {"do": "add", "list": "vehicles", "item": {"position": {"north_m": 1}}},
+        {"do": "add", "list": "vehicles", "item": {"position": {"north_m": 1, "east_m": 1}, "id": 7}},
+        {"do": "move", "key": "tasks"},
         {"do": "move", "key": ["tasks"], "north_m": True, "east_m": 0},
         {"do": "move", "key": ["tasks"], "north_m": 1e300, "east_m": 0}, {"do": "put", "key": ["a"]},
     ):  # fmt: skip
