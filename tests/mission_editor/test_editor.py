@@ -16,6 +16,7 @@ import pytest
 from ground_station_tools import LIMIT_S, Served, ask
 
 from cratous.services.exporting.exported import ALL, exported
+from cratous.services.ground_station.access import Access
 from cratous.services.ground_station.server import Commands, GroundStation, ReadAnew
 from cratous.services.loading.document import parse_document
 from cratous.services.loading.yaml_mission import loaded
@@ -269,7 +270,7 @@ def test_an_error_of_ours_is_answered_as_one() -> None:
         raise ZeroDivisionError("of no consequence")
 
     shown = ReadAnew(dict)
-    with GroundStation(shown, 0, commands=Commands({"/change": fails})) as server:
+    with GroundStation(shown, 0, Access(), commands=Commands({"/change": fails})) as server:
         serving = threading.Thread(target=server.serve_forever, args=(0.05,))
         serving.start()
         try:

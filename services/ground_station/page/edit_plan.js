@@ -2,7 +2,7 @@
 
 import { named } from "./labels.js";
 
-const SVG = "http://www.w3.org/2000/svg", ROW = 26, LEFT = 90, WIDE = 640;
+const SVG = "http://www.w3.org/2000/svg", ROW = 30, LEFT = 90, WIDE = 640;
 
 function element(name, attributes, text) {
   const found = document.createElementNS(SVG, name);
@@ -48,7 +48,7 @@ export function gantt(plan, windows, vehicles, ink, asked) {
     svg.append(element("text", { x: at, y: height - 8, "text-anchor": k === 4 ? "end" : "middle" }, `${(end * k / 4000).toFixed(0)} s`));
   }
   vehicles.forEach((vehicle, row) => {
-    const y = ROW * row + 4, tall = ROW - 8;
+    const y = ROW * row + 6, tall = ROW - 12;
     svg.append(element("text", { x: 2, y: y + tall - 4 }, named(vehicle)));
     const items = plan.items.filter(one => one.vehicle_id === vehicle.id);
     for (const { task_id } of items) for (const one of windows) if (one.task === task_id) svg.append(window_(one, x, end, ROW * row + 1));
