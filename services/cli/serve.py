@@ -15,6 +15,7 @@ import click
 if TYPE_CHECKING:
     from cratous.services.ground_station.access import Access
     from cratous.services.ground_station.server import GroundStation, Recorded
+    from cratous.services.ground_station.tiles import Tiles
 
     Listening = tuple[int, Access]
     """At which port and address, and who is let in."""
@@ -47,6 +48,10 @@ FLIGHT, PLANNER = "cratous.services.cli.serve_flight", "cratous.services.cli.ser
     "--overlay", "overlays", metavar="FILE.geojson", multiple=True, type=click.Path(path_type=Path),
     help="Show this beneath the map: coast, roads, airspace; again for more.",
 )  # fmt: skip
+@click.option(
+    "--tiles", metavar="URL", help="Pictures beneath the map, as https://HOST/{z}/{x}/{y}.png."
+)
+@click.option("--tiles-attribution", metavar="TEXT", help="What the map says of the pictures.")
 @click.option("--out", type=click.Path(path_type=Path), help="MISSION: folder for results. [out]")
 @click.option("--seed", type=click.IntRange(0), help="MISSION: variant; 0 is as written.")
 @click.option("--no-daa", is_flag=True, help="MISSION: avoidance off; the requirements stay.")
@@ -60,7 +65,7 @@ def serve(
     edit: bool,
     attach: str | None,
     overlays: tuple[Path, ...],
-    **flight: Any,
+    **more: Any,
 ) -> int:
     """Replay a RUN in the browser, or two side by side, or fly a MISSION there.
 
@@ -80,12 +85,12 @@ def serve(
     With --edit the mission is edited: on the map, as text, its relations with the place of an error
     while they are typed; it is planned as it stands, and saved to its file.
 
-    --overlay shows shapes of GeoJSON files beneath the map. They are a picture: nothing is planned, flown
-    or judged by them.
+    --overlay shows shapes of GeoJSON files beneath the map, --tiles pictures of a tile server, which then is told by
+    the browser what part of the world is looked at. Nothing is planned, flown or judged by them.
 
     Map with tracks, routes, zones, tasks and takeovers, altitudes over time, verdicts, and events to
     jump to. The address of the page names the instant, so it can be kept. Only this machine reaches
-    it, unless --host says otherwise, and nothing comes from elsewhere.
+    it, unless --host says otherwise, and nothing but --tiles comes from elsewhere.
 
     With --host, other machines reach it, and whatever they ask for needs a token: that of the address that
     is printed, or of a file or the environment. There is no TLS: who can listen on the way reads all of it,
@@ -100,9 +105,12 @@ def serve(
     Exit codes: 0 asked to end (Ctrl-C, SIGTERM), 2 bad input.
     """
     from cratous.services.ground_station.access import LOOPBACK, access_of
+    from cratous.services.ground_station.beneath import Beneath
     from cratous.services.ground_station.overlays import overlays_of
     from cratous.spec.files.printable import printable
 
+    flight = {name: value for name, value in more.items() if not name.startswith("tiles")}
+    tiles = _tiles(more["tiles"], more["tiles_attribution"])
     if (run is None) == (attach is None):
         raise click.UsageError("one of them is shown: RUN or MISSION, or --attach HOST:PORT")
     missions = [path for path in (run, other) if path and _is_mission(path)]
@@ -113,7 +121,7 @@ def serve(
         raise click.UsageError("--edit needs a MISSION, and goes without --out, --seed, --no-daa")
     if not missions and any(_is_given(value) for value in flight.values()):
         raise click.UsageError("--out, --seed, --no-daa, --allow-unproved need a MISSION")
-    shapes, listening = overlays_of(overlays), (port, access_of(host, token_file))
+    beneath, listening = Beneath(overlays_of(overlays), tiles), (port, access_of(host, token_file))
     with ExitStack() as stack:
         if attach is not None:
             server, name = _watching(attach, listening, stack), attach
@@ -127,7 +135,7 @@ def serve(
             else:
                 server = _replaying(run, other, listening, stack)
 
-        server.overlays = shapes
+        server.beneath = beneath
 
         def stop(*_: object) -> None:
             # from a thread: it waits for the loop that this signal interrupts
@@ -143,6 +151,14 @@ def serve(
             )
         server.serve_forever(poll_interval=0.2)
     return 0
+
+
+def _tiles(url: str | None, attribution: str | None) -> Tiles | None:
+    from cratous.services.ground_station.tiles import tiles_of
+
+    if url is None and attribution is not None:
+        raise click.UsageError("--tiles-attribution needs --tiles")
+    return None if url is None else tiles_of(url, attribution or "")
 
 
 def _is_given(value: Any) -> bool:

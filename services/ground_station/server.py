@@ -23,11 +23,10 @@ from typing import Any, NamedTuple, Protocol
 from urllib.parse import parse_qs
 
 from cratous.services.ground_station.access import BEARER, Access
+from cratous.services.ground_station.beneath import Beneath
 from cratous.services.ground_station.live_session import LiveSession, NotObeyed
-from cratous.services.ground_station.overlays import Shape, in_frame
 from cratous.spec.errors import BadInput
 from cratous.spec.files.printable import json_text
-from cratous.spec.mission import Frame
 
 REQUEST_S = 10.0
 """So long a client may take for its request."""
@@ -45,7 +44,7 @@ TYPES = {
 }
 HEADERS = {
     "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; "
-    "img-src 'self'; connect-src 'self'; base-uri 'none'; form-action 'none'; "
+    "img-src 'self'{images}; connect-src 'self'; base-uri 'none'; form-action 'none'; "
     "frame-ancestors 'none'",
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
@@ -199,7 +198,7 @@ class GroundStation(ThreadingHTTPServer):
             orders = {"/command": live.order} if live is not None and live.token else {}
             commands = Commands(orders, token="" if live is None else live.token)
         self.commands, self.token = commands, commands.token
-        self.overlays: tuple[Shape, ...] = ()
+        self.beneath = Beneath()
         """What the map shows beneath all else."""
         self.access = access
         self.address_family = self.access.family
@@ -346,19 +345,6 @@ class _Handler(BaseHTTPRequestHandler):
             return _json(HTTPStatus.BAD_REQUEST, {"error": told})
         return _json(HTTPStatus.OK, {**live.told(int(first)), "who": live.who(*self._sender())})
 
-    def _beneath(self, query: str) -> Answer:
-        """What the map shows beneath all else, in the frame with the origin that is asked for."""
-        given = parse_qs(query)
-        try:
-            latitude, longitude = (float(given[name][0]) for name in ("latitude", "longitude"))
-            if not (abs(latitude) <= 90 and abs(longitude) <= 180):
-                raise ValueError
-        except (LookupError, ValueError):
-            told = "expected latitude=DEG&longitude=DEG, the origin of a frame"
-            return _json(HTTPStatus.BAD_REQUEST, {"error": told})
-        shapes = in_frame(self.server.overlays, Frame(latitude, longitude))
-        return _json(HTTPStatus.OK, {"shapes": shapes})
-
     def _found(self) -> Answer:
         refused = self._refused()
         if refused is not None:
@@ -368,8 +354,14 @@ class _Handler(BaseHTTPRequestHandler):
             return self.server.recorded.answer()
         if path == "/live.json" and self.server.live is not None:
             return self._told(self.server.live, query)
-        if path == "/overlays.json":
-            return self._beneath(query)
+        try:
+            beneath = self.server.beneath.answer(path, query)
+        except NotObeyed as refused_:
+            return _json(HTTPStatus(refused_.status), {"error": refused_.why})
+        except BadInput as error:
+            return _json(HTTPStatus.UNPROCESSABLE_ENTITY, error.data())
+        if beneath is not None:
+            return _json(HTTPStatus.OK, beneath)
         if path in self.server.commands.polled:
             return _json(HTTPStatus.OK, self.server.commands.polled[path]())
         found = self.server.pages.get(path)
@@ -392,8 +384,9 @@ class _Handler(BaseHTTPRequestHandler):
             self.wfile.write(content)
 
     def end_headers(self) -> None:
+        images = self.server.beneath.images
         for name, value in HEADERS.items():
-            self.send_header(name, value)
+            self.send_header(name, value.format(images=f" {images}" if images else ""))
         super().end_headers()
 
     def log_message(self, format: str, *args: Any) -> None:

@@ -108,7 +108,7 @@ def _started(
 
 
 @contextlib.contextmanager
-def serving(*paths: Path) -> Iterator[tuple[subprocess.Popen[str], int]]:
+def serving(*paths: Path | str) -> Iterator[tuple[subprocess.Popen[str], int]]:
     """`cratous serve PATH...` on a free port: the process and the port; it is ended at the end."""
     with _started(*map(str, paths)) as (running, line):
         yield running, int(line.partition("/")[0])
