@@ -48,16 +48,23 @@ export class Tiles {
     }
     if (query !== this.asked) return; // the view is another one already
     Object.assign(this, { wrong: "", shown: told.tiles });
-    for (const { url } of this.shown) if (!this.images.has(url)) this.load(url);
-    // the oldest go
+    for (const { url } of this.shown) this.keep(url);
+    // those that were not looked at for the longest time go
     for (const url of [...this.images.keys()].slice(0, Math.max(0, this.images.size - KEPT))) this.images.delete(url);
     this.drawn();
+  }
+
+  // a picture, loaded once; as the newest of all
+  keep(url) {
+    const image = this.images.get(url) ?? this.load(url);
+    this.images.delete(url);
+    this.images.set(url, image);
   }
 
   load(url) {
     const image = new Image();
     image.addEventListener("load", () => this.drawn());
     image.src = url;
-    this.images.set(url, image);
+    return image;
   }
 }
