@@ -11,6 +11,8 @@ import re
 from typing import Any, NamedTuple
 from urllib.parse import urlsplit
 
+from cratous.core.avoidance.way_ahead import near_line
+from cratous.core.kernel import Vec2
 from cratous.services.mission.frames import Projection
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Frame
@@ -112,7 +114,8 @@ def seen(tiles: Tiles, frame: Frame, view: View) -> list[dict[str, Any]]:
 def _degrees(plane: Projection, frame: Frame, view: View) -> tuple[float, ...] | None:
     """South, north, west, east [deg] of a view, west and east about the origin; None of one too far for a plane."""
     reach_m = math.hypot(view.height_m, view.width_m) / 2
-    if math.hypot(view.north_m, view.east_m) + reach_m > NEAR_M:
+    middle = Vec2(view.north_m, view.east_m)
+    if not near_line(Vec2(0.0, 0.0), middle, middle, max(NEAR_M - reach_m, 0.0)):
         return None
     steps = [
         plane.to_geodetic(view.north_m + n * view.height_m / 4, view.east_m + e * view.width_m / 4)
