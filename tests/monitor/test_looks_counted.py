@@ -11,7 +11,9 @@ from mission_tools import plain_mission
 from task_tools import vehicle
 
 from cratous.bridge import lmcp
+from cratous.judge import searches, views
 from cratous.services.exporting.messages import configuration_of
+from cratous.services.mission import asked_views
 from cratous.services.mission.asked_views import middle
 from cratous.services.mission.frames import Projection
 from cratous.services.monitor.coverage import CoverageWatch
@@ -139,3 +141,9 @@ def test_the_middle_of_an_image_is_where_its_diagonals_cross(elevation_deg: floa
     # the simulator's Earth is a sphere, the mission's frame lies on an ellipsoid
     assert centre == pytest.approx((away, 0), rel=5e-3, abs=1)
     assert middle([(0, 0), (1, 1), (2, 2), (3, 3)]) is None
+
+
+def test_the_judge_counts_by_the_same_bounds() -> None:
+    assert math.degrees(asked_views.FLATTEST_RAD) == pytest.approx(views.FLATTEST_DEG)
+    assert math.degrees(asked_views.OFF_VIEW_RAD) == pytest.approx(views.OFF_VIEW_DEG)
+    assert asked_views.COARSER == searches.COARSER
