@@ -68,10 +68,11 @@ def sharp_within_m(task: Task, camera: Camera, hfov_rad: float, height_m: float)
 
     Infinite where no ground sample distance is asked for, or the camera's pixels are not known.
     """
-    if task.gsd_m <= 0 or camera.pixels == 0:
+    if not max(task.gsd_m, 0.0) or camera.pixels == 0:
         return math.inf
     slant_m = COARSER * task.gsd_m * camera.pixels / (2 * math.tan(hfov_rad / 2))
-    return math.sqrt(slant_m**2 - height_m**2) if slant_m >= height_m else -1.0
+    squared = slant_m**2 - height_m**2
+    return math.copysign(math.sqrt(abs(squared)), squared)
 
 
 def middle(corners: Sequence[tuple[float, float]]) -> tuple[float, float] | None:

@@ -226,7 +226,7 @@ class CompletionWatch:
         """Why it is not known how finely a task was seen; empty where it is, or nothing is asked for."""
         flyers = [self._vehicles[v] for v in self._tasks[number].flown_by if v in self._vehicles]
         known = all(camera.pixels for flyer in flyers for camera in flyer.cameras)
-        if self._kinds[number].gsd_m <= 0 or known:
+        if not max(self._kinds[number].gsd_m, 0.0) or known:
             return ""
         return "how many pixels its camera has is not known"
 

@@ -51,13 +51,14 @@ def _camera(cameras: Sequence[Camera], number: int) -> Camera | None:
 def counts(one: Look, task: Task) -> bool:
     """Whether a look counts for a task."""
     centre = middle(one.corners)
-    if not suits(one.camera, task) or one.height_m <= 0 or centre is None:
+    if not suits(one.camera, task) or centre is None:
         return False
-    reach = reach_m(one.height_m)
+    height_m = max(one.height_m, 0.0)  # from below the ground, and on it, nothing is within reach
+    reach = reach_m(height_m)
     if not all(in_ring(one.here, Vec2(*corner), 0.0, reach) for corner in one.corners):
         return False
-    sharp_m = sharp_within_m(task, one.camera, one.hfov_rad, one.height_m)
-    allowed = ((r.least_m, min(r.most_m, sharp_m)) for r in rings(task, one.height_m))
+    sharp_m = sharp_within_m(task, one.camera, one.hfov_rad, height_m)
+    allowed = ((r.least_m, min(r.most_m, sharp_m)) for r in rings(task, height_m))
     at = Vec2(*centre)
     return any(least <= most and in_ring(one.here, at, least, most) for least, most in allowed)
 
