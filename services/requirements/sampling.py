@@ -64,6 +64,8 @@ class Sampling:
         self.gap_ns = spec.gap_ns
         self.signals: dict[str, Signal] = {name: spec.signals[name] for name in sorted(names)}
         self.held: dict[str, tuple[int, float | None]] = {}
+        self._known: dict[str, tuple[int, float]] = {}
+        """Of each signal with a rate the last value that is a number."""
         self.seen: set[str] = set()
         self.last = -1
         self.has_begun, self._before = not spec.begins_with_all, -1
@@ -136,9 +138,10 @@ class Sampling:
     def _faster(self, name: str, time: int, known: float | None) -> None:
         """Find a signal that has changed faster than its rate since its last value."""
         rate = self.signals[name].rate
-        since, last = self.held.get(name, (time, None))
-        if not rate or known is None or last is None:
+        if not rate or known is None:
             return
+        since, last = self._known.get(name, (time, known))
+        self._known[name] = time, known
         if abs(Fraction(known) - Fraction(last)) * SECOND > rate * (time - since):
             self.find("faster", name, time)
 
