@@ -26,7 +26,7 @@ from cratous.services.pipeline.contexts import Context, Contexts
 from cratous.services.pipeline.followed import FOLLOWED
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import TASKS
-from cratous.services.pipeline.unserved import Unserved
+from cratous.services.pipeline.unserved import OTHERS_MS, Unserved
 from cratous.services.pipeline.validity import things_of, verdict
 
 NAME = "AutomationRequestValidatorService"
@@ -99,7 +99,7 @@ class AutomationRequestValidatorService:
         """What the validator before it was still to be woken for."""
         line = state.line
         wakes = (Wake(0, line.answered), Wake(self._limit_ms, line.answered)) if state.asked else ()
-        return state, wakes
+        return state, (*wakes, *(Wake(OTHERS_MS, task) for task in state.unserved.waiting))
 
     def handle(self, state: Requests, envelope: Envelope, now_ms: int) -> Step:
         return self._kept(self._handled(state, envelope, now_ms))

@@ -101,6 +101,17 @@ def test_a_kind_that_nobody_does_is_named_when_others_had_their_time_to_speak(ri
     assert KIND in told(rig, 3)
 
 
+def test_a_validator_that_is_started_anew_still_names_a_kind_that_nobody_does(rig: Rig) -> None:
+    name = "AutomationRequestValidatorService"
+    rig.tell(relay(9), request(5, 9))
+    number = next(n for n, one in rig.one.manager.services.items() if one == name)
+    rig.tell(lmcp.new("KillService", ServiceID=number))
+    text = f'<Service Type="{name}" MaxResponseTime_ms="60000"/>'
+    rig.tell(lmcp.new("CreateNewService", XmlConfiguration=text))
+    rig.wait(OTHERS_MS)
+    assert f"task 9 is a {KIND}: no service here does this kind" in told(rig, 0)
+
+
 def test_where_tasks_are_made_elsewhere_a_request_waits_for_them(tmp_path: Path) -> None:
     rig = Rig(tmp_path, "AutomationRequestValidatorService")
     rig.tell(*vehicle(1), relay(9), request(9))
