@@ -36,7 +36,7 @@ SAYS = {
 SECOND = 10**9
 UNAUTHENTICATED = "not authenticated"
 """So ends the source of a message that whoever reaches the bridge may have said, as a tap keeps it."""
-NOT_WHOLE = ("order", *DOUBTS, "cut", "silent", "refused", "left out", "faster")
+NOT_WHOLE = ("gap", "order", *DOUBTS, "cut", "silent", "refused", "left out", "faster")
 """Where one of these was found nothing holds, since more could be known."""
 
 
@@ -83,7 +83,7 @@ class Sampling:
 
     @property
     def is_whole(self) -> bool:
-        """No sample was left out, and no message of the trace is known to be missing."""
+        """No sample was left out or comes too late, and no message of the trace is known to be missing."""
         return not any(kind in NOT_WHOLE for kind, _ in self._found)
 
     @property
