@@ -52,7 +52,8 @@ def flown(faults: BridgeFaults | None) -> tuple[Mission, list[Any]]:
 
 
 def said(log: list[Any]) -> list[str]:
-    return [repr(one.body) for one in log]
+    """All that is on the bus, but for what tells how late ICAROUS heard it."""
+    return [repr(one.body) for one in log if type(one.body).__name__ != "UxasHeard"]
 
 
 def came_down(faults: BridgeFaults, lines: int = 1) -> list[list[int]]:

@@ -217,6 +217,7 @@ def test_two_lemmas_do_not_change_places_unseen(keys: Keys) -> None:
 MAKERS = {
     "core.kernel.fold": "registers the fold, which has a key of its own",
     "core.readings.exact.folds.folded": "makes a reading of a fold that it is given",
+    "proofs.system_search.certificate_faults._as_if": "makes a broken design for the search",
     "proofs.system_search.faults._same_epoch": "makes a broken design for the search",
     "spec.daa.parameters._key": "makes a record from what it is given",
 }
