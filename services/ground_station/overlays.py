@@ -6,13 +6,12 @@ picture: nothing is planned, flown or judged by it.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from cratous.core.avoidance.way_ahead import near_line
 from cratous.core.kernel import Vec2
+from cratous.services.ground_station.near_origin import is_near
 from cratous.services.mission.frames import Projection
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import at_most, json_of
@@ -32,8 +31,6 @@ DEPTH = {
 }
 """How many lists of positions lie in each other in the coordinates of a geometry."""
 FEATURES, SEVERAL = "FeatureCollection", "GeometryCollection"
-NEAR_M = 2_000_000.0
-"""What has a place farther from the frame's origin than this [m] is left out: a plane shows nothing of it as it is."""
 
 
 class Shape(NamedTuple):
@@ -61,21 +58,16 @@ def overlays_of(paths: Sequence[Path]) -> tuple[Shape, ...]:
 
 
 def in_frame(shapes: Sequence[Shape], frame: Frame) -> list[dict[str, Any]]:
-    """The shapes as the page draws them: places north and east [m] in a frame."""
+    """The shapes as the page draws them: places north and east [m] in a frame; none that has a place too far from it."""
     plane, told = Projection(frame), []
     for one in shapes:
         north, east = plane.to_local_many(*zip(*one.places, strict=True))
         places = [
             [round(float(n), 1), round(float(e), 1)] for n, e in zip(north, east, strict=True)
         ]
-        if all(_is_near(Vec2(*place)) for place in places):
+        if all(is_near(Vec2(*place)) for place in places):
             told.append({"places": places, "area": one.area, "name": one.name})
     return told
-
-
-def _is_near(place: Vec2) -> bool:
-    """Whether it is near enough to the origin to be shown; what is nowhere is not."""
-    return all(map(math.isfinite, place)) and near_line(Vec2(0.0, 0.0), place, place, NEAR_M)
 
 
 def _shapes(data: Any, name: str, place: tuple[str, str]) -> Iterator[Shape]:

@@ -11,8 +11,8 @@ import re
 from typing import Any, NamedTuple
 from urllib.parse import urlsplit
 
-from cratous.core.avoidance.way_ahead import near_line
 from cratous.core.kernel import Vec2
+from cratous.services.ground_station.near_origin import is_near
 from cratous.services.mission.frames import Projection
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Frame
@@ -32,7 +32,6 @@ MOST = 120
 MERCATOR_DEG = 85.0511
 """Beyond this latitude web mercator has nothing."""
 EQUATOR_M = 2 * math.pi * 6_378_137.0
-NEAR_M = 2_000_000.0
 
 
 class Tiles(NamedTuple):
@@ -114,8 +113,7 @@ def seen(tiles: Tiles, frame: Frame, view: View) -> list[dict[str, Any]]:
 def _degrees(plane: Projection, frame: Frame, view: View) -> tuple[float, ...] | None:
     """South, north, west, east [deg] of a view, west and east about the origin; None of one too far for a plane."""
     reach_m = math.hypot(view.height_m, view.width_m) / 2
-    middle = Vec2(view.north_m, view.east_m)
-    if not near_line(Vec2(0.0, 0.0), middle, middle, max(NEAR_M - reach_m, 0.0)):
+    if not is_near(Vec2(view.north_m, view.east_m), reach_m):
         return None
     steps = [
         plane.to_geodetic(view.north_m + n * view.height_m / 4, view.east_m + e * view.width_m / 4)

@@ -12,6 +12,7 @@ from chromium_tools import READY, browsing
 from ground_station_tools import ask, serving
 
 from cratous.services.cli import main
+from cratous.services.ground_station import overlays
 from cratous.services.ground_station.overlays import Shape, in_frame, overlays_of
 from cratous.services.loading import load
 from cratous.services.mission.frames import Projection
@@ -87,6 +88,17 @@ def test_what_is_wrong_is_told_with_file_and_place(
     with pytest.raises(BadInput, match=what) as told:
         overlays_of((file,))
     assert (told.value.where, told.value.item) == (str(file), item)
+
+
+def test_more_places_than_the_map_can_draw_are_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(overlays, "MOST_PLACES", 11)
+    file = _file(tmp_path, COAST)
+    assert len(overlays_of((file,))) == 4
+    with pytest.raises(BadInput, match="too many places") as told:  # of all files together
+        overlays_of((file, file))
+    assert told.value.where == str(file)
 
 
 def test_a_bad_overlay_is_bad_input_before_anything_listens(

@@ -1,0 +1,19 @@
+"""How far from a frame's origin what lies beneath the map is shown."""
+
+from __future__ import annotations
+
+import math
+
+from cratous.core.avoidance.way_ahead import near_line
+from cratous.core.kernel import Vec2
+
+NEAR_M = 2_000_000.0
+"""Farther away a plane shows nothing as it is [m]."""
+
+
+def is_near(place: Vec2, reach_m: float = 0.0) -> bool:
+    """Whether a place [m], with all within reach_m of it, is near enough; what is nowhere is not."""
+    origin = Vec2(0.0, 0.0)
+    return all(map(math.isfinite, place)) and near_line(
+        origin, place, place, max(NEAR_M - reach_m, 0.0)
+    )
