@@ -130,6 +130,14 @@ def choose(page: Page, name: str, value: str) -> None:
     )
 
 
+def drawn(page: Page, what: str, *places: tuple[float, float]) -> None:
+    """Pick what the operator asks for, and click its places on the map."""
+    choose(page, "operate", what)
+    page.until("document.getElementById('operate-hint').textContent.startsWith('Click')")
+    for across, down in places:
+        click_map(page, across, down)
+
+
 def live(work: Path) -> None:
     """A flight, paused while ICAROUS has a vehicle."""
     with commanded(work, "live") as (_, page):
@@ -142,9 +150,7 @@ def hold(work: Path) -> None:
     """A vehicle that holds where it was sent."""
     with commanded(work, "hold") as (_, page):
         until_ms(page, 120_000, 50)
-        choose(page, "operate", "hold_at")
-        page.until("document.getElementById('operate-hint').textContent.startsWith('Click')")
-        click_map(page, 0.6, 0.45)
+        drawn(page, "hold_at", (0.6, 0.45))
         page.until("document.getElementById('confirm-command').open")
         page.value("document.getElementById('command-vehicle').value = 1")
         page.click("#command-yes")
@@ -157,10 +163,7 @@ def command(work: Path) -> None:
     """A keep-out zone of the operator's."""
     with commanded(work, "command") as (_, page):
         until_ms(page, 24_000, 5)
-        choose(page, "operate", "keep_out")
-        page.until("document.getElementById('operate-hint').textContent.startsWith('Click')")
-        for across, down in ((0.66, 0.62), (0.86, 0.62), (0.86, 0.9)):
-            click_map(page, across, down)
+        drawn(page, "keep_out", (0.66, 0.62), (0.86, 0.62), (0.86, 0.9))
         page.key("Enter")
         page.until("document.getElementById('confirm-command').open")
         page.click("#command-yes")
