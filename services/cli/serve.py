@@ -104,7 +104,7 @@ def serve(
 
     Exit codes: 0 asked to end (Ctrl-C, SIGTERM), 2 bad input.
     """
-    from cratous.services.ground_station.access import LOOPBACK, access_of
+    from cratous.services.ground_station.access import access_of
     from cratous.services.ground_station.beneath import Beneath
     from cratous.services.ground_station.overlays import overlays_of
     from cratous.spec.files.printable import printable
@@ -144,7 +144,7 @@ def serve(
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             signal.signal(number, stop)
         click.echo(printable(f"{name}: {server.whole_url} (Ctrl-C ends it)"))
-        if host != LOOPBACK:
+        if server.access.from_elsewhere():
             click.echo(
                 "cratous: other machines can reach this, and nothing is encrypted (no TLS)",
                 err=True,

@@ -8,7 +8,7 @@ import re
 import secrets
 import socket
 from email.message import Message
-from ipaddress import ip_address
+from ipaddress import IPv4Address, IPv6Address, ip_address
 from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, urlencode
@@ -47,9 +47,15 @@ class Access:
         words = urlencode({name: token for name, token in said.items() if token})
         return self.url(port) + (f"?{words}" if words else "")
 
+    def from_elsewhere(self) -> bool:
+        """Whether other machines can reach it."""
+        return not self._ip().is_loopback
+
     def names(self, port: int) -> set[str]:
         """What a Host header may say whichever address of this machine was asked."""
-        hosts = {self.host, self.shown_host()} | ({"localhost"} if self._loopback() else set())
+        hosts = {self.host, self.shown_host()} | (
+            {"localhost"} if self._everywhere() or not self.from_elsewhere() else set()
+        )
         return _with_port(hosts, port)
 
     def called(self, hosts: list[str], near: tuple[Any, ...], port: int) -> bool:
@@ -83,10 +89,10 @@ class Access:
         return hmac.compare_digest(shown.encode("utf-8", "replace"), self.token.encode())
 
     def _everywhere(self) -> bool:
-        return ip_address(self.address.partition("%")[0]).is_unspecified
+        return self._ip().is_unspecified
 
-    def _loopback(self) -> bool:
-        return self._everywhere() or ip_address(self.address.partition("%")[0]).is_loopback
+    def _ip(self) -> IPv4Address | IPv6Address:
+        return ip_address(self.address.partition("%")[0])
 
 
 def access_of(host: str, token_file: Path | None) -> Access:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -30,3 +31,14 @@ def crossing_alone(tmp_path_factory: pytest.TempPathFactory) -> Path:
     words = ["run", str(CROSSING), "--no-daa", "--allow-unproved", "--quiet"]
     assert main([*words, "--out", str(out)]) == 1  # the two are not well clear
     return out / "crossing"
+
+
+@pytest.fixture(scope="session")
+def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A message log of one state."""
+    place = {"$type": "CMASI/Location3D", "Latitude": 45.0, "Longitude": 9.0, "Altitude": 100.0}
+    body = {"$type": "CMASI/AirVehicleState", "ID": 1, "Location": place}
+    entry = {"seq": 0, "time_ms": 0, "source": "a", "topic": "afrl.cmasi.AirVehicleState"}
+    file = tmp_path_factory.mktemp("log") / "told.jsonl"
+    file.write_text(json.dumps({**entry, "body": body}) + "\n")
+    return file

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import http.client
 import json
+import signal
 from collections.abc import Iterator
 from email.message import Message
 from pathlib import Path
@@ -11,10 +12,11 @@ from typing import NamedTuple
 
 import pytest
 from chromium_tools import browsing
-from ground_station_tools import LIMIT_S, Got, serving_at
+from ground_station_tools import LIMIT_S, Got, ask, serving, serving_at
 
 from cratous.services.cli import main
 from cratous.services.ground_station.access import ENVIRONMENT, TOKEN, Access, access_of
+from cratous.services.ground_station.server import GroundStation
 from cratous.spec.errors import BadInput
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -52,17 +54,6 @@ class Place(NamedTuple):
             **{name.replace("_", "-"): value for name, value in changed.items()},
         }  # fmt: skip
         return self.ask(path, "POST", json.dumps(asked).encode(), **headers)
-
-
-@pytest.fixture(scope="module")
-def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A message log of one state."""
-    place = {"$type": "CMASI/Location3D", "Latitude": 45.0, "Longitude": 9.0, "Altitude": 100.0}
-    body = {"$type": "CMASI/AirVehicleState", "ID": 1, "Location": place}
-    entry = {"seq": 0, "time_ms": 0, "source": "a", "topic": "afrl.cmasi.AirVehicleState"}
-    file = tmp_path_factory.mktemp("log") / "told.jsonl"
-    file.write_text(json.dumps({**entry, "body": body}) + "\n")
-    return file
 
 
 @pytest.fixture(scope="module")
@@ -176,6 +167,36 @@ def test_a_token_of_a_file_or_of_the_environment_is_not_printed(log: Path, tmp_p
         line.request("GET", "/recording.json")
         assert line.getresponse().status == 401
         line.close()
+
+
+def test_a_token_is_in_nothing_that_is_said_of_requests(log: Path, tmp_path: Path) -> None:
+    file = tmp_path / "token"
+    file.write_text(OWN)
+    with serving(log, "--access-token-file", file) as (running, port):
+        for path in (f"/?access={OWN}", f"/none?access={OWN}", f"/tiles.json?access={OWN}"):
+            assert ask(port, path).status in {200, 404}
+        assert ask(port, f"/command?access={OWN}", "POST").status == 501
+        assert ask(port, f"/?access={OWN}", "BREW").status == 501
+        assert ask(port, f"/?access={OWN}", Host="evil.example").status == 421
+        running.send_signal(signal.SIGTERM)
+        # the address is read from what it says before
+        assert running.communicate(timeout=LIMIT_S) == ("", "")
+
+
+@pytest.mark.parametrize(
+    ("host", "warned"), [("127.0.0.1", False), (HOST, False), ("localhost", False), ("0.0.0.0", True)]
+)  # fmt: skip
+def test_that_others_can_reach_it_without_tls_is_told_where_they_can(
+    log: Path,
+    host: str,
+    warned: bool,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr(GroundStation, "serve_forever", lambda *_, **__: None)
+    monkeypatch.setattr("signal.signal", lambda *_: None)
+    assert main(["serve", str(log), "--port", "0", "--host", host]) == 0
+    assert ("no TLS" in capsys.readouterr().err) == warned
 
 
 @pytest.mark.parametrize("token", ["short", "fifteen-letters", "a b" * 9, "ä" * 20, "a" * 201, ""])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import contextlib
-import json
 import struct
 import threading
 import time
@@ -117,17 +116,6 @@ def test_an_attribution_is_a_line_of_tiles(log: Path) -> None:
         with pytest.raises(BadInput, match="not an attribution"):
             tiles_of(URL, bad)
     assert main(["serve", str(log), "--tiles-attribution", "x"]) == 2
-
-
-@pytest.fixture(scope="module")
-def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A message log of one state."""
-    place = {"$type": "CMASI/Location3D", "Latitude": 45.0, "Longitude": 9.0, "Altitude": 100.0}
-    body = {"$type": "CMASI/AirVehicleState", "ID": 1, "Location": place}
-    entry = {"seq": 0, "time_ms": 0, "source": "a", "topic": "afrl.cmasi.AirVehicleState"}
-    file = tmp_path_factory.mktemp("log") / "told.jsonl"
-    file.write_text(json.dumps({**entry, "body": body}) + "\n")
-    return file
 
 
 def test_without_the_option_nothing_comes_from_elsewhere(log: Path) -> None:
