@@ -245,6 +245,10 @@ def test_by_which_names_it_may_be_called(monkeypatch: pytest.MonkeyPatch) -> Non
     wide = Access("::1", OWN)
     assert wide.url(8760) == "http://[::1]:8760/"
     assert wide.called(["[::1]:8760"], ("::1", 8760, 0, 0), 8760)
+    # IPv4 at a socket of IPv6
+    both = Access("::", OWN)
+    assert both.called(["192.0.2.7:8760"], ("::ffff:192.0.2.7", 8760, 0, 0), 8760)
+    assert not both.called(["192.0.2.8:8760"], ("::ffff:192.0.2.7", 8760, 0, 0), 8760)
     assert Access().whole_url(8760, "") == "http://127.0.0.1:8760/"
 
 

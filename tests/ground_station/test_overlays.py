@@ -122,7 +122,12 @@ def test_the_page_draws_it_beneath_the_aircraft(crossing: Path, tmp_path: Path) 
         serving(crossing, Path("--overlay"), file) as (_, port),
         browsing(tmp_path / "profile") as page,
     ):
-        for query in ("", "?latitude=91&longitude=0", "?latitude=nan&longitude=0"):
+        for query in (
+            "",
+            "?latitude=91&longitude=0",
+            "?latitude=0&longitude=181",
+            "?latitude=nan&longitude=0",
+        ):
             assert ask(port, f"/overlays.json{query}").status == 400
         (shape,) = ask(
             port, f"/overlays.json?latitude={frame.latitude_deg}&longitude={frame.longitude_deg}"
