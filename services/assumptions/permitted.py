@@ -26,6 +26,8 @@ from cratous.spec.mission import FaultySimulation, Mission, Position
 
 NEAR = 0.5
 """From this share of the cylinder on the kernel is asked: 1 is at its wall."""
+SEEN = "flown as looked at"
+"""The assumption whose watch notes when an aircraft was not seen."""
 IN_HAND = ("Offered", "Known", "Left")
 """Changes of a hand that say until when it is permitted."""
 
@@ -188,7 +190,10 @@ class PermittedWatch:
         return f"at the heartbeat of {self._beat_ms[own] / 1000:.2f} s ICAROUS left it to UxAS"
 
     def end(self, at_ms: int) -> None:
-        """Nothing is open."""
+        """While an aircraft was not seen, it was not held against what was permitted either: others have noted when."""
+        self._record.gaps += [
+            gap for name, one in self._of_others() if name == SEEN for gap in one.gaps
+        ]
 
     def records(self) -> dict[str, Record]:
         """See `Watch`."""
