@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from stat import S_ISREG
 from typing import Any
 
 import yaml
@@ -28,7 +29,10 @@ CORNERS = 64
 def read(path: Path) -> m.Mission:
     """The mission in a file; BadInput if it does not fit."""
     try:
-        if path.stat().st_size > LARGEST:
+        kept = path.stat()
+        if not S_ISREG(kept.st_mode):  # a pipe would be waited for
+            raise BadInput("not a regular file", where=str(path), expected="a mission file")
+        if kept.st_size > LARGEST:
             raise BadInput("too large", where=str(path), expected=f"at most {LARGEST} bytes")
         text = path.read_text(encoding="utf-8")
         _refuse_deep(text)

@@ -26,6 +26,8 @@ from cratous.spec.mission import FaultySimulation, Mission, Position
 
 NEAR = 0.5
 """From this share of the cylinder on the kernel is asked: 1 is at its wall."""
+SEEN = "flown as looked at"
+"""The assumption whose watch notes when an aircraft was not seen."""
 IN_HAND = ("Offered", "Known", "Left")
 """Changes of a hand that say until when it is permitted."""
 
@@ -104,30 +106,37 @@ class PermittedWatch:
         self._since_ms.setdefault(number, body.Time)
         if number in self._gates:
             self._against_zones(number, before or place, place)
-            pairs = [(number, other) for other in self._places if other != number]
-        else:
-            pairs = []
-        pairs += [(own, number) for own in self._gates if own != number and own in self._places]
-        for own, other in pairs:
-            if in_time(self._places[own].time_ms, self._places[other].time_ms, 0):
-                self._pair(own, other)
+        for other, there in self._places.items():
+            if other != number and in_time(place.time_ms, there.time_ms, 0):
+                self._pair(number, other)
 
-    def _pair(self, own: int, other: int) -> None:
-        here, there = self._places[own], self._places[other]
+    def _pair(self, one: int, other: int) -> None:
+        """Two aircraft of one instant, for each of them of which something was concluded."""
+        here, there = self._places[one], self._places[other]
         # who rolls, stands or has landed is not kept clear of
-        if here.stands or there.stands or not self._is_seen(own, other):
+        if here.stands or there.stands:
             return
-        said = self._said(own, here.time_ms)
-        if not said:
+        told = [
+            (own, off)
+            for own, off in ((one, other), (other, one))
+            if own in self._gates
+            and self._is_seen(own, off)
+            and self._is_permitted(own, here.time_ms)
+        ]
+        if not told:
             return
         volume, (a, b) = self._volume, (here.at, there.at)
         north, east, up = b.north_m - a.north_m, b.east_m - a.east_m, b.alt_m - a.alt_m
         beside = math.hypot(north, east)
         share = min(_share(volume.dthr_m, beside), _share(volume.zthr_m, abs(up)))
-        self._record.see(share)
+        for _ in told:
+            self._record.see(share)
         if not share <= NEAR and self._hit(north, east, up):
-            where = f"is {beside:.4g} m beside and {abs(up):.4g} m above or below aircraft {other}"
-            self._found(own, here.time_ms, where, said)
+            for own, off in told:
+                where = (
+                    f"is {beside:.4g} m beside and {abs(up):.4g} m above or below aircraft {off}"
+                )
+                self._found(own, here.time_ms, where)
 
     def _against_zones(self, own: int, before: Place, here: Place) -> None:
         """What was flown since the last sample with a certificate that knew of the zones."""
@@ -141,8 +150,7 @@ class PermittedWatch:
             if bound.binds(before.time_ms):
                 self._record.see(None)
                 if not exact_leg_ok(before.at, here.at, bound.zone):
-                    said = f"a certificate is in hand until {until_ms / 1000:.2f} s"
-                    self._found(own, before.time_ms, f"breaks zone {bound.zone.id}", said)
+                    self._found(own, before.time_ms, f"breaks zone {bound.zone.id}")
 
     def _hit(self, north: float, east: float, up: float) -> bool:
         if not all(map(math.isfinite, (north, east, up))):
@@ -150,14 +158,14 @@ class PermittedWatch:
         volume = self._volume
         return bool(exact(cylinder_violation, Vec2(north, east), up, volume.dthr_m, volume.zthr_m))
 
-    def _found(self, own: int, now_ms: int, what: str, said: str) -> None:
+    def _found(self, own: int, now_ms: int, what: str) -> None:
         before = next((name for name, one in self._of_others() if one.broken is not None), "")
         if before:
             if not self._record.gaps:
                 after = f"at {now_ms / 1000:.2f} s, after {before!r} was broken"
                 self._record.gaps.append(f"vehicle {own} {what} {after}")
             return
-        self._record.check(False, now_ms, own, f"vehicle {own} {what}, though {said}")
+        self._record.check(False, now_ms, own, f"vehicle {own} {what}, though {self._said(own)}")
 
     def _of_others(self) -> list[tuple[str, Record]]:
         return [one for watch in self._others for one in watch.records().items()]
@@ -168,20 +176,24 @@ class PermittedWatch:
             return (own, other) in self._sensed
         return in_time(self._since_ms[other], self._beat_ms[own], ANY_LATER)
 
-    def _said(self, own: int, now_ms: int) -> str:
-        """What was concluded of this instant, "" for nothing."""
-        beat_ms = self._beat_ms[own]
+    def _is_permitted(self, own: int, now_ms: int) -> bool:
+        """Whether it was concluded that this instant is clear."""
         if has_it(self._gates[own]):
-            until_ms = self._hands[own].until_ms
-            if in_time(until_ms, now_ms, ANY_LATER):
-                return ""
-            return f"a certificate is in hand until {until_ms / 1000:.2f} s"
-        if not (in_time(0, beat_ms, ANY_LATER) and in_time(beat_ms, now_ms, self._period_ms)):
-            return ""
-        return f"at the heartbeat of {beat_ms / 1000:.2f} s ICAROUS left it to UxAS"
+            return not in_time(self._hands[own].until_ms, now_ms, ANY_LATER)
+        beat_ms = self._beat_ms[own]
+        return in_time(0, beat_ms, ANY_LATER) and in_time(beat_ms, now_ms, self._period_ms)
+
+    def _said(self, own: int) -> str:
+        """What was concluded last."""
+        if has_it(self._gates[own]):
+            return f"a certificate is in hand until {self._hands[own].until_ms / 1000:.2f} s"
+        return f"at the heartbeat of {self._beat_ms[own] / 1000:.2f} s ICAROUS left it to UxAS"
 
     def end(self, at_ms: int) -> None:
-        """Nothing is open."""
+        """While an aircraft was not seen, it was not held against what was permitted either: others have noted when."""
+        self._record.gaps += [
+            gap for name, one in self._of_others() if name == SEEN for gap in one.gaps
+        ]
 
     def records(self) -> dict[str, Record]:
         """See `Watch`."""

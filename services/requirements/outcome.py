@@ -20,8 +20,9 @@ class Outcome:
     """One requirement over a trace. Instants: numbers of samples, or times [ns]; -1 where there is none.
 
     undecided: samples whose verdict needs more than the trace has; decided_at: when the first violation was
-    known; whole: nothing of the trace is known to be missing; until: the last sample; cut_off: the trace is a flight that
-    was cut off there, so that it goes on unseen; unauthenticated: of what it was held against nothing says who said it; margins: of each comparison; blamed: the parts of the
+    known; whole: nothing of the trace is known to be missing; until: the last sample; lacks: why nothing holds, apart
+    from a flight that was cut off there; unauthenticated: of what it was held against nothing says who said it;
+    margins: of each comparison; blamed: the parts of the
     formula that are to blame for the first violation.
     """
 
@@ -36,7 +37,7 @@ class Outcome:
     first_unknown: int = -1
     whole: bool = True
     until: int = -1
-    cut_off: bool = False
+    lacks: str = ""
     unauthenticated: bool = False
     margins: list[Margin] = field(default_factory=list)
     blamed: tuple[Part, ...] = ()
@@ -62,14 +63,15 @@ class Outcome:
         if self.whole or self.violated or self.unknown or self.until < 0:
             return ""
         until = f"until {self.until / 1e9:g} s"
-        why = "where the flight was cut off; what came after is unseen"
-        if not self.cut_off:
-            why = "but samples or messages are missing, so nothing holds"
+        undecided = ""
         if self.undecided or not self.holds:
-            why += f"; {self.holds} samples hold and {self.undecided} are undecided"
-        elif not self.horizon:  # what looks back alone is decided at each sample by what was flown
-            return f"held at each sample {until}, {why}"
-        return f"holds so far, {until}, {why}"
+            undecided = f"; {self.holds} samples hold and {self.undecided} are undecided"
+        if self.lacks:
+            return f"violated at no sample {until}, but {self.lacks}, so nothing holds{undecided}"
+        why = f"{until}, where the flight was cut off; what came after is unseen{undecided}"
+        # what looks back alone is decided at each sample by what was flown
+        at_each = not undecided and not self.horizon
+        return f"held at each sample {why}" if at_each else f"holds so far, {why}"
 
     def add(self, sample: int, verdict: int, now: int) -> None:
         """A verdict more, decided by the sample `now`."""

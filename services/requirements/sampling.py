@@ -87,9 +87,13 @@ class Sampling:
         return not any(kind in NOT_WHOLE for kind, _ in self._found)
 
     @property
-    def is_cut_off(self) -> bool:
-        """The flight went on, or was broken off, where the trace ends."""
-        return ("cut off", "") in self._found
+    def lacks(self) -> str:
+        """Why nothing holds though the flight was not cut off, in words; empty where there is no such reason."""
+        kinds = {kind for kind, _ in self._found}.intersection(NOT_WHOLE) - {"cut off"}
+        said = ["samples or messages are missing"] if kinds - {"faster"} else []
+        if "faster" in kinds:
+            said.append("a signal changes faster than its rate")
+        return " and ".join(said)
 
     def samples(self, rows: Iterable[Row]) -> Iterator[tuple[int, Sample]]:
         """The samples of the rows, with times that rise."""

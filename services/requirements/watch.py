@@ -150,7 +150,7 @@ class Watch:
         for outcome in self.outcomes:
             outcome.undecided = self.count - outcome.holds - outcome.violated - outcome.unknown
             outcome.whole = self.sampling.is_whole and self.sampling.has_begun
-            outcome.until, outcome.cut_off = self.last, self.sampling.is_cut_off
+            outcome.until, outcome.lacks = self.last, self.sampling.lacks
             outcome.unauthenticated = self.is_unauthenticated(outcome)
         findings = tuple(self.sampling.findings) if self.spec.timed else ()
         return Watched(tuple(self.outcomes), findings)

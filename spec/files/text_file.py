@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import stat
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,8 +14,9 @@ from cratous.spec.files import limits
 
 
 def bytes_of(file: Path, most: int = limits.DOCUMENT_BYTES, expected: str = "a file") -> bytes:
-    """A file's bytes; BadInput if it is missing, cannot be read or is longer than `most`."""
+    """A file's bytes; BadInput if it is missing, no regular file, cannot be read or is longer than `most`."""
     try:
+        _check_regular(file, expected)
         with file.open("rb") as stream:
             data = stream.read(most + 1)
             if len(data) > most:
@@ -45,6 +47,7 @@ def lines_of(file: Path) -> Iterator[tuple[int, str]]:
     """(number, line) of a text file, gzipped if its name ends in `.gz`; BadInput beyond a bound."""
     total, packed = 0, file.suffix == ".gz"
     try:
+        _check_regular(file, "a file of text")
         with _opened(file, packed) as stream:
             for number, line in enumerate(
                 iter(lambda: stream.readline(limits.LINE_BYTES + 1), b""), 1
@@ -67,6 +70,13 @@ def lines_of(file: Path) -> Iterator[tuple[int, str]]:
         raise BadInput("there is no such file", where=str(file)) from error
     except (OSError, EOFError, zlib.error) as error:
         raise BadInput(f"the file cannot be read: {error}", where=str(file)) from error
+
+
+def _check_regular(file: Path, expected: str) -> None:
+    """Raise BadInput for a pipe or a device, which may keep its reader waiting for ever."""
+    mode = file.stat().st_mode
+    if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):  # of a folder the system says so itself
+        raise BadInput("not a regular file", where=str(file), expected=expected)
 
 
 def _opened(file: Path, packed: bool) -> IO[bytes]:

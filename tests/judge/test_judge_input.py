@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sqlite3
 from pathlib import Path
 
@@ -183,6 +184,14 @@ def test_a_mission_file_that_does_not_fit(tmp_path: Path, capsys, text: str) -> 
     file.write_text(text)
     assert refused(capsys, str(whole(tmp_path)), "--mission", str(file))["where"] == str(file)
     refused(capsys, str(whole(tmp_path)), "--mission", str(tmp_path))
+
+
+def test_a_mission_from_a_pipe_or_device_is_not_waited_for(tmp_path: Path, capsys) -> None:
+    pipe = tmp_path / "mission.yaml"
+    os.mkfifo(pipe)
+    for file in (str(pipe), "/dev/zero"):
+        said = refused(capsys, str(whole(tmp_path)), "--mission", file)
+        assert said["error"] == "not a regular file"
 
 
 def test_the_mission_of_a_file(tmp_path: Path) -> None:

@@ -117,6 +117,17 @@ def test_a_look_counts_where_the_view_asked_for_looks_and_not_near_the_horizon(
     assert served(tmp_path, short, looks=below) == "holds"
 
 
+def test_a_look_from_a_place_that_is_not_known_serves_nothing(tmp_path: Path) -> None:
+    down = {"azimuth_rad": 0.0, "elevation_rad": math.radians(-90)}
+    asked = task(1, "line_search", (0, 0), (200, 0), view=down)
+    for first_ms, last_ms in ((0, 9000), (0, 4000), (2500, 5500), (2500, 9000)):
+        scene = Scene(tasks=[asked]).straight(1, (0, 0, 300), NORTH).does(1, 1, 2000, 8000)
+        scene.messages = [m for m in scene.messages
+                          if not m.topic.endswith("TruthState") or not first_ms <= m.time_ms <= last_ms]  # fmt: skip
+        see(scene, 3000, box(-1, 201))
+        assert one(tmp_path, scene, "task 1 served") == "unknown", (first_ms, last_ms)
+
+
 def test_areas_are_seen(tmp_path: Path) -> None:
     asked = task(1, "area_search", (0, 0), (0, 200), (200, 200), (200, 0))
     halves = [(3000, box(-1, 100, -1, 201)), (5000, box(99, 201, -1, 201))]

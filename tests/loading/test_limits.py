@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import gzip
 import json
+import os
 import resource
 import sqlite3
 import subprocess
@@ -24,7 +25,7 @@ from cratous.spec.daa import encounter_files as daa_file
 from cratous.spec.errors import BadInput
 from cratous.spec.files import limits
 from cratous.spec.files.limits import inflated, integer_of, json_of
-from cratous.spec.files.text_file import lines_of
+from cratous.spec.files.text_file import bytes_of, lines_of, text_of
 
 MEMORY_BYTES, CPU_S = 1_000_000_000, 20
 """What a child may take in all, with the interpreter and numpy: the inputs ask for gigabytes."""
@@ -385,3 +386,14 @@ def test_lines_and_states_are_counted(tmp_path: Path, monkeypatch: pytest.Monkey
     rows = "".join(f"a 0 0 0 0 0 0 {k}\n" for k in range(101))
     with pytest.raises(BadInput, match="too many states"):
         daa_file.parse(HEAD + rows)
+
+
+@pytest.mark.parametrize("read", [bytes_of, text_of, lambda file: next(lines_of(file))])
+def test_neither_pipe_nor_device_is_waited_for(
+    read: Callable[[Path], object], tmp_path: Path
+) -> None:
+    pipe = tmp_path / "pipe.req"
+    os.mkfifo(pipe)
+    for file in (pipe, Path("/dev/null")):
+        with pytest.raises(BadInput, match="not a regular file"):
+            read(file)

@@ -35,9 +35,13 @@ def unseen(number: int, since_ms: int, until_ms: int) -> Change:
 def test_what_is_not_seen_is_not_said_to_be_flown_as_looked_at(
     number: int, since_ms: int, until_ms: int, said: str
 ) -> None:
-    row = tampered(unseen(number, since_ms, until_ms))["flown as looked at"]
+    rows = tampered(unseen(number, since_ms, until_ms))
+    row = rows["flown as looked at"]
     assert (row["state"], row["checks"] > 50) == ("not observed", True)
     assert row["note"].startswith(f"aircraft {number} {said}")
+    row = rows["permitted as offered"]
+    assert row["state"] == "not observed"
+    assert row["checks"] == 0 or row["note"].startswith(f"aircraft {number} {said}")
 
 
 def test_an_aircraft_that_comes_and_vanishes_is_seen_while_it_is_there() -> None:

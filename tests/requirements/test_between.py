@@ -207,6 +207,8 @@ def test_a_signal_that_changes_faster_than_its_rate_lets_nothing_hold(tmp_path: 
     assert [(one.kind, one.signal, one.first_ns) for one in found.findings] == [
         ("faster", "x", 2 * 10**9)
     ]
+    said = "violated at no sample until 2 s, but a signal changes faster than its rate, so nothing holds"
+    assert {one.so_far for one in found.outcomes} == {said}
     trace.write_text("time_s,x,y,z,b\n0,5,0,1,1\n1,7,0,1,1\n2,9,0,1,1\n")
     assert {one.verdict for one in watch(spec, trace).outcomes} == {"holds"}
 

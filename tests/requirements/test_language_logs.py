@@ -131,6 +131,9 @@ def test_of_a_log_that_is_not_whole_nothing_holds(tmp_path: Path) -> None:
         "unknown",
         ["open", "lost"],
     )
+    until = found.outcomes[0].until / 1e9
+    said = f"violated at no sample until {until:g} s, but samples or messages are missing, so nothing holds"
+    assert found.outcomes[0].so_far == said
 
 
 def test_a_log_that_was_changed_is_refused(tmp_path: Path) -> None:
