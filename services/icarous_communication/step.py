@@ -190,7 +190,7 @@ class Communication:
         """A MissionCommand of somebody else's; while ICAROUS has the vehicle it waits for the handback."""
         vid, craft = int(command.VehicleID), state.craft(command.VehicleID)
         if not command.WaypointList:
-            return ended(state, vid)
+            return ended(state, vid, self.dialects.of(vid))
         if craft.away is not None:
             text = f"vehicle {vid}: a mission has come while ICAROUS has it, and waits for the handback"
             come = self._by_uxas(state, vid, command)
