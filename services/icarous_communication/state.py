@@ -187,6 +187,20 @@ def ended(state: State, vid: int, dialect: Dialect) -> tuple[State, list[Out]]:
     ]
 
 
+def over_meanwhile(state: State, vid: int, dialect: Dialect) -> list[Out]:
+    """To an instance that comes again and may still have the plan of a mission that ended while it was away."""
+    craft = state.craft(vid)
+    if craft.plan is not None or craft.away is not None:
+        return []
+    return [Down(vid, placed(state, vid, MISSION_OVER, dialect))]
+
+
+def free(state: State, vid: int) -> State:
+    """The ICAROUS of a vehicle is heard: what made the vehicle hold is over."""
+    craft = state.craft(vid)
+    return state.put(vid, replace(craft, holds=False)) if craft.holds else state
+
+
 def turn_radius_of(craft: Craft, air: AirState) -> float:
     """Of the turns of a way back [m]: those that its ICAROUS makes it of."""
     profile = None if craft.configuration is None else craft.configuration.NominalFlightProfile

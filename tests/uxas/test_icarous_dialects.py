@@ -104,7 +104,8 @@ def test_zones_that_are_removed_and_a_mission_that_is_over_are_told_to_each_as_i
     rig.tell(lmcp.new("MissionCommand", VehicleID=1))
     rig.until(lambda: ours.all(tp.StopMission) and ours.all(tp.ForgetWaypoints))
     assert not ours.all(tp.HardReset)
-    again = peer_again(rig, ours)
+    again = peer_again(rig, ours)  # which may not have heard it
+    rig.until(lambda: again.all(tp.StopMission) and again.all(tp.ForgetWaypoints))
     rig.until(lambda: again.all(tp.OwnPosition) or rig.tell(state(1, 400.0, 1500)))
     assert not again.all(tp.Waypoint), "on a new connection there is no plan either"
 
