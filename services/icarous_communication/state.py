@@ -25,7 +25,7 @@ from cratous.bridge.text_protocol.layouts import ORIGINAL_LIMITS
 from cratous.core.authority.timeliness import in_time
 from cratous.services.flight import link_end
 from cratous.services.flight.dynamics import AirState, turn_radius_m
-from cratous.services.flight.link_lines import onward
+from cratous.services.flight.link_lines import fence, onward
 from cratous.services.flight.link_peers import to_others
 from cratous.services.flight.messages import Down, Say
 from cratous.services.icarous.ending import TURN_MARGIN
@@ -46,6 +46,10 @@ COMMANDS_FROM = 2**40
 MOST_BANK_RAD = math.radians(80.0)
 DEFAULT_BANK_RAD = math.radians(30.0)
 """How far a vehicle banks of which no configuration is known, or one that says nothing of it."""
+
+
+MISSION_OVER = StopMission(), ForgetWaypoints()
+"""What an instance is told when the mission of its vehicle is over."""
 
 
 class Refuse(NamedTuple):
@@ -166,8 +170,9 @@ def known_zones(
     return state, zones, notes
 
 
-def ended(state: State, vid: int) -> tuple[State, list[Out]]:
-    """A MissionCommand without waypoints: the mission of a vehicle that UxAS flies is over, and its instance is told."""
+def ended(state: State, vid: int, dialect: Dialect) -> tuple[State, list[Out]]:
+    """A MissionCommand without waypoints: the mission of a vehicle that UxAS flies is over, and its instance is told.
+    dialect: of that one."""
     craft, peer = state.craft(vid), state.link.peer(vid)
     if craft.plan is None or craft.away is not None:
         return state, [Refuse("mission without waypoints", f"vehicle {vid}")]
@@ -178,8 +183,22 @@ def ended(state: State, vid: int) -> tuple[State, list[Out]]:
     state = replace(state, link=state.link.with_peer(over))
     return state, [
         *to_others(state.link, over, state.plane),
-        Down(vid, (StopMission(), ForgetWaypoints())),
+        Down(vid, placed(state, vid, MISSION_OVER, dialect)),
     ]
+
+
+def over_meanwhile(state: State, vid: int, dialect: Dialect) -> list[Out]:
+    """To an instance that comes again and may still have the plan of a mission that ended while it was away."""
+    craft = state.craft(vid)
+    if craft.plan is not None or craft.away is not None:
+        return []
+    return [Down(vid, placed(state, vid, MISSION_OVER, dialect))]
+
+
+def free(state: State, vid: int) -> State:
+    """The ICAROUS of a vehicle is heard: what made the vehicle hold is over."""
+    craft = state.craft(vid)
+    return state.put(vid, replace(craft, holds=False)) if craft.holds else state
 
 
 def turn_radius_of(craft: Craft, air: AirState) -> float:
@@ -230,10 +249,15 @@ def placed(
     client WAYPT with a running count, and the zones that it holds alone."""
     if dialect.ours:
         return lines
-    if lines == (ForgetFences(),):  # for which it has no word
+    # it has no words to forget the one alone: it forgets all, and is told the other anew
+    if lines == (ForgetFences(),):
         peer = state.link.peer(vid)
         assert peer is not None
         lines = (HardReset(), *onward(peer.way, peer.reached))
+    elif lines == MISSION_OVER:
+        zones = enumerate(state.link.zones, 1)
+        fences = (line for number, zone in zones for line in fence(zone, number, state.plane))
+        lines = (HardReset(), *fences)
     if dialect is Dialect.ORIGINAL:
         lines = tuple(_numbered(x, state.client_zones) for x in lines if _held(x, state))
     return tuple(_placed(state, vid, line, dialect) for line in lines)

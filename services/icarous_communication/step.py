@@ -65,9 +65,11 @@ from cratous.services.icarous_communication.state import (
     air_state,
     at_the_time_of,
     ended,
+    free,
     goes_on,
     known_zones,
     left_out,
+    over_meanwhile,
     placed,
     plane,
     turn_radius_of,
@@ -115,6 +117,8 @@ class Communication:
             out += more
             if not self.dialects.ours(vehicle_id):  # which says no epoch
                 out += in_flight(self.name, vehicle_id, peer.gate, state.craft(vehicle_id).plan)
+        else:
+            out += over_meanwhile(state, vehicle_id, self.dialects.of(vehicle_id))
         if (body := state.craft(vehicle_id).body) is None:
             return state, out
         state, more = self._seen(state, vehicle_id, body, now_ms)
@@ -131,7 +135,7 @@ class Communication:
             return self._mode(state, vehicle_id, line, now_ms)
         flown = flies(line, state.craft(vehicle_id).air, state.plane)
         state, out = self._end(state, Heard(vehicle_id, now_ms, flown))
-        state = self._free(state, vehicle_id)
+        state = free(state, vehicle_id)
         if isinstance(line, Heartbeat):
             state = state.put(vehicle_id, replace(state.craft(vehicle_id), handed=False))
         if self.dialects.original(vehicle_id) and isinstance(line, GoToWaypoint):
@@ -178,7 +182,7 @@ class Communication:
         if modes.begins(peer, said, fresh and self.dialects.ours(vehicle_id)):
             out += in_flight(self.name, vehicle_id, said.gate, state.craft(vehicle_id).plan)
         state, more = self._end(state, Heard(vehicle_id, now_ms, said.line))
-        return self._free(state, vehicle_id), [*out, *more]
+        return free(state, vehicle_id), [*out, *more]
 
     # what comes over the bus ----------------------------------------------------------------------
 
@@ -190,7 +194,7 @@ class Communication:
         """A MissionCommand of somebody else's; while ICAROUS has the vehicle it waits for the handback."""
         vid, craft = int(command.VehicleID), state.craft(command.VehicleID)
         if not command.WaypointList:
-            return ended(state, vid)
+            return ended(state, vid, self.dialects.of(vid))
         if craft.away is not None:
             text = f"vehicle {vid}: a mission has come while ICAROUS has it, and waits for the handback"
             come = self._by_uxas(state, vid, command)
@@ -375,11 +379,6 @@ class Communication:
         if peer is None or modes.unknown(peer, fresh):
             return []
         return [at_gate(self.name, vid, peer.gate, UXAS, command)]
-
-    def _free(self, state: State, vid: int) -> State:
-        """It is heard: what made the vehicle hold is over."""
-        craft = state.craft(vid)
-        return state.put(vid, replace(craft, holds=False)) if craft.holds else state
 
     def _command(self, state: State, vid: int, action: Any) -> tuple[State, Say]:
         state = replace(state, commands=state.commands + 1)

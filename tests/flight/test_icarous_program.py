@@ -12,16 +12,21 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from icarous_tools import PROJECTION, VOLUME
+from icarous_tools import ABILITY, NORTH, PROJECTION, VOLUME
 
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.port import Address
 from cratous.bridge.text_port import TextPort
 from cratous.bridge.text_protocol.handshake import ServerHandshake
 from cratous.core.authority.gate import ICAROUS, UXAS, Gate
+from cratous.core.avoidance.resolution import Choice
 from cratous.services.flight.dynamics import Limits
+from cratous.services.icarous import state as icarous
 from cratous.services.icarous.asking import Asking
+from cratous.services.icarous.inbox import Told
+from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.state import Config
+from cratous.services.icarous_program.onward import steering
 from cratous.services.icarous_program.program import Program
 from cratous.services.icarous_program.step import Craft, IcarousEnd, Note, Refuse, State, Tell
 from cratous.spec.mission import Daa, Position
@@ -299,6 +304,30 @@ def test_a_place_at_another_altitude_is_not_flown_straight_to() -> None:
     said = flown_round(END, beats=12, alt_m=320.0)
     assert not any(isinstance(m, tp.SetPosition) for m in said)
     assert any(isinstance(m, tp.SetVelocity) for m in said)
+
+
+STRAIGHT = Choice("turn", 0.0, 22.0, 0.0, 0.0, True, None)
+
+
+@pytest.mark.parametrize(
+    ("choice", "distance_m", "said"),
+    [
+        (STRAIGHT, 2000.0, tp.SetPosition),
+        (STRAIGHT, 100.0, tp.SetVelocity),  # it would circle there
+        (STRAIGHT._replace(clear=False), 2000.0, tp.SetVelocity),
+        (STRAIGHT._replace(climb_m_s=1.0), 2000.0, tp.SetVelocity),
+        (STRAIGHT._replace(heading_rad=0.1), 2000.0, tp.SetVelocity),
+        (STRAIGHT._replace(speed_m_s=25.0), 2000.0, tp.SetVelocity),
+    ],
+)
+def test_a_place_is_said_of_a_far_one_that_is_flown_straight_to_and_free_alone(
+    choice: Choice, distance_m: float, said: type[tp.Message]
+) -> None:
+    told = Told(waypoints=(Position(distance_m, 0.0, 300.0),), started=True)
+    state = icarous.State(told=told, held=choice)
+    sensed = Sensed(0, NORTH, ABILITY, (), Gate(ICAROUS, 1, False))
+    line = tp.SetVelocity(22.0, 0.0, 0.0)
+    assert type(steering(line, state, sensed, PROJECTION)) is said
 
 
 def test_what_it_is_told_to_forget_is_forgotten_and_nothing_else() -> None:

@@ -103,9 +103,37 @@ def test_zones_that_are_removed_and_a_mission_that_is_over_are_told_to_each_as_i
         assert not one.all(tp.ForgetFences)
     rig.tell(lmcp.new("MissionCommand", VehicleID=1))
     rig.until(lambda: ours.all(tp.StopMission) and ours.all(tp.ForgetWaypoints))
-    again = peer_again(rig, ours)
+    assert not ours.all(tp.HardReset)
+    again = peer_again(rig, ours)  # which may not have heard it
+    rig.until(lambda: again.all(tp.StopMission) and again.all(tp.ForgetWaypoints))
     rig.until(lambda: again.all(tp.OwnPosition) or rig.tell(state(1, 400.0, 1500)))
     assert not again.all(tp.Waypoint), "on a new connection there is no plan either"
+
+
+def test_the_end_of_a_mission_leaves_each_its_zones_and_nothing_of_the_plan(
+    tmp_path: Path, opened: list[Any]
+) -> None:
+    rig = Rig(tmp_path, THREE, opened)
+    peers = {2: peer(rig, 1), 3: peer(rig, 2)}
+    rig.tell(zone(60, 7), zone(4, 9))
+    for vid, one in peers.items():
+        command = way((0.0, 0.0), (5000.0, 0.0)).copy(VehicleID=vid)
+        rig.tell(state(vid, 400.0 * vid), command)
+        rig.until(lambda one=one: one.all(tp.StartMission) and one.all(tp.FenceDone))
+    for vid, one in peers.items():
+        before = len(one.read())
+        rig.tell(lmcp.new("MissionCommand", VehicleID=vid))
+        zones = 1 if one.dialect is ORIGINAL else 2  # those that it can hold
+        rig.until(lambda one=one, n=before, z=zones: len(told_since(one, n)) >= 1 + z)
+        reset, *fences = told_since(one, before)
+        assert isinstance(reset, tp.HardReset)
+        assert [line.zone for line in fences] == list(range(1, zones + 1))
+        assert not any(isinstance(line, tp.Waypoint) for line in one.got[before:])
+
+
+def told_since(one: Fake, before: int) -> list[Any]:
+    """The resets and whole zones among what a peer was told after so many lines."""
+    return [x for x in one.read()[before:] if isinstance(x, tp.HardReset | tp.FenceDone)]
 
 
 def peer_again(rig: Rig, one: Fake) -> Fake:

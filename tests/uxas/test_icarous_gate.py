@@ -116,3 +116,37 @@ def test_a_task_pauses_where_its_first_waypoint_is_behind(
     places = [PLANE.to_local(w.Latitude, w.Longitude) for w in added]
     assert any(math.dist(place, (north, 0.0)) < 50.0 for place in places) is begun, places
     assert [p.TaskID for p in rig.got("TaskResume")] == [TASK] * begun
+
+
+@pytest.mark.parametrize("handed_on", [False, True], ids=["way back", "part of the way"])
+def test_a_task_that_was_begun_is_being_done_on_the_way_that_follows_too(
+    tmp_path: Path, opened: list[Any], handed_on: bool
+) -> None:
+    """None of the waypoints that bear its number is behind on that way."""
+    rig = Rig(tmp_path, 'NumberOfUAVs="1" DeviationAllowed="40" DeviationOrigin="path"', opened)
+    one = rig.fake(hello=1)
+
+    def at(north: float, east: float, now_ms: int, waypoint: int) -> Any:
+        craft = Aircraft(1, north, east, 0.0)
+        craft.waypoint = waypoint
+        return craft.state(now_ms).copy(AssociatedTasks=[TASK])
+
+    rig.tell(at(-300.0, 0.0, 1000, 1), way((0.0, 0.0), (3000.0, 0.0), (9000.0, 0.0)))
+    rig.tell(at(500.0, 0.0, 2000, 2))
+    epoch, goal = 1, 1
+    if handed_on:  # as a waypoint manager does
+        rig.tell(way((3000.0, 0.0), (9000.0, 0.0)))
+    else:
+        one.say(tp.SetMode("ACTIVE", 1))
+        rig.until(lambda: rig.got("AuthorityChange"))
+        rig.tell(at(800.0, 600.0, 30_000, 2))
+        one.say(tp.SetMode("PASSIVE", 2))
+        rig.until(lambda: rig.got("MissionCommand"))
+        (command,) = rig.got("MissionCommand")
+        epoch, goal = 3, command.FirstWaypoint
+    pauses, changes = len(rig.got("TaskPause")), len(rig.got("AuthorityChange"))
+    rig.tell(at(800.0, 600.0, 31_000, goal))
+    one.say(tp.SetMode("ACTIVE", epoch))
+    rig.until(lambda: len(rig.got("AuthorityChange")) > changes)
+    rig.tell(at(800.0, 5000.0, 60_000, goal))
+    assert [p.TaskID for p in rig.got("TaskPause")[pauses:]] == [TASK]
