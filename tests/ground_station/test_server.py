@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import mimetypes
 import shutil
 import signal
 import socket
@@ -13,14 +14,22 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from ground_station_tools import LIMIT_S, ask, serving
+from ground_station_tools import LIMIT_S, PAGE, ask, page_files, serving
 from simulator_tools import mission, scenario, waypoint
 
 from cratous.services.cli import main
+from cratous.services.ground_station.access import Access
 from cratous.services.ground_station.recording import recording
-from cratous.services.ground_station.server import MOST_AT_ONCE, page_files
+from cratous.services.ground_station.server import GroundStation
+from cratous.services.ground_station.shown import ReadAnew
 from cratous.services.ground_station.verdicts import NO_REPORT, OTHER_LOG
+from cratous.services.web.connection import MOST_SILENT
 from cratous.spec.errors import BadInput
+
+KINDS = {
+    ".html": "text/html; charset=utf-8", ".css": "text/css; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8", ".svg": "image/svg+xml", ".png": "image/png",
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -33,18 +42,32 @@ def test_the_page_and_all_that_it_names_are_there(port: int) -> None:
     page = ask(port, "/")
     assert page.status == 200
     assert page.headers["content-type"] == "text/html; charset=utf-8"
-    named = {path for path in page_files() if path[1:].encode() in page.body and path != "/"}
+    assert page.body == (PAGE / "index.html").read_bytes()
+    named = {path for path in page_files() if f'"{path}"'.encode() in page.body}
     assert named == {"/main.js", "/station.css", "/icon.svg"}
-    for path in page_files():
+    for path, file in page_files().items():
         got = ask(port, path)
         assert got.status == 200
+        assert got.headers["content-type"] == KINDS[file.suffix], path
+        assert got.body == file.read_bytes()
         assert int(got.headers["content-length"]) == len(got.body) > 100
 
 
+def test_what_a_file_is_does_not_hang_on_the_machine_s_own_tables(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Some of them call JavaScript plain text, which no browser runs then."""
+    for end in KINDS:
+        monkeypatch.setitem(mimetypes.types_map, end, "text/plain")
+    with GroundStation(ReadAnew(dict), 0, Access()):
+        for end, kind in KINDS.items():
+            assert mimetypes.guess_type(f"a/vendor/b{end}")[0] == kind.partition(";")[0]
+
+
 def test_nothing_of_the_page_comes_from_elsewhere() -> None:
-    for path, answer in page_files().items():
+    for path, file in page_files().items():
         # a name of a namespace is fetched by nobody
-        body = answer.body.replace(b'"http://www.w3.org/2000/svg"', b"")
+        body = file.read_bytes().replace(b'"http://www.w3.org/2000/svg"', b"")
         assert b"http" not in body.lower(), path
 
 
@@ -79,7 +102,7 @@ def test_no_other_path_gives_anything(port: int, path: str) -> None:
 
 def test_it_takes_nothing(port: int) -> None:
     for method in ("POST", "PUT", "DELETE", "OPTIONS", "NONSENSE"):
-        assert ask(port, "/", method).status == 501
+        assert ask(port, "/", method).status == 405
     assert ask(port, "/", "HEAD").body == b""
 
 
@@ -257,7 +280,7 @@ def test_silent_clients_hold_up_nobody(port: int) -> None:
 def test_who_floods_it_and_asks_nothing_is_cut_off(port: int) -> None:
     """More than it takes at once: the oldest go, and who asks is answered."""
     flood, began_s = [], time.monotonic()
-    for k in range(3 * MOST_AT_ONCE):
+    for k in range(3 * MOST_SILENT):
         flood.append(socket.create_connection(("127.0.0.1", port)))
         if k % 3:  # some begin a request, or the head of a command, and never end it
             flood[-1].sendall(b"GET / HT" if k % 3 == 1 else b"POST /command HTTP/1.0\r\n")
