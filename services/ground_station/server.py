@@ -154,8 +154,9 @@ def _told(live: Watched) -> Endpoint:
     async def answer(request: Request) -> Response:
         first = request.query_params.get("from", "0")
         if not (first.isascii() and first.isdigit() and len(first) < 10):
-            told = f"expected from=N, the number of an update; got {first[:20]!r}"
-            raise HTTPException(400, told)
+            raise HTTPException(
+                400, f"expected from=N, the number of an update; got {first[:20]!r}"
+            )
         told = await in_thread(live.told, int(first))
         return json_answer({**told, "who": live.who(*_sender(request))})
 

@@ -59,7 +59,9 @@ class Connection(H11Protocol):
     def _look(self) -> None:
         """Hold against it that it has asked nothing, unless it has."""
         silent = self.server_state.silent
-        asked = self.cycle is not None and not (self.cycle.more_body or self.cycle.response_complete)
+        asked = self.cycle is not None and not (
+            self.cycle.more_body or self.cycle.response_complete
+        )
         if asked or self.transport.is_closing():
             self._is_heard()
         elif self not in silent:

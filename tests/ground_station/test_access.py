@@ -279,4 +279,5 @@ def test_a_browser_is_let_in_by_the_printed_address_alone(replay: Place, tmp_pat
         assert page.value("document.cookie") == ""
         page.go(own)
         page.until("document.querySelector('#aircraft tr')")
-        assert page.logged == []
+        # for the page that was refused Chromium asks for an icon, whenever it has time
+        assert [one for one in page.logged if "favicon.ico" not in str(one)] == []
