@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import socket
+from contextlib import suppress
+from types import FrameType
 from typing import Self
 
 from starlette.types import ASGIApp
@@ -14,6 +17,34 @@ LOOPBACK = "127.0.0.1"
 MOST_AT_ONCE = 128
 """Connections, and answers that are being made; who comes beyond is told 503."""
 QUEUE = 128
+TICK_S = 1.0
+"""Answers have a date, which uvicorn makes anew each time."""
+
+
+class _Server(Server):
+    """uvicorn's looks ten times a second whether it is to end; this one is told."""
+
+    _told: tuple[asyncio.AbstractEventLoop, asyncio.Event] | None = None
+
+    async def main_loop(self) -> None:
+        ended = asyncio.Event()
+        self._told = asyncio.get_running_loop(), ended
+        while not await self.on_tick(0):
+            with suppress(TimeoutError):
+                async with asyncio.timeout(TICK_S):
+                    await ended.wait()
+
+    def end(self) -> None:
+        """From any thread, or a handler of signals."""
+        self.should_exit = True
+        if self._told is not None:
+            loop, ended = self._told
+            with suppress(RuntimeError):  # the loop has ended before
+                loop.call_soon_threadsafe(ended.set)
+
+    def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+        super().handle_exit(sig, frame)
+        self.end()
 
 
 class WebServer:
@@ -35,7 +66,7 @@ class WebServer:
             (address, port), family=family, backlog=QUEUE, dualstack_ipv6=both
         )
         self.port: int = self._socket.getsockname()[1]
-        self._server = Server(
+        self._server = _Server(
             Config(
                 app, interface="asgi3", loop="asyncio", http=Connection, ws="none", lifespan="off",
                 log_config=None, log_level="critical", access_log=False, proxy_headers=False,
@@ -51,7 +82,7 @@ class WebServer:
 
     def shutdown(self) -> None:
         """End `serve_forever`, from any thread or a handler of signals."""
-        self._server.should_exit = True
+        self._server.end()
 
     def __enter__(self) -> Self:
         return self

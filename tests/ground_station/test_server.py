@@ -53,6 +53,14 @@ def test_the_page_and_all_that_it_names_are_there(port: int) -> None:
         assert int(got.headers["content-length"]) == len(got.body) > 100
 
 
+def test_a_file_that_a_browser_has_is_not_sent_again_and_parts_of_it_are(port: int) -> None:
+    first = ask(port, "/main.js")
+    again = ask(port, "/main.js", If_None_Match=first.headers["etag"])
+    assert (again.status, again.body) == (304, b"")
+    part = ask(port, "/main.js", Range="bytes=10-19")
+    assert (part.status, part.body) == (206, first.body[10:20])
+
+
 def test_what_a_file_is_does_not_hang_on_the_machine_s_own_tables(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
