@@ -103,6 +103,7 @@ class GroundStation(WebServer):
                 Route(path, _order(obey, commands.longest), methods=["POST"])
                 for path, obey in commands.orders.items()
             ),
+            *(Route(f"/{page}", _absent) for page in (PAGE, PAGE_OF_TWO, PAGE_OF_EDITOR)),
             Mount("/", StaticFiles(packages=[(str(__package__), "page")])),
         ]
         app = Starlette(
@@ -140,6 +141,10 @@ def _page(name: str) -> Endpoint:
         return FileResponse(str(files(__package__).joinpath("page", name)))
 
     return answer
+
+
+async def _absent(_: Request) -> Response:
+    raise HTTPException(404)  # of the pages there is the one that `/` is
 
 
 def _sender(request: Request) -> tuple[str, str]:
