@@ -12,11 +12,12 @@ import gzip
 import json
 import socket
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
+from importlib.resources.abc import Traversable
 from socketserver import TCPServer
 from types import MappingProxyType
 from typing import Any, NamedTuple, Protocol
@@ -66,12 +67,21 @@ class Answer(NamedTuple):
 def page_files(first: str = PAGE) -> dict[str, Answer]:
     """The files of the page by their path; first: of PAGES, which `/` is."""
     found = {}
-    for file in files(__package__).joinpath("page").iterdir():
+    for path, file in _below("", files(__package__).joinpath("page")):
         kind = TYPES.get(file.name.rpartition(".")[2])
         if kind is not None:
-            found[f"/{file.name}"] = Answer(HTTPStatus.OK, kind, file.read_bytes())
+            found[path] = Answer(HTTPStatus.OK, kind, file.read_bytes())
     pages = {page: found.pop(f"/{page}") for page in (PAGE, PAGE_OF_TWO, PAGE_OF_EDITOR)}
     return {**found, "/": pages[first]}
+
+
+def _below(path: str, folder: Traversable) -> Iterator[tuple[str, Traversable]]:
+    """The files of a folder and of all folders in it, with their paths."""
+    for one in folder.iterdir():
+        if one.is_dir():
+            yield from _below(f"{path}/{one.name}", one)
+        else:
+            yield f"{path}/{one.name}", one
 
 
 class Recorded:
