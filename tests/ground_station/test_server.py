@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import shutil
 import signal
@@ -10,6 +11,7 @@ import sqlite3
 import time
 from collections.abc import Iterator
 from contextlib import suppress
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
@@ -21,6 +23,12 @@ from cratous.services.ground_station.recording import recording
 from cratous.services.ground_station.server import MOST_AT_ONCE, page_files
 from cratous.services.ground_station.verdicts import NO_REPORT, OTHER_LOG
 from cratous.spec.errors import BadInput
+
+LEAFLET = "/vendor/leaflet/"
+LEAFLET_NAMES = (
+    b'"http://www.w3.org/2000/svg"', b"https://leafletjs.com", b"http://www.w3.org/2000/svg",
+    b"https://bugs.chromium.org/", b"https://bugzilla.mozilla.org/",
+)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +42,9 @@ def test_the_page_and_all_that_it_names_are_there(port: int) -> None:
     assert page.status == 200
     assert page.headers["content-type"] == "text/html; charset=utf-8"
     named = {path for path in page_files() if path[1:].encode() in page.body and path != "/"}
-    assert named == {"/main.js", "/station.css", "/icon.svg"}
+    assert named == {
+        "/main.js", "/station.css", "/icon.svg", f"{LEAFLET}leaflet.js", f"{LEAFLET}leaflet.css",
+    }  # fmt: skip
     for path in page_files():
         got = ask(port, path)
         assert got.status == 200
@@ -43,9 +53,23 @@ def test_the_page_and_all_that_it_names_are_there(port: int) -> None:
 
 def test_nothing_of_the_page_comes_from_elsewhere() -> None:
     for path, answer in page_files().items():
-        # a name of a namespace is fetched by nobody
-        body = answer.body.replace(b'"http://www.w3.org/2000/svg"', b"")
+        # names of a namespace and of a home page, which are fetched by nobody
+        body = answer.body
+        for name in (b'"http://www.w3.org/2000/svg"', *(LEAFLET_NAMES if LEAFLET in path else ())):
+            body = body.replace(name, b"")
         assert b"http" not in body.lower(), path
+
+
+def test_leaflet_is_as_it_was_published_with_its_licence() -> None:
+    folder = files("cratous.services.ground_station").joinpath("page/vendor")
+    told = folder.joinpath("README.md").read_text(encoding="utf-8")
+    for name in ("leaflet.js", "leaflet.css"):
+        digest = hashlib.sha256(folder.joinpath("leaflet", name).read_bytes()).hexdigest()
+        assert f"`{name}` {digest}" in told
+    licence = folder.joinpath("leaflet/LICENSE").read_text(encoding="utf-8")
+    assert licence.startswith(
+        "BSD 2-Clause License\n\nCopyright (c) 2010-2023, Volodymyr Agafonkin"
+    )
 
 
 def test_every_answer_has_the_headers_that_keep_others_out(port: int) -> None:

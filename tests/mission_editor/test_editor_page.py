@@ -37,8 +37,8 @@ def write(page: Page, name: str, text: str) -> None:
 
 def click_map(page: Page, north: float, east: float) -> None:
     """Click where the map shows a place."""
+    x, y = place(page, north, east)
     for kind in ("mousePressed", "mouseReleased"):
-        x, y = place(page, north, east)
         page.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
 
 
