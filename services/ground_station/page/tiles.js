@@ -2,7 +2,7 @@
 // mercator is laid at its place.
 
 const { L } = window;
-const SIDE = 512, KEPT = 400, OVER = 1 + 1 / 256; // neighbours overlap by a pixel: no seams
+const SIDE = 256, KEPT = 400, OVER = 1 + 1 / 256; // neighbours overlap by a pixel: no seams
 const FARTHEST = -30; // zoom of the layer, of which 0 is a pixel to a metre; the server says how far out there are pictures
 
 // what is no markup of its own
