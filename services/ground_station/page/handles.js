@@ -36,6 +36,7 @@ export class Handles {
     const icon = L.divIcon({ className: `handle${round ? " round" : ""}`, iconSize: [24, 24] });
     const title = round ? "Drag: turns the vehicle, or changes the radius" : "Drag: moves this place";
     const marker = L.marker([0, 0], { icon, title, alt: name.replaceAll(",", " "), draggable: true, zIndexOffset: round ? 1000 : 0 }).addTo(this.plane.leaflet);
+    marker.getElement().dataset.key = name;
     marker.on("mousedown click", () => this.pick(marker.what.of ?? marker.what.key));
     marker.on("dragstart", () => { this.pick(marker.what.of ?? marker.what.key); this.dragged = marker.what; });
     marker.on("drag", () => { this.take(marker); this.asked.dragged(); });
