@@ -143,3 +143,16 @@ def test_a_page_asks_no_other_server(crossing: Path, tmp_path: Path) -> None:
         assert all(one.startswith(f"http://127.0.0.1:{port}/") for one in asked)
         assert f"http://127.0.0.1:{port}/vendor/leaflet/leaflet.js" in asked
         assert page.logged == []
+
+
+def test_an_address_names_a_place_as_finely_as_it_is_seen(page: Page) -> None:
+    _view(page, 12.34, -2200.56, 60)
+    page.key("n")
+    assert _shown(page) == [12.34, -2200.56, 60]
+    left, top, width, height = page.value(BOX)
+    at = _under(page, left + width / 2, top + height / 2)
+    assert at == pytest.approx((12.34, -2200.56), abs=1 / 60)
+    page.value("location.hash = '#t=2&theme=light&map=0,0,1e9'")  # closer than the map comes
+    page.until(
+        "document.querySelector('.leaflet-control-scale-line').textContent.startsWith('2 m')"
+    )

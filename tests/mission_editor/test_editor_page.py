@@ -282,6 +282,24 @@ def test_headings_and_radii_are_dragged_by_their_circles(page: Page) -> None:
     page.until(f"{TEXT}.includes('radius_m: 300')")
 
 
+def test_what_is_dragged_is_moved_by_arrow_keys_too(page: Page) -> None:
+    before = _data(page)["tasks"][1]["points"][0]
+    x, y = _handle(page, "tasks,1,points,0")
+    page.value(f"{_marker('tasks,1,points,0')}.focus()")
+    for _ in range(3):
+        page.key("ArrowRight")
+    page.call("Input.dispatchKeyEvent", type="keyDown", key="ArrowUp", modifiers=8)
+    page.until(f"!{TEXT}.includes('east_m: {before['east_m']}')")
+    assert _handle(page, "tasks,1,points,0") == pytest.approx((x + 3, y - 10), abs=1)
+    page.click("#undo")  # one change, not four
+    assert _data(page)["tasks"][1]["points"][0] == before
+    page.value(f"{_marker('vehicles,0,heading_deg')}.focus()")
+    for _ in range(10):
+        page.key("ArrowRight")
+    page.until(f"!{TEXT}.includes('heading_deg: 0')")
+    assert _data(page)["vehicles"][0]["heading_deg"] == pytest.approx(12.8, abs=1.5)  # 10 of 44 px
+
+
 def _marker(name: str) -> str:
     return f"document.querySelector('#map .handle[data-key=\"{name}\"]')"
 

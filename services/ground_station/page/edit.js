@@ -329,7 +329,7 @@ class Editor {
     by("farther").addEventListener("click", () => this.map.zoom(1 / 1.4));
     by("whole").addEventListener("click", () => { this.map.state.view = null; this.map.redraw(); });
     by("theme").addEventListener("click", () => { theme(document.documentElement.className === "dark" ? "light" : "dark"); this.map.redraw(); });
-    this.map.at((north, east) => { by("cursor").textContent = `north ${north.toFixed(0)} m, east ${east.toFixed(0)} m`; });
+    this.map.tell(by("cursor"));
     addEventListener("beforeunload", event => { if (this.settled || this.text !== this.saved || this.typing()) event.preventDefault(); });
     addEventListener("keydown", event => {
       const key = event.key.toLowerCase(), typing = ["TEXTAREA", "INPUT"].includes(event.target.tagName);

@@ -96,9 +96,9 @@ export class EditMap extends FlightMap {
   }
 
   edit() {
-    this.at((...place) => { if (this.drawing) this.asked.clicked(...place); else this.handles.pick(null); }, "click");
-    this.at((...place) => { if (this.drawing?.length) { this.pointed = place; this.redraw(); } });
-    this.at(() => { if (this.drawing) this.asked.finished(); }, "dblclick");
+    this.at("click", (...place) => { if (this.drawing) this.asked.clicked(...place); else this.handles.pick(null); });
+    this.at("mousemove", (...place) => { if (this.drawing?.length) { this.pointed = place; this.redraw(); } });
+    this.at("dblclick", () => { if (this.drawing) this.asked.finished(); });
     new ResizeObserver(() => this.redraw()).observe(this.plane.element);
   }
 }

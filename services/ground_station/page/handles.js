@@ -4,6 +4,8 @@
 const { L } = window;
 const AHEAD = 44; // of a start, where its heading is dragged [px]
 const TURN = Math.PI / 180, TENTH = 10;
+const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }; // a pixel; with Shift ten
+const SETTLED_MS = 400; // after the last one
 
 const same = (one, other) => one !== null && other !== null && one.join() === other.join();
 
@@ -17,13 +19,23 @@ export class Handles {
   show(places, numbers) {
     Object.assign(this, { places, numbers: numbers.filter(one => places.some(place => same(place.key, one.of))) });
     const wanted = new Map([...places, ...this.numbers].map(one => [one.key.join(), one]));
-    for (const [name, marker] of this.markers) if (!wanted.has(name)) { marker.remove(); this.markers.delete(name); }
+    for (const name of this.markers.keys()) if (!wanted.has(name)) this.forget(name);
     for (const [name, one] of wanted) {
       if (!this.markers.has(name)) this.markers.set(name, this.made(name, "of" in one));
-      this.markers.get(name).what = one;
+      const marker = this.markers.get(name);
+      marker.what = one;
+      if (name === this.dragged) this.take(marker); // the text may change elsewhere meanwhile
     }
     if (!wanted.has(this.picked?.join())) this.pick(null);
     this.lay();
+  }
+
+  forget(name) {
+    const marker = this.markers.get(name);
+    clearTimeout(marker.settled);
+    marker.remove();
+    this.markers.delete(name);
+    if (name === this.dragged) this.dragged = null;
   }
 
   pick(key) {
@@ -33,19 +45,37 @@ export class Handles {
   }
 
   made(name, round) {
-    const icon = L.divIcon({ className: `handle${round ? " round" : ""}`, iconSize: [24, 24] });
-    const title = round ? "Drag: turns the vehicle, or changes the radius" : "Drag: moves this place";
-    const marker = L.marker([0, 0], { icon, title, alt: name.replaceAll(",", " "), draggable: true, zIndexOffset: round ? 1000 : 0 }).addTo(this.plane.leaflet);
+    const icon = L.divIcon({ className: `handle${round ? " round" : ""}`, iconSize: null });
+    const title = `${name.replaceAll(",", " ")}: drag, or arrow keys`;
+    const marker = L.marker([0, 0], { icon, title, draggable: true, zIndexOffset: round ? 1000 : 0 }).addTo(this.plane.leaflet);
     marker.getElement().dataset.key = name;
+    marker.getElement().addEventListener("keydown", event => this.step(name, marker, event));
     marker.on("mousedown click", () => this.pick(marker.what.of ?? marker.what.key));
-    marker.on("dragstart", () => { this.pick(marker.what.of ?? marker.what.key); this.dragged = marker.what; });
+    marker.on("dragstart", () => { this.pick(marker.what.of ?? marker.what.key); this.dragged = name; });
     marker.on("drag", () => { this.take(marker); this.asked.dragged(); });
-    marker.on("dragend", () => {
-      const { key, north_m, east_m, value } = this.take(marker);
-      this.dragged = null;
-      if (round) this.asked.changed(key, value); else this.asked.moved(key, north_m, east_m);
-    });
+    marker.on("dragend", () => this.drop(marker));
     return marker;
+  }
+
+  drop(marker) {
+    const { key, of, north_m, east_m, value } = this.take(marker);
+    this.dragged = null;
+    if (of) this.asked.changed(key, value); else this.asked.moved(key, north_m, east_m);
+  }
+
+  // by an arrow key; the mission is changed once no further one follows
+  step(name, marker, event) {
+    const { leaflet } = this.plane, way = ARROWS[event.key];
+    if (!way) return;
+    L.DomEvent.stop(event);
+    if (this.dragged !== name) this.pick(marker.what.of ?? marker.what.key);
+    this.dragged = name;
+    const to = leaflet.latLngToContainerPoint(marker.getLatLng()).add(L.point(way).multiplyBy(event.shiftKey ? 10 : 1));
+    marker.setLatLng(leaflet.containerPointToLatLng(to));
+    this.take(marker);
+    this.asked.dragged();
+    clearTimeout(marker.settled);
+    marker.settled = setTimeout(() => this.drop(marker), SETTLED_MS);
   }
 
   // what it is dragged to
@@ -62,10 +92,9 @@ export class Handles {
   // each one where it is in the present view, but for the one that is being dragged
   lay() {
     const { scale } = this.plane.origin();
-    for (const marker of this.markers.values()) {
-      const { what } = marker;
-      if (what === this.dragged) continue;
-      const { north_m, east_m } = "of" in what ? this.rim(what, scale) : what, at = marker.getLatLng();
+    for (const [name, marker] of this.markers) {
+      if (name === this.dragged) continue;
+      const { what } = marker, { north_m, east_m } = "of" in what ? this.rim(what, scale) : what, at = marker.getLatLng();
       if (at.lat !== north_m || at.lng !== east_m) marker.setLatLng([north_m, east_m]);
     }
   }
@@ -79,8 +108,8 @@ export class Handles {
 
   // the circle of a radius that is being dragged: {north_m, east_m, radius_m}; null while none is
   circle() {
-    const { dragged } = this;
-    return dragged && "of" in dragged && !turns(dragged) ? { ...this.place(dragged), radius_m: dragged.value } : null;
+    const what = this.markers.get(this.dragged)?.what;
+    return what && "of" in what && !turns(what) ? { ...this.place(what), radius_m: what.value } : null;
   }
 
   // headings [deg] of the places that have one, by the key of the place

@@ -7,7 +7,7 @@ import { Layer, color, colorOf, sized } from "./canvas.js";
 import { Labels } from "./labels.js";
 import { names, overlays } from "./overlays.js";
 import { PlaneMap, SQUARE } from "./plane_map.js";
-import { words } from "./units.js";
+import { digits, words } from "./units.js";
 
 const LEAST_PX = 0.25; // what has moved by less is not drawn anew
 
@@ -35,10 +35,11 @@ export class FlightMap {
 
   // what is drawn on, in a view: a pen, where a place is on the canvas, and the grid
   begin(state, said = words(state.aviation)) {
-    this.view = state.view || this.whole();
-    this.plane.show(this.view);
+    const view = state.view || this.whole();
+    this.plane.show(view);
     this.plane.scale.speak(said);
     const { pen, width, height } = sized(this.canvas), { x, y, scale } = this.plane.origin();
+    this.view = { ...view, scale }; // of an address it may be beyond the closest
     this.xy = (north, east) => [x + east * scale, y - north * scale];
     Object.assign(this, { pen, width });
     names(this, this.beneath);
@@ -251,8 +252,16 @@ export class FlightMap {
 
   move(right, down) { this.plane.move(right, down); }
 
-  // said(north, east) [m] of the places over which the pointer is moved, or with what: of those that are clicked
-  at(said, what = "mousemove") { this.plane.leaflet.on(what, ({ latlng }) => said(latlng.lat, latlng.lng)); }
+  // said(north, east) [m] of what happens at a place, such as click or mousemove
+  at(what, said) { this.plane.leaflet.on(what, ({ latlng }) => said(latlng.lat, latlng.lng)); }
+
+  // the place under the pointer, to a pixel
+  tell(field) {
+    this.at("mousemove", (...place) => {
+      const [north, east] = place.map(m => m.toFixed(digits(this.view.scale)));
+      field.textContent = `north ${north} m, east ${east} m`;
+    });
+  }
 }
 
 // whether nobody saw an aircraft between a row of its track and the next one

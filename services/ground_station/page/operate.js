@@ -25,7 +25,7 @@ export class Operator {
     by("command-not").addEventListener("click", () => this.end());
     by("command-yes").addEventListener("click", () => this.send());
     by("confirm-command").addEventListener("cancel", () => this.end());
-    map.at((...place) => { if (this.what && DRAWN[this.what]) this.place(place); }, "click");
+    map.at("click", (...place) => { if (this.what && DRAWN[this.what]) this.place(place); });
     window.addEventListener("keydown", event => {
       if (!this.what || by("confirm-command").open) return;
       if (event.key === "Escape") this.end();
