@@ -224,7 +224,7 @@ def _until_pixel(page: Page, x: float, y: float, wanted: tuple[int, ...]) -> Non
 def test_the_page_lays_the_pictures_on_their_places(log: Path, tmp_path: Path) -> None:
     with tile_server() as (number, asked):
         url = f"http://127.0.0.1:{number}/{{z}}/{{x}}/{{y}}.png"
-        words = ("--tiles", url, "--tiles-attribution", "Somebody")
+        words = ("--tiles", url, "--tiles-attribution", "<b>Some</b>body & co")
         with (
             serving(log, *words) as (_, port),
             browsing(tmp_path / "profile") as page,
@@ -261,6 +261,8 @@ def test_the_page_lays_the_pictures_on_their_places(log: Path, tmp_path: Path) -
                 for box in (view, wide)
             )
             assert of_view <= paths <= of_wide
+            said = "document.querySelector('.leaflet-control-attribution').textContent"
+            assert page.value(said) == "<b>Some</b>body & co"
             # who is asked learns nothing of where the page is from
             assert {(referer, cookie) for _, referer, cookie in asked} == {(None, None)}
             assert page.logged == []

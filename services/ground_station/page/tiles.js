@@ -2,7 +2,7 @@
 // mercator is laid at its place.
 
 const { L } = window;
-const SIDE = 256, KEPT = 400, OVER = 1 + 1 / 256; // neighbours overlap by a pixel: no seams
+const SIDE = 256, KEPT = 400, OVER = 1 + 1 / 256; // neighbours overlap by a pixel, pictures and tiles: no seams
 const FARTHEST = -30; // zoom of the layer, of which 0 is a pixel to a metre; the server says how far out there are pictures
 
 // what is no markup of its own
@@ -15,6 +15,7 @@ export const FrameTiles = L.GridLayer.extend({
     Object.assign(this, { frame, images: new Map(), wrong: "" });
     this.on("tileerror", ({ error }) => this.say(plain(`no tiles: ${error.message}`)));
     this.on("tileload", () => this.say(""));
+    this.on("tileloadstart", ({ tile }) => Object.assign(tile.style, { width: `${SIDE * OVER}px`, height: `${SIDE * OVER}px` }));
   },
 
   onAdd(map) {
@@ -44,18 +45,18 @@ export const FrameTiles = L.GridLayer.extend({
 
   createTile(coords, done) {
     const canvas = L.DomUtil.create("canvas", "tile"), ratio = window.devicePixelRatio || 1;
-    Object.assign(canvas, { width: SIDE * ratio, height: SIDE * ratio });
+    Object.assign(canvas, { width: SIDE * OVER * ratio, height: SIDE * OVER * ratio });
     this.draw(canvas, coords, ratio).then(() => done(null, canvas), error => done(error, canvas));
     return canvas;
   },
 
   async draw(canvas, coords, ratio) {
     const { frame } = this, corner = coords.scaleBy(L.point(SIDE, SIDE)), pen = canvas.getContext("2d");
-    const at = this._map.unproject(corner, coords.z), size = SIDE / this._map.options.crs.scale(coords.z);
-    const query = new URLSearchParams({ latitude: frame.latitude_deg, longitude: frame.longitude_deg, north: at.lat - size / 2, east: at.lng + size / 2, height: size, width: size, pixels_per_m: SIDE / size * ratio });
+    const at = this._map.unproject(corner, coords.z), scale = this._map.options.crs.scale(coords.z) * ratio, size = SIDE * OVER * ratio / scale;
+    const query = new URLSearchParams({ latitude: frame.latitude_deg, longitude: frame.longitude_deg, north: at.lat - size / 2, east: at.lng + size / 2, height: size, width: size, pixels_per_m: scale });
     const response = await fetch(`/tiles.json?${query}`), told = await response.json();
     if (!response.ok) throw new Error(told.error);
-    const xy = ([north, east]) => [(east - at.lng) / size * canvas.width, (at.lat - north) / size * canvas.height];
+    const xy = ([north, east]) => [(east - at.lng) * scale, (at.lat - north) * scale];
     const drawn = told.tiles.map(async ({ url, corners }) => {
       const image = await this.image(url), [[x, y], [rightX, rightY], [downX, downY]] = corners.map(xy);
       if (!image) return;
