@@ -93,7 +93,7 @@ class Editor:
         return relations(_text(asked), tasks)
 
     def _change(self, asked: dict[str, Any]) -> dict[str, Any]:
-        """The text with one change: move, add, remove or put."""
+        """The text with one change: move, number, add, remove or put."""
         mission, do = MissionText(_text(asked), str(self._path)), asked.get("do")
         if do == "add":
             name, item = asked.get("list"), asked.get("item")
@@ -115,7 +115,9 @@ class Editor:
         if do == "move":
             north_m, east_m = (_number(asked, name) for name in ("north_m", "east_m"))
             return {"text": mission.moved(tuple(key), north_m, east_m)}
-        raise NotObeyed(400, "expected do: add, move, put or remove")
+        if do == "number":
+            return {"text": mission.with_number(tuple(key), _number(asked, "value"))}
+        raise NotObeyed(400, "expected do: add, move, number, put or remove")
 
     def _start(self, asked: dict[str, Any]) -> dict[str, Any]:
         """Plan a text; a plan that is being made, of whatever page, is given up. plan_number: of this plan."""
@@ -213,7 +215,7 @@ def _text(asked: dict[str, Any], name: str = "text") -> str:
 def _number(asked: dict[str, Any], name: str) -> float:
     value: Any = asked.get(name)
     if type(value) not in (int, float) or not abs(value) < FARTHEST_M:
-        raise NotObeyed(400, f"expected {name}: a number of metres")
+        raise NotObeyed(400, f"expected {name}: a number of metres or degrees")
     return float(value)
 
 

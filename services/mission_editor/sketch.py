@@ -12,7 +12,7 @@ from cratous.services.loading.document import Document, Key, parse_document
 from cratous.services.loading.places import Places
 from cratous.services.loading.problems import BadMission
 from cratous.services.loading.yaml_mission import drawn, loaded
-from cratous.services.mission_editor.text_edits import DEGREES, PLACE
+from cratous.services.mission_editor.text_edits import DEGREES, HEADING, PLACE, RADIUS
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission
 
@@ -20,13 +20,16 @@ _LINE = re.compile(r":(\d+)(?::\d+)?$")
 NO_PLACES = ("frame", "variation", "expect")
 """Parts whose places are not those of a thing on the map."""
 
+LISTED = ("places", "numbers", "problems", "notes", "tasks")
+
 
 def sketch(text: str, where: str) -> dict[str, Any]:
-    """drawn: for the map, None if the text cannot be read; places: what may be moved, with its key;
+    """drawn: for the map, None if the text cannot be read; places: what may be moved, with its key; numbers: headings
+    [deg] and radii [m] that are seen on the map, each with its key and that of its place (of);
     problems: what is wrong, with the line; notes: what the mission says beside; tasks: their ids;
     relations: the text of the process algebra.
     """
-    found: dict[str, Any] = {"drawn": None, "places": [], "problems": [], "notes": [], "tasks": []}
+    found: dict[str, Any] = {"drawn": None, **{name: [] for name in LISTED}}
     try:
         document = parse_document(text, where)
         mission = drawn(document)
@@ -62,6 +65,10 @@ def _shown(document: Document, mission: Mission) -> dict[str, Any]:
             {"key": list(key), "north_m": north_m, "east_m": east_m}
             for key, (north_m, east_m) in _places(document.data, (), places)
         ],
+        "numbers": [
+            {"key": list(key), "of": list(of), "value": value}
+            for key, of, value in _numbers(document.data)
+        ],
         "tasks": [task.id for task in mission.tasks],
         "relations": document.data.get("relations") or "",
     }
@@ -83,3 +90,25 @@ def _places(data: Any, key: Key, places: Places) -> Iterator[tuple[Key, tuple[fl
                 yield (*key, number), places.vertex(value)
             else:
                 yield from _places(value, (*key, number), places)
+
+
+def _numbers(data: Any) -> Iterator[tuple[Key, Key, float]]:
+    """Each heading and radius that is written about a place: its key, that of the place, and the number."""
+    for k, vehicle in enumerate(data.get("vehicles", ())):
+        key: Key = ("vehicles", k)
+        yield (*key, HEADING), (*key, "position"), float(vehicle[HEADING]) % 360
+    for k, task in enumerate(data.get("tasks", ())):
+        key, loiter = ("tasks", k), task.get("loiter", {})
+        first: Key = (*key, "points", 0)
+        if "circle" in task:
+            within: Key = (*key, "circle")
+            yield (*within, RADIUS), (*within, "centre"), float(task["circle"][RADIUS])
+        if RADIUS in loiter:
+            within = (*key, "loiter")
+            centre = (*within, "centre") if "centre" in loiter else first
+            yield (*within, RADIUS), centre, float(loiter[RADIUS])
+        elif RADIUS in task:
+            yield (*key, RADIUS), first, float(task[RADIUS])
+    for k, site in enumerate(data.get("landing_sites", ())):
+        key = ("landing_sites", k)
+        yield (*key, RADIUS), (*key, "position"), float(site[RADIUS])

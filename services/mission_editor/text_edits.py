@@ -18,6 +18,7 @@ from cratous.spec.errors import BadInput
 from cratous.spec.mission import Frame
 
 PLACE, DEGREES = ("north_m", "east_m"), ("latitude_deg", "longitude_deg")
+HEADING, RADIUS = "heading_deg", "radius_m"
 _PLAIN = re.compile(r"(?!(true|false|null|yes|no|on|off|y|n)$)[a-z]+(_[a-z]+)*")
 """Texts that YAML reads as nothing else."""
 
@@ -41,9 +42,9 @@ class MissionText:
         """
         place = self._value(key)
         if isinstance(place, list) and len(place) == 2:
-            return self._with({(*key, 0): _metres(north_m), (*key, 1): _metres(east_m)})
+            return self._with({(*key, 0): _tenths(north_m), (*key, 1): _tenths(east_m)})
         if isinstance(place, dict) and set(PLACE) <= set(place):
-            values = _metres(north_m), _metres(east_m)
+            values = _tenths(north_m), _tenths(east_m)
             return self._with({(*key, n): v for n, v in zip(PLACE, values, strict=True)})
         if isinstance(place, dict) and set(DEGREES) <= set(place):
             frame = self.data["frame"]
@@ -52,6 +53,14 @@ class MissionText:
             said = [f"{degrees:.7f}" for degrees in found]
             return self._with({(*key, n): v for n, v in zip(DEGREES, said, strict=True)})
         self._refuse("this is no place", key, "north_m and east_m, degrees, or a corner")
+
+    def with_number(self, key: Key, value: float) -> str:
+        """The text with another heading [deg] or radius [m] in place of the one that stands there, to a tenth."""
+        if not key or key[-1] not in (HEADING, RADIUS) or self._node(key) is None:
+            self._refuse(
+                "this is no heading or radius", key, f"a {HEADING} or {RADIUS} of the file"
+            )
+        return self._with({key: _tenths(value)})
 
     def put(self, key: Key, value: str) -> str:
         """The text with another text in place of the one that stands there, or at the end if none does."""
@@ -190,7 +199,7 @@ class MissionText:
         raise BadInput(what, where=self.where, item=item_name(key), expected=expected)
 
 
-def _metres(value: float) -> str:
+def _tenths(value: float) -> str:
     text = f"{value:.1f}".removesuffix(".0")
     return "0" if text == "-0" else text
 

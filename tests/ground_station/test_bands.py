@@ -153,13 +153,13 @@ def test_a_message_that_does_not_fit_is_counted_and_not_shown(changed: dict[str,
     assert row["time_ms"] == 1200
 
 
-def _pixels(page: Page, name: str, canvas: str = "map") -> int:
+def _pixels(page: Page, name: str, canvas: str = "#map .drawing") -> int:
     """Pixels of a canvas in a colour of the style sheet."""
     return int(
         page.value(f"""(() => {{
         const hex = getComputedStyle(document.documentElement).getPropertyValue('--{name}').trim();
         const [r, g, b] = [1, 3, 5].map(k => parseInt(hex.slice(k, k + 2), 16));
-        const map = document.getElementById('{canvas}');
+        const map = document.querySelector('{canvas}');
         const pixels = map.getContext('2d').getImageData(0, 0, map.width, map.height).data;
         let found = 0;
         for (let k = 0; k < pixels.length; k += 4)
@@ -222,8 +222,8 @@ def _charts(page: Page, rows: list[Any]) -> None:
     (_, time_s, level) = rows[5]["intruders"][0]
     _at(page, 5, "&aircraft=2")
     assert f"▲ alert {level:g} for 2, violation in {time_s:.1f} s" in _shown(page, "aircraft")
-    assert _pixels(page, "band-near", "tapes") > 100
-    assert _pixels(page, "band-near", "spectrum") > 1000
+    assert _pixels(page, "band-near", "#tapes") > 100
+    assert _pixels(page, "band-near", "#spectrum") > 1000
     before = page.value("document.getElementById('spectrum').toDataURL()")
     page.key("b")
     assert page.value("location.hash").endswith("&bands=speed")

@@ -64,7 +64,7 @@ def test_takeover_and_verdict_are_marked_and_a_click_moves_the_clock(page: Page)
 def _orange(page: Page, name: str) -> int:
     """Pixels of a canvas in the colour of ICAROUS."""
     found = page.value(f"""(() => {{
-        const map = document.getElementById({name!r}), pen = map.getContext('2d');
+        const map = document.querySelector('#{name} .drawing'), pen = map.getContext('2d');
         const pixels = pen.getImageData(0, 0, map.width, map.height).data;
         let found = 0;
         for (let k = 0; k < pixels.length; k += 4)

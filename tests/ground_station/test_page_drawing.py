@@ -14,12 +14,13 @@ COUNT = """(() => {
   window.drawn = {}; window.frames = 0; window.since = performance.now();
   const clear = CanvasRenderingContext2D.prototype.clearRect, ask = window.requestAnimationFrame.bind(window);
   CanvasRenderingContext2D.prototype.clearRect = function (...box) {
-    window.drawn[this.canvas.id] = (window.drawn[this.canvas.id] ?? 0) + 1;
+    const name = this.canvas.id || this.canvas.className;
+    window.drawn[name] = (window.drawn[name] ?? 0) + 1;
     clear.apply(this, box);
   };
   window.requestAnimationFrame = act => ask(now => { window.frames++; act(now); });
 })()"""
-COUNTED = "[(performance.now() - window.since) / 1000, window.frames, window.drawn.map ?? 0, window.drawn.altitude ?? 0]"
+COUNTED = "[(performance.now() - window.since) / 1000, window.frames, window.drawn.drawing ?? 0, window.drawn.altitude ?? 0]"
 
 
 @pytest.fixture

@@ -39,7 +39,7 @@ def test_keys_jump_from_event_to_event_and_the_address_follows(page: Page) -> No
     assert page.text("clock").startswith("00:00:00.0 of")
 
 
-PIXELS = """(() => { const map = document.getElementById('map');
+PIXELS = """(() => { const map = document.querySelector('#map .drawing');
   return Array.from(map.getContext('2d').getImageData(0, 0, map.width, map.height).data); })()"""
 
 
@@ -139,7 +139,7 @@ def test_a_verdict_leads_to_its_kernel_theorem_solvers_and_mutants(
 def test_the_map_draws_the_takeover_in_its_colour(page: Page) -> None:
     """Pixels of the colour of ICAROUS: none before the takeover, a trail and a ring in it."""
     count = """(() => {
-        const map = document.getElementById('map'), pen = map.getContext('2d');
+        const map = document.querySelector('#map .drawing'), pen = map.getContext('2d');
         const pixels = pen.getImageData(0, 0, map.width, map.height).data;
         let found = 0;
         for (let k = 0; k < pixels.length; k += 4)

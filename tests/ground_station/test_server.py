@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import mimetypes
 import shutil
@@ -11,6 +12,7 @@ import sqlite3
 import time
 from collections.abc import Iterator
 from contextlib import suppress
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
@@ -30,6 +32,11 @@ KINDS = {
     ".html": "text/html; charset=utf-8", ".css": "text/css; charset=utf-8",
     ".js": "text/javascript; charset=utf-8", ".svg": "image/svg+xml", ".png": "image/png",
 }  # fmt: skip
+LEAFLET = "/vendor/leaflet/"
+LEAFLET_NAMES = (
+    b'"http://www.w3.org/2000/svg"', b"https://leafletjs.com", b"http://www.w3.org/2000/svg",
+    b"https://bugs.chromium.org/", b"https://bugzilla.mozilla.org/",
+)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +51,9 @@ def test_the_page_and_all_that_it_names_are_there(port: int) -> None:
     assert page.headers["content-type"] == "text/html; charset=utf-8"
     assert page.body == (PAGE / "index.html").read_bytes()
     named = {path for path in page_files() if f'"{path}"'.encode() in page.body}
-    assert named == {"/main.js", "/station.css", "/icon.svg"}
+    assert named == {
+        "/main.js", "/station.css", "/icon.svg", f"{LEAFLET}leaflet.js", f"{LEAFLET}leaflet.css",
+    }  # fmt: skip
     for path, file in page_files().items():
         got = ask(port, path)
         assert got.status == 200
@@ -74,9 +83,23 @@ def test_what_a_file_is_does_not_hang_on_the_machine_s_own_tables(
 
 def test_nothing_of_the_page_comes_from_elsewhere() -> None:
     for path, file in {**page_files(), **{page.name: page for page in PAGE.glob("*.html")}}.items():
-        # a name of a namespace is fetched by nobody
-        body = file.read_bytes().replace(b'"http://www.w3.org/2000/svg"', b"")
+        # names of a namespace and of a home page, which are fetched by nobody
+        body = file.read_bytes()
+        for name in (b'"http://www.w3.org/2000/svg"', *(LEAFLET_NAMES if LEAFLET in path else ())):
+            body = body.replace(name, b"")
         assert b"http" not in body.lower(), path
+
+
+def test_leaflet_is_as_it_was_published_with_its_licence() -> None:
+    folder = files("cratous.services.ground_station").joinpath("page/vendor")
+    told = folder.joinpath("README.md").read_text(encoding="utf-8")
+    for name in ("leaflet.js", "leaflet.css"):
+        digest = hashlib.sha256(folder.joinpath("leaflet", name).read_bytes()).hexdigest()
+        assert f"`{name}` {digest}" in told
+    licence = folder.joinpath("leaflet/LICENSE").read_text(encoding="utf-8")
+    assert licence.startswith(
+        "BSD 2-Clause License\n\nCopyright (c) 2010-2023, Volodymyr Agafonkin"
+    )
 
 
 def test_every_answer_has_the_headers_that_keep_others_out(port: int) -> None:

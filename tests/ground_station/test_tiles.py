@@ -26,6 +26,8 @@ URL = "https://tiles.example:8443/a/{z}/{x}/{y}.png?key=1"
 PLACE = Frame(51.51202, 0.02435)
 """Of which OpenStreetMap's wiki names the tile: at zoom 17 column 65544, row 43582."""
 QUARTERS = {"nw": (200, 30, 30), "ne": (30, 160, 30), "sw": (30, 30, 200), "se": (200, 200, 30)}
+PLANE = Frame(45.0, 9.0)
+"""Of the log that is shown."""
 SCALE = 0.03
 """Pixels to a metre of the page that is looked at."""
 VIEW = View(0.0, 0.0, 4000.0, 6000.0, 0.2)
@@ -222,7 +224,7 @@ def _until_pixel(page: Page, x: float, y: float, wanted: tuple[int, ...]) -> Non
 def test_the_page_lays_the_pictures_on_their_places(log: Path, tmp_path: Path) -> None:
     with tile_server() as (number, asked):
         url = f"http://127.0.0.1:{number}/{{z}}/{{x}}/{{y}}.png"
-        words = ("--tiles", url, "--tiles-attribution", "Somebody")
+        words = ("--tiles", url, "--tiles-attribution", "<b>Some</b>body & co")
         with (
             serving(log, *words) as (_, port),
             browsing(tmp_path / "profile") as page,
@@ -234,7 +236,7 @@ def test_the_page_lays_the_pictures_on_their_places(log: Path, tmp_path: Path) -
                 "(document.getElementById('map').getBoundingClientRect())"
             )
             view = View(0, 0, box[3] / SCALE, box[2] / SCALE, SCALE)
-            found = seen(tiles_of(url), Frame(45.0, 9.0), view)
+            found = seen(tiles_of(url), PLANE, view)
             # one on which nothing else is drawn: the aircraft is in the middle of the map
             tile = min(found, key=lambda one: _away(one["corners"], -500.0, -6200.0))
             (n0, e0), (n1, e1), (n2, e2) = tile["corners"]
@@ -250,9 +252,17 @@ def test_the_page_lays_the_pictures_on_their_places(log: Path, tmp_path: Path) -
                 "performance.getEntriesByType('resource')"
                 f".filter(e => e.name.includes(':{number}/')).length >= {len(found)}"
             )
-            assert {path for path, _, _ in asked} == {
-                one["url"].partition(f"{number}")[2] for one in found
-            }
+            # all of the view, and no more than a tile of the layer beyond it
+            beyond_m = 2 * 256 * 2**5
+            wide = View(0, 0, view.height_m + beyond_m, view.width_m + beyond_m, SCALE)
+            paths = {path for path, _, _ in asked}
+            of_view, of_wide = (
+                {one["url"].partition(f"{number}")[2] for one in seen(tiles_of(url), PLANE, box)}
+                for box in (view, wide)
+            )
+            assert of_view <= paths <= of_wide
+            said = "document.querySelector('.leaflet-control-attribution').textContent"
+            assert page.value(said) == "<b>Some</b>body & co"
             # who is asked learns nothing of where the page is from
             assert {(referer, cookie) for _, referer, cookie in asked} == {(None, None)}
             assert page.logged == []

@@ -74,6 +74,7 @@ def test_bad_changes_are_refused_with_what_and_where(editor: Served, mission: Pa
         {"do": "move", "key": "tasks"},
         {"do": "move", "key": ["tasks"], "north_m": True, "east_m": 0},
         {"do": "move", "key": ["tasks"], "north_m": 1e300, "east_m": 0}, {"do": "put", "key": ["a"]},
+        {"do": "number", "key": ["tasks"]}, {"do": "number", "key": ["tasks"], "value": "1"},
     ):  # fmt: skip
         assert editor.edit("/change", text=text, **asked).status == 400
     assert editor.edit("/change", do="put").status == 400

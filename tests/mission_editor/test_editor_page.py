@@ -37,8 +37,8 @@ def write(page: Page, name: str, text: str) -> None:
 
 def click_map(page: Page, north: float, east: float) -> None:
     """Click where the map shows a place."""
+    x, y = place(page, north, east)
     for kind in ("mousePressed", "mouseReleased"):
-        x, y = place(page, north, east)
         page.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
 
 
@@ -243,6 +243,83 @@ def test_a_vehicle_an_area_and_a_loiter_are_drawn_dragged_and_undone(
     page.until(f"{TEXT} === {json.dumps(mission.read_text(encoding='utf-8'))}")
 
 
+def test_headings_and_radii_are_dragged_by_their_circles(page: Page) -> None:
+    before = page.value(TEXT)
+    first = _data(page)["vehicles"][0]["position"]
+    ahead = _handle(page, "vehicles,0,heading_deg")
+    start = _handle(page, "vehicles,0,position")
+    assert start == pytest.approx(place(page, first["north_m"], first["east_m"]), abs=2)
+    assert ahead == pytest.approx((start[0], start[1] - 44), abs=1)  # it flies north
+    _drag_pixels(page, ahead, (start[0] - 60, start[1] + 60))
+    page.until(f"{TEXT} !== {json.dumps(before)}")
+    assert _data(page)["vehicles"][0]["heading_deg"] == pytest.approx(225, abs=1.5)
+    assert _data(page)["vehicles"][0]["position"] == first
+    # the circle stands ahead again, as far as before
+    turn = (start[0] - 44 * 0.7071, start[1] + 44 * 0.7071)
+    assert _handle(page, "vehicles,0,heading_deg") == pytest.approx(turn, abs=2)
+    assert page.value("!document.getElementById('remove').disabled")  # the vehicle is picked
+    page.click("[data-tool=loiter]")
+    click_map(page, -400, 1200)
+    click_map(page, -400, 1500)
+    page.until(f"{TEXT}.includes('kind: loiter')")
+    page.until(_marker("tasks,2,radius_m"))
+    centre, rim = _handle(page, "tasks,2,points,0"), _handle(page, "tasks,2,radius_m")
+    assert rim[1] == pytest.approx(centre[1], abs=1)
+    scale = (rim[0] - centre[0]) / _data(page)["tasks"][2]["radius_m"]
+    _drag_pixels(page, rim, (centre[0], centre[1] - 500 * scale))
+    page.until(f"!{TEXT}.includes('radius_m: {_data(page)['tasks'][2]['radius_m']}')")
+    assert _data(page)["tasks"][2]["radius_m"] == pytest.approx(500, abs=1.5 / scale)
+    circle = (
+        "  - {id: 9, kind: area_search, circle: {centre: {north_m: 0, east_m: 0}, radius_m: 300}}"
+    )
+    write(page, "text", before.replace("\ntasks:\n", f"\ntasks:\n{circle}\n"))
+    page.until(_marker("tasks,0,circle,radius_m"))
+    rim, centre = (_handle(page, f"tasks,0,circle,{name}") for name in ("radius_m", "centre"))
+    _drag_pixels(page, rim, (centre[0], centre[1] + 400 * scale))
+    page.until(f"!{TEXT}.includes('radius_m: 300')")
+    assert _data(page)["tasks"][0]["circle"]["radius_m"] == pytest.approx(400, abs=3 / scale)
+    page.click("#undo")
+    page.until(f"{TEXT}.includes('radius_m: 300')")
+
+
+def test_what_is_dragged_is_moved_by_arrow_keys_too(page: Page) -> None:
+    before = _data(page)["tasks"][1]["points"][0]
+    x, y = _handle(page, "tasks,1,points,0")
+    page.value(f"{_marker('tasks,1,points,0')}.focus()")
+    for _ in range(3):
+        page.key("ArrowRight")
+    page.call("Input.dispatchKeyEvent", type="keyDown", key="ArrowUp", modifiers=8)
+    page.until(f"!{TEXT}.includes('east_m: {before['east_m']}')")
+    assert _handle(page, "tasks,1,points,0") == pytest.approx((x + 3, y - 10), abs=1)
+    page.click("#undo")  # one change, not four
+    assert _data(page)["tasks"][1]["points"][0] == before
+    page.value(f"{_marker('vehicles,0,heading_deg')}.focus()")
+    for _ in range(10):
+        page.key("ArrowRight")
+    page.until(f"!{TEXT}.includes('heading_deg: 0')")
+    assert _data(page)["vehicles"][0]["heading_deg"] == pytest.approx(12.8, abs=1.5)  # 10 of 44 px
+
+
+def _marker(name: str) -> str:
+    return f"document.querySelector('#map .handle[data-key=\"{name}\"]')"
+
+
+def _handle(page: Page, name: str) -> tuple[float, float]:
+    """Pixels of the page of what is dragged for a value of the file."""
+    page.until(_marker(name))
+    x, y = page.value(
+        f"(b => [b.x + b.width / 2, b.y + b.height / 2])({_marker(name)}.getBoundingClientRect())"
+    )
+    return x, y
+
+
+def _drag_pixels(page: Page, at: tuple[float, float], to: tuple[float, float]) -> None:
+    mouse = "Input.dispatchMouseEvent"
+    page.call(mouse, type="mousePressed", x=at[0], y=at[1], button="left", clickCount=1)
+    page.call(mouse, type="mouseMoved", x=to[0], y=to[1], button="left")
+    page.call(mouse, type="mouseReleased", x=to[0], y=to[1], button="left", clickCount=1)
+
+
 def near(north: float, east: float) -> Any:
     """A place, to within what two pixels of the map are."""
     return pytest.approx((north, east), abs=25)
@@ -254,11 +331,7 @@ def _data(page: Page) -> Any:
 
 def drag(page: Page, at: tuple[float, float], to: tuple[float, float]) -> None:
     """Drag what is at a place of the map to another one."""
-    (x, y), (x1, y1) = place(page, *at), place(page, *to)
-    mouse = "Input.dispatchMouseEvent"
-    page.call(mouse, type="mousePressed", x=x, y=y, button="left", clickCount=1)
-    page.call(mouse, type="mouseMoved", x=x1, y=y1, button="left")
-    page.call(mouse, type="mouseReleased", x=x1, y=y1, button="left", clickCount=1)
+    _drag_pixels(page, place(page, *at), place(page, *to))
 
 
 def test_windows_of_tasks_are_bands_behind_the_bars(page: Page) -> None:

@@ -57,6 +57,35 @@ def test_every_place_of_the_examples_moves_and_one_line_changes(name: str) -> No
 
 
 @pytest.mark.parametrize("name", TEXTS)
+def test_every_heading_and_radius_of_the_examples_changes_and_nothing_else(name: str) -> None:
+    text = TEXTS[name]
+    found = sketch(text, "m.yaml")
+    places = [place["key"] for place in found["places"]]
+    assert len(found["numbers"]) >= len(data(text).get("vehicles", ()))
+    for number in found["numbers"]:
+        key = tuple(number["key"])
+        assert number["of"] in places
+        new = MissionText(text, "m.yaml").with_number(key, 123.44)
+        (changed,) = (n for n in sketch(new, "m.yaml")["numbers"] if n["key"] == number["key"])
+        assert changed["value"] == 123.4
+        assert len(taken_out(text, new)) <= 1
+        wanted = copy.deepcopy(data(text))
+        holder = wanted
+        for part in key[:-1]:
+            holder = holder[part]
+        holder[key[-1]] = 123.4
+        assert data(new) == wanted
+
+
+@pytest.mark.parametrize(
+    "key", [(), ("name",), ("vehicles", 0, "speed_m_s"), ("vehicles", 9, "heading_deg"), ("seed",)]
+)
+def test_what_is_no_heading_or_radius_is_not_changed_as_one(key: tuple[str | int, ...]) -> None:
+    with pytest.raises(BadInput, match="this is no heading or radius"):
+        MissionText(TEXTS["crossing"], "m.yaml").with_number(key, 1.0)
+
+
+@pytest.mark.parametrize("name", TEXTS)
 def test_an_item_is_added_and_removed_again(name: str) -> None:
     text = TEXTS[name]
     new = MissionText(text, "m.yaml").added("zones", ZONE)

@@ -152,7 +152,7 @@ def editing(mission: Path) -> Iterator[Served]:
 def page_files() -> dict[str, Path]:
     """The files of which pages are made, by the path at which each is served."""
     found = {f"/{file.relative_to(PAGE)}": file for file in sorted(PAGE.rglob("*.*"))}
-    return {path: file for path, file in found.items() if file.suffix != ".html"}
+    return {path: file for path, file in found.items() if file.suffix not in (".html", ".md")}
 
 
 def ask(port: int, path: str, method: str = "GET", body: bytes = b"", /, **headers: str) -> Got:

@@ -1,6 +1,7 @@
 // The state that is in the page's address, behind #: what is not as it should be there is left out.
 
 import { DIMENSIONS } from "./band_style.js";
+import { digits } from "./units.js";
 
 export const RATES = [0.25, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 
@@ -25,7 +26,7 @@ export function write(state) {
   if (state.theme) said.theme = state.theme;
   if (state.aviation) said.units = "aviation";
   if (state.dimension !== DIMENSIONS[0]) said.bands = state.dimension;
-  if (state.view) said.map = [state.view.north.toFixed(0), state.view.east.toFixed(0), state.view.scale.toPrecision(4)].join(",");
+  if (state.view) said.map = [...[state.view.north, state.view.east].map(m => m.toFixed(digits(state.view.scale))), state.view.scale.toPrecision(4)].join(",");
   const hash = `#${Object.entries(said).map(([key, value]) => `${key}=${value}`).join("&")}`;
   if (hash !== location.hash) history.replaceState(null, "", hash);
 }

@@ -41,6 +41,7 @@ class Editor {
     document.title = `${opened.file} – CRATOUS mission editor`;
     this.map = new EditMap(by("map"), {
       moved: (key, north_m, east_m) => this.change({ do: "move", key, north_m, east_m }),
+      changed: (key, value) => this.change({ do: "number", key, value }),
       clicked: (north, east) => this.point(north, east),
       finished: () => this.finish(),
       picked: key => { by("remove").disabled = key === null || !OF_MAP.includes(key[0]); },
@@ -328,10 +329,7 @@ class Editor {
     by("farther").addEventListener("click", () => this.map.zoom(1 / 1.4));
     by("whole").addEventListener("click", () => { this.map.state.view = null; this.map.redraw(); });
     by("theme").addEventListener("click", () => { theme(document.documentElement.className === "dark" ? "light" : "dark"); this.map.redraw(); });
-    by("map").addEventListener("pointermove", event => {
-      const [north, east] = this.map.under(event.offsetX, event.offsetY);
-      by("cursor").textContent = `north ${north.toFixed(0)} m, east ${east.toFixed(0)} m`;
-    });
+    this.map.tell(by("cursor"));
     addEventListener("beforeunload", event => { if (this.settled || this.text !== this.saved || this.typing()) event.preventDefault(); });
     addEventListener("keydown", event => {
       const key = event.key.toLowerCase(), typing = ["TEXTAREA", "INPUT"].includes(event.target.tagName);

@@ -113,10 +113,7 @@ class Station extends Playback {
       const id = event.target.closest("tr")?.dataset.aircraft;
       if (id) { this.state.picked = this.state.picked === id ? null : id; this.draw(true); }
     });
-    by("map").addEventListener("pointermove", event => {
-      const [north, east] = this.map.under(event.offsetX, event.offsetY);
-      by("cursor").textContent = `north ${north.toFixed(0)} m, east ${east.toFixed(0)} m`;
-    });
+    this.map.tell(by("cursor"));
   }
 }
 

@@ -1,60 +1,58 @@
-// The map: north up, one scale, metres of the mission frame. Everything is drawn anew for an instant.
+// What is drawn on the map: everything of an instant, anew, on the one canvas of the Leaflet map.
 
 import { alertColor } from "./band_style.js";
 import { ring } from "./bands.js";
 import { UNSEEN_MS, alertsAt, authorityAt, bandsAt, lastAt, positionAt } from "./instant.js";
 import { Layer, color, colorOf, sized } from "./canvas.js";
 import { Labels } from "./labels.js";
-import * as overlays from "./overlays.js";
-import { Tiles } from "./tiles.js";
-import { words } from "./units.js";
+import { names, overlays } from "./overlays.js";
+import { PlaneMap, SQUARE } from "./plane_map.js";
+import { digits, words } from "./units.js";
 
-const EDGE = 50;
 const LEAST_PX = 0.25; // what has moved by less is not drawn anew
 
 export class FlightMap {
-  constructor(canvas, recording, changed) {
-    this.canvas = canvas;
+  // element: which becomes the map; changed: called with the view to which the user moved it; keyboard: whether it has
+  // keys of its own
+  constructor(element, recording, changed, keyboard = false) {
+    this.plane = new PlaneMap(element, words(false), keyboard, changed);
     this.recording = recording;
-    this.changed = changed; // called when the user moved the map
-    this.view = null;
     this.trails = new Layer();
     this.labels = new Labels();
     this.beneath = [];
-    this.tiles = null;
     this.drawn = { time: 0, to: {} }; // until when, and of each track to which row, the trails stand on their layer
     this.measured = {};
     this.grown();
-    this.listen();
   }
+
+  get canvas() { return this.plane.canvas; }
 
   // the recording has grown
   grown() { this.bounds = extent(this.recording, this.measured); }
 
   // the view that shows everything
-  whole() {
-    const box = this.canvas.getBoundingClientRect(), b = this.bounds;
-    const scale = Math.min((box.width - 2 * EDGE) / Math.max(b.east1 - b.east0, 100), (box.height - 2 * EDGE) / Math.max(b.north1 - b.north0, 100));
-    return { north: (b.north0 + b.north1) / 2, east: (b.east0 + b.east1) / 2, scale: Math.max(scale, 1e-5) };
-  }
+  whole() { return this.plane.whole(this.bounds); }
 
-  // what is drawn on: the view, where a place is on the canvas, and the grid
-  begin(pen, width, height, state, said = words(state.aviation)) {
-    this.view = state.view || this.whole();
-    this.xy = (north, east) => [width / 2 + (east - this.view.east) * this.view.scale, height / 2 - (north - this.view.north) * this.view.scale];
-    this.pen = pen;
-    this.width = width;
-    this.tiles?.draw(this, height);
-    overlays.draw(this, this.beneath);
+  // what is drawn on, in a view: a pen, where a place is on the canvas, and the grid
+  begin(state, said = words(state.aviation)) {
+    const view = state.view || this.whole();
+    this.plane.show(view);
+    this.plane.scale.speak(said);
+    const { pen, width, height } = sized(this.canvas), { x, y, scale } = this.plane.origin();
+    this.view = { ...view, scale }; // of an address it may be beyond the closest
+    this.xy = (north, east) => [x + east * scale, y - north * scale];
+    Object.assign(this, { pen, width });
+    names(this, this.beneath);
     this.grid(width, height, said);
+    return { pen, width, height };
   }
 
   // what lies beneath, once it is known in which frame; drawn: draws the map anew
   async lay(frame, drawn) {
-    const { shapes, tiles } = await overlays.overlays(frame);
+    const { shapes, tiles } = await overlays(frame);
     this.beneath = shapes;
-    this.tiles = tiles === null ? null : new Tiles(frame, tiles, drawn);
-    if (shapes.length || this.tiles) drawn();
+    this.plane.lay(frame, shapes, tiles);
+    if (shapes.length) drawn();
   }
 
   // whether all aircraft are where they were drawn
@@ -67,8 +65,7 @@ export class FlightMap {
   draw(state, words, whole = true) {
     if (!whole && this.still(state.time)) return false;
     this.shown = state.time;
-    const { pen, width, height } = sized(this.canvas);
-    this.begin(pen, width, height, state, words);
+    const { pen, width, height } = this.begin(state, words);
     const { time } = state, recording = this.recording;
     for (const zone of recording.zones) if (zone.from_ms <= time && time < (zone.to_ms ?? Infinity)) this.zone(zone);
     for (const seen of recording.footprints) if (seen.time_ms <= time) this.footprint(seen);
@@ -121,22 +118,11 @@ export class FlightMap {
   names() { this.labels.draw(text => this.pen.measureText(text).width, this.width, (...one) => this.label(...one)); }
 
   grid(width, height, words) {
-    const step = words.step(110 / this.view.scale), pen = this.pen;
-    const east0 = this.view.east - width / 2 / this.view.scale, north0 = this.view.north - height / 2 / this.view.scale;
+    const step = words.step(SQUARE / this.view.scale), pen = this.pen, [x0, y0] = this.xy(0, 0), side = step * this.view.scale;
     pen.beginPath();
-    for (let k = Math.ceil(east0 / step); this.xy(0, k * step)[0] < width; k++) {
-      const x = this.xy(0, k * step)[0];
-      pen.moveTo(x, 0); pen.lineTo(x, height);
-    }
-    for (let k = Math.ceil(north0 / step); this.xy(k * step, 0)[1] > 0; k++) {
-      const y = this.xy(k * step, 0)[1];
-      pen.moveTo(0, y); pen.lineTo(width, y);
-    }
+    for (let x = x0 - Math.floor(x0 / side) * side; x < width; x += side) { pen.moveTo(x, 0); pen.lineTo(x, height); }
+    for (let y = y0 - Math.floor(y0 / side) * side; y < height; y += side) { pen.moveTo(0, y); pen.lineTo(width, y); }
     this.stroke(color("rule"), 1, [], 0.6);
-    pen.beginPath();
-    pen.moveTo(14, height - 14); pen.lineTo(14 + step * this.view.scale, height - 14);
-    this.stroke(color("ink"), 2);
-    this.label(`${words.distance(step)}, north up`, 14, height - 22, color("ink"));
   }
 
   zone(zone) {
@@ -262,42 +248,19 @@ export class FlightMap {
     this.labels.add(`${name} ${rest}${alerted}${at.seen && commands === "ICAROUS" ? " ICAROUS" : away}`, x, y, 15, -10, ink, true);
   }
 
-  zoom(by, x, y) {
-    const box = this.canvas.getBoundingClientRect(), view = this.view;
-    const dx = (x ?? box.width / 2) - box.width / 2, dy = (y ?? box.height / 2) - box.height / 2;
-    const scale = Math.min(Math.max(view.scale * by, 1e-5), 100);
-    this.changed({
-      north: view.north - dy / view.scale + dy / scale,
-      east: view.east + dx / view.scale - dx / scale,
-      scale,
+  zoom(by) { this.plane.zoom(by); }
+
+  move(right, down) { this.plane.move(right, down); }
+
+  // said(north, east) [m] of what happens at a place, such as click or mousemove
+  at(what, said) { this.plane.leaflet.on(what, ({ latlng }) => said(latlng.lat, latlng.lng)); }
+
+  // the place under the pointer, to a pixel
+  tell(field) {
+    this.at("mousemove", (...place) => {
+      const [north, east] = place.map(m => m.toFixed(digits(this.view.scale)));
+      field.textContent = `north ${north} m, east ${east} m`;
     });
-  }
-
-  move(dx, dy) {
-    const view = this.view;
-    this.changed({ ...view, east: view.east - dx / view.scale, north: view.north + dy / view.scale });
-  }
-
-  // north and east [m] under a place of the canvas
-  under(x, y) {
-    const box = this.canvas.getBoundingClientRect();
-    return [this.view.north - (y - box.height / 2) / this.view.scale, this.view.east + (x - box.width / 2) / this.view.scale];
-  }
-
-  listen() {
-    const canvas = this.canvas;
-    let from = null;
-    canvas.addEventListener("pointerdown", event => { from = [event.clientX, event.clientY]; canvas.setPointerCapture(event.pointerId); });
-    canvas.addEventListener("pointerup", () => { from = null; });
-    canvas.addEventListener("pointermove", event => {
-      if (!from) return;
-      this.move(event.clientX - from[0], event.clientY - from[1]);
-      from = [event.clientX, event.clientY];
-    });
-    canvas.addEventListener("wheel", event => {
-      event.preventDefault();
-      this.zoom(Math.exp(-event.deltaY / 400), event.offsetX, event.offsetY);
-    }, { passive: false });
   }
 }
 

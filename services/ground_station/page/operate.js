@@ -25,12 +25,7 @@ export class Operator {
     by("command-not").addEventListener("click", () => this.end());
     by("command-yes").addEventListener("click", () => this.send());
     by("confirm-command").addEventListener("cancel", () => this.end());
-    let from = null;
-    map.canvas.addEventListener("pointerdown", event => { from = [event.clientX, event.clientY]; });
-    map.canvas.addEventListener("click", event => {
-      const still = from && Math.hypot(event.clientX - from[0], event.clientY - from[1]) < 5; // else the map was moved
-      if (this.what && DRAWN[this.what] && still) this.place(map.under(event.offsetX, event.offsetY));
-    });
+    map.at("click", (...place) => { if (this.what && DRAWN[this.what]) this.place(place); });
     window.addEventListener("keydown", event => {
       if (!this.what || by("confirm-command").open) return;
       if (event.key === "Escape") this.end();

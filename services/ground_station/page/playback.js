@@ -8,7 +8,7 @@ const by = id => document.getElementById(id);
 const SLOW_MS = 200; // what follows at a slower pace while it plays
 const CLOCK_MS = 90; // so often, at most, the clock and the slider: each of them lays out the page
 const ADDRESS_MS = 1000; // so often, at most, the address: browsers take few of them
-const MOVES = { ArrowLeft: [60, 0], ArrowRight: [-60, 0], ArrowUp: [0, 60], ArrowDown: [0, -60] };
+const MOVES = { ArrowLeft: [-60, 0], ArrowRight: [60, 0], ArrowUp: [0, -60], ArrowDown: [0, 60] };
 
 // whoever extends it gives `end_ms`, `instants` of the events, `ids` of the aircraft, `maps`, and `draw`
 export class Playback {
@@ -121,7 +121,7 @@ export class Playback {
 
   key(event) {
     if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest?.("dialog")) return;
-    const tag = event.target.tagName, onMap = this.maps.find(map => map.canvas === event.target);
+    const tag = event.target.tagName, onMap = this.maps.find(map => map.plane.element === event.target);
     if (tag === "SELECT" || (tag === "BUTTON" && [" ", "Enter"].includes(event.key))) return;
     const time = event.shiftKey ? 10000 : 1000;
     const acts = {

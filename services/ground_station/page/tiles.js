@@ -1,70 +1,84 @@
-// Pictures of the ground from a tile server, each laid on its place of the mission frame.
+// Pictures of the ground from a tile server: a layer of Leaflet in the mission frame, on which each picture of web
+// mercator is laid at its place.
 
-import { color } from "./canvas.js";
+const { L } = window;
+const SIDE = 256, KEPT = 400, OVER = 1 + 1 / 256; // neighbours overlap by a pixel, pictures and tiles: no seams
+const FARTHEST = -30; // zoom of the layer, of which 0 is a pixel to a metre; the server says how far out there are pictures
 
-const SETTLED_MS = 120, KEPT = 400, OVER = 1 + 1 / 256; // neighbours overlap by a pixel: no seams
+// what is no markup of its own
+const plain = text => text.replace(/[&<>"]/g, one => `&#${one.charCodeAt(0)};`);
 
-export class Tiles {
-  // drawn: draws the map anew; attribution: what is said of the pictures
-  constructor(frame, attribution, drawn) {
-    Object.assign(this, { frame, attribution, drawn, asked: "", wrong: "", shown: [], images: new Map(), later: 0 });
-  }
+export const FrameTiles = L.GridLayer.extend({
+  // frame: whose origin the map has; attribution: what is said of the pictures
+  initialize(frame, attribution) {
+    L.GridLayer.prototype.initialize.call(this, { tileSize: SIDE, minZoom: FARTHEST, attribution: plain(attribution) });
+    Object.assign(this, { frame, images: new Map(), wrong: "" });
+    this.on("tileerror", ({ error }) => this.say(plain(`no tiles: ${error.message}`)));
+    this.on("tileload", () => this.say(""));
+    this.on("tileloadstart", ({ tile }) => Object.assign(tile.style, { width: `${SIDE * OVER}px`, height: `${SIDE * OVER}px` }));
+  },
 
-  // all that is there of a view; what is not yet there is asked for once the view stays
-  draw(map, height) {
-    const { view, width, pen } = map, ratio = window.devicePixelRatio || 1;
-    this.want({ latitude: this.frame.latitude_deg, longitude: this.frame.longitude_deg, north: view.north, east: view.east, height: height / view.scale, width: width / view.scale, pixels_per_m: view.scale * ratio });
-    for (const { url, corners } of this.shown) {
-      const image = this.images.get(url);
-      if (!image?.complete || !image.naturalWidth) continue;
-      const [[x, y], [rightX, rightY], [downX, downY]] = corners.map(corner => map.xy(...corner));
-      pen.save();
-      pen.transform(rightX - x, rightY - y, downX - x, downY - y, x, y);
+  onAdd(map) {
+    this.told = L.control.attribution({ prefix: false }).addTo(map);
+    L.GridLayer.prototype.onAdd.call(this, map);
+  },
+
+  onRemove(map) {
+    L.GridLayer.prototype.onRemove.call(this, map);
+    this.told.remove();
+  },
+
+  // what is wrong, beside the attribution
+  say(wrong) {
+    if (wrong === this.wrong) return;
+    if (this.wrong) this.told.removeAttribution(this.wrong);
+    this.told.addAttribution(wrong);
+    this.told.getContainer().classList.toggle("wrong", Boolean(wrong));
+    this.wrong = wrong;
+  },
+
+  // what is there stays until what takes its place is there
+  getEvents() {
+    const { viewprereset, ...events } = L.GridLayer.prototype.getEvents.call(this);
+    return events;
+  },
+
+  createTile(coords, done) {
+    const canvas = L.DomUtil.create("canvas", "tile"), ratio = window.devicePixelRatio || 1;
+    Object.assign(canvas, { width: SIDE * OVER * ratio, height: SIDE * OVER * ratio });
+    this.draw(canvas, coords, ratio).then(() => done(null, canvas), error => done(error, canvas));
+    return canvas;
+  },
+
+  async draw(canvas, coords, ratio) {
+    const { frame } = this, corner = coords.scaleBy(L.point(SIDE, SIDE)), pen = canvas.getContext("2d");
+    const at = this._map.unproject(corner, coords.z), scale = this._map.options.crs.scale(coords.z) * ratio, size = SIDE * OVER * ratio / scale;
+    const query = new URLSearchParams({ latitude: frame.latitude_deg, longitude: frame.longitude_deg, north: at.lat - size / 2, east: at.lng + size / 2, height: size, width: size, pixels_per_m: scale });
+    const response = await fetch(`/tiles.json?${query}`), told = await response.json();
+    if (!response.ok) throw new Error(told.error);
+    const xy = ([north, east]) => [(east - at.lng) * scale, (at.lat - north) * scale];
+    const drawn = told.tiles.map(async ({ url, corners }) => {
+      const image = await this.image(url), [[x, y], [rightX, rightY], [downX, downY]] = corners.map(xy);
+      if (!image) return;
+      pen.setTransform(rightX - x, rightY - y, downX - x, downY - y, x, y);
       pen.drawImage(image, 0, 0, OVER, OVER);
-      pen.restore();
-    }
-    const said = this.wrong || this.attribution;
-    if (said) map.label(said, Math.max(2, width - pen.measureText(said).width - 8), height - 30, color(this.wrong ? "bad" : "ink"));
-  }
+    });
+    if (drawn.length) await Promise.race(drawn); // the others follow
+  },
 
-  want(view) {
-    const query = new URLSearchParams(view).toString();
-    if (query === this.asked) return;
-    this.asked = query;
-    clearTimeout(this.later);
-    this.later = setTimeout(() => this.ask(query), this.shown.length ? SETTLED_MS : 0);
-  }
-
-  async ask(query) {
-    let told;
-    try {
-      const response = await fetch(`/tiles.json?${query}`);
-      told = await response.json();
-      if (!response.ok) throw new Error(told.error);
-    } catch (error) {
-      Object.assign(this, { wrong: `no tiles: ${error.message}`, shown: [] });
-      this.drawn();
-      return;
-    }
-    if (query !== this.asked) return; // the view is another one already
-    Object.assign(this, { wrong: "", shown: told.tiles });
-    for (const { url } of this.shown) this.keep(url);
-    // those that were not looked at for the longest time go
-    for (const url of [...this.images.keys()].slice(0, Math.max(0, this.images.size - KEPT))) this.images.delete(url);
-    this.drawn();
-  }
-
-  // a picture, loaded once; as the newest of all
-  keep(url) {
-    const image = this.images.get(url) ?? this.load(url);
+  // a picture, asked for once while it is among those that were used last; null where there is none
+  image(url) {
+    const found = this.images.get(url) ?? loaded(url);
     this.images.delete(url);
-    this.images.set(url, image);
-  }
+    this.images.set(url, found);
+    for (const old of [...this.images.keys()].slice(0, Math.max(0, this.images.size - KEPT))) this.images.delete(old);
+    return found;
+  },
+});
 
-  load(url) {
-    const image = new Image();
-    image.addEventListener("load", () => this.drawn());
-    image.src = url;
-    return image;
-  }
+async function loaded(url) {
+  const image = new Image();
+  image.src = url;
+  try { await image.decode(); } catch { return null; }
+  return image;
 }

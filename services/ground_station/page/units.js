@@ -10,6 +10,9 @@ export function niceStep(least) {
   return [1, 2, 5, 10].map(k => k * power).find(step => step >= least) || 10 * power;
 }
 
+// of metres where a metre has so many pixels, so that they say which pixel
+export const digits = scale => Math.min(Math.max(0, Math.ceil(Math.log10(scale))), 3);
+
 export function words(aviation) {
   const fixed = (value, digits, unit) => value === null || value === undefined ? none : `${value.toFixed(digits)} ${unit}`;
   const per = (value, one) => value === null || value === undefined ? null : value / one;
