@@ -81,14 +81,14 @@ class HeardWatch:
 
 
 class Away(NamedTuple):
-    """Of a takeover: since_ms: the way back was not found free long enough since then; offered: control is."""
+    """State of one takeover. since_ms: start of the wait for a free way back [ms]; offered: ICAROUS offers control."""
 
     since_ms: int
     offered: bool = False
 
 
 class WayBackWatch:
-    """Of each takeover: whether control was offered, and if it was not at the end, for how long."""
+    """Checks of each takeover whether control was offered, and if not by the end, for how long it was not."""
 
     kinds = ("GateState", "UxasHeard", "LinkLossState")
 

@@ -202,7 +202,7 @@ class Path(NamedTuple):
     pieces: tuple[Piece, ...]
 
     def at(self, t_s: float) -> Position:
-        """Where it is then, seconds after its begin."""
+        """The predicted position t_s seconds after the start of the path."""
         index = sum(
             in_time(round(1000 * p.start_s), round(1000 * t_s), ANY_LATER) for p in self.pieces
         )

@@ -17,7 +17,7 @@ def own_requirements(report: Data) -> list[Data]:
 
 
 def digests(report: Data) -> dict[str, str]:
-    """By file of such requirements, its SHA-256."""
+    """SHA-256 of each file of user requirements, by file name."""
     return {one["file"]: one["sha256"] for one in report.get(OWN, {}).get("files", ())}
 
 

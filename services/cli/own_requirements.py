@@ -28,7 +28,8 @@ def own_option(said: str) -> Any:
 
 
 def own_files(paths: Sequence[Path]) -> tuple[OwnFile, ...]:
-    """These files, refused before anything is flown or judged if no log can be held against them."""
+    """Read these requirement files; BadInput, before anything is flown or judged, for one that no flight log can be
+    checked against."""
     if not paths:
         return ()
     from cratous.services.requirements.own_files import own_file, refuse_clashes

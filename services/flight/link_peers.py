@@ -65,7 +65,7 @@ class State:
 
 
 def links(before: State, after: State, now_ms: int) -> Iterator[NotHeard | HeardAgain]:
-    """Whose instance is not heard any more, and whose is again."""
+    """The vehicles whose ICAROUS instance was lost, and those whose instance is heard again, at now_ms [ms]."""
     for peer in after.peers:
         old = before.peer(peer.vehicle_id)
         was, alive = old is None or old.end.alive, peer.end.alive

@@ -218,7 +218,7 @@ class Stands(NamedTuple):
 
 
 class HeardAgain(NamedTuple):
-    """It is heard again. by_uxas: UxAS has the vehicle, as its gate says."""
+    """The instance is heard again. by_uxas: UxAS has the vehicle, according to its gate."""
 
     vehicle_id: int
     now_ms: int
@@ -310,7 +310,7 @@ class Held(NamedTuple):
 
 
 class Surveyed(NamedTuple):
-    """Who is seen at a heartbeat, as the vehicle's surveillance has them."""
+    """The aircraft that a vehicle's surveillance shows at a heartbeat."""
 
     now_ms: int
     intruders: tuple[Intruder, ...]

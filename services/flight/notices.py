@@ -86,13 +86,13 @@ def mode_refused(vehicle_id: int, now_ms: int, line: SetMode, epoch: int, gate: 
 def authority_change(
     vehicle_id: int, now_ms: int, gate: Gate, reason: str, intruder_id: int
 ) -> Any:
-    """Who commands a vehicle from now on, since which epoch and why, as an `AuthorityChange`."""
+    """An `AuthorityChange`: who commands a vehicle from now_ms [ms] on, in which epoch and why."""
     more = {"Reason": reason, "IntruderID": intruder_id}
     return _of_gate("AuthorityChange", vehicle_id, now_ms, gate, **more)
 
 
 def plan_accepted(now_ms: int, plan: Plan, done: frozenset[int]) -> Any:
-    """By which plan is flown from now on, as a `PlanAccepted`; `done` are the tasks already flown."""
+    """A `PlanAccepted`: the plan in force from now_ms [ms] on; `done`: tasks already served."""
     return lmcp.new(
         "PlanAccepted",
         Time=now_ms,
@@ -120,7 +120,7 @@ def link_loss_state(said: WithoutLink) -> Any:
 
 
 def uxas_heard(said: Hears) -> Any:
-    """That a vehicle's ICAROUS does not hear UxAS any more, or hears it again, as a `UxasHeard`."""
+    """A `UxasHeard`: a vehicle's ICAROUS no longer hears UxAS, or hears it again."""
     return lmcp.new(
         "UxasHeard",
         VehicleID=said.vehicle_id,
@@ -169,7 +169,7 @@ def mission_change(now_ms: int, what: str, answer: str) -> Any:
 
 
 def mission_end(now_ms: int, outcome: str) -> Any:
-    """That the flight has ended and how, as a `MissionEnd`."""
+    """A `MissionEnd`: the flight has ended at now_ms [ms], and its outcome."""
     return lmcp.new("MissionEnd", Time=now_ms, Outcome=outcome)
 
 

@@ -50,7 +50,7 @@ class Asked(NamedTuple):
 
     @property
     def watches(self) -> bool:
-        """It is served by what its cameras see."""
+        """True if the task is served by what the cameras see."""
         return self.kind in ("WatchTask", "MultiVehicleWatchTask")
 
 

@@ -26,7 +26,8 @@ class Motion(NamedTuple):
     route: tuple[Vec2, ...] = ()
 
     def after(self, seconds: float) -> Vec2:
-        """Where it is so much later [s]: along its route, which it enters where it is nearest; else straight on."""
+        """The motion extrapolated by `seconds` [s]: along its route from the nearest point on, else in a straight
+        line."""
         return self._along(math.hypot(*self.velocity) * seconds)
 
     def ahead(self, far_m: float) -> Vec2:

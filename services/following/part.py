@@ -45,7 +45,7 @@ class Part(NamedTuple):
 
     @property
     def vehicle(self) -> int:
-        """Its id."""
+        """The vehicle's id."""
         return self.state.vehicle
 
 

@@ -45,7 +45,7 @@ Places = tuple[tuple[float, float, float], ...]
 
 
 class Proposals:
-    """Of one service. on: the configuration lets UxAS plan live."""
+    """Plan proposals of one service. on: the configuration lets UxAS plan in flight."""
 
     def __init__(self) -> None:
         self._on, self._zones, self._router = True, tuple[Zone, ...](), Router(())

@@ -70,7 +70,7 @@ class Outstanding(NamedTuple):
 
 
 class Routes:
-    """Of one service. kind: of PLANNERS; wait_s: for an answer."""
+    """Route requests of one service. kind: one of PLANNERS; wait_s: limit for an answer [s]."""
 
     def __init__(
         self, name: str, contexts: Contexts, kind: int, wait_s: float, dialects: Dialects
@@ -84,7 +84,7 @@ class Routes:
         self._tickets = self._numbers = 0
 
     def begun(self) -> Say:
-        """That UxAS's own planner leaves routes to ICAROUS."""
+        """The message saying that UxAS's own planner leaves route requests to ICAROUS."""
         text = f"{self._name}: ICAROUS plans the routes ({self._kind})"
         return Say(lmcp.new("OwnRoutePlanner", Plans=False, Reason=text), self._name)
 

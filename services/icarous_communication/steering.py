@@ -110,7 +110,7 @@ def _loiter(lat_deg: float, long_deg: float, alt_m: float, air: AirState) -> Any
 
 
 def at_gate(name: str, vehicle_id: int, gate: Gate, sender: int, command: Any) -> Say:
-    """That a command has come to a vehicle's gate, and from whom, for whoever listens on the bus."""
+    """A `GatedCommand` for the bus: a command reached a vehicle's gate, and from which sender."""
     return Say(gated(vehicle_id, gate.epoch, sender, command), name)
 
 

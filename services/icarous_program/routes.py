@@ -43,7 +43,7 @@ CLIMBS_MOST_M = 200_000.0
 
 
 class Planner(NamedTuple):
-    """Of one vehicle: the plane, and what its airframe can do."""
+    """Route planner of one vehicle: the local plane, and the performance of its airframe."""
 
     projection: Projection
     limits: Limits

@@ -54,7 +54,7 @@ class Kept(NamedTuple):
 
 
 def by_term(mission: Mission) -> tuple[str, ...]:
-    """Who decides about the relations of a mission; nobody where it has no tasks."""
+    """The kernels that decide the relations of a mission; none if it has no tasks."""
     return (qualified(term_parts),) if mission.tasks else ()
 
 

@@ -59,7 +59,7 @@ class MissionSource:
         """Speeds and altitudes are the mission's."""
 
     def asks(self, service: str) -> bool:
-        """Nobody: options were held against the mission's zones and cameras, exactly."""
+        """False: options were already checked exactly against the mission's zones and cameras."""
         return False
 
     def inputs(self, request: Any, where: str) -> Inputs:

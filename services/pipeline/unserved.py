@@ -35,7 +35,7 @@ class Unserved(NamedTuple):
         return self.without([task[0]])._replace(waiting=kept), Wake(OTHERS_MS, task)
 
     def without(self, tasks: Iterable[int]) -> Unserved:
-        """These are removed, told anew, or somebody has spoken for them."""
+        """Without these tasks: they were removed, replaced, or a service has answered for them."""
         gone = set(tasks)
         waiting = {task: kind for task, kind in self.waiting.items() if task[0] not in gone}
         return Unserved(waiting, {n: kind for n, kind in self.named.items() if n not in gone})

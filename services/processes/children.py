@@ -36,7 +36,7 @@ class ProcessEnded(CratousError):
         super().__init__(f"{self.told()}; its last lines: {' | '.join(lines) or 'none'}")
 
     def told(self) -> str:
-        """Who has ended how."""
+        """Which process ended, and its exit code or signal."""
         how = f"exit code {self.code}"
         if self.code not in range(256):
             how = f"signal {signal.Signals(-self.code).name}"

@@ -81,7 +81,7 @@ class Recorder:
         )
 
     def accepted(self, plan: Plan) -> None:
-        """By which plan is flown."""
+        """Record the plan in force."""
         self._say(plan_accepted(self.now_ms, plan, frozenset()))
 
     def heard(self, body: Any) -> None:

@@ -67,7 +67,7 @@ class Made(Protocol):
 
     @property
     def made(self) -> Term | None:
-        """Of what it is calculated; None: it stands in the trace."""
+        """The term from which the signal is computed; None: it is recorded in the trace."""
 
 
 def sources(names: Iterable[str], signals: Mapping[str, Made]) -> set[str]:

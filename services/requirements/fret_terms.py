@@ -118,7 +118,7 @@ class Names:
         return formulas.compared(values[0], relation, values[1])
 
     def named(self, side: Any) -> Any:
-        """Of what is calculated the name of its signal; anything else as it is."""
+        """The name of the signal made for a computed side; any other side unchanged."""
         if not isinstance(side, Term):
             return side
         self.signals.setdefault(side.text, Signal("float", side.unit, made=side))

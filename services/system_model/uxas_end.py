@@ -131,7 +131,7 @@ class UxasEnd:
         self.heard_ms = now_ms
 
     def is_silent(self, now_ms: int) -> bool:
-        """By its heartbeats ICAROUS is silent for too long, and that has not been said."""
+        """True if ICAROUS's heartbeats have been missing for too long and that was not reported yet."""
         signs = (
             link_sign(b.end, ends.PASSED, self.heard_ms, now_ms, LINK_LOST_MS)
             for b in self.possible

@@ -193,7 +193,7 @@ class Actors(Flight):
 
     @property
     def gate(self) -> Gate:
-        """Of the vehicle."""
+        """The vehicle's gate."""
         return self.vehicle_states[VEHICLE].gate
 
     def happen(self, event: Event) -> Standing:
