@@ -24,7 +24,7 @@ HEARD_MS = 2000
 
 
 def not_told(mission: Mission, told: bool) -> str:
-    """Why it is not known whether UxAS is heard, "" if it is. told: each ICAROUS says so."""
+    """Why it is unknown whether UxAS is heard; empty if it is known. told: each ICAROUS reports it."""
     if not mission.instances:
         return NO_INSTANCE
     return "" if told else "this ICAROUS does not say whether it hears UxAS"

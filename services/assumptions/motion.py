@@ -127,7 +127,7 @@ class IntruderWatch:
         self._record = Record("m", self._room.wide_m, kernels, none, waits=waits)
 
     def message(self, message: Message) -> None:
-        """A change of who commands, or where an aircraft is."""
+        """Process one message: a change of command, or the true state of an aircraft."""
         kind, now_ms, _, body = message
         if kind == "AuthorityChange" and body.VehicleID in self._instances:
             own = body.VehicleID

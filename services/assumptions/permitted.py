@@ -33,7 +33,7 @@ IN_HAND = ("Offered", "Known", "Left")
 
 
 class Place(NamedTuple):
-    """Where an aircraft is, and when; stands: one of ours, which is on the ground."""
+    """Position of an aircraft at an instant; stands: one of ours, on the ground."""
 
     time_ms: int
     at: Position

@@ -12,7 +12,7 @@ SOURCE = "own"
 
 
 def own_requirements(report: Data) -> list[Data]:
-    """The rows of the report, in the order of its files; none where it has none."""
+    """The report's rows of user requirements, in the order of their files; empty if it has none."""
     return list(report.get(OWN, {}).get("requirements", ()))
 
 

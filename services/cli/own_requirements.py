@@ -47,7 +47,7 @@ def own_data(report: Data) -> Data:
 
 
 def own_lines(report: Data) -> Iterator[str]:
-    """What a report says of them, for people; nothing where it has none."""
+    """The report's results for user requirements as lines of text; empty if it has none."""
     from cratous.services.certify.own_said import margin as said
     from cratous.services.certify.own_said import sentence
 

@@ -243,7 +243,7 @@ def final_loiter(
 
 
 def with_hold(item: PlanItem, radius_m: float, zones: tuple[Zone, ...]) -> PlanItem:
-    """The item with a hold to wait on at its start pose, if it has none and one is possible."""
+    """The item with a hold to wait on at its start pose, if it has none and one can be flown."""
     if item.hold is not None:
         return item
     return replace(item, hold=tangent_hold(start_pose(item), radius_m, zones))

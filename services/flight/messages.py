@@ -117,7 +117,7 @@ class Lost(NamedTuple):
 
 
 class GateIs(NamedTuple):
-    """How a vehicle's gate stands from now on, by the vehicle itself."""
+    """A change of a vehicle's gate, as the vehicle reports it."""
 
     vehicle_id: int
     gate: Gate
@@ -186,7 +186,7 @@ class Suspend(NamedTuple):
 
 
 class Because(NamedTuple):
-    """The vehicle has told what its ICAROUS does with authority (act: as in `Wish`), and why."""
+    """The vehicle reports what its ICAROUS does with authority (act: as in `Wish`), and the reason."""
 
     vehicle_id: int
     act: int
@@ -303,7 +303,7 @@ class Wished(NamedTuple):
 
 
 class Held(NamedTuple):
-    """The vehicle's own ICAROUS has a certificate for what it commands next, or has none."""
+    """Whether the vehicle's ICAROUS has a certificate for its next command."""
 
     now_ms: int
     offer: Offers | Uncertified

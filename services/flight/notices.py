@@ -17,7 +17,7 @@ from cratous.spec.mission.plan import Plan
 
 
 def gate_state(vehicle_id: int, now_ms: int, gate: Gate) -> Any:
-    """How a vehicle's gate stands, as a `GateState`."""
+    """A `GateState`: owner, epoch and offer of a vehicle's gate at now_ms [ms]."""
     return _of_gate("GateState", vehicle_id, now_ms, gate, Offered=gate.offered)
 
 
@@ -131,7 +131,7 @@ def uxas_heard(said: Hears) -> Any:
 
 
 def take_off_state(said: TakesOff) -> Any:
-    """How a vehicle leaves the ground from now on, or why it stands, as a `TakeOffState`."""
+    """A `TakeOffState`: how a vehicle leaves the ground, or why it waits."""
     return _mode_told("TakeOffState", said)
 
 
@@ -181,5 +181,5 @@ def heartbeat(vehicle_id: int, now_ms: int, direction: str, sequence: int) -> An
 
 
 def bridge_status(vehicle_id: int, alive: bool, now_ms: int, note: str) -> Any:
-    """Whether the instance of a vehicle is heard, and why that is told."""
+    """A `BridgeStatus`: whether a vehicle's instance is heard at now_ms [ms], and why this is reported."""
     return lmcp.new("BridgeStatus", VehicleID=vehicle_id, Time=now_ms, Alive=alive, Note=note)

@@ -53,7 +53,7 @@ class Motion(NamedTuple):
         return Vec2(self.at.x + share * self.velocity.x, self.at.y + share * self.velocity.y)
 
     def halfway_to(self, place: Vec2) -> Motion:
-        """The motion of the middle between it and a place that stands."""
+        """The motion of the midpoint between it and a fixed position."""
 
         def middle(p: Vec2) -> Vec2:
             return Vec2((p.x + place.x) / 2, (p.y + place.y) / 2)

@@ -115,7 +115,7 @@ class Routes:
         return out
 
     def step(self, seated: Sequence[int]) -> list[Out]:
-        """Send what can be sent. seated: the vehicles whose instances are there."""
+        """Send the route requests that can be sent. seated: the vehicles whose instances are connected."""
         out: list[Out] = []
         kept: deque[Wanted] = deque()
         while self._waiting:

@@ -141,7 +141,7 @@ def air_state(body: Any, projection: Projection) -> AirState:
 
 
 def tellable(frame: Frame, bodies: Iterable[Any]) -> tuple[tuple[Zone, ...], list[Note]]:
-    """The zones that peers are told, and about the others why not."""
+    """The zones that are sent to peers, and for each other zone why it is not."""
     around = surroundings(frame, bodies, "MSL")
     return around.zones, [Note("WARN", text) for text in around.missing]
 

@@ -115,7 +115,7 @@ def at_gate(name: str, vehicle_id: int, gate: Gate, sender: int, command: Any) -
 
 
 def in_flight(name: str, vehicle_id: int, gate: Gate, plan: Plan | None) -> list[Say]:
-    """What a vehicle flies already comes to its gate, when that stands for the first time."""
+    """The command that a vehicle already flies, for its gate when that is set up; none without a plan."""
     return [] if plan is None else [at_gate(name, vehicle_id, gate, UXAS, plan.command)]
 
 

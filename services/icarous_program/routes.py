@@ -49,7 +49,7 @@ class Planner(NamedTuple):
     limits: Limits
 
     def answer(self, asked: RouteRequest, zones: tuple[Zone, ...]) -> tuple[list[Message], str]:
-        """The lines of the answer, and why it has no points, if it has none."""
+        """The lines that answer a route request; and, if it has no points, the reason."""
         try:
             points, why = self._plan(asked, zones)
         except BadInput as error:

@@ -83,7 +83,7 @@ ROOT: Mapping[str, Attr] = {
 
 @dataclass(frozen=True)
 class Entry:
-    """A Service or Bridge element: its type, attributes and children, and where it stands."""
+    """A Service or Bridge element: type, attributes, children, and its position in the file."""
 
     kind: str
     type: str

@@ -16,7 +16,7 @@ from cratous.spec.errors import BadInput
 
 
 class MissionWorld:
-    """What a mission has, by id; nobody has sent messages about it."""
+    """The contents of a mission, by id; not obtained from messages."""
 
     def __init__(self, inputs: Inputs) -> None:
         vehicles = [vehicle.id for vehicle in inputs.mission.vehicles]

@@ -23,13 +23,14 @@ Alien = tuple[int, int]
 
 
 class Unserved(NamedTuple):
-    """Kinds by task: those that others still have time to speak for, and those that nobody has."""
+    """Task kinds that no service here handles: those that others may still answer for, and those reported as
+    unhandled."""
 
     waiting: Mapping[Alien, str] = MappingProxyType({})
     named: Mapping[int, str] = MappingProxyType({})
 
     def arrived(self, task: Alien, kind: str) -> tuple[Unserved, Wake]:
-        """A task of a kind that nobody here does; when to look whether another has spoken."""
+        """A task of a kind that no service here handles; and when to check whether another has answered."""
         waiting = {**self.without([task[0]]).waiting, task: kind}
         kept = dict(list(waiting.items())[-MOST:])
         return self.without([task[0]])._replace(waiting=kept), Wake(OTHERS_MS, task)

@@ -55,7 +55,7 @@ Side = str | float | Term
 
 
 def terms(one: Side) -> Iterator[Term]:
-    """All terms of a side, parts before the whole, each as often as it stands there."""
+    """All terms of a side, sub-terms first, repeated terms included."""
     if isinstance(one, Term):
         for side in one.sides:
             yield from terms(side)

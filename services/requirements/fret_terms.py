@@ -73,7 +73,7 @@ class Names:
     real: bool = False
 
     def of(self, token: Any) -> Meaning:
-        """What a variable is; Wrong for one that nobody has declared."""
+        """The declared variable of a token; Wrong if it is undeclared."""
         name = str(token)
         found = self.bound.get(name, name)
         if isinstance(found, Unread):
@@ -85,7 +85,7 @@ class Names:
         return found
 
     def truth(self, token: Any) -> formulas.Formula:
-        """A variable that stands for itself."""
+        """A Boolean variable used as a formula."""
         found = self.of(token)
         if isinstance(found, bool):
             return formulas.TRUE if found else formulas.FALSE

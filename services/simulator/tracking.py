@@ -43,7 +43,7 @@ class Tracks:
         return True
 
     def steered(self, key: int) -> None:
-        """A vehicle is told where to go: it does that, also when it has lost what it tracks."""
+        """A vehicle was commanded to go somewhere: it does, even if it loses what it tracks."""
         for held, track in self._held.items():
             if held[0] == key:
                 self._held[held] = track._replace(return_to=None)
