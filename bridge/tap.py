@@ -105,7 +105,7 @@ def _resolved(where: Address) -> tuple[str, int]:
         found = socket.getaddrinfo(where.host, where.port, type=socket.SOCK_STREAM)
     except OSError as error:
         raise BadInput(
-            "nobody knows this host", where=where.text, expected="a name or an address",
+            "unknown host", where=where.text, expected="a name or an address",
             got=error.strerror or str(error),
         ) from None  # fmt: skip
     host, port = found[0][4][:2]

@@ -42,7 +42,7 @@ NOISE, SILENT, LATE, FAST, NOBODY, DEAF, STOPPED = (
     "silent",
     "handshake not finished in time",
     "sends faster than it may",
-    "nobody listens there",
+    "no program listens there",
     "does not acknowledge what it is sent",
     "does not read",
 )

@@ -77,8 +77,8 @@ def root() -> Path:
 
 
 @pytest.fixture(scope="session")
-def fly_once(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Path], Path]:
-    """Results of `cratous run MISSION --allow-unproved --quiet`, flown once for all processes of a run.
+def fly_once(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
+    """Results of `cratous run MISSION --allow-unproved --quiet [OPTION]...`, flown once for all processes of a run.
 
     Whoever changes anything in the folder copies it first.
     """
@@ -86,15 +86,16 @@ def fly_once(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Path], Path]
     if "PYTEST_XDIST_WORKER" in os.environ:
         shared_by_all = shared_by_all.parent
 
-    def results(mission: Path) -> Path:
+    def results(mission: Path, *options: str) -> Path:
         from cratous.services.cli import main
 
-        home = shared_by_all / "flown" / hashlib.sha256(str(mission).encode()).hexdigest()[:16]
+        asked = "\0".join((str(mission), *options))
+        home = shared_by_all / "flown" / hashlib.sha256(asked.encode()).hexdigest()[:16]
         home.mkdir(parents=True, exist_ok=True)
         with (home / "lock").open("w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             if not (home / "done").exists():
-                words = ["run", str(mission), "--allow-unproved", "--quiet"]
+                words = ["run", str(mission), "--allow-unproved", "--quiet", *options]
                 main([*words, "--out", str(home / "out")])
                 (home / "done").touch()
         (folder,) = (home / "out").iterdir()

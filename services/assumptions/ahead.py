@@ -65,5 +65,5 @@ class AheadWatch:
             self._record.unseen_between(f"aircraft {number}", last_ms, until_ms, self._step_ms)
 
     def records(self) -> dict[str, Record]:
-        """See `Watch`."""
+        """The observations so far, by name of the assumption (see `Watch`)."""
         return {"flown as looked at": self._record}

@@ -137,7 +137,7 @@ class CommandWatch:
             self._begun.gaps.append(f"no command to vehicle {names} was seen")
 
     def records(self) -> dict[str, Record]:
-        """See `Watch`."""
+        """The observations so far, by name of the assumption (see `Watch`)."""
         return {
             "first command": self._begun,
             "reports of the gate": self._reports,
@@ -189,5 +189,5 @@ class SteeringWatch:
         self._look(at_ms)
 
     def records(self) -> dict[str, Record]:
-        """See `Watch`."""
+        """The observations so far, by name of the assumption (see `Watch`)."""
         return {"ICAROUS at each heartbeat": self._record}

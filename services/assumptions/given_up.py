@@ -139,5 +139,5 @@ class GivenUpWatch:
             self._time(vid, leg, at_ms)
 
     def records(self) -> dict[str, Record]:
-        """See `Watch`."""
+        """The observations so far, by name of the assumption (see `Watch`)."""
         return {"items given up": self._record}

@@ -73,10 +73,10 @@ class HeardWatch:
         self._record.check(heard, last_ms + HEARD_MS, number, text)
 
     def end(self, at_ms: int) -> None:
-        """Nothing is open."""
+        """End of the messages at at_ms [ms]: no check is pending."""
 
     def records(self) -> dict[str, Record]:
-        """See `Watch`."""
+        """The observations so far, by name of the assumption (see `Watch`)."""
         return {"delivery to ICAROUS": self._record}
 
 
@@ -157,5 +157,5 @@ class WayBackWatch:
                 self._record.check(False, away.since_ms, number, text)
 
     def records(self) -> dict[str, Record]:
-        """See `Watch`."""
+        """The observations so far, by name of the assumption (see `Watch`)."""
         return {"way back free": self._record}

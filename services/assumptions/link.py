@@ -41,10 +41,10 @@ class ClockWatch:
         self._last_ms = message.time_ms
 
     def end(self, at_ms: int) -> None:
-        """Nothing is open."""
+        """End of the messages at at_ms [ms]: no check is pending."""
 
     def records(self) -> dict[str, Record]:
-        """See `Watch`."""
+        """The observations so far, by name of the assumption (see `Watch`)."""
         return {"clock": self._record}
 
 
@@ -88,7 +88,7 @@ class PeriodWatch:
         self._look(at_ms)
 
     def records(self) -> dict[str, Record]:
-        """See `Watch`."""
+        """The observations so far, by name of the assumption (see `Watch`)."""
         return {"heartbeat period": self._record}
 
 
@@ -152,7 +152,7 @@ class DeliveryWatch:
         self._look(at_ms)
 
     def records(self) -> dict[str, Record]:
-        """See `Watch`."""
+        """The observations so far, by name of the assumption (see `Watch`)."""
         return {"delivery from ICAROUS": self._record}
 
 
@@ -218,5 +218,5 @@ class ChangeWatch:
         self._look(at_ms)
 
     def records(self) -> dict[str, Record]:
-        """See `Watch`."""
+        """The observations so far, by name of the assumption (see `Watch`)."""
         return {"offers taken": self._taken, "takeovers told": self._told}

@@ -34,10 +34,10 @@ class EndWatch:
             self._record.check(ok, self._most_ms, 0, text)
 
     def end(self, at_ms: int) -> None:
-        """Nothing is open."""
+        """End of the messages at at_ms [ms]: no check is pending."""
 
     def records(self) -> dict[str, Record]:
-        """See `Watch`."""
+        """The observations so far, by name of the assumption (see `Watch`)."""
         return {"end of the flight": self._record}
 
 
@@ -81,10 +81,10 @@ class AwayWatch:
         self._record.check(not away, at_ms, vid, text)
 
     def end(self, at_ms: int) -> None:
-        """Nothing is open."""
+        """End of the messages at at_ms [ms]: no check is pending."""
 
     def records(self) -> dict[str, Record]:
-        """See `Watch`."""
+        """The observations so far, by name of the assumption (see `Watch`)."""
         return {"vehicles away counted": self._record}
 
 
@@ -113,8 +113,8 @@ class SettledWatch:
             self._settled[body.TaskID] = phase
 
     def end(self, at_ms: int) -> None:
-        """Nothing is open."""
+        """End of the messages at at_ms [ms]: no check is pending."""
 
     def records(self) -> dict[str, Record]:
-        """See `Watch`."""
+        """The observations so far, by name of the assumption (see `Watch`)."""
         return {"settled tasks": self._record}

@@ -181,7 +181,7 @@ class IntruderWatch:
             self._forget(own, at_ms)
 
     def records(self) -> dict[str, Record]:
-        """See `Watch`."""
+        """The observations so far, by name of the assumption (see `Watch`)."""
         return {"intruder in its tube": self._record}
 
 
@@ -289,8 +289,8 @@ class TrackingWatch:
         return Path(here.time_ms, here.time_ms + self._period_ms, pieces)
 
     def end(self, at_ms: int) -> None:
-        """Nothing is open."""
+        """End of the messages at at_ms [ms]: no check is pending."""
 
     def records(self) -> dict[str, Record]:
-        """See `Watch`."""
+        """The observations so far, by name of the assumption (see `Watch`)."""
         return {"tracking": self._record}

@@ -238,7 +238,7 @@ class NearLegsWatch:
             self._seen_between(number, last_ms, until_ms)
 
     def records(self) -> dict[str, Record]:
-        """See `Watch`."""
+        """The observations so far, by name of the assumption (see `Watch`)."""
         return {"near its legs": self._record}
 
 

@@ -196,7 +196,7 @@ class PermittedWatch:
         ]
 
     def records(self) -> dict[str, Record]:
-        """See `Watch`."""
+        """The observations so far, by name of the assumption (see `Watch`)."""
         return {"permitted as offered": self._record}
 
 

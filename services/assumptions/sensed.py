@@ -81,5 +81,5 @@ class SensedWatch:
             self._record.gaps.append(f"{own} never sensed aircraft {other}")
 
     def records(self) -> dict[str, Record]:
-        """See `Watch`."""
+        """The observations so far, by name of the assumption (see `Watch`)."""
         return {NAME: self._record}

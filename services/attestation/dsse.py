@@ -29,7 +29,7 @@ PUBLIC = "an Ed25519 public key in PEM"
 
 
 def pre_authentication_encoding(payload: bytes, payload_type: str = PAYLOAD_TYPE) -> bytes:
-    """What is signed."""
+    """The bytes that a DSSE signature covers: payload and its type, as DSSE defines them."""
     kind = payload_type.encode()
     return b"DSSEv1 %d %b %d %b" % (len(kind), kind, len(payload), payload)
 

@@ -108,7 +108,7 @@ def _refuse_others(results: Path, target: Path, wanted: Wanted) -> None:
         strange.append(STATEMENT_NAME)
     if strange:
         raise BadInput(
-            "the folder holds what would not be written anew", where=str(target),
+            "the folder holds files that would not be replaced", where=str(target),
             expected="an empty folder, or one with former views of the same kinds",
             got=", ".join(strange[:5]),
         )  # fmt: skip

@@ -30,7 +30,7 @@ def mission_of_states(file: Path, duration_s: float) -> dict[str, Any]:
     (own, *others), wind = aircraft(rows)
     if not others:
         raise BadInput(
-            "nobody is met in the first step", where=str(file), expected="an ownship and others",
+            "no intruder in the first step", where=str(file), expected="an ownship and others",
             got=own.id,
         )  # fmt: skip
     north, east = own.vn_m_s + wind[1], own.ve_m_s + wind[0]

@@ -84,7 +84,7 @@ def mission_hash(mission: Mission) -> str:
 
 
 def plan_hash(plan: Plan) -> str:
-    """Names a plan."""
+    """The fingerprint that identifies a plan."""
     return fingerprint(to_data(plan))
 
 

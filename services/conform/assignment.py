@@ -25,7 +25,7 @@ WORDS = {"A": TIME, "B": ORDER}
 
 
 def compare(case: dict[str, Any], file: Path) -> Result:
-    """Compare one problem."""
+    """Solve one problem of the suite; the results of its checks."""
     name = str(case.get("name") or file.name)
     if "cost_matrix" in case:
         return _matrix(case, name)

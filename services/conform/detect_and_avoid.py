@@ -90,7 +90,7 @@ class Suite:
         return self.presets[name]
 
     def judge(self, case: dict[str, Any]) -> Result:
-        """Compare one case."""
+        """Run one case of the suite; the results of its checks."""
         name = identity(case)
         p = self.parameters(case)
         if p is None:
@@ -216,14 +216,14 @@ class Differences:
         )
 
     def compare(self) -> None:
-        """All comparisons."""
+        """Compare all values that the vector gives."""
         for i, theirs in enumerate(self.out["traffic"]):
             self.intruder(i, theirs)
         for dimension in range(len(DIMENSIONS)):
             self.dimension(dimension)
 
     def intruder(self, i: int, theirs: dict[str, Any]) -> None:
-        """One intruder."""
+        """Compare the values of one intruder."""
         alert = self.instant.alerts[i]
         wanted = int(theirs["alert"])
         self.note("alert level", alert.level == wanted,

@@ -24,7 +24,7 @@ FORMS = ("xml", "xml_cpp", "xml_py")
 
 
 def judge(case: dict[str, Any]) -> Result:
-    """Compare one case."""
+    """Run one case of the suite; the results of its checks."""
     if "hex" not in case:
         return not_covered(str(case.get("case", case.get("type", "?"))), "no bytes given")
     try:

@@ -41,7 +41,7 @@ Check = tuple[str, str, str]
 
 
 def judge(case: dict[str, Any]) -> Result:
-    """Compare one case."""
+    """Run one case of the suite; the results of its checks."""
     name = identity(case)
     size = _dimensions(case)
     kind = str(case.get("kind", "contain3d" if size == 3 else "contain2d"))

@@ -33,7 +33,7 @@ class Flights:
         self._lines: list[str] = []
 
     def judge(self, case: dict[str, Any]) -> Result:
-        """Compare one flight."""
+        """Fly one case of the suite; the results of its checks."""
         result = judge(case)
         if result.text:
             self._lines.append(f"  {result.case}: {result.text}")
@@ -50,7 +50,7 @@ def suite() -> Callable[[dict[str, Any]], Result]:
 
 
 def judge(case: dict[str, Any]) -> Result:
-    """Compare one flight."""
+    """Fly one case of the suite; the results of its checks."""
     about = case.get("desc")
     name = f"seed {about.get('seed', '?')}" if isinstance(about, dict) else "flight"
     columns, rows, text = case.get("columns"), case.get("rows"), case.get("scenario_xml")

@@ -9,7 +9,7 @@ from cratous.spec.errors import BadInput
 
 
 def number(case: dict[str, Any], name: str) -> float:
-    """A finite number."""
+    """A finite number of a vector; BadInput for anything else."""
     return finite(_there(case, name), name)
 
 
@@ -34,7 +34,7 @@ def numbers(value: Any, name: str, size: int) -> tuple[float, ...]:
 
 
 def truth(case: dict[str, Any], name: str) -> bool:
-    """A truth value."""
+    """A truth value of a vector; BadInput for anything else."""
     value = _there(case, name)
     if not isinstance(value, bool):
         raise BadInput("not a truth value", item=name, expected="true or false", got=repr(value))

@@ -48,7 +48,7 @@ State = tuple[tuple[float, ...], tuple[float, ...]]
 
 
 def judge(case: dict[str, Any]) -> Result:
-    """Compare one case."""
+    """Run one case of the suite; the results of its checks."""
     name = identity(case)
     detector = case.get("det", "WCV_TAUMOD")
     if detector != CYLINDER and detector not in DETECTORS:

@@ -27,7 +27,7 @@ class Difference(NamedTuple):
 
     @property
     def text(self) -> str:
-        """In words."""
+        """The difference in words."""
         return f"{self.item}: {_words(self.wanted)}; read again it would be {_words(self.got)}"
 
 

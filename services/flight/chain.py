@@ -51,7 +51,7 @@ class Leg(NamedTuple):
     task_id: int | None = None
 
     def taken(self, now_ms: int) -> Leg:
-        """ICAROUS takes over."""
+        """The leg when ICAROUS takes the vehicle over."""
         return self._replace(takeovers=self.takeovers + 1, taken_ms=now_ms)
 
     def given_back(self, now_ms: int, free_ms: int = 0) -> Leg:

@@ -72,7 +72,7 @@ def path_command(
 
 
 def velocity_command(vehicle_id: int, command_id: int, v: Velocity) -> Any:
-    """Fly this velocity."""
+    """A command to fly this velocity [m/s]."""
     action = lmcp.new(
         "FlightDirectorAction",
         Speed=math.hypot(v.north_m_s, v.east_m_s),

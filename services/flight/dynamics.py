@@ -48,7 +48,7 @@ class AirState(NamedTuple):
 
     @property
     def pose(self) -> Pose:
-        """Position and heading."""
+        """Position and heading as a pose."""
         return Pose(*self.position, self.heading_rad)
 
 

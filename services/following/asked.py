@@ -113,7 +113,7 @@ def tower_of(body: Any, places: RequestPlaces, world: Known) -> Tower:
     towers = {n: c for n, c in known.items() if type(c).__name__ == "RadioTowerConfiguration"}
     if number not in towers:
         raise BadInput(
-            f"task {body.TaskID} is in touch with a tower that nobody has told of",
+            f"task {body.TaskID} uses a radio tower of which no message has told",
             where=where, item="TowerID",
             expected="one of " + (", ".join(map(str, sorted(towers))) or "none"),
             got=str(number),

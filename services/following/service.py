@@ -166,7 +166,7 @@ class FollowingTaskService(TaskService):
         state = known.get("state", asked.entity)
         if state is None:
             raise BadInput(
-                f"task {self._task_id} keeps to an entity that nobody has told of",
+                f"task {self._task_id} follows an entity of which no message has told",
                 where=f"task {self._task_id}",
                 item=f"{type(self._body).__name__}: entity",
                 expected="one of " + (", ".join(map(str, sorted(known.ids("state")))) or "none"),

@@ -187,7 +187,7 @@ class Communication:
     # what comes over the bus ----------------------------------------------------------------------
 
     def configured(self, state: State, body: Any) -> Step:
-        """An AirVehicleConfiguration."""
+        """Process an AirVehicleConfiguration."""
         return state.put(body.ID, replace(state.craft(body.ID), configuration=body)), []
 
     def mission(self, state: State, command: Any, now_ms: int) -> Step:
@@ -220,12 +220,12 @@ class Communication:
         return self._fenced(replace(state, zones={**state.zones, body.ZoneID: body}))
 
     def zones_removed(self, state: State, ids: list[int]) -> Step:
-        """RemoveZones."""
+        """Process RemoveZones."""
         left = {number: zone for number, zone in state.zones.items() if number not in ids}
         return self._fenced(replace(state, zones=left))
 
     def flown(self, state: State, body: Any, now_ms: int) -> Step:
-        """An AirVehicleState."""
+        """Process an AirVehicleState."""
         vid = int(body.ID)
         state, out = self._framed(state, body.Location)
         assert state.frame is not None

@@ -48,7 +48,7 @@ class Autopilot:
         return bool(self._port.peers)
 
     def handles(self) -> list[tuple[Any, int]]:
-        """What to poll."""
+        """Sockets to poll, each with its flags."""
         return self._port.handles()
 
     def step(self, now_s: float) -> list[Reported]:

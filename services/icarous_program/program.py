@@ -72,7 +72,7 @@ class Besides(NamedTuple):
     autopilot: Autopilot | None = None
 
     def handles(self) -> list[tuple[Any, int]]:
-        """What to poll."""
+        """Sockets to poll, each with its flags."""
         found = [] if self.autopilot is None else self.autopilot.handles()
         return found if self.direct is None else [*found, (self.direct.fileno(), zmq.POLLIN)]
 

@@ -42,7 +42,7 @@ SeenBy = Mapping[int, Seen]
 
 
 def seen_at(line: Traffic, now_ms: int, projection: Projection) -> Seen:
-    """What OBJCT says."""
+    """The aircraft that an OBJCT line describes."""
     place = Position(*projection.to_local(line.lat_deg, line.long_deg), line.alt_m)
     return Seen(place, Velocity(line.north_mps, line.east_mps, line.down_mps), now_ms)
 

@@ -103,15 +103,15 @@ def whole(text: object, where: str, item: str, high: int) -> int:
 
 
 def latitude(text: object, where: str, item: str = "latitude") -> float:
-    """Degrees north."""
+    """A latitude [deg north]; BadInput outside of -89 to 89."""
     return number(text, where, item, -89, 89)
 
 
 def longitude(text: object, where: str, item: str = "longitude") -> float:
-    """Degrees east."""
+    """A longitude [deg east]; BadInput outside of -180 to 180."""
     return number(text, where, item, -180, 180)
 
 
 def altitude(text: object, where: str, item: str = "altitude") -> float:
-    """Metres."""
+    """An altitude [m]; BadInput outside of LEAST_ALT_M to ALT_M."""
     return number(text, where, item, LEAST_ALT_M, ALT_M)

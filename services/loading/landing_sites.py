@@ -37,7 +37,7 @@ def site_problems(document: Document, sites: tuple[LandingSite, ...]) -> Iterato
     told = ", ".join(names) or "none"
     if sites and not lands:
         yield BadInput(
-            "nobody lands at these sites",
+            "no vehicle lands at these sites",
             where=document.where((SECTION,)),
             item=SECTION,
             expected="link_loss with choice land beside them",
@@ -55,7 +55,7 @@ def site_problems(document: Document, sites: tuple[LandingSite, ...]) -> Iterato
     site = loss.get("site")
     if site is not None and not lands:
         yield BadInput(
-            "nobody lands there",
+            "no vehicle lands at this site",
             where=document.where(("link_loss", "site")),
             item="link_loss.site",
             expected="choice land",

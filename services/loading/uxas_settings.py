@@ -39,22 +39,22 @@ class Attr(NamedTuple):
 
 
 def flag(default: bool) -> Attr:
-    """TRUE or FALSE."""
+    """An attribute that is TRUE or FALSE."""
     return Attr("flag", default)
 
 
 def whole(default: int | None, low: int = 0, high: int | None = None) -> Attr:
-    """A whole number."""
+    """An attribute that is a whole number within bounds."""
     return Attr("int", default, low, high)
 
 
 def number(default: float | None, low: float | None = 0.0, high: float | None = None) -> Attr:
-    """A number."""
+    """An attribute that is a number within bounds."""
     return Attr("number", default, low, high)
 
 
 def choice(default: str, *choices: str) -> Attr:
-    """Reader of an attribute that takes one of several words, regardless of case."""
+    """An attribute that takes one of several words, regardless of case."""
     return Attr("choice", default, choices=choices)
 
 

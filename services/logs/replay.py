@@ -29,7 +29,7 @@ class Out(Protocol):
         """Hand over the bytes of one message."""
 
     def wait(self, seconds: float) -> None:
-        """Let time pass."""
+        """Wait for `seconds` [s]."""
 
 
 class StreamOut:

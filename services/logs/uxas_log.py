@@ -79,7 +79,7 @@ class UxasWriter:
         return None
 
     def close(self) -> None:
-        """Commit."""
+        """Commit and close the log."""
         try:
             self._db.commit()
         except sqlite3.Error as error:

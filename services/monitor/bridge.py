@@ -79,7 +79,7 @@ class BridgeWatch:
         self._end_ms: int | None = None
 
     def heartbeat(self, body: Any) -> None:
-        """A heartbeat came."""
+        """Process a Heartbeat."""
         beat = self._beats.get((body.VehicleID, body.Direction.name))
         if beat is not None:
             beat.come(body.Time, body.Sequence)
@@ -90,7 +90,7 @@ class BridgeWatch:
             self._downs[body.VehicleID] = f"down at {body.Time / 1000:.2f} s: {body.Note}"
 
     def end(self, body: Any) -> None:
-        """The mission ended."""
+        """Process MissionEnd: the messages are complete."""
         self._end_ms = body.Time
         for beat in self._beats.values():
             beat.end(body.Time)

@@ -136,7 +136,7 @@ class CompletionWatch:
         return radius + (loiter.length_m / 2 if loiter.shape == "racetrack" else 0.0)
 
     def end(self, body: Any) -> None:
-        """The mission ended."""
+        """Process MissionEnd: the messages are complete."""
         self._outcome, self._end_ms = body.Outcome, body.Time
 
     def verdicts(self, seen: Watched) -> list[Verdict]:

@@ -69,7 +69,7 @@ class HandWatch:
             self.said.append(f"{word}: {at}: {body.Reason}")
 
     def end(self, time_ms: int) -> None:
-        """The mission ended."""
+        """Process MissionEnd: the messages are complete."""
         for held in self._held.values():
             self._count(held, time_ms)
 

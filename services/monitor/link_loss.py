@@ -121,7 +121,7 @@ class LinkLossWatch:
             told.down_ms = body.Time
 
     def end(self, body: Any) -> None:
-        """The mission ended."""
+        """Process MissionEnd: the messages are complete."""
         self._over, self._end_ms = True, body.Time
         for vehicle, told in self._told.items():
             self._missed(told, body.Time)

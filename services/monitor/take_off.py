@@ -101,7 +101,7 @@ class TakeOffWatch:
             seen.icarous.append((body.Time, has_it(reported(body))))
 
     def step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
-        """Two successive instants."""
+        """Process two successive samples of the aircraft."""
         for number, vehicle in self._vehicles.items():
             if number in before and number in after:
                 self._leg(self._seen[number], vehicle, before[number], after[number])
@@ -133,7 +133,7 @@ class TakeOffWatch:
             seen.wrong.append((at_ms, "it left the ground and was not said to roll"))
 
     def end(self, body: Any) -> None:
-        """The mission ended."""
+        """Process MissionEnd: the messages are complete."""
         self._end_ms = body.Time
         for number, seen in self._seen.items():
             climbs = next((since for since, mode in seen.said if mode == CLIMBING), None)

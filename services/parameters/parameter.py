@@ -32,5 +32,5 @@ class Parameter(NamedTuple):
         return f"{low} to {'' if self.high is None else f'{self.high:g}'}".strip()
 
     def data(self) -> dict[str, Any]:
-        """As plain data."""
+        """The parameter as plain data, for JSON."""
         return self._asdict()

@@ -117,7 +117,7 @@ def read(told: Told, matrix: Any, context: Context) -> Read:
         to = row.DestinationTaskID, row.DestinationTaskOption
         if start not in known or to not in known or to == (0, 0) or row.TimeToGo < 0:
             raise BadInput(
-                "no such way between options",
+                "no such route between options",
                 item=f"AssignmentCostMatrix.CostMatrix[{k}]",
                 expected="options that the tasks have offered, and no time below 0",
                 got=f"vehicle {row.VehicleID}, {start} to {to} in {row.TimeToGo} ms",
@@ -162,7 +162,7 @@ def _options(told: Any, context: Context) -> list[Option]:
         end = places.pose(option.EndLocation, option.EndHeading, where, "EndLocation")
         if option.TaskID != told.TaskID or option.Cost < 0:
             raise BadInput(
-                "an option that is none",
+                "not a valid task option",
                 where=where,
                 expected=f"TaskID {told.TaskID} and a Cost of 0 ms or more",
                 got=f"TaskID {option.TaskID}, Cost {option.Cost}",

@@ -116,7 +116,7 @@ class Inputs:
 
     @cached_property
     def term(self) -> Term:
-        """The mission's relations."""
+        """The term of the mission's relations."""
         return stages.term_of(self.mission)
 
     @cached_property

@@ -48,7 +48,7 @@ class Loiter(NamedTuple):
 
     @property
     def wait_ms(self) -> int:
-        """How long [ms]."""
+        """The time between arrival and start [ms]."""
         return self.start_ms - self.arrive_ms
 
 

@@ -125,7 +125,7 @@ class Amase:
             self._port.step(now_s)
             if is_due(until_s, now_s):
                 raise BadInput(
-                    "nobody answers there",
+                    "no answer at this address",
                     where=self.name,
                     item="--simulator",
                     expected="OpenAMASE with a scenario loaded, at its port (5555)",

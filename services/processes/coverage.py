@@ -29,7 +29,7 @@ def told_of(mission: Mission, original: bool = False) -> Told:
     for item, wrong, what, expected in _asked(mission, original):
         if wrong:
             raise BadInput(
-                f"{what}, which processes of their own cannot fly",
+                f"{what}, which separate processes cannot fly",
                 where=mission.source,
                 item=item,
                 expected=f"{expected}, or a run without --processes",

@@ -139,7 +139,7 @@ class FailingBridge:
         return {vid: one.getsockname()[1] for vid, one in self._listeners.items()}
 
     def leads_to(self, port: int) -> None:
-        """Where UxAS listens."""
+        """Set the TCP port on which UxAS listens."""
         self._far = (HOST, port)
 
     def step(self, now_ms: int, flies: bool = True) -> int:
@@ -179,7 +179,7 @@ class FailingBridge:
         self._connections[vid] = _Connection(near, far, self._ways[vid], Forger(vid, draw))
 
     def close(self) -> None:
-        """End all connections."""
+        """Close all connections and listeners."""
         for connection in self._connections.values():
             connection.close()
         for listener in self._listeners.values():

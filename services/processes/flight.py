@@ -264,7 +264,7 @@ class _Flight:
         self.how.tell(f"\rwaiting for {what}")
         while not done():
             if is_due(until_s, time.monotonic()):
-                raise Stuck(f"{what} has not come within {STARTS_S:g} s")
+                raise Stuck(f"{what} has not arrived within {STARTS_S:g} s")
             self._turn()
 
     # what comes -----------------------------------------------------------------------------------

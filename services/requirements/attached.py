@@ -58,7 +58,7 @@ class Attached:
                 was_there = is_there
                 if self._begun_s is None and is_due(given_up_s, time.monotonic()):
                     raise BadInput(
-                        "nobody listens there", where=self._where.text, expected="UxAS or AMASE"
+                        "no program listens there", where=self._where.text, expected="UxAS or AMASE"
                     )
                 self._count_refused()
         finally:

@@ -102,7 +102,7 @@ class Margin:
     greatest_at: int = -1
 
     def add(self, row: Sample, now: int) -> None:
-        """A sample more."""
+        """Add the margin of one more sample."""
         left = row.get(self.left) if isinstance(self.left, str) else self.left
         right = row.get(self.right) if isinstance(self.right, str) else self.right
         if left is None or right is None or not math.isfinite(left - right):

@@ -51,7 +51,7 @@ class Finding:
 
     @property
     def text(self) -> str:
-        """In words."""
+        """The finding in words."""
         where = f" first at {self.first_ns / 1e9:g} s" if self.first_ns >= 0 else ""
         times = f", {self.count} times," if self.count > 1 else ("," if where else "")
         return f"{self.signal or 'trace'}: {SAYS[self.kind]}{times}{where}"

@@ -122,7 +122,9 @@ class Tapped:
                 for one in self._tap.step():
                     yield from self._copied(one)
                 if self._begun_ns is None and is_due(given_up_s, time.monotonic()):
-                    raise BadInput("nobody has connected to the tap", expected="ICAROUS, or UxAS")
+                    raise BadInput(
+                        "no program has connected to the tap", expected="ICAROUS, or UxAS"
+                    )
                 if stands and not self._tap.stands:
                     stands = False
                     self._find("cut", self.now_ms() * 10**6)

@@ -66,7 +66,7 @@ def curve_of(values: Mapping[str, Any], where: str, config: Path, domain: str) -
         for name in ("CurveServerKeyFile", "CurveClientKeys"):
             if values[name]:
                 raise BadInput(
-                    "keys without our own",
+                    "keys of other processes without a key pair of its own",
                     where=where,
                     item=name,
                     expected="CurveSecretKeyFile as well",

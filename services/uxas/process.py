@@ -93,7 +93,7 @@ class Process:
         )
         if joined and root["FirstServiceID"] is None:
             raise BadInput(
-                "ids of its own are needed",
+                "a range of service ids of its own is needed",
                 where=config.where,
                 item="UxAS.FirstServiceID",
                 expected="a number whose followers no other process on the hub has",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from itertools import combinations, pairwise
 from math import hypot
 from pathlib import Path
@@ -25,7 +26,6 @@ from cratous.services.argument.figures import DIAMOND, SKEW, Figure, figure
 from cratous.services.argument.form import faults
 from cratous.services.argument.layers import GAP, GUTTER, laid_out
 from cratous.services.argument.wrapping import LINE, Line, width, wrapped
-from cratous.services.cli import main
 
 SVG = "{http://www.w3.org/2000/svg}"
 SILENCE = "system_silence_is_noticed_within_one_heartbeat"
@@ -234,12 +234,11 @@ def test_other_processes_give_the_same_bytes(flown: Path, tmp_path: Path) -> Non
     assert len(said[0]) > 50_000
 
 
-def test_a_flight_without_avoidance(run: Run, tmp_path: Path) -> None:
+def test_a_flight_without_avoidance(
+    run: Run, tmp_path: Path, fly_once: Callable[..., Path]
+) -> None:
     """It loses well clear, and nothing is known of the bridge: both are in one true run."""
-    mission = ROOT / "examples" / "crossing" / "mission.yaml"
-    flown = tmp_path / "out" / "crossing"
-    words = ["run", mission, "--no-daa", "--allow-unproved", "--quiet", "--out", tmp_path / "out"]
-    assert main([str(word) for word in words]) == 1
+    flown = fly_once(ROOT / "examples" / "crossing" / "mission.yaml", "--no-daa")
     assert run("certify", flown, "--argument", "-o", tmp_path / "v")[0] == 1
     data = yaml.safe_load((tmp_path / "v" / "argument.yaml").read_text("utf-8"))
     assert faults(data) == []

@@ -281,7 +281,7 @@ def test_folders_that_are_refused(run: Run, flown: Path, judged: None, tmp_path:
     (tmp_path / "file").write_text("x")
     for target, said in (
         (flown, "cannot stand among the results"),
-        (tmp_path / "full", "holds what would not be written anew"),
+        (tmp_path / "full", "holds files that would not be replaced"),
         (tmp_path / "file", "cannot be made"),
     ):
         code, _, err = run("certify", flown, "-o", target)

@@ -242,8 +242,8 @@ SINKS = {"id": 1, "position": {"north_m": 0, "east_m": 0, "alt_m": 300}, "headin
     [
         ({"landing_sites": None, "link_loss": LAND}, "link_loss.choice: there is no landing site"),
         ({"link_loss": {**LAND, "site": "fild"}}, "link_loss.site: there is no such landing site; expected one of landing_sites: field, meadow; got fild"),
-        ({"link_loss": {"choice": "return"}}, "landing_sites: nobody lands at these sites"),
-        ({"landing_sites": None, "link_loss": {"choice": "return", "site": "field"}}, "link_loss.site: nobody lands there"),
+        ({"link_loss": {"choice": "return"}}, "landing_sites: no vehicle lands at these sites"),
+        ({"landing_sites": None, "link_loss": {"choice": "return", "site": "field"}}, "link_loss.site: no vehicle lands at this site"),
         ({"link_loss": {**LAND, "to": {"name": "a", "position": {"north_m": 0, "east_m": 0, "alt_m": 300}}}}, "link_loss.to: nothing returns there"),
         ({"landing_sites": [FIELD, {**MEADOW, "name": "field"}]}, "landing_sites[1].name: two landing sites have the same name"),
         ({"zones": NEAR}, "landing_sites[0].position: nobody may land at field; expected a disc on the ground that keeps zone 8"),

@@ -6,8 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from cratous.services.cli import main
-
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 CROSSING, POPUP = (EXAMPLES / name / "mission.yaml" for name in ("crossing", "popup"))
 
@@ -25,12 +23,9 @@ def popup(fly_once: Callable[[Path], Path]) -> Path:
 
 
 @pytest.fixture(scope="session")
-def crossing_alone(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The results of the same mission without ICAROUS."""
-    out = tmp_path_factory.mktemp("alone")
-    words = ["run", str(CROSSING), "--no-daa", "--allow-unproved", "--quiet"]
-    assert main([*words, "--out", str(out)]) == 1  # the two are not well clear
-    return out / "crossing"
+def crossing_alone(fly_once: Callable[..., Path]) -> Path:
+    """The results of the same mission without ICAROUS: the two are not well clear."""
+    return fly_once(CROSSING, "--no-daa")
 
 
 @pytest.fixture(scope="session")

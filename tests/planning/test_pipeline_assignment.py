@@ -95,7 +95,7 @@ def test_ineligible_and_excluded_vehicles_get_nothing_whatever_rows_there_are(
             "Composition|composition|expected",
         ),
         (options(2, 5, option(5, 1, 1), composition="p1 |(p1"), [], "expected"),
-        (options(2, 5, option(5, 1, 1)), [cost(1, 5, 8, 1)], "no such way between options"),
+        (options(2, 5, option(5, 1, 1)), [cost(1, 5, 8, 1)], "no such route between options"),
         (options(2, 5, option(5, 1, 1)), [cost(1, 5, 1, -4)], "no time below 0"),
         (options(2, 5, option(5, 1, 1, cost=-1)), [cost(1, 5, 1, 4)], "Cost of 0 ms or more"),
         (options(2, 5, option(5, 1, 1)), [], "the costs have no way to task 5"),

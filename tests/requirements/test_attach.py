@@ -268,7 +268,7 @@ def test_nobody_there_is_said(requirements, monkeypatch, capsys):
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
     assert _attach(port, requirements, seconds=20) == 2
-    assert "nobody listens there" in capsys.readouterr().err
+    assert "no program listens there" in capsys.readouterr().err
 
 
 def _whole(out: str) -> dict[str, Any]:
@@ -361,4 +361,4 @@ def test_no_publisher_is_said(requirements, monkeypatch, capsys):
         port = taken.getsockname()[1]
     words = ["monitor", "--attach", f"zmq://127.0.0.1:{port}", "--seconds", "20"]
     assert main([*words, "--requirements", str(requirements)]) == 2
-    assert "nobody listens there" in capsys.readouterr().err
+    assert "no program listens there" in capsys.readouterr().err

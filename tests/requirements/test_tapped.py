@@ -241,7 +241,7 @@ def test_that_nobody_comes_is_said(requirements, monkeypatch, capsys):
     monkeypatch.setattr(monitor_attach, "TAP_WAIT_S", 0.3)
     words = ["monitor", "--attach", f"cratous://127.0.0.1:{free_port()}", "--listen", "127.0.0.1:0"]
     assert main([*words, "--requirements", str(requirements)]) == 2
-    assert "nobody has connected to the tap" in capsys.readouterr().err
+    assert "no program has connected to the tap" in capsys.readouterr().err
 
 
 class Flood:

@@ -90,7 +90,7 @@ def test_nobody_carries_sensors_where_nobody_avoids(tmp_path: Path) -> None:
 
 def test_who_flies_without_sensors_refuses_them(tmp_path: Path) -> None:
     mission = load(file_of(tmp_path, {"sensors": [ADSB]}))
-    with pytest.raises(BadInput, match="which processes of their own cannot fly") as refused:
+    with pytest.raises(BadInput, match="which separate processes cannot fly") as refused:
         told_of(mission)
     assert refused.value.item == "sensing"
     with pytest.raises(BadInput) as refused:

@@ -34,8 +34,11 @@ WHOLE = replace(meeting(), simulation=Simulation(limit_ms=LIMIT_MS))
 """It ends long before its limit."""
 
 
+planned = cache(make_plan)
+
+
 def judged(mission: Mission, messages: Log) -> dict[str, dict[str, Any]]:
-    monitor = Monitor(mission, make_plan(mission))
+    monitor = Monitor(mission, planned(mission))
     for one in messages:
         monitor.tap(one)
     return {row["name"]: row for row in monitor.assumptions()}

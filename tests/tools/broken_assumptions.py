@@ -150,12 +150,16 @@ def never_offered(log: Log) -> None:
 def overlooked(log: Log, at_ms: int = 10_000) -> None:
     """Another aircraft, which nobody has told ICAROUS of, flies straight through vehicle 1 at an instant."""
     there = log[at(log, "TruthState", at_ms, VehicleID=1)]
-    for one in [o for o in log if o.topic.endswith("TruthState") and o.body.VehicleID == 1]:
-        s = (one.time_ms - there.time_ms) / 1000
-        place = {"North": there.body.North + 50.0 * s, "East": there.body.East - 40.0 * s}
-        speed = {"VelocityNorth": 50.0, "VelocityEast": -40.0, "VelocityDown": 0.0}
-        body = {"VehicleID": 91, "Altitude": there.body.Altitude, **place, **speed}
-        log.insert(log.index(one), other(one, **body))
+    found: Log = []
+    for one in log:
+        if one.topic.endswith("TruthState") and one.body.VehicleID == 1:
+            s = (one.time_ms - there.time_ms) / 1000
+            place = {"North": there.body.North + 50.0 * s, "East": there.body.East - 40.0 * s}
+            speed = {"VelocityNorth": 50.0, "VelocityEast": -40.0, "VelocityDown": 0.0}
+            body = {"VehicleID": 91, "Altitude": there.body.Altitude, **place, **speed}
+            found.append(other(one, **body))
+        found.append(one)
+    log[:] = found
 
 
 OFFERED = {"VehicleID": 1, "Offered": True}

@@ -40,13 +40,13 @@ def strike(*shorts: str, **fields: Any) -> Callable[[Log], None]:
     """Remove all messages of these kinds, with these fields."""
 
     def change(log: Log) -> None:
-        data = (json.loads(jsonform.to_json(one.body)) for one in log)
-        log[:] = [
-            one
-            for one, found in zip(log, data, strict=True)
-            if one.topic.rpartition(".")[2] not in shorts
-            or any(found.get(key) != value for key, value in fields.items())
-        ]
+        def struck(one: Envelope) -> bool:
+            if one.topic.rpartition(".")[2] not in shorts:
+                return False
+            data = json.loads(jsonform.to_json(one.body))
+            return all(data.get(key) == value for key, value in fields.items())
+
+        log[:] = [one for one in log if not struck(one)]
 
     return change
 

@@ -268,7 +268,7 @@ def test_a_blockade_is_between_the_entity_and_what_is_protected_and_ends_with_an
             escort(PrescribedWaypoints=[lmcp.new("Waypoint", Latitude=99.0)]),
             "PrescribedWaypoints[0]: not a place",
         ),
-        (escort(SupportedEntityID=77), "an entity that nobody has told of"),
+        (escort(SupportedEntityID=77), "an entity of which no message has told"),
         (
             lmcp.new("BlockadeTask", TaskID=5, BlockedEntityID=ENTITY, NumberVehicles=9),
             "expected 1 to 8; got 9",

@@ -38,7 +38,7 @@ def test_what_nobody_told_of_for_a_while_was_not_kept_to(tmp_path: Path) -> None
 @pytest.mark.parametrize(
     ("bad", "reason"),
     [
-        (None, "an entity that nobody has told of"),
+        (None, "an entity of which no message has told"),
         ({"Groundspeed": math.nan}, "expected finite numbers, at most 1000 m/s; got nan, 0"),
         ({"Groundspeed": 5.0, "Course": math.inf}, "Groundspeed, Course"),
         ({"Groundspeed": 1e7}, "got 1e+07, 0"),

@@ -9,7 +9,7 @@ import pytest
 from bridge_flight import PLANE, way
 from icarous_rig import Fake, Rig, state
 
-from cratous.bridge import lmcp
+from cratous.bridge import lmcp, text_connection
 from cratous.bridge import text_protocol as tp
 from cratous.spec.errors import BadInput
 
@@ -17,6 +17,12 @@ SERVICE = "IcarousCommunicationService"  # named here for the table of services
 OURS, ORIGINAL, THESIS = tp.Dialect.CRATOUS, tp.Dialect.ORIGINAL, tp.Dialect.THESIS
 OTHERS = "2=original@tcp://127.0.0.2:0 3=thesis@tcp://127.0.0.3:0"
 THREE = f'NumberOfUAVs="3" VehicleIDs="1 2 3" Dialect="cratous" OtherDialects="{OTHERS}"'
+
+
+@pytest.fixture(autouse=True)
+def _soon_parted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Who is refused has less time to read why."""
+    monkeypatch.setattr(text_connection, "PARTING_S", 0.3)
 
 
 def peer(rig: Rig, door: int, hello: int | None = None) -> Fake:

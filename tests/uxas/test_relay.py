@@ -79,10 +79,14 @@ def told(folder: Path, task: Any, *more: Any) -> Rig:
 @pytest.mark.parametrize(
     ("task", "tower_", "reason"),
     [
-        (relay(TowerID=7), tower(), "a tower that nobody has told of; expected one of 21; got 7"),
+        (
+            relay(TowerID=7),
+            tower(),
+            "a radio tower of which no message has told; expected one of 21; got 7",
+        ),
         (relay(), tower(Range=0.0), "Range of tower 21: out of range"),
         (relay(), tower(Position=place(99.0)), "place of tower 21: not a place"),
-        (relay(SupportedEntityID=77), tower(), "an entity that nobody has told of"),
+        (relay(SupportedEntityID=77), tower(), "an entity of which no message has told"),
         (relay(SupportedEntityID=0), tower(), "it supports nothing"),
         (relay(), tower(Range=500.0), "not in reach of both, of 500 m"),
         (relay(SupportedEntityID=1), tower(), "the task keeps to this very one"),
