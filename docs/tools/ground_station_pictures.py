@@ -154,6 +154,7 @@ def hold(work: Path) -> None:
         page.until("document.getElementById('confirm-command').open")
         page.value("document.getElementById('command-vehicle').value = 1")
         page.click("#command-yes")
+        page.until("!document.getElementById('confirm-command').open")
         until_ms(page, 200_000, 50)
         page.until("document.getElementById('live-text').textContent.includes('circles')")
         taken(page, "ground-station-hold.png")
