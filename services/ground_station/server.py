@@ -68,20 +68,17 @@ def page_files(first: str = PAGE) -> dict[str, Answer]:
     """The files of the page by their path; first: of PAGES, which `/` is."""
     found = {}
     for path, file in _below("", files(__package__).joinpath("page")):
-        kind = TYPES.get(file.name.rpartition(".")[2])
-        if kind is not None:
+        if kind := TYPES.get(file.name.rpartition(".")[2]):
             found[path] = Answer(HTTPStatus.OK, kind, file.read_bytes())
     pages = {page: found.pop(f"/{page}") for page in (PAGE, PAGE_OF_TWO, PAGE_OF_EDITOR)}
     return {**found, "/": pages[first]}
 
 
-def _below(path: str, folder: Traversable) -> Iterator[tuple[str, Traversable]]:
-    """The files of a folder and of all folders in it, with their paths."""
-    for one in folder.iterdir():
-        if one.is_dir():
-            yield from _below(f"{path}/{one.name}", one)
-        else:
-            yield f"{path}/{one.name}", one
+def _below(path: str, one: Traversable) -> Iterator[tuple[str, Traversable]]:
+    """A file, or those of a folder and of all folders in it, with their paths."""
+    if one.is_file():
+        return iter([(path, one)])
+    return (found for each in one.iterdir() for found in _below(f"{path}/{each.name}", each))
 
 
 class Recorded:
