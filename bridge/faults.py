@@ -37,7 +37,7 @@ class FailingWay:
         self._waiting: list[_Waiting] = []
 
     def take(self, data: bytes, now_ms: int) -> None:
-        """A line is given to it."""
+        """Queue one line sent at now_ms [ms of flight]: lost, truncated, corrupted, repeated or delayed as drawn."""
         faults, draw = self._faults, self._random
         if draw.random() < faults.loss:
             return
@@ -52,7 +52,7 @@ class FailingWay:
             self._waiting.append(_Waiting(now_ms + draw.randint(0, faults.delay_ms), data))
 
     def due(self, now_ms: int) -> list[bytes]:
-        """What arrives now, in order; nothing while ICAROUS does not read."""
+        """The lines that arrive by now_ms [ms of flight], in order of arrival; none while ICAROUS does not read."""
         if self._direction is Direction.DOWN and self._faults.icarous_does_not_read(now_ms):
             return []
         due = sorted((w for w in self._waiting if w.due_ms <= now_ms), key=lambda w: w.due_ms)
@@ -63,25 +63,25 @@ class FailingWay:
         return [one.data for one in due]
 
     def breaks(self, now_ms: int) -> bool:
-        """Whether more waits for an ICAROUS that does not read than a connection holds."""
+        """True if ICAROUS does not read at now_ms [ms of flight] and more than MOST_WAITING bytes wait for it."""
         if self._direction is Direction.UP or not self._faults.icarous_does_not_read(now_ms):
             return False
         return sum(len(one.data) for one in self._waiting) > MOST_WAITING
 
     def forged(self) -> bytes:
-        """A SETMOD that comes at this exchange and nobody sent; empty if none does."""
+        """The bytes of a forged SETMOD that arrives at this exchange; empty if none does."""
         faults, draw = self._faults, self._random
         if not faults.forged_modes or draw.random() >= faults.forged_modes:
             return b""
         return encode(SetMode(draw.choice(("ACTIVE", "PASSIVE")), draw.randrange(EPOCHS)))
 
     def clear(self) -> None:
-        """The connection has ended: what was on its way is lost."""
+        """Discard the lines in transit: the connection has ended."""
         self._waiting.clear()
 
 
 class FaultyBridge(Bridge):
-    """A `Bridge` whose connections fail as `faults` says; `now_ms` is to be set at each beat."""
+    """A `Bridge` whose connections fail as `faults` says; the caller sets `now_ms` [ms of flight] at each heartbeat."""
 
     def __init__(
         self,
@@ -99,7 +99,7 @@ class FaultyBridge(Bridge):
                 self._ways[vid, direction] = FailingWay(faults, vid, direction)
 
     def exchange(self) -> list[Delivered]:
-        """What arrives now, as of `Bridge.exchange`."""
+        """What arrives by `now_ms`, ordered as in `Bridge.exchange`; cuts all connections at `faults.cut_ms`."""
         if self._is_time("cut", self._faults.cut_ms):
             for vid in self.vehicle_ids:
                 self._break(vid)
@@ -107,7 +107,7 @@ class FaultyBridge(Bridge):
         return super().exchange()
 
     def opened_anew(self) -> list[int]:
-        """The vehicles whose broken connections are opened anew now, once."""
+        """The vehicles whose broken connections are reopened at `faults.reconnect_ms`, once; else empty."""
         if not self._is_time("reconnect", self._faults.reconnect_ms):
             return []
         broken = [vid for vid in self.vehicle_ids if not self.alive(vid)]

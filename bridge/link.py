@@ -24,7 +24,7 @@ MAX_PENDING = 16 * 1024 * 1024
 
 
 class LinkStalled(CratousError):
-    """Bytes that were sent did not arrive before the watchdog's time was over."""
+    """No byte moved for the watchdog's time although some were sent and had not arrived."""
 
     exit_code = 3
 
@@ -38,7 +38,7 @@ class LinkEvent:
 
 
 class Link:
-    """One end of a TCP connection; `sent` and `received` count bytes."""
+    """One end of a TCP connection, non-blocking; `sent` and `received` count bytes."""
 
     def __init__(self, sock: socket.socket) -> None:
         sock.setblocking(False)
@@ -59,19 +59,19 @@ class Link:
 
     @property
     def local(self) -> tuple[str, int]:
-        """Its own address."""
+        """Host and port of this end."""
         host, port = self._sock.getsockname()[:2]
         return host, port
 
     @property
     def remote(self) -> tuple[str, int]:
-        """The other end's address."""
+        """Host and port of the other end."""
         host, port = self._sock.getpeername()[:2]
         return host, port
 
     @property
     def remote_name(self) -> str:
-        """The other end's address as text, also when it has gone already."""
+        """The other end's address as text; remembered, so that it is there after the peer has gone."""
         try:
             return ":".join(map(str, self.remote))
         except OSError:
@@ -79,7 +79,7 @@ class Link:
 
     @property
     def itself(self) -> bool:
-        """True for a connection to its own end: the system may give a client the port that it asks for."""
+        """True for a socket connected to itself: the system may give a client the very port that it connects to."""
         try:
             return self.local == self.remote
         except OSError:
@@ -87,16 +87,16 @@ class Link:
 
     @property
     def waiting(self) -> int:
-        """Bytes that the system has not taken yet."""
+        """Bytes queued here that the operating system has not accepted yet."""
         return len(self._out)
 
     @property
     def unread(self) -> int | None:
-        """Bytes that have come to the peer and that its program has not read; None where that is not known."""
+        """Bytes delivered to the peer that its program has not read yet; None where the system does not tell."""
         return unread_by_peer(self._sock)
 
     def send(self, data: bytes) -> bool:
-        """Queue bytes, and hand to the system what it takes now; False if the link is dead."""
+        """Queue bytes and write what the system accepts now; False if the link is dead."""
         if not self.alive:
             return False
         if len(self._out) + len(data) > MAX_PENDING:
@@ -108,7 +108,7 @@ class Link:
         return True
 
     def flush(self) -> bool:
-        """Hand queued bytes to the system; True if any went."""
+        """Write queued bytes as far as the system accepts them; True if any were written."""
         if not self._out or not self.alive:
             return False
         try:
@@ -122,9 +122,9 @@ class Link:
         return count > 0
 
     def drain(self, chunks: int | None = None) -> bool:
-        """Take all that has arrived into the inbox; True if anything did, the end included.
+        """Read all that has arrived into the inbox; True if anything did, the end included.
 
-        chunks: at most so many reads, so that a fast peer leaves time for others.
+        chunks: at most so many reads, so that a fast peer leaves time for the others.
         """
         moved = False
         for _ in itertools.count() if chunks is None else range(chunks):
@@ -146,13 +146,13 @@ class Link:
         return moved
 
     def take(self) -> bytes:
-        """The bytes of the inbox, which is empty afterwards."""
+        """The bytes of the inbox, which is emptied."""
         data = bytes(self._in)
         self._in.clear()
         return data
 
     def expects_more(self) -> bool:
-        """True if something may still arrive; exact when the peer is in this process."""
+        """True if bytes may still arrive; exact when the peer is in this process."""
         if not self.alive:
             return False
         if self.peer is None or not self.peer.alive:
@@ -160,17 +160,17 @@ class Link:
         return self.received < self.peer.sent
 
     def close(self) -> None:
-        """Close this end; the peer sees the end of file. Safe to call twice."""
+        """Close this end; the peer sees the end of file. May be called twice."""
         if not self.closed:
             self.closed = True
             self._sock.close()
 
     def fileno(self) -> int:
-        """For select and poll."""
+        """The socket's file descriptor, for select and poll."""
         return self._sock.fileno()
 
     def poll_mask(self) -> int:
-        """What `pump` has to wait for."""
+        """The poll events that `pump` has to wait for."""
         return select.POLLIN | (select.POLLOUT if self._out else 0)
 
     def _end(self, kind: str, detail: str) -> None:
@@ -180,7 +180,7 @@ class Link:
 
 
 class Listener:
-    """A listening socket; port 0 lets the system choose one."""
+    """A listening TCP socket; port 0 lets the system choose one."""
 
     def __init__(self, host: str = "127.0.0.1", port: int = 0, backlog: int = 128) -> None:
         self._sock = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
@@ -205,7 +205,7 @@ class Listener:
         return host, port
 
     def accept(self) -> Link | None:
-        """The next connection that waits, or None."""
+        """The next pending connection, or None; does not block."""
         try:
             sock, _ = self._sock.accept()
         except (BlockingIOError, InterruptedError, ConnectionError):
@@ -213,20 +213,20 @@ class Listener:
         return Link(sock)
 
     def wait(self, timeout_s: float) -> bool:
-        """True as soon as a connection waits, False when the time is over."""
+        """True as soon as a connection is pending, False after timeout_s [s]."""
         return bool(select.select([self._sock], [], [], timeout_s)[0])
 
     def fileno(self) -> int:
-        """For select and poll."""
+        """The socket's file descriptor, for select and poll."""
         return self._sock.fileno()
 
     def close(self) -> None:
-        """Stop listening."""
+        """Close the listening socket."""
         self._sock.close()
 
 
 def connect(address: tuple[str, int], timeout_s: float = 10.0) -> Link:
-    """The client end of a new connection; BadInput if nobody listens there."""
+    """The client end of a new connection; BadInput if none is accepted within timeout_s [s]."""
     try:
         return Link(socket.create_connection(address, timeout=timeout_s))
     except OSError as err:
@@ -239,7 +239,7 @@ def connect(address: tuple[str, int], timeout_s: float = 10.0) -> Link:
 
 
 def connect_later(address: tuple[str, int]) -> Link:
-    """The client end of a connection that comes about later; that it does not is the link's end."""
+    """The client end of a connection that is still being established; failure is told as the link's end."""
     host, _ = address
     sock = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET, socket.SOCK_STREAM)
     sock.setblocking(False)
@@ -256,7 +256,7 @@ def connect_later(address: tuple[str, int]) -> Link:
 def connect_pair(listener: Listener, timeout_s: float = 10.0) -> tuple[Link, Link]:
     """(server end, client end) of a new connection to our own listener, known to each other.
 
-    Connections of strangers that come in between are closed.
+    timeout_s: limit [s]. Connections of other programs that arrive in between are closed.
     """
     client = connect(listener.address, timeout_s)
     deadline = time.monotonic() + timeout_s
@@ -276,7 +276,7 @@ def connect_pair(listener: Listener, timeout_s: float = 10.0) -> tuple[Link, Lin
 def pump(links: Iterable[Link], watchdog_s: float = 10.0) -> None:
     """Move bytes until every byte sent by one end has reached its peer in this process.
 
-    LinkStalled if nothing at all moves for `watchdog_s` of wall time.
+    Raises LinkStalled if nothing moves for watchdog_s [s of wall-clock time].
     """
     ends = list(links)
     while True:

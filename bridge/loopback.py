@@ -37,11 +37,11 @@ _HANDSHAKE_ROUNDS = 8
 
 
 class BridgeError(CratousError):
-    """The bridge could not be opened: what the two ends disagree on."""
+    """The bridge could not be opened; the text says what the two ends disagree on."""
 
 
 class Delivered(NamedTuple):
-    """One thing that arrived: a message, something skipped or wrong, or the end of the link."""
+    """One arrival: a message, a line that was skipped or refused, or the end of the connection."""
 
     vehicle_id: int
     direction: Direction
@@ -50,7 +50,7 @@ class Delivered(NamedTuple):
 
 @dataclass
 class Counters:
-    """What was sent in one direction since the bridge was opened, the handshake not counted."""
+    """Messages and bytes sent in one direction since the bridge was opened, without the handshake."""
 
     messages: int = 0
     bytes: int = 0
@@ -126,7 +126,7 @@ class Bridge:
 
     @property
     def vehicle_ids(self) -> tuple[int, ...]:
-        """The vehicles it serves, in order."""
+        """The vehicles that have a connection, in the order given."""
         return tuple(self._icarous)
 
     def to_icarous(self, vehicle_id: int, message: Message) -> bool:
@@ -138,7 +138,7 @@ class Bridge:
         return self._send(self._icarous, vehicle_id, message, Direction.UP)
 
     def exchange(self) -> list[Delivered]:
-        """All that was queued, delivered; sorted by vehicle, direction (down first), sequence."""
+        """Deliver all that was queued; sorted by vehicle, direction (down first) and order of sending."""
         pump(self._links, self._watchdog_s)
         self._encoded.clear()
         delivered = []
@@ -152,7 +152,7 @@ class Bridge:
         return delivered
 
     def opened_anew(self) -> list[int]:
-        """The vehicles whose connections stand again since the last call; without faults none breaks."""
+        """The vehicles whose connections were re-established since the last call; without faults none breaks."""
         return []
 
     def alive(self, vehicle_id: int) -> bool:
@@ -174,7 +174,7 @@ class Bridge:
         self._open(sorted(vehicle_ids))
 
     def close(self) -> None:
-        """Close all sockets; safe to call twice."""
+        """Close all sockets. May be called twice."""
         for link in self._links:
             link.close()
         self._listener.close()

@@ -19,7 +19,7 @@ _KEPT_BYTES = 1 << 20
 
 
 class MulticastPort:
-    """One socket of a group; see the module."""
+    """One UDP socket of a multicast group; see the module."""
 
     def __init__(self, where: Address, report: Report = lambda _severity, _text: None) -> None:
         """BadInput if `where` is no group, or cannot be joined."""
@@ -59,11 +59,11 @@ class MulticastPort:
             ) from None
 
     def fileno(self) -> int:
-        """The descriptor to poll."""
+        """The socket's file descriptor, for polling."""
         return self._socket.fileno()
 
     def step(self) -> list[bytes]:
-        """The datagrams that have arrived, MOST_READ at most; the own ones come back."""
+        """The datagrams that have arrived, at most MOST_READ a call; those sent by this socket come back too."""
         found = list[bytes]()
         for _ in range(MOST_READ):
             try:
@@ -83,9 +83,9 @@ class MulticastPort:
         self.counts.sent += 1
 
     def refuse(self, why: str, detail: str) -> None:
-        """Count a datagram that is dropped, and report it at times."""
+        """Count a dropped datagram under `why` and report it at its 1st, 2nd, 4th, 8th... time; detail: of this one."""
         self._tally.refuse(why, detail)
 
     def close(self) -> None:
-        """Leave the group. Safe to call twice."""
+        """Leave the group and close the socket. May be called twice."""
         self._socket.close()

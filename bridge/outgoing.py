@@ -6,7 +6,7 @@ from collections import deque
 
 
 class Outgoing:
-    """Messages in order; `waiting`: how many bytes of them are not gone yet."""
+    """Queue of messages for one peer; `waiting`: bytes that are not written yet."""
 
     def __init__(self) -> None:
         self._messages: deque[bytes] = deque()
@@ -18,21 +18,21 @@ class Outgoing:
         return len(self._messages)
 
     def put(self, message: bytes) -> None:
-        """Queue one more."""
+        """Append a message."""
         self._messages.append(message)
         self.waiting += len(message)
 
     def drop_oldest(self) -> None:
-        """Forget the oldest of two or more of which nothing is gone: the first stays."""
+        """Drop the second of two or more messages: the first, which may be partly written, stays."""
         self.waiting -= len(self._messages[1])
         del self._messages[1]
 
     def next(self) -> memoryview:
-        """What to write next, of one or more: the rest of the first message."""
+        """The bytes to write next: the rest of the first message. There must be one."""
         return memoryview(self._messages[0])[self._gone :]
 
     def took(self, count: int) -> None:
-        """So many bytes of `next` are gone."""
+        """Remove the first `count` bytes of `next`, which were written."""
         self._gone += count
         self.waiting -= count
         if self._gone == len(self._messages[0]):
@@ -40,6 +40,6 @@ class Outgoing:
             self._gone = 0
 
     def clear(self) -> None:
-        """Forget all of it."""
+        """Discard all queued messages."""
         self._messages.clear()
         self._gone = self.waiting = 0

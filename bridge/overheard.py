@@ -40,7 +40,7 @@ NO_OPENING, REFUSED = "not the opening of a CRATOUS bridge", "the opening was re
 
 
 class Said(NamedTuple):
-    """A record, or what is wrong with the connection itself, where direction is None."""
+    """A record with its direction; direction None: what is wrong with the connection itself."""
 
     direction: Direction | None
     record: Record
@@ -107,7 +107,10 @@ def _parser(direction: Direction, dialect: Dialect) -> StreamParser:
 
 
 class Overheard:
-    """One connection. `vehicle_id`: 0 until something tells it; `authenticated`: its packets are judged by a key."""
+    """Decoder of one connection watched from outside.
+
+    vehicle_id: 0 until a message tells it. authenticated: packets are verified with the vehicle's key.
+    """
 
     def __init__(self, key_of: KeyOf = lambda _vehicle: None) -> None:
         """key_of: the key of a vehicle, None where there is none here."""
@@ -120,11 +123,11 @@ class Overheard:
 
     @property
     def is_open(self) -> bool:
-        """Hands are shaken."""
+        """True once the handshake is complete."""
         return bool(self._ways)
 
     def feed(self, near: bool, data: bytes) -> list[Said]:
-        """Bytes of the end that has connected (near), or of the one that listens; what they say."""
+        """The records of the next bytes; near: sent by the end that connected, else by the end that listens."""
         if self.over:
             return []
         if not self._ways:
@@ -137,7 +140,7 @@ class Overheard:
         return found
 
     def skip(self) -> None:
-        """Bytes of it were left out."""
+        """Bytes were not copied: decoding resumes at the next whole line; nothing is authenticated any more."""
         self.authenticated = False
         for _, way in self._ways.values():
             way.skip()

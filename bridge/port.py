@@ -26,14 +26,14 @@ _ADDRESS = re.compile(r"(tcp|udp|zmq)://(\*|\[[0-9a-fA-F:]+\]|[A-Za-z0-9_.-]+):(
 
 
 class Incoming(NamedTuple):
-    """Something that has arrived: the parts of one message, and from whom."""
+    """One received message: its parts, and the peer that sent it."""
 
     parts: tuple[bytes, ...]
     peer: str
 
 
 class Address(NamedTuple):
-    """An address of a socket: scheme, host and port, or the name of an ipc or inproc socket."""
+    """A socket's address: scheme, host and port, or the name of an ipc or inproc socket."""
 
     scheme: str
     host: str
@@ -42,12 +42,12 @@ class Address(NamedTuple):
 
     @property
     def everywhere(self) -> bool:
-        """True if it means all interfaces of the machine."""
+        """True if it denotes all network interfaces of this machine."""
         return self.host == "*"
 
     @property
     def loopback(self) -> bool:
-        """True if it is of this machine alone."""
+        """True if it can be reached from this machine alone."""
         with suppress(ValueError):
             return ip_address(self.host).is_loopback
         return self.host == "localhost"  # any other name may be that of another machine
@@ -55,12 +55,11 @@ class Address(NamedTuple):
 
 @dataclass(frozen=True)
 class Limits:
-    """What a port endures.
+    """Resource limits of a port.
 
-    payload_bytes: longest message; waiting_bytes: what may wait for one peer that does not read;
-    when_full: which message is lost then, or that the peer is; frame_s: how long one frame may
-    take to arrive; connections: how many peers at once; held_bytes: unfinished frames of all
-    peers together.
+    payload_bytes: longest message; waiting_bytes: most that is queued for one peer that does not read;
+    when_full: which message is lost then, or that the peer is dropped; frame_s: how long one frame may
+    take to arrive [s]; connections: peers at once; held_bytes: incomplete frames of all peers together.
     """
 
     payload_bytes: int = 16 * 1024 * 1024
@@ -74,7 +73,7 @@ class Limits:
 
 @dataclass
 class Counts:
-    """What a port has done: messages in and out, what was refused or lost, by reason."""
+    """Statistics of a port: messages received and sent; refused and lost ones by reason."""
 
     received: int = 0
     sent: int = 0
@@ -82,13 +81,13 @@ class Counts:
     lost: Counter[str] = field(default_factory=Counter)
 
     def add(self, other: Counts) -> None:
-        """What another port has done besides."""
+        """Add the statistics of another port."""
         self.received, self.sent = self.received + other.received, self.sent + other.sent
         self.refused.update(other.refused)
         self.lost.update(other.lost)
 
     def line(self) -> str:
-        """All of it in one line."""
+        """All statistics as one line of text."""
         text = f"received {self.received}, sent {self.sent}"
         for name, counter in (("refused", self.refused), ("lost", self.lost)):
             if counter:
@@ -98,50 +97,50 @@ class Counts:
 
 
 class Port(Protocol):
-    """What the runtime needs of a port."""
+    """The interface of a port, as event loops use it."""
 
     counts: Counts
 
     @property
     def due_s(self) -> float | None:
-        """When `step` has something to do even if nothing arrives."""
+        """When `step` has something to do even if no bytes arrive [s, monotonic clock]; None: never."""
 
     def handles(self) -> list[tuple[Any, int]]:
         """Sockets or file descriptors to poll, each with its zmq.POLLIN / POLLOUT flags."""
 
     def step(self, now_s: float) -> list[Incoming]:
-        """Move bytes; what has arrived, in order. now_s: a clock that does not go back."""
+        """Read and write without blocking; the received messages in order. now_s: monotonic clock [s]."""
 
     def send(self, parts: tuple[bytes, ...]) -> None:
-        """Send one message, now or later; never blocks."""
+        """Send or queue one message; never blocks."""
 
     def close(self) -> None:
-        """Free sockets and files; safe to call twice."""
+        """Close sockets and files. May be called twice."""
 
 
 def is_due(at_s: float | None, now_s: float) -> bool:
-    """True if something has a time [s] and that has come."""
+    """True if at_s is not None and now_s has reached it [s, same clock]."""
     return at_s is not None and now_s >= at_s
 
 
 def often(count: int) -> bool:
-    """True for 1, 2, 4, 8...: how often something that repeats itself is reported."""
+    """True for 1, 2, 4, 8...: at which occurrences a repeated event is reported."""
     return count > 0 and count & (count - 1) == 0
 
 
 class Tally:
-    """Counts and reports in one: a reason is reported at its 1st, 2nd, 4th, 8th... time."""
+    """Counts and reports events by reason: each reason is reported at its 1st, 2nd, 4th, 8th... occurrence."""
 
     def __init__(self, name: str, report: Report) -> None:
         self.name, self.report = name, report
         self.counts = Counts()
 
     def refuse(self, why: str, detail: str = "") -> None:
-        """Something that came in is not let through."""
+        """Count something received that is not accepted. why: the reason counted; detail: of this occurrence."""
         self._count(self.counts.refused, why, "refused", detail)
 
     def lose(self, why: str, detail: str = "") -> None:
-        """Something that should go out does not."""
+        """Count something that could not be sent. why: the reason counted; detail: of this occurrence."""
         self._count(self.counts.lost, why, "lost", detail)
 
     def _count(self, counter: Counter[str], why: str, what: str, detail: str) -> None:

@@ -24,31 +24,34 @@ class _Target:
 
 
 class Redial:
-    """Keeps one connection of a port to each of some addresses."""
+    """Keeps one connection of a port to each of several addresses, with growing pauses between attempts."""
 
     def __init__(self, port: TextPort, where: Iterable[Address]) -> None:
         self._port, self._targets = port, [_Target(one) for one in where]
 
     @property
     def due_s(self) -> float | None:
-        """When `step` has something to do; None while all addresses have a connection, or an attempt."""
+        """When `step` has to connect [s]; None while every address has a connection or a pending attempt."""
         times = [one.again_s or 0.0 for one in self._targets if one.key is None]
         return min(times, default=None)
 
     def step(self, now_s: float) -> None:
-        """Connect where there is no connection and the pause is over."""
+        """Connect to every address without a connection whose pause is over at now_s [s]."""
         for one in self._targets:
             if one.key is None and (one.again_s is None or is_due(one.again_s, now_s)):
                 one.key = self._port.dial(now_s, one.where)
 
     def opened(self, key: int, now_s: float) -> None:
-        """Hands were shaken on it: if it stands for a while, the pauses begin anew after its end."""
+        """The handshake on connection `key` is complete at now_s [s].
+
+        If it lasts PAUSE_S[1] seconds, pauses start from the shortest again after its end.
+        """
         for one in self._targets:
             if one.key == key:
                 one.opened_s = now_s
 
     def ended(self, key: int, why: str, now_s: float) -> str:
-        """It has ended: what to say of that, nothing if the attempt before has ended so as well."""
+        """Connection `key` ended at now_s [s] because of `why`; what to report, empty if the last one ended so too."""
         said = ""
         for one in self._targets:
             if one.key == key:

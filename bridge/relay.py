@@ -33,7 +33,8 @@ _END_HARD = struct.pack("ii", 1, 0)
 
 
 class Copy:
-    """What goes to the watcher; it is never waited for."""
+    """The copy for the watcher: queued up to MOST_COPIED bytes, then dropped and counted; relaying never waits for
+    it."""
 
     def __init__(self, sock: socket.socket | None) -> None:
         self.sock = sock
@@ -43,7 +44,7 @@ class Copy:
             sock.setblocking(False)
 
     def put(self, kind: int, connection: int, data: bytes = b"") -> None:
-        """One record, or bytes more that are left out."""
+        """Queue one record; data beyond MOST_COPIED bytes is dropped and counted as lost."""
         if self.sock is None:
             return
         small = kind not in (NEAR, FAR)
@@ -53,7 +54,7 @@ class Copy:
         self.out += RECORD.pack(kind, connection, time.monotonic_ns(), len(data)) + data
 
     def step(self) -> None:
-        """Hand over what the watcher takes."""
+        """Write what the watcher's socket accepts now; closes the copy if the watcher has gone."""
         if self.sock is None:
             return
         try:
@@ -78,14 +79,14 @@ class Copy:
                 return
 
     def close(self) -> None:
-        """The watcher is gone."""
+        """The watcher has gone: discard the copy. May be called twice."""
         if self.sock is not None:
             self.sock.close()
         self.sock, self.out = None, bytearray()
 
 
 class Way:
-    """One direction of a connection."""
+    """One direction of a relayed connection."""
 
     def __init__(self, source: socket.socket, sink: socket.socket, kind: int) -> None:
         self.source, self.sink, self.kind = source, sink, kind
@@ -96,13 +97,13 @@ class Way:
 
     @property
     def room(self) -> int:
-        """How much may be read now."""
+        """Bytes that may be read now without exceeding what the receiver can hold."""
         unread = unread_by_peer(self.sink) or 0
         return max(0, READ - unread - len(self.held) - len(self.tail))
 
     def read(self) -> bytes:
-        """What has come; half a line waits a moment for the rest, since the original's client dies of one. OSError where
-        the connection is broken."""
+        """The bytes that have arrived; an incomplete line is held back for AGAIN_MS [ms], because the original's
+        client crashes on one. OSError if the connection is broken."""
         room = self.room
         self.full = room == 0
         if self.full or self.ended:
@@ -130,7 +131,7 @@ class Way:
         self.tail = b""
 
     def write(self) -> None:
-        """Hand on what the sink takes, and the end behind it."""
+        """Forward what the receiver accepts; after the last byte its end of file."""
         while self.held:
             try:
                 del self.held[: self.sink.send(self.held, socket.MSG_NOSIGNAL)]
@@ -143,7 +144,7 @@ class Way:
 
 
 class Pair:
-    """A client and the connection that was made for it."""
+    """A client and the connection made for it."""
 
     def __init__(self, number: int, near: socket.socket, far: socket.socket, plain: bool) -> None:
         self.number, self.near, self.far, self.plain = number, near, far, plain
@@ -154,7 +155,7 @@ class Pair:
             one.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
     def step(self, copy: Copy, ready: set[int]) -> bool:
-        """Move bytes; False where the connection is over. ready: what `poll` has told of."""
+        """Relay bytes both ways; False if the connection is over. ready: file descriptors that `poll` reported."""
         if self.connecting and not self._connected():
             return not is_due(self.until_s, time.monotonic()) and self.near.fileno() >= 0
         try:
@@ -188,7 +189,7 @@ class Pair:
         return SEALED.startswith(way.head)
 
     def close(self, hard: bool = False) -> None:
-        """End both; hard: as one that was broken."""
+        """Close both ends; hard: with a reset, as a broken connection."""
         for one in (self.near, self.far):
             if hard and one.fileno() >= 0:
                 with suppress(OSError):
@@ -197,7 +198,7 @@ class Pair:
 
 
 class Relay:
-    """Takes clients at a listener to where another program listens."""
+    """Accepts clients at a listener and relays each to the address of another program."""
 
     def __init__(
         self, listener: socket.socket, watcher: socket.socket, to: tuple[str, int], plain: bool
@@ -211,7 +212,7 @@ class Relay:
         listener.setblocking(False)
 
     def run(self) -> None:
-        """Until the watcher and all connections are gone."""
+        """Relay until the watcher and all connections have gone."""
         while self.copy.sock is not None or self.pairs:
             ready = self._wait()
             self._accept()
@@ -290,7 +291,7 @@ class Relay:
 
 
 def main(words: list[str]) -> None:
-    """LISTENER and WATCHER, as file descriptors, HOST, PORT, and `plain` or `sealed`."""
+    """Run the relay. words: file descriptors of listener and watcher, host, port, and `plain` or `sealed`."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the watcher
     listener, watcher = (socket.socket(fileno=int(word)) for word in words[:2])
     Relay(listener, watcher, (words[2], int(words[3])), words[4] == "plain").run()

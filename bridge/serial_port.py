@@ -59,18 +59,18 @@ class SerialPort:
 
     @property
     def due_s(self) -> float | None:
-        """When a frame is late, or the line is tried again."""
+        """When an incomplete frame times out, or the device is opened again [s, monotonic clock]; None: never."""
         late = None if self._begun_s is None else self._begun_s + self._limits.frame_s
         return min((t for t in (late, self._again_s) if t is not None), default=None)
 
     def handles(self) -> list[tuple[Any, int]]:
-        """The line, with POLLOUT while something waits."""
+        """The device to poll, with POLLOUT while bytes are queued."""
         if self._line is None:
             return []
         return [(self._line.fileno(), zmq.POLLIN | (zmq.POLLOUT if self._out else 0))]
 
     def step(self, now_s: float) -> list[Incoming]:
-        """Read and write without waiting; the payloads that are whole."""
+        """Read and write without blocking; the complete payloads in order. now_s: monotonic clock [s]."""
         self._now_s = now_s
         found: list[bytes] = []
         if self._line is None and is_due(self._again_s, now_s):
@@ -96,7 +96,7 @@ class SerialPort:
         return [Incoming((payload,), self._device) for payload in found]
 
     def send(self, parts: tuple[bytes, ...]) -> None:
-        """Queue one message; what waits too long loses by the policy."""
+        """Queue one message; when the queue is full, one is lost as `Limits.when_full` says."""
         if self._line is None:
             self._tally.lose(GONE)
             return
@@ -114,7 +114,7 @@ class SerialPort:
         self._flush()
 
     def close(self) -> None:
-        """Close the line."""
+        """Write what is queued as far as possible, then close the device."""
         if self._line is not None:
             self._flush()
         if self._line is not None:

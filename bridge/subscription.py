@@ -12,7 +12,7 @@ from cratous.bridge.zmq_port import End, ZmqPort
 
 
 class Subscription(ZmqPort):
-    """A SUB socket that connects, and again where the connection is lost."""
+    """A ZeroMQ SUB socket that connects, and reconnects when the connection is lost."""
 
     def __init__(self, where: Address, report: Report) -> None:
         """where: `zmq://HOST:PORT`; BadInput if it cannot be used."""
@@ -26,10 +26,10 @@ class Subscription(ZmqPort):
 
     @property
     def peers(self) -> int:
-        """Whether the publisher is there."""
+        """True while connected to the publisher."""
         return self.connected
 
     def close(self) -> None:
-        """End the connection."""
+        """Close the socket and its context."""
         super().close()
         self._own.destroy(linger=0)

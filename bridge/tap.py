@@ -25,7 +25,10 @@ _READ = 1 << 16
 
 
 class Copied(NamedTuple):
-    """A record of the relay's copy, see `relay`. time_ns: when it passed, CLOCK_MONOTONIC; lost: of LOST, the bytes."""
+    """One record of the relay's copy, see `relay`.
+
+    time_ns: when it passed [ns, CLOCK_MONOTONIC]; lost: number of bytes not copied (kind LOST).
+    """
 
     kind: int
     connection: int
@@ -35,7 +38,7 @@ class Copied(NamedTuple):
 
 
 class Tap:
-    """The relay, and what it copies."""
+    """A relay process and the copy that it makes of the traffic."""
 
     def __init__(self, listens: Address, leads_to: Address) -> None:
         """BadInput if it cannot listen, or nobody knows the other address. Beyond loopback v2 alone passes."""
@@ -65,15 +68,15 @@ class Tap:
 
     @property
     def stands(self) -> bool:
-        """Whether the relay is there."""
+        """True while the relay process runs."""
         return self.process.poll() is None
 
     def handles(self) -> list[tuple[Any, int]]:
-        """What to poll."""
+        """Socket to poll, with its flags; empty once closed."""
         return [(self._ours.fileno(), zmq.POLLIN)] if self._ours.fileno() >= 0 else []
 
     def step(self) -> Iterator[Copied]:
-        """What has been copied since, in the order in which it passed; no more than some of it at a time."""
+        """The records copied since the last call, in order of passing; bounded per call. Never blocks."""
         try:
             self._part += self._ours.recv(_READ)
         except (BlockingIOError, ConnectionError):
@@ -93,7 +96,7 @@ class Tap:
         self._part = self._part[at:]
 
     def close(self) -> None:
-        """End the watch: no new client is taken, what is connected is relayed to its end."""
+        """Stop watching: no new client is accepted; open connections are relayed until they end."""
         self._ours.close()
 
 

@@ -76,24 +76,24 @@ class TcpPort:
 
     @property
     def bound(self) -> tuple[str, int]:
-        """Host and port on which a server listens."""
+        """Host and port on which the server listens."""
         assert self._listener is not None
         host, port = self._listener.getsockname()[:2]
         return host, port
 
     @property
     def peers(self) -> int:
-        """How many connections stand."""
+        """Number of established connections."""
         return sum(not peer.connecting for peer in self._peers.values())
 
     @property
     def waiting(self) -> int:
-        """Bytes that wait for peers that do not read fast enough."""
+        """Bytes queued for peers."""
         return sum(peer.out.waiting for peer in self._peers.values())
 
     @property
     def due_s(self) -> float | None:
-        """When `step` has something to do even if nothing arrives."""
+        """When `step` has something to do even if no bytes arrive [s, monotonic clock]; None: never."""
         times = [
             p.begun_s + self._limits.frame_s for p in self._peers.values() if p.begun_s is not None
         ]
@@ -104,11 +104,12 @@ class TcpPort:
         return min(times, default=None)
 
     def handles(self) -> list[tuple[Any, int]]:
-        """The epoll object, which is ready when any of its sockets is."""
+        """The epoll object to poll; it is ready when any of the port's sockets is."""
         return [] if self._closed else [(self._poll.fileno(), zmq.POLLIN)]
 
     def step(self, now_s: float) -> list[Incoming]:
-        """Accept or connect, read what is there, write what waits; whole payloads in order."""
+        """Accept or connect, read and write without blocking; the complete payloads in order. now_s: monotonic clock
+        [s]."""
         self._now_s = now_s
         if self._closed:
             return []
@@ -150,21 +151,21 @@ class TcpPort:
             self._queue(peer, frame)
 
     def shut(self) -> None:
-        """Listen no more: those that are connected stay, nobody else comes. Safe to call twice."""
+        """Stop accepting connections; established ones stay. May be called twice."""
         if self._listener is not None:
             self._poll.unregister(self._listener.fileno())
             self._listener.close()
             self._listener, self._paused_s = None, None
 
     def redial(self, why: str) -> None:
-        """Of a client: let go of the connection, or of the attempt to make one, and try again at once. What
-        waits for the peer is lost, and counted."""
+        """Client only: drop the connection, or the attempt, because of `why`, and connect again at once. What was
+        queued is lost and counted."""
         for peer in list(self._peers.values()):
             self._drop(peer, why)
         self._again_s = self._now_s
 
     def close(self) -> None:
-        """Try to hand over what waits, then close all sockets."""
+        """Try to write what is queued, then close all sockets. May be called twice."""
         if self._closed:
             return
         for peer in list(self._peers.values()):

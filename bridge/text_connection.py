@@ -50,12 +50,12 @@ NOISE, SILENT, LATE, FAST, NOBODY, DEAF, STOPPED = (
 
 @dataclass(frozen=True)
 class Bounds:
-    """What a peer may cost.
+    """Resource limits of one peer.
 
-    handshake_s: until it has shaken hands; silence_s: until it says something, None: for ever;
-    bytes_per_s, burst_bytes: how fast it may send in the long run, and at once; bad_lines: how many
-    lines in a row may be unreadable; connections: how many peers at once; stopped_s: how long an original's client
-    may read nothing while lines wait for it.
+    handshake_s: limit of the handshake [s]; silence_s: longest silence [s], None: unlimited;
+    bytes_per_s, burst_bytes: sustained rate and burst accepted; bad_lines: unreadable lines in a row
+    before it is dropped; connections: peers at once; stopped_s: how long an original's client may
+    leave queued lines unread [s].
     """
 
     handshake_s: float = 10.0
@@ -68,13 +68,13 @@ class Bounds:
 
 
 class Opened(NamedTuple):
-    """Hands are shaken: messages may follow."""
+    """The handshake is complete: messages may follow. peer: the other end's address."""
 
     peer: str
 
 
 class Connection:
-    """One peer: its socket, handshake and parser, and what it has cost so far."""
+    """One peer: socket, handshake, parser, and the resources that it has used."""
 
     def __init__(
         self,
@@ -100,11 +100,11 @@ class Connection:
 
     @property
     def seal(self) -> Seal | None:
-        """Of the dialect v2, once hands are shaken."""
+        """Packet sealing of dialect v2; None before the handshake is complete, and in other dialects."""
         return self._handshake.seal if isinstance(self._handshake, SealedHandshake) else None
 
     def send(self, line: bytes, now_s: float) -> bool:
-        """Queue a line; False if the peer is gone, or is refused."""
+        """Queue a line at now_s [s]; False if the peer has gone or is being refused."""
         if self._refused:
             return False
         if self._dialect is Dialect.ORIGINAL:
@@ -121,7 +121,7 @@ class Connection:
 
     @property
     def due_s(self) -> float | None:
-        """When it is dropped unless something comes, or is looked at again because lines wait."""
+        """When the peer is dropped unless it says something, or queued lines are tried again [s]; None: never."""
         if not self._waiting:
             return self._until_s
         again_s = self._looked_s + AGAIN_S
@@ -157,7 +157,7 @@ class Connection:
             self.drop(f"{STOPPED}: {unread} bytes, and {self._waiting.waiting} more are waiting")
 
     def step(self, now_s: float) -> list[Opened | Record | LinkEvent]:
-        """Move bytes; what has come, in order."""
+        """Read and write without blocking; what was received, in order. now_s: monotonic clock [s]."""
         if self._waiting and self.link.alive:
             self._pour(now_s)
         self.link.flush()
@@ -183,14 +183,14 @@ class Connection:
         return found
 
     def drop(self, why: str, kind: str = "dropped") -> None:
-        """End it; the next `step` says so."""
+        """Drop the peer because of `why`; the next `step` returns the end, of this kind."""
         if self.link.ended is None:
             self.link.flush()
             self.link.ended = LinkEvent(kind, why)
 
     def refuse(self, why: str, now_s: float) -> None:
-        """Tell the peer why it is refused, and leave it time to read that: an end with bytes unread would
-        destroy it on its way."""
+        """Tell the peer why it is refused, and drop it PARTING_S seconds after now_s [s]: an immediate close could
+        destroy the message before it is read."""
         if self._refused or not self.link.alive:
             return
         line = f"{REFUSAL}{why}\n".encode("ascii", "replace")

@@ -68,14 +68,14 @@ PATIENCE_S = 1.0
 
 
 class Came(NamedTuple):
-    """What a connection has brought: that it is open, a record, or its end; the end comes last."""
+    """What one connection delivered: that it opened, a record, or its end, which comes last."""
 
     key: int
     what: Opened | Record | LinkEvent
 
 
 class TextPort:
-    """The connections of one end; a port for the loop of a program (`handles`, `due_s`, `step`)."""
+    """The text-protocol connections of one end, as a port for an event loop (`handles`, `due_s`, `step`)."""
 
     def __init__(
         self,
@@ -108,7 +108,7 @@ class TextPort:
 
     @property
     def listens(self) -> bool:
-        """True if it waits for its peers."""
+        """True if it accepts connections, False if it makes them."""
         return self._listener is not None
 
     @property
@@ -119,12 +119,12 @@ class TextPort:
 
     @property
     def due_s(self) -> float | None:
-        """When `step` has something to do even if nothing arrives."""
+        """When `step` has something to do even if no bytes arrive [s, monotonic clock]; None: never."""
         times = [c.due_s for c in self._connections.values() if c.due_s is not None]
         return min(times, default=None)
 
     def handles(self) -> list[tuple[Any, int]]:
-        """Sockets to poll, with what for."""
+        """Sockets to poll, each with its flags."""
         found: list[tuple[Any, int]] = []
         if self._listener is not None and not self._closed:
             found.append((self._listener.fileno(), zmq.POLLIN))
@@ -143,7 +143,8 @@ class TextPort:
         return self._join(connect_later((where.host, where.port)), now_s)
 
     def step(self, now_s: float) -> list[Came]:
-        """Accept, read, write; what has come, connection by connection, in order of arrival."""
+        """Accept, read and write without blocking; what was received, by connection in order of arrival. now_s:
+        monotonic clock [s]."""
         if self._closed:
             return []
         self._now_s = now_s
@@ -162,7 +163,7 @@ class TextPort:
         return found
 
     def send(self, key: int, message: Message) -> bool:
-        """Queue a message for a peer; False if it is gone or the message cannot stand on the wire."""
+        """Queue a message for connection `key`; False if it has gone or the message cannot be encoded."""
         one = self._connections.get(key)
         if one is None:
             return False
@@ -199,11 +200,11 @@ class TextPort:
             self._tally.refuse(why, f"{one.name}: {detail}")
 
     def name(self, key: int) -> str:
-        """Who is at the other end of a connection."""
+        """The address of the peer of connection `key`."""
         return self._connections[key].name if key in self._connections else f"connection {key}"
 
     def close(self) -> None:
-        """Hand over what waits, close all sockets. Safe to call twice."""
+        """Write what is queued, then close all sockets. May be called twice."""
         for one in self._connections.values():
             one.link.flush()
             one.link.close()

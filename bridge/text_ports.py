@@ -13,7 +13,7 @@ from cratous.bridge.text_protocol.messages import Message
 
 
 class TextPorts:
-    """The connections of all of them, numbered as those of one; `bound` is of the first."""
+    """Several text ports as one, with connections numbered across them; `bound` is that of the first."""
 
     def __init__(self, ports: Sequence[TextPort]) -> None:
         """ports: at least one, none of which has a connection yet."""
@@ -23,17 +23,17 @@ class TextPorts:
         self._of: dict[int, int] = {}
 
     def which(self, key: int) -> int:
-        """Over which of the ports a connection came, by its place."""
+        """The index of the port of connection `key`."""
         return self._of.get(key, 0)
 
     @property
     def bound(self) -> tuple[str, int]:
-        """Host and port on which the first listens."""
+        """Host and port on which the first port listens."""
         return self.ports[0].bound
 
     @property
     def counts(self) -> Counts:
-        """Of all of them."""
+        """The statistics of all ports together."""
         found = Counts()
         for port in self.ports:
             found.add(port.counts)
@@ -41,15 +41,15 @@ class TextPorts:
 
     @property
     def due_s(self) -> float | None:
-        """When `step` has something to do even if nothing arrives."""
+        """When `step` has something to do even if no bytes arrive [s, monotonic clock]; None: never."""
         return min((p.due_s for p in self.ports if p.due_s is not None), default=None)
 
     def handles(self) -> list[tuple[Any, int]]:
-        """Sockets to poll, with what for."""
+        """Sockets to poll, each with its flags."""
         return [handle for port in self.ports for handle in port.handles()]
 
     def step(self, now_s: float) -> list[Came]:
-        """What has come, port by port."""
+        """Read and write without blocking; what was received, port by port. now_s: monotonic clock [s]."""
         found = []
         for number, port in enumerate(self.ports):
             for came in port.step(now_s):
@@ -58,7 +58,7 @@ class TextPorts:
         return found
 
     def send(self, key: int, message: Message) -> bool:
-        """Queue a message for a peer; False if it is gone or the message cannot stand on the wire."""
+        """Queue a message for connection `key`; False if it has gone or the message cannot be encoded."""
         return self.ports[self.which(key)].send(key, message)
 
     def refuse(self, key: int, why: str, detail: str) -> None:
@@ -66,15 +66,15 @@ class TextPorts:
         self.ports[self.which(key)].refuse(key, why, detail)
 
     def name(self, key: int) -> str:
-        """Who is at the other end of a connection."""
+        """The address of the peer of connection `key`."""
         return self.ports[self.which(key)].name(key)
 
     def ended(self, came: Came) -> None:
-        """A connection whose end was dealt with needs no place any more."""
+        """Forget a connection whose end was handled."""
         if isinstance(came.what, LinkEvent):
             self._of.pop(came.key, None)
 
     def close(self) -> None:
-        """Hand over what waits, close all sockets. Safe to call twice."""
+        """Write what is queued, then close all sockets. May be called twice."""
         for port in self.ports:
             port.close()

@@ -74,11 +74,11 @@ class UdpPort:
         return host, port
 
     def handles(self) -> list[tuple[Any, int]]:
-        """The socket that receives."""
+        """The receiving socket to poll, with its flags."""
         return [(self._in.fileno(), zmq.POLLIN)] if self._in is not None else []
 
     def step(self, now_s: float) -> list[Incoming]:
-        """The datagrams that have arrived."""
+        """The datagrams that have arrived. now_s: monotonic clock [s]."""
         found: list[Incoming] = []
         for _ in range(_BATCH if self._in is not None else 0):
             assert self._in is not None
@@ -96,7 +96,7 @@ class UdpPort:
         return found
 
     def send(self, parts: tuple[bytes, ...]) -> None:
-        """Send one datagram."""
+        """Send one datagram; what is too long or not accepted by the system is counted as lost."""
         if self._out is None:
             return
         payload = b"".join(parts)
@@ -111,7 +111,7 @@ class UdpPort:
         self.counts.sent += 1
 
     def close(self) -> None:
-        """Close both sockets."""
+        """Close both sockets. May be called twice."""
         for sock in (self._in, self._out):
             if sock is not None:
                 sock.close()

@@ -41,7 +41,7 @@ def _load(path: Path, secret: bool, where: str, item: str) -> tuple[bytes, bytes
 
 
 class Curve:
-    """Our own pair, the server's public key (to connect), and who may come in (to bind)."""
+    """CURVE keys of one socket: its own pair, the server's public key (to connect), the accepted clients (to bind)."""
 
     def __init__(
         self,
@@ -91,7 +91,7 @@ class Curve:
 
 
 class Doorkeeper:
-    """Answers ZeroMQ's question who may come in (ZAP), for all sockets of one context."""
+    """Authenticates ZeroMQ clients (ZAP) for all sockets of one context."""
 
     def __init__(self, context: zmq.Context[Any]) -> None:
         self._sock = context.socket(zmq.REP)
@@ -100,15 +100,15 @@ class Doorkeeper:
         self._known: dict[bytes, frozenset[bytes] | None] = {}
 
     def admit(self, curve: Curve) -> None:
-        """Let the clients of these keys in, at the sockets that have them."""
+        """Accept the clients whose public keys `curve` lists, at the sockets of its domain."""
         self._known[curve.domain.encode()] = curve.clients
 
     def handles(self) -> list[tuple[Any, int]]:
-        """What to poll."""
+        """The ZAP socket to poll, with its flags."""
         return [(self._sock, zmq.POLLIN)]
 
     def step(self) -> None:
-        """Answer all questions that wait."""
+        """Answer all pending authentication requests."""
         while True:
             try:
                 frames: list[bytes] = self._sock.recv_multipart(zmq.NOBLOCK)
@@ -122,5 +122,5 @@ class Doorkeeper:
             self._sock.send_multipart([version, request, code, text, key if good else b"", b""])
 
     def close(self) -> None:
-        """Close its socket."""
+        """Close the ZAP socket."""
         self._sock.close(linger=0)

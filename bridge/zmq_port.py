@@ -96,16 +96,16 @@ class ZmqPort:
 
     @property
     def waiting(self) -> int:
-        """Bytes that wait for somebody to take them."""
+        """Bytes queued because no subscriber has room."""
         return self._bytes
 
     def bound(self, receiving: bool) -> str:
-        """The address that a socket has, with the port that the system chose."""
+        """The address of the sending or (receiving) the receiving socket, with the port that the system chose."""
         sock = self._in if receiving else self._out
         return str(sock.getsockopt_string(zmq.LAST_ENDPOINT))
 
     def handles(self) -> list[tuple[Any, int]]:
-        """Both sockets and their monitors."""
+        """Both sockets and their monitors to poll, each with its flags."""
         found: list[tuple[Any, int]] = [(sock, zmq.POLLIN) for sock, _ in self._monitors]
         if self._in is not None and not self._settle_s:
             found.append((self._in, zmq.POLLIN))
@@ -114,7 +114,7 @@ class ZmqPort:
         return found
 
     def step(self, now_s: float) -> list[Incoming]:
-        """What has arrived; hands over what waits."""
+        """Write what is queued, read what has arrived; the messages in order. now_s: monotonic clock [s]."""
         self._tell()
         self._flush()
         found: list[Incoming] = []
@@ -143,7 +143,7 @@ class ZmqPort:
         return found
 
     def send(self, parts: tuple[bytes, ...]) -> None:
-        """Send to all subscribers that have room, or queue for the next that reads."""
+        """Send to all subscribers that have room; without any, queue."""
         if self._out is None or self._sender is None:
             return
         size = sum(map(len, parts))
@@ -166,7 +166,7 @@ class ZmqPort:
         self._bytes += size
 
     def close(self) -> None:
-        """Give what is queued a moment to go, then close the sockets."""
+        """Give queued messages a moment to be sent, then close the sockets."""
         if self._out is not None and not self._out.closed:
             self._flush()
             if self.since_full:

@@ -32,7 +32,7 @@ class Beacons(NamedTuple):
 
 
 class ZreNode:
-    """One peer; see the module."""
+    """One ZRE node; see the module."""
 
     def __init__(
         self,
@@ -79,17 +79,17 @@ class ZreNode:
 
     @property
     def uuid(self) -> str:
-        """Its name among all peers, 32 hexadecimal digits."""
+        """This node's identifier, 32 hexadecimal digits."""
         return self._uuid.hex().upper()
 
     @property
     def endpoint(self) -> str:
-        """Where its inbox is."""
+        """The ZeroMQ address of this node's inbox."""
         return f"tcp://{self._beacon.address}:{self._port}"
 
     @property
     def due_s(self) -> float | None:
-        """When the next beacon or ping is due."""
+        """When the next beacon or ping is due [s, monotonic clock]."""
         if self._closed:
             return None
         times = [self._beacon_s or 0.0]
@@ -98,17 +98,18 @@ class ZreNode:
         return min(times)
 
     def peers(self) -> dict[str, str]:
-        """The names of the peers that have said hello, by uuid."""
+        """The names of the peers that have sent HELLO, by uuid."""
         return {hexadecimal(u): peer.name for u, peer in self._peers.items() if peer.ready}
 
     def handles(self) -> list[tuple[Any, int]]:
-        """The inbox and the socket of the beacons."""
+        """The inbox and the beacon socket to poll, each with its flags."""
         if self._closed:
             return []
         return [(self._inbox, zmq.POLLIN), (self._beacon.fileno(), zmq.POLLIN)]
 
     def step(self, now_s: float) -> list[Event]:
-        """Send what is due, read what is there; the events, in order."""
+        """Send beacons and pings that are due, read what has arrived; the events in order. now_s: monotonic clock
+        [s]."""
         self._now_s = now_s
         if self._closed:
             return []
@@ -122,19 +123,19 @@ class ZreNode:
         return events
 
     def join(self, group: str) -> None:
-        """Join a group; all peers are told."""
+        """Join a group, and tell all peers."""
         if group not in self._groups:
             self._groups.append(group)
             self._membership(wire.JOIN, group)
 
     def leave(self, group: str) -> None:
-        """Leave a group."""
+        """Leave a group, and tell all peers."""
         if group in self._groups:
             self._groups.remove(group)
             self._membership(wire.LEAVE, group)
 
     def whisper(self, peer: str, content: tuple[bytes, ...]) -> bool:
-        """Send to one peer; False (and counted) if it is not there or does not read."""
+        """Send to one peer by uuid; False (and counted) if it is unknown or does not read."""
         found = self._peers.get(bytes.fromhex(peer))
         if found is None or not found.ready:
             self._tally.lose("no such peer", peer)
@@ -142,7 +143,7 @@ class ZreNode:
         return self._send(found, wire.Command(wire.WHISPER, 0), content)
 
     def shout(self, group: str, content: tuple[bytes, ...]) -> int:
-        """Send to all peers of a group; returns to how many."""
+        """Send to all peers of a group; the number of peers reached."""
         sent = 0
         for peer in self._peers.values():
             if peer.ready and group in peer.groups:
@@ -150,7 +151,7 @@ class ZreNode:
         return sent
 
     def close(self) -> None:
-        """Say good-bye by a beacon with port 0 and close everything."""
+        """Announce leaving by a beacon with port 0, then close all sockets."""
         if self._closed:
             return
         self._beacon.shine(0)

@@ -53,18 +53,18 @@ class Beacon:
         self._udp = _beacon_socket(port, where)
 
     def fileno(self) -> int:
-        """The file descriptor, for polling."""
+        """The socket's file descriptor, for polling."""
         return self._udp.fileno()
 
     def shine(self, port: int) -> None:
-        """Say where our inbox is; port 0: that we leave."""
+        """Broadcast the port of our inbox; port 0: that we leave."""
         try:
             self._udp.sendto(wire.beacon(self._uuid, port), self._to)
         except OSError as error:
             self._tally.lose("beacon not taken by the network", error.strerror or str(error))
 
     def read(self) -> Iterator[tuple[bytes, str, int]]:
-        """(uuid, host, port) of each beacon of others that is there."""
+        """(uuid, host, port) of each beacon of another node that has arrived."""
         for _ in range(_BATCH):
             try:
                 data, (host, _port) = self._udp.recvfrom(1024)

@@ -14,7 +14,7 @@ IDENTITY = b"\x01"  # stands before the uuid in the identity of a peer's socket
 
 @dataclass(frozen=True)
 class Event:
-    """Something that happened: ENTER, EXIT, JOIN, LEAVE, WHISPER or SHOUT, and whose it is."""
+    """An event of a peer: ENTER, EXIT, JOIN, LEAVE, WHISPER or SHOUT."""
 
     kind: str
     peer: str
@@ -42,7 +42,7 @@ class Peer:
 
     @staticmethod
     def connect(context: zmq.Context[Any], uuid: bytes, endpoint: str, high_water: int) -> Peer:
-        """A peer that is not greeted yet; uuid: our own. zmq.ZMQError if there is no such address."""
+        """A peer that HELLO was not sent to yet; uuid: our own. zmq.ZMQError for an address that cannot be used."""
         sock = context.socket(zmq.DEALER)
         sock.linger = 0
         sock.identity = IDENTITY + uuid
@@ -55,7 +55,7 @@ class Peer:
         return Peer(sock, endpoint)
 
     def send(self, command: wire.Command, content: tuple[bytes, ...] = ()) -> None:
-        """Send a command with the next sequence number; zmq.Again if the peer does not read."""
+        """Send a command with the next sequence number; zmq.Again if the peer's queue is full."""
         sequence = (self.sent + 1) & 0xFFFF
         frame = wire.pack(replace(command, sequence=sequence))
         self.sock.send_multipart((frame, *content), zmq.NOBLOCK)
@@ -64,11 +64,11 @@ class Peer:
     def event(
         self, kind: str, uuid: bytes, group: str = "", content: tuple[bytes, ...] = ()
     ) -> Event:
-        """Something that has happened to it."""
+        """An event of this peer."""
         headers = dict(self.headers) if kind == "ENTER" else {}
         return Event(kind, hexadecimal(uuid), self.name, group, headers, content, self.endpoint)
 
 
 def hexadecimal(uuid: bytes) -> str:
-    """A uuid as Zyre writes it."""
+    """A uuid of 16 bytes as 32 hexadecimal digits, as Zyre writes it."""
     return uuid.hex().upper()

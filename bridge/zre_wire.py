@@ -25,7 +25,7 @@ _TEXT = 65536  # bytes of a long string
 
 @dataclass(frozen=True)
 class Command:
-    """One command: number, sequence, and those of its fields that it has."""
+    """One ZRE command: number, sequence number, and the fields that its kind has."""
 
     number: int
     sequence: int
@@ -50,7 +50,7 @@ def _long(text: str) -> bytes:
 
 
 def pack(command: Command) -> bytes:
-    """The first frame of a command."""
+    """The first frame of a command, encoded."""
     c = command
     head = _HEAD.pack(SIGNATURE, c.number, VERSION, c.sequence)
     if c.number == HELLO:
@@ -105,7 +105,7 @@ class _Reader:
 
 
 def unpack(data: bytes) -> Command:
-    """The command of a first frame; BadInput says at which byte it is none."""
+    """The command decoded from a first frame; BadInput with the byte if it is not one."""
     if len(data) < _HEAD.size:
         raise BadInput("command too short", expected=f"{_HEAD.size} bytes", got=f"{len(data)}")
     signature, number, version, sequence = _HEAD.unpack_from(data)
@@ -128,7 +128,7 @@ def unpack(data: bytes) -> Command:
 
 
 def beacon(uuid: bytes, port: int) -> bytes:
-    """The beacon of a peer; port 0 says that it leaves."""
+    """The bytes of a beacon; port 0 announces that the node leaves."""
     return _BEACON.pack(b"ZRE", 1, uuid, port)
 
 

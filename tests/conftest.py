@@ -30,6 +30,15 @@ gc.set_threshold(10_000, 20, 50)
 
 ROOT = Path(__file__).resolve().parent.parent
 SHARED = ROOT.parent / "shared"
+# as measured (tests/programs/slow_tests.py): files, and functions of files
+SLOW = frozenset((ROOT / "tests" / "slow.txt").read_text(encoding="utf-8").split())
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """What is listed as slow is marked so."""
+    file = item.path.relative_to(ROOT).as_posix()
+    if {file, f"{file}::{getattr(item, 'originalname', item.name)}"} & SLOW:
+        item.add_marker(pytest.mark.slow)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -36,8 +36,11 @@ MOST_PENDING = 65_536
 
 
 class Heard(NamedTuple):
-    """A line without its newline, or what stands in its place. at_s: None where the capture has no times; who: from
-    whom to whom, as the capture has it; missing: so many bytes were not captured after `text`, which is cut off."""
+    """One captured line without its newline, or the handshake text in its place.
+
+    at_s: time of capture [s], None if the capture has no times. who: sender and receiver as captured.
+    missing: number of bytes not captured after `text`, which is cut off.
+    """
 
     at_s: float | None
     who: str
@@ -115,7 +118,7 @@ class _Flow:
 
 
 def read(data: bytes, where: str) -> Iterator[Heard]:
-    """The lines of a capture; BadInput if it is none that is known, or is cut off."""
+    """The lines of a capture (pcap, session file or raw lines); BadInput for an unknown format or a truncated file."""
     if data[:4] in PCAP:
         yield from _pcap(data, where)
     elif data.lstrip().startswith(b"{"):

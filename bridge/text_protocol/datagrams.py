@@ -47,7 +47,7 @@ _DATAGRAM = re.compile(
 
 
 class Said(NamedTuple):
-    """What a datagram brings: whose it is, the sender's clock [ms], and the line, with its newline."""
+    """An accepted datagram: the sender's vehicle, its clock [ms], and the line with its newline."""
 
     vehicle_id: int
     time_ms: int
@@ -55,7 +55,7 @@ class Said(NamedTuple):
 
 
 class Refused(NamedTuple):
-    """Why a datagram is dropped, counted by it; detail: this time."""
+    """Why a datagram is dropped. why: the reason counted; detail: of this datagram."""
 
     why: str
     detail: str
@@ -77,7 +77,7 @@ class _Sender:
 
 
 class Datagrams:
-    """What one vehicle sends, and what it believes of the others."""
+    """Seals the datagrams of one vehicle, and verifies those of the others."""
 
     def __init__(
         self, vehicle_id: int, keys: Mapping[int, bytes], nonce: Nonce = os.urandom
@@ -89,7 +89,7 @@ class Datagrams:
         self._others = {vid: _Sender() for vid in keys if vid != vehicle_id}
 
     def wrap(self, line: bytes, now_ms: int) -> bytes:
-        """The datagram of a line with its newline."""
+        """The sealed datagram of a line with its newline. now_ms: this vehicle's clock [ms]."""
         self._sent += 1
         heard = b"+".join(name for one in self._others.values() for name in one.heard) or b"-"
         numbers = b"%d,%d,%d" % (self._sent, now_ms, self.vehicle_id)
@@ -98,7 +98,7 @@ class Datagrams:
         return b"%b,%08x,%b,%b" % (head, crc_of(head, body), mac, body)
 
     def open(self, data: bytes) -> Said | Refused | None:
-        """What a datagram brings; None for the own ones, which come back."""
+        """Verify and decode a datagram; Refused says why not, None for one of our own that came back."""
         if data[MOST_BYTES:]:
             return Refused(TOO_LONG, f"{len(data)} bytes")
         match = _DATAGRAM.match(data)

@@ -117,7 +117,7 @@ _SAYS: dict[type[Message], Callable[[Any], str]] = {
 
 
 def sentence(line: Message) -> str:
-    """What a message says."""
+    """One message as an English sentence, with units."""
     return _SAYS[type(line)](line)
 
 
@@ -135,7 +135,7 @@ _OPENING = {
 
 
 def told(text: bytes) -> tuple[bool, str]:
-    """Whether a line as it came, without its newline, is right, and what it says."""
+    """(valid, explanation) of a captured line without its newline; secrets are not shown."""
     text = text.removesuffix(b"\r")
     if len(text) == SECRET_LENGTH and is_secret(text.decode("ascii", "replace")):
         return True, "ICAROUS says the secret of the handshake"  # which is not shown

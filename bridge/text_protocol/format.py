@@ -33,12 +33,12 @@ WRAPPED = {"_KEEPIN_", "_KEEPOUT_", "_TRAFFIC_", "_OBSTACLE_", "_ACTIVE_", "_PAS
 
 
 def direction_of(message: Message) -> Direction:
-    """Which way the message goes."""
+    """The direction in which a message of this type is sent."""
     return LAYOUT_OF[type(message)].direction
 
 
 def may_go(message: Message, direction: Direction) -> bool:
-    """Whether a message may go that way."""
+    """True if a message of this type may be sent in that direction."""
     layout = LAYOUT_OF[type(message)]
     return layout.both or layout.direction is direction
 

@@ -24,7 +24,8 @@ SECRET_VARIABLE = "CRATOUS_BRIDGE_SECRET"
 
 
 def secret_of_environment() -> str:
-    """The secret of the environment, or the product's; BadInput if it is none (it is never shown)."""
+    """The handshake secret from the environment, else the default; BadInput (which does not show it) if it is
+    malformed."""
     text = os.environ.get(SECRET_VARIABLE, DEFAULT_SECRET)
     if not is_secret(text):
         raise BadInput(
@@ -43,7 +44,7 @@ def is_secret(text: str) -> bool:
 
 @dataclass
 class Handshake:
-    """What both ends share: `done`, or `failed` with the reason; bytes not used yet in `rest`."""
+    """State of the handshake: `done`, or `failed` with the reason; `rest`: bytes received after it."""
 
     secret: str = DEFAULT_SECRET
     done: bool = False
@@ -55,11 +56,11 @@ class Handshake:
             raise ValueError(f"a secret is {SECRET_LENGTH} hexadecimal characters")
 
     def start(self) -> bytes:
-        """What to send at once."""
+        """The bytes to send at once."""
         return b""
 
     def feed(self, data: bytes) -> bytes:
-        """Take bytes from the other end; gives what to send now."""
+        """Process bytes from the other end; the bytes to send now."""
         self.rest += data
         return b"" if self.done or self.failed else self._step()
 
@@ -80,10 +81,10 @@ class Handshake:
 
 @dataclass
 class ServerHandshake(Handshake):
-    """The end that listens (UxAS)."""
+    """The end that listens (UxAS), which speaks first."""
 
     def start(self) -> bytes:
-        """The server speaks first."""
+        """The server's greeting."""
         return HELLO
 
     def _step(self) -> bytes:

@@ -23,27 +23,27 @@ WITHOUT = (
 
 @dataclass(frozen=True)
 class Keys:
-    """The keys that an end has, by vehicle."""
+    """The vehicles' keys that one end holds, 32 bytes each."""
 
     by_vehicle: Mapping[int, bytes] = field(repr=False)
 
     def of(self, vehicle_id: int) -> Keys:
-        """The key of this vehicle alone, for its end."""
+        """The key of this vehicle alone, for its ICAROUS."""
         return Keys({vehicle_id: self.by_vehicle[vehicle_id]})
 
     def environment(self, variable: str = KEY_VARIABLE) -> dict[str, str]:
-        """The variables from which another process takes them, see `key_of`."""
+        """The environment variables by which a child process receives the keys, see `key_of`."""
         return {variable.format(vid): key.hex() for vid, key in self.by_vehicle.items()}
 
 
 def without_keys(environment: Mapping[str, str]) -> dict[str, str]:
-    """The environment of a process that needs no key of the bridge."""
+    """The environment without the variables that hold keys, for a child process that needs none."""
     stems = KEY_VARIABLE.format(""), DIRECT_VARIABLE.format("")
     return {name: value for name, value in environment.items() if not name.startswith(stems)}
 
 
 def new_keys(vehicle_ids: Iterable[int]) -> Keys:
-    """Keys that nobody has had before, from the system's source of random bytes."""
+    """A fresh random key for each vehicle, from the operating system's generator."""
     return Keys({number: secrets.token_bytes(SECRET_LENGTH // 2) for number in vehicle_ids})
 
 

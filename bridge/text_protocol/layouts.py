@@ -14,7 +14,7 @@ from cratous.bridge.text_protocol import messages
 
 
 class Kind(Enum):
-    """How a value is written."""
+    """How a field's value is encoded."""
 
     REAL = "%f"
     DEGREES = "%f of a latitude or longitude"
@@ -26,7 +26,7 @@ class Kind(Enum):
 
 @dataclass(frozen=True)
 class FieldLayout:
-    """One field: its label on the wire, the attribute that holds it, and what it may be."""
+    """One field: its label on the wire, the message attribute that holds it, and its range."""
 
     label: str
     attribute: str

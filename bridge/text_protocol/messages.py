@@ -16,7 +16,7 @@ from typing import ClassVar
 
 
 class Direction(Enum):
-    """Which way a message goes; DOWN sorts before UP."""
+    """Direction of a message: DOWN to ICAROUS, UP to UxAS; DOWN sorts first."""
 
     DOWN = "UxAS->ICAROUS"
     UP = "ICAROUS->UxAS"
@@ -24,7 +24,7 @@ class Direction(Enum):
 
 @dataclass(frozen=True)
 class Message:
-    """Base of all messages."""
+    """Base class of all messages."""
 
     tag: ClassVar[str] = ""
 

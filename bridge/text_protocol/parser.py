@@ -44,8 +44,10 @@ _PRINTABLE = re.compile(rb"[\x20-\x7e]*\Z")
 
 @dataclass(frozen=True)
 class WireError:
-    """A line that is refused: its number and the column (both from 1) where it goes wrong. kind: of a
-    COMND that is not known, the one that it names; tag: of a packet of v2, that of its line."""
+    """A refused line: its number and the column (both from 1) of the error.
+
+    kind: of an unknown COMND, its type; tag: of a v2 packet, the tag of its line.
+    """
 
     line: int
     column: int
@@ -64,7 +66,7 @@ class WireError:
 
 @dataclass(frozen=True)
 class Skipped:
-    """A line, or a field of an accepted message, that we do not know; legal, but recorded."""
+    """A line, or a field of an accepted message, that is legal but unknown here; it is recorded."""
 
     line: int
     column: int
@@ -122,7 +124,7 @@ class StreamParser:
         self._line = 1
 
     def feed(self, data: bytes) -> list[Record]:
-        """The records of all lines that are complete now."""
+        """The records of all lines completed by these bytes."""
         records: list[Record] = []
         start = 0
         while (end := data.find(b"\n", start)) >= 0:
@@ -145,7 +147,7 @@ class StreamParser:
         return records
 
     def finish(self) -> list[Record]:
-        """The stream has ended: a message that began but has no newline is an error."""
+        """The stream has ended: an incomplete line is an error."""
         records: list[Record] = []
         if self._pending and not self._dropping:
             got = ascii(bytes(self._pending[:40]))[1:]

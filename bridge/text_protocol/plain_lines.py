@@ -25,8 +25,8 @@ _KINDS = {
 
 
 class Plain(NamedTuple):
-    """How one message is read. read: the whole line; values: of each field; within: which value lies from where to
-    where, else the line is not plain."""
+    """How one kind of message is read at once. read: pattern of the whole line; values: decoder of each field;
+    within: (field, least, greatest), else the line is left to `parser`."""
 
     read: re.Pattern[bytes]
     message: type[Message]

@@ -50,18 +50,18 @@ _PACKET = re.compile(
 
 
 def proof(key: bytes, who: str, vehicle_id: int, nonces: tuple[bytes, bytes]) -> bytes:
-    """The HMAC-SHA256 of who speaks, for which vehicle, in which connection, as hexadecimal digits."""
+    """HMAC-SHA256 over the speaker (`who`), the vehicle and both nonces, as hexadecimal digits."""
     text = b",".join((NAME, who.encode(), b"%d" % vehicle_id, *nonces))
     return hmac.new(key, text, "sha256").hexdigest().encode()
 
 
 def direction_keys(key: bytes, vehicle_id: int, nonces: tuple[bytes, bytes]) -> list[bytes]:
-    """The keys by which ICAROUS and UxAS seal what they say in one connection, in this order."""
+    """The keys that seal the packets of ICAROUS and of UxAS in one connection, in this order."""
     return [bytes.fromhex(proof(key, w, vehicle_id, nonces).decode()) for w in ("up", "down")]
 
 
 def line_in(packet: bytes) -> bytes | None:
-    """The line of a packet, without its newline, of which nothing but the checksum is judged; None if it is damaged."""
+    """The line of a packet without its newline; only the checksum is verified, None if that is wrong."""
     match = _PACKET.match(packet)
     if match is None:
         return None
@@ -70,7 +70,7 @@ def line_in(packet: bytes) -> bytes | None:
 
 
 class Opening(NamedTuple):
-    """What the lines 1 and 2 of an opening say. proved: by ICAROUS."""
+    """Lines 1 and 2 of the opening, decoded. proved: ICAROUS's proof."""
 
     vehicle_id: int
     nonces: tuple[bytes, bytes]
@@ -78,7 +78,7 @@ class Opening(NamedTuple):
 
 
 def opening_of(first: bytes, second: bytes) -> Opening | None:
-    """The opening of a connection by its first two lines, UxAS's and ICAROUS's; None if they are none."""
+    """The opening decoded from its first two lines, UxAS's and ICAROUS's; None if malformed."""
     uxas, icarous = _FIRST.match(first), _SECOND.match(second)
     if uxas is None or icarous is None:
         return None
@@ -87,7 +87,7 @@ def opening_of(first: bytes, second: bytes) -> Opening | None:
 
 @dataclass
 class Seal:
-    """The packets of one connection, both ways. out_key, in_key: of the directions."""
+    """Seals and verifies the packets of one connection. out_key, in_key: of what is sent and received."""
 
     vehicle_id: int
     out_key: bytes = field(repr=False)
@@ -101,11 +101,11 @@ class Seal:
 
     @property
     def unacknowledged(self) -> int:
-        """Packets that the other end has not said to have."""
+        """Number of packets sent that the other end has not acknowledged."""
         return self.sent - self.acknowledged
 
     def wrap(self, line: bytes, now_ms: int) -> bytes:
-        """The packet of a line, both with their newline."""
+        """The sealed packet of a line, both with their newline. now_ms: the sender's clock [ms]."""
         self.sent += 1
         head = b"%d,%d,%d,%d" % (self.sent, now_ms, self.vehicle_id, self.mark)
         body = line.removesuffix(b"\n")
@@ -117,7 +117,7 @@ class Seal:
         )
 
     def feed(self, data: bytes) -> tuple[bytes, list[WireError]]:
-        """The lines of the packets that are complete now, and what is refused."""
+        """The lines of all packets completed by these bytes, and the packets that are refused."""
         *packets, self._pending = (self._pending + data).split(b"\n")
         lines, wrong = list[bytes](), list[WireError]()
         for packet in packets:
@@ -164,18 +164,18 @@ def _tag(packet: bytes) -> str:
 
 
 def crc_of(head: bytes, body: bytes) -> int:
-    """CRC-32 of numbers and line."""
+    """CRC-32 of a packet's numbers and line."""
     return zlib.crc32(head + b"," + body)
 
 
 def mac_of(key: bytes, head: bytes, body: bytes) -> bytes:
-    """HMAC-SHA256 of numbers and line by a key, as hexadecimal digits."""
+    """HMAC-SHA256 of a packet's numbers and line, as hexadecimal digits."""
     return hmac.new(key, head + b"," + body, "sha256").hexdigest().encode()
 
 
 @dataclass
 class SealedHandshake(Handshake):
-    """What both ends share. keys: by vehicle; seal: once it is done; nonce: random bytes."""
+    """Handshake of dialect v2, both ends. keys: by vehicle; seal: set when it is done; nonce: source of random bytes."""
 
     keys: Mapping[int, bytes] = field(default_factory=dict, repr=False)
     nonce: Nonce = os.urandom
@@ -200,10 +200,10 @@ class SealedHandshake(Handshake):
 
 @dataclass
 class SealedServer(SealedHandshake):
-    """UxAS's end."""
+    """UxAS's end, which speaks first."""
 
     def start(self) -> bytes:
-        """UxAS speaks first."""
+        """The first line: protocol name and UxAS's nonce."""
         self._own = self.nonce(16).hex().encode()
         return NAME + b"," + self._own + b"\n"
 
@@ -230,7 +230,7 @@ class SealedServer(SealedHandshake):
 
 @dataclass
 class SealedClient(SealedHandshake):
-    """ICAROUS's end; `keys` holds the one of its vehicle."""
+    """ICAROUS's end; `keys` holds its vehicle's key."""
 
     _theirs: bytes = b""
 

@@ -101,5 +101,5 @@ class Argument:
         return element.id
 
     def state(self, name: str) -> State:
-        """How a goal that was added stands."""
+        """The state of a goal that was added, see `State`."""
         return self.elements[name].state

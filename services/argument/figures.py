@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache
 from math import ceil, sqrt
 
 from cratous.services.argument.elements import Element, Kind
 from cratous.services.argument.plain_text import plain_text
-from cratous.services.argument.wrapping import LINE, Line, wrapped
+from cratous.services.argument.wrapping import LINE, Line, least_width, wrapped
 
 PAD, SKEW = 9.0, 16.0
 """Around the text, and how far a parallelogram leans."""
@@ -65,12 +65,22 @@ def _circle(element: Element, paragraphs: list[Line]) -> Figure:
 
 def _in_circle(element: Element, paragraphs: list[Line], across: float) -> Figure | None:
     """The text in a circle, in as few lines as it takes; None if it holds less."""
+    least = sum(least_width(one) for one in paragraphs)
     for count in range(1, int(across / LINE)):
-        lines = wrapped(paragraphs, partial(_chord, across, count), count)
+        chords = _chords(across, count)
+        if least > sum(chords) + 1e-6:  # rounding apart, what does not fit in sum fits no lines
+            continue
+        lines = wrapped(paragraphs, chords.__getitem__, count)
         if lines is not None:
             top = (across - count * LINE) / 2
             return Figure(element, across, across, 0.0, top, tuple(lines))
     return None
+
+
+@lru_cache(maxsize=2048)  # each text is tried in circles of the same sizes
+def _chords(across: float, count: int) -> tuple[float, ...]:
+    """The widest lines that fit a circle, and no width for one more."""
+    return (*(_chord(across, count, line) for line in range(count)), 0.0)
 
 
 def _chord(across: float, count: int, line: int) -> float:

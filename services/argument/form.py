@@ -12,6 +12,7 @@ import yaml
 
 from cratous.services.argument.elements import Element, State
 from cratous.services.argument.plain_text import plain_text
+from cratous.spec.files.schema_check import Check, fits
 
 SCHEMA_NAME = "argument.schema.json"
 Data = dict[str, Any]
@@ -20,6 +21,11 @@ Data = dict[str, Any]
 def schema_text() -> str:
     """The schema as it is published (JSON Schema, draft 2020-12)."""
     return files("cratous.services.argument").joinpath(SCHEMA_NAME).read_text("utf-8")
+
+
+@cache
+def _check() -> Check:
+    return fits(json.loads(schema_text()))
 
 
 @cache
@@ -54,7 +60,9 @@ def yaml_text(data: Data, header: Iterable[str] = ()) -> str:
 
 def faults(data: Any) -> list[str]:
     """Where an argument is not well formed: of its schema, every id resolves, one top goal, no circle."""
-    found = [f"{_path(e.absolute_path)}: {e.message}" for e in _validator().iter_errors(data)]
+    found: list[str] = []
+    if not _check()(data):
+        found = [f"{_path(e.absolute_path)}: {e.message}" for e in _validator().iter_errors(data)]
     return found or [*_unresolved(data), *_circles(data), *_tops(data)]
 
 

@@ -52,7 +52,7 @@ class Own:
         }
 
     def add(self) -> tuple[str, ...]:
-        """The strategy over all of them; none where the report has none."""
+        """Add the strategy over all user requirements; nothing if the report has none."""
         if not self.rows:
             return ()
         goals = tuple(self._goal(number, row) for number, row in enumerate(self.rows, 1))
@@ -68,7 +68,7 @@ class Own:
         )
 
     def names(self, *states: elements.State) -> list[str]:
-        """The ids of the requirements whose goals stand so."""
+        """The ids of the requirements whose goals have one of these states."""
         numbered = enumerate(self.rows, 1)
         return [row["requirement"] for n, row in numbered if self._argument.state(_id(n)) in states]
 

@@ -76,6 +76,11 @@ def _pieces(text: str) -> tuple[_Piece, ...]:
     return tuple(found)
 
 
+def least_width(line: Line) -> float:
+    """What the lines of a paragraph are wide together at least, wherever it is broken, in drawing units."""
+    return sum(_wide(piece.units, line.bold) for piece in _pieces(line.text))
+
+
 def wrapped(
     paragraphs: Iterable[Line], fits: Callable[[int], float], most: int | None = None
 ) -> list[Line] | None:

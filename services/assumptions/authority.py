@@ -28,7 +28,7 @@ def reported(body: Any) -> Gate:
 
 
 def sender_of(body: Any) -> int:
-    """Who sent a `GatedCommand`, by what it says."""
+    """The sender that a `GatedCommand` names."""
     return NUMBERS.get(body.Sender.name, UXAS)
 
 

@@ -59,7 +59,7 @@ class GivenUpWatch:
         self._record = Record("takeovers", MOST_TAKEOVERS + 1, (leg_given_up, lasted), waits=waits)
 
     def message(self, message: Message) -> None:
-        """Who flies a vehicle, and to which item."""
+        """Process one message: commander and current plan item of each vehicle."""
         if message.kind not in self.kinds:
             return
         if message.kind == BEAT:
@@ -134,7 +134,7 @@ class GivenUpWatch:
             self._record.gaps.append(f"{text}, and UxAS heard of it late: {delivery.broken.text}")
 
     def end(self, at_ms: int) -> None:
-        """Those who are on their way still are held to their time, too."""
+        """End of the messages at at_ms [ms]: items still under way are checked against their time as well."""
         for vid, leg in self._legs.items():
             self._time(vid, leg, at_ms)
 

@@ -24,7 +24,7 @@ HEARD_MS = 2000
 
 
 def not_told(mission: Mission, told: bool) -> str:
-    """Why it is not known whether UxAS is heard, "" if it is. told: each ICAROUS says so."""
+    """Why it is unknown whether UxAS is heard; empty if it is known. told: each ICAROUS reports it."""
     if not mission.instances:
         return NO_INSTANCE
     return "" if told else "this ICAROUS does not say whether it hears UxAS"
@@ -81,14 +81,14 @@ class HeardWatch:
 
 
 class Away(NamedTuple):
-    """Of a takeover: since_ms: the way back was not found free long enough since then; offered: control is."""
+    """State of one takeover. since_ms: start of the wait for a free way back [ms]; offered: ICAROUS offers control."""
 
     since_ms: int
     offered: bool = False
 
 
 class WayBackWatch:
-    """Of each takeover: whether control was offered, and if it was not at the end, for how long."""
+    """Checks of each takeover whether control was offered, and if not by the end, for how long it was not."""
 
     kinds = ("GateState", "UxasHeard", "LinkLossState")
 

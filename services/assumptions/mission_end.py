@@ -55,7 +55,7 @@ class AwayWatch:
         self._record = Record("vehicles", 0, unseen=unseen, waits=waits)
 
     def message(self, message: Message) -> None:
-        """Who has a vehicle, whether it moves, and how the flight ended."""
+        """Process one message: commander of a vehicle, its motion, or the outcome of the flight."""
         body = message.body
         if message.kind == "TruthState" and body.VehicleID in self._away:
             self._moves[body.VehicleID] = any(

@@ -127,7 +127,7 @@ class IntruderWatch:
         self._record = Record("m", self._room.wide_m, kernels, none, waits=waits)
 
     def message(self, message: Message) -> None:
-        """A change of who commands, or where an aircraft is."""
+        """Process one message: a change of command, or the true state of an aircraft."""
         kind, now_ms, _, body = message
         if kind == "AuthorityChange" and body.VehicleID in self._instances:
             own = body.VehicleID
@@ -202,7 +202,7 @@ class Path(NamedTuple):
     pieces: tuple[Piece, ...]
 
     def at(self, t_s: float) -> Position:
-        """Where it is then, seconds after its begin."""
+        """The predicted position t_s seconds after the start of the path."""
         index = sum(
             in_time(round(1000 * p.start_s), round(1000 * t_s), ANY_LATER) for p in self.pieces
         )

@@ -49,7 +49,7 @@ class Path(NamedTuple):
     s_m: float = 0.0
 
     def legs(self, first_m: float, last_m: float) -> list[Leg]:
-        """Those between two places of the path, and one more on either side."""
+        """The legs between two distances along the path [m], and one more at either end."""
         points = self.track.points
         if len(points) == 1:
             return [(points[0], points[0])]

@@ -123,4 +123,4 @@ class Watch(Protocol):
         """The mission has ended."""
 
     def records(self) -> dict[str, Record]:
-        """What was seen so far, by the name of the assumption."""
+        """The observations so far, by name of the assumption."""

@@ -33,7 +33,7 @@ IN_HAND = ("Offered", "Known", "Left")
 
 
 class Place(NamedTuple):
-    """Where an aircraft is, and when; stands: one of ours, which is on the ground."""
+    """Position of an aircraft at an instant; stands: one of ours, on the ground."""
 
     time_ms: int
     at: Position
@@ -41,7 +41,7 @@ class Place(NamedTuple):
 
 
 class InHand(NamedTuple):
-    """Of the certificate: when it was offered, and until when it is permitted [ms]."""
+    """The certificate in force: when it was offered, and until when flying is permitted [ms]."""
 
     since_ms: int = 0
     until_ms: int = 0
@@ -76,7 +76,7 @@ class PermittedWatch:
         )
 
     def message(self, message: Message) -> None:
-        """Who commands, what is in hand, a heartbeat, what is sensed, or where an aircraft is."""
+        """Process one message: commander, certificate, heartbeat, sensed state or true state."""
         kind, now_ms, _, body = message
         if self._record.unseen or kind not in self.kinds:
             return

@@ -72,7 +72,7 @@ def _made(row: Data, report: Data) -> Data:
 
 
 def command_then(number: int, report: Data, at: int) -> Data:
-    """Who commanded a vehicle at an instant [ms], by the changes of command of a report."""
+    """The commander of vehicle `number` at an instant [ms], from a report's changes of command."""
     since, side = 0, "UxAS"
     told = [one for one in report["flight"]["authority"] if one["vehicle"] == number]
     for one in sorted(told, key=lambda one: one["time_ms"]):

@@ -67,7 +67,7 @@ class Wake(NamedTuple):
 
 
 class Identity(NamedTuple):
-    """Who a service is on the wire: entity, service id, group of its messages."""
+    """Identity of a service on the wire: entity id, service id, and the group of its messages."""
 
     entity_id: int = 0
     service_id: int = 0
@@ -172,7 +172,7 @@ class Bus:
         return tuple(self._services)
 
     def identity(self, name: str) -> Identity:
-        """Who a service is on the wire."""
+        """The identity of a service on the wire."""
         return self._identities[name]
 
     def publish(self, body: Any, source: str, address: str = "", group: str = "") -> None:

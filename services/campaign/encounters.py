@@ -38,7 +38,7 @@ class Judged(NamedTuple):
 
 
 def states_of(flown: Encounter) -> States:
-    """By aircraft: time [ms]; north, east, altitude [m]; velocity north, east, up [m/s]."""
+    """Recorded states by aircraft: time [ms]; north, east, altitude [m]; velocity north, east, up [m/s]."""
     found: States = defaultdict(list)
     for now_ms, aircraft in flown.instants:
         for number, air in aircraft:

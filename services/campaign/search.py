@@ -95,7 +95,7 @@ class Search:
         return Made(self._campaign, source, self._campaign.options[0], number, point)
 
     def run(self, fly: Fly, budget: int) -> Found:
-        """Search with at most so many runs, then make what fails small with half as many more."""
+        """Search with at most `budget` runs, then simplify a failing run with at most half as many more."""
         found = Found(self._requirement)
         while len(found.points) < budget and found.failing is None:
             count = len(found.points)

@@ -22,7 +22,7 @@ def level_name(level: int) -> str:
 
 
 def none_said(report: dict[str, Any]) -> str:
-    """What it means that a report lists no alert."""
+    """Why a report lists no alert, in words."""
     looks = report["log"]["by_topic"].get(TOPIC, 0)
     if looks:
         return f"None: {looks} looks of detect and avoid are in the log."

@@ -53,7 +53,7 @@ def _row(row: Data, commands: Commands, assumptions: list[Data], end_ms: int) ->
 
 
 def command_at(number: int, commands: Commands, at_ms: int) -> Data:
-    """Who commanded a vehicle at an instant; who commands first does so from the beginning."""
+    """The commander of a vehicle at an instant [ms]; the first commander is taken to command from the start."""
     changes = commands[number]
     place = stood_at(((ms, k) for k, (ms, _) in enumerate(changes)), at_ms).place
     since_ms, side = changes[max(place, 0)]

@@ -13,9 +13,9 @@ SHOWN = 10
 
 
 def sentence(one: Data, over: bool = True) -> str:
-    """Who was in command, and what had broken by then, for people.
+    """Commander and broken assumptions at a violation, as an English sentence.
 
-    over: the messages have ended; only then it is known what had not broken, and what was not observed.
+    over: the messages have ended; only then is it known which assumptions held or were not observed.
     """
     said = [
         f"{c['side']} had vehicle {c['vehicle']} since {_s(c['since_ms'])}" for c in one["command"]

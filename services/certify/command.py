@@ -13,7 +13,7 @@ def flown_in_processes(command: str) -> bool:
 
 
 def with_original_clients(command: str) -> bool:
-    """Whether ICAROUS is behind clients of the original's, whose protocol has no heartbeats."""
+    """True if ICAROUS was flown behind the original's clients, whose protocol has no heartbeats."""
     return flown_in_processes(command) and "--original-clients" in _words(command)
 
 

@@ -12,7 +12,7 @@ Data = dict[str, Any]
 
 
 def margins(one: Outcome) -> list[Data]:
-    """Of each comparison the least and the greatest difference of its sides; without a value where none was known."""
+    """The least and the greatest difference of the two sides of each comparison; no value where none was defined."""
     return [
         {
             "of": f"{m.left} - {_side(m)}",

@@ -12,12 +12,12 @@ SOURCE = "own"
 
 
 def own_requirements(report: Data) -> list[Data]:
-    """The rows of the report, in the order of its files; none where it has none."""
+    """The report's rows of user requirements, in the order of their files; empty if it has none."""
     return list(report.get(OWN, {}).get("requirements", ()))
 
 
 def digests(report: Data) -> dict[str, str]:
-    """By file of such requirements, its SHA-256."""
+    """SHA-256 of each file of user requirements, by file name."""
     return {one["file"]: one["sha256"] for one in report.get(OWN, {}).get("files", ())}
 
 

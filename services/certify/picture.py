@@ -53,7 +53,7 @@ def _planned(report: dict[str, Any]) -> dict[int, list[tuple[float, float]]]:
 
 
 def map_view(report: dict[str, Any]) -> dict[str, Any]:
-    """Zones, tasks, planned routes, flown tracks by who commanded, takeovers, scale and names."""
+    """The map of a report: zones, tasks, planned routes, tracks coloured by commander, takeovers, scale and labels."""
     mission, flight = report["mission"], report["flight"]
     ours = [vehicle["id"] for vehicle in mission["vehicles"]]
     planned = _planned(report)

@@ -92,7 +92,7 @@ def _digest(files: dict[str, bytes]) -> str:
 
 @cache
 def running_code() -> dict[str, str]:
-    """Of services and bridge, as first asked: `digest` of the files, `running` and `release` in words."""
+    """Identity of services and bridge, computed once: `digest` of the files, `running` and `release` in words."""
     files = _files()
     try:
         installed = importlib.metadata.distribution("cratous")

@@ -119,7 +119,7 @@ def absent_lines(mission: Mission) -> list[str]:
 
 
 def write_certificate(bus: Any, file: Path) -> None:
-    """Write the certificate of the plan that was made on a bus; NoPlan if it has none."""
+    """Write the certificate of the plan made on a bus to `file`; NoPlan if there is no plan."""
     from cratous.services.pipeline.plan import certificate_of
     from cratous.services.planning.assign_certificate import write
 

@@ -30,7 +30,7 @@ def so_far(one: Outcome) -> str:
 
 
 def nearest(one: Outcome) -> str:
-    """The comparison whose sides came nearest to each other, and when."""
+    """The comparison with the least difference of its sides, and when it occurred."""
     found = []
     for margin in one.margins:
         ends = ((margin.least, margin.at), (margin.greatest, margin.greatest_at))

@@ -55,7 +55,7 @@ def attach(
     from cratous.services.cli.monitor_requirements import Judged, print_result, read
     from cratous.services.logs.store import Gap, LogStore
     from cratous.services.requirements.lint import lint
-    from cratous.services.requirements.metrics import served, text_of
+    from cratous.services.requirements.metrics import text_of
     from cratous.services.requirements.sampling import NOT_WHOLE, SAYS
     from cratous.services.requirements.tapped import refuse_untold
     from cratous.services.requirements.traces import rows_of_messages, wanted_of
@@ -91,6 +91,8 @@ def attach(
             before = signal.signal(number, lambda got, _frame: stopping.append(got))
             stack.callback(signal.signal, number, before)
         if live.metrics is not None:
+            from cratous.services.requirements.metrics_server import served
+
             port = stack.enter_context(served(live.metrics, lambda: text_of(watch, attached.seq)))
             click.echo(f"metrics: http://127.0.0.1:{port}/metrics", err=True)
         messages = attached.messages(

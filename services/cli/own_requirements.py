@@ -28,7 +28,8 @@ def own_option(said: str) -> Any:
 
 
 def own_files(paths: Sequence[Path]) -> tuple[OwnFile, ...]:
-    """These files, refused before anything is flown or judged if no log can be held against them."""
+    """Read these requirement files; BadInput, before anything is flown or judged, for one that no flight log can be
+    checked against."""
     if not paths:
         return ()
     from cratous.services.requirements.own_files import own_file, refuse_clashes
@@ -46,7 +47,7 @@ def own_data(report: Data) -> Data:
 
 
 def own_lines(report: Data) -> Iterator[str]:
-    """What a report says of them, for people; nothing where it has none."""
+    """The report's results for user requirements as lines of text; empty if it has none."""
     from cratous.services.certify.own_said import margin as said
     from cratous.services.certify.own_said import sentence
 

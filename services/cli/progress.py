@@ -34,11 +34,11 @@ class Waiting:
         self._drawn = False
 
     def at(self, what: str, done: int = 0, of: int = 0) -> None:
-        """This is done now, and so far; `of` is 0 where the end is not known."""
+        """Report progress: current activity and items done; `of`: number of items, 0 if unknown."""
         self._now = (what, done, of)
 
     def each(self, items: Iterable[T], what: str, of: int = 0) -> Iterator[T]:
-        """The items, while it is told which of them is in work."""
+        """Iterate over the items, reporting each as it begins."""
         of = of or (len(items) if isinstance(items, Sized) else 0)
         for number, item in enumerate(items):
             self.at(what, number + 1, of)
@@ -153,7 +153,7 @@ class Bar:
         self._context.__exit__(*error)
 
     def step(self, name: str, done: int, of: int) -> None:
-        """One item is so far; the total grows as items become known."""
+        """Set the progress of one item; the total grows as items become known."""
         if not self._shown:
             return
         self._parts[name] = (done, of)

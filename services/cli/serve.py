@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import shlex
 import signal
-import threading
 from contextlib import ExitStack, closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,7 +13,8 @@ import click
 
 if TYPE_CHECKING:
     from cratous.services.ground_station.access import Access
-    from cratous.services.ground_station.server import GroundStation, Recorded
+    from cratous.services.ground_station.server import GroundStation
+    from cratous.services.ground_station.shown import Recorded
     from cratous.services.ground_station.tiles import Tiles
 
     Listening = tuple[int, Access]
@@ -137,19 +137,15 @@ def serve(
 
         server.beneath = beneath
 
-        def stop(*_: object) -> None:
-            # from a thread: it waits for the loop that this signal interrupts
-            threading.Thread(target=server.shutdown, daemon=True).start()
-
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            signal.signal(number, stop)
+            signal.signal(number, lambda *_: server.shutdown())
         click.echo(printable(f"{name}: {server.whole_url} (Ctrl-C ends it)"))
         if server.access.from_elsewhere():
             click.echo(
                 "cratous: other machines can reach this, and nothing is encrypted (no TLS)",
                 err=True,
             )
-        server.serve_forever(poll_interval=0.2)
+        server.serve_forever()
     return 0
 
 
@@ -175,7 +171,7 @@ def _failed(error: Exception) -> None:
 
 def _replayed(path: Path) -> Recorded:
     from cratous.services.ground_station.recording import recording
-    from cratous.services.ground_station.server import Recorded
+    from cratous.services.ground_station.shown import Recorded
 
     return Recorded(lambda: recording(path), _failed)
 
@@ -183,12 +179,8 @@ def _replayed(path: Path) -> Recorded:
 def _editing(
     mission: Path, listening: Listening, allow_unproved: bool, stack: ExitStack
 ) -> GroundStation:
-    from cratous.services.ground_station.server import (
-        PAGE_OF_EDITOR,
-        Commands,
-        GroundStation,
-        ReadAnew,
-    )
+    from cratous.services.ground_station.server import PAGE_OF_EDITOR, Commands, GroundStation
+    from cratous.services.ground_station.shown import ReadAnew
     from cratous.services.mission_editor.editor import LONGEST, Editor
 
     editor = stack.enter_context(closing(Editor(mission, PLANNER, allow_unproved)))
@@ -203,7 +195,8 @@ def _flying(
     mission: Path, listening: Listening, flight: dict[str, Any], stack: ExitStack
 ) -> GroundStation:
     from cratous.services.ground_station.live_session import Direct, LiveSession
-    from cratous.services.ground_station.server import GroundStation, LiveRecorded
+    from cratous.services.ground_station.server import GroundStation
+    from cratous.services.ground_station.shown import LiveRecorded
     from cratous.services.mission_editor.operator_commands import DIRECT, commanded, directed
     from cratous.spec.files.limits import MISSION_BYTES
     from cratous.spec.files.text_file import text_of
@@ -232,7 +225,8 @@ def _flying(
 def _watching(address: str, listening: Listening, stack: ExitStack) -> GroundStation:
     from cratous.bridge.port import address as read_address
     from cratous.services.ground_station.attached_session import AttachedSession
-    from cratous.services.ground_station.server import GroundStation, ReadAnew
+    from cratous.services.ground_station.server import GroundStation
+    from cratous.services.ground_station.shown import ReadAnew
 
     text = address if "://" in address else f"tcp://{address}"
     where = read_address(text, ("tcp",), item="--attach")
@@ -244,7 +238,8 @@ def _replaying(
     run: Path, other: Path | None, listening: Listening, stack: ExitStack
 ) -> GroundStation:
     from cratous.services.ground_station.comparison import check_comparable, comparison
-    from cratous.services.ground_station.server import PAGE_OF_TWO, GroundStation, Recorded
+    from cratous.services.ground_station.server import PAGE_OF_TWO, GroundStation
+    from cratous.services.ground_station.shown import Recorded
     from cratous.services.logs.source import open_log
 
     open_log(run).close()  # what is no log is told before anything listens

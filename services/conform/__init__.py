@@ -54,12 +54,12 @@ def passed(case: str, checks: int = 1) -> Result:
 
 
 def failed(case: str, label: str, text: str, checks: int = 1) -> Result:
-    """They do not."""
+    """Result: the product disagrees with the vector."""
     return Result(case, "failed", label, text, checks)
 
 
 def edge(case: str, label: str, text: str, checks: int = 1) -> Result:
-    """They differ from what the vector says, and its system's own tolerance explains it."""
+    """Result: the product disagrees with the vector, within the numerical tolerance of the vector's own system."""
     return Result(case, "knife edge", label, text, checks)
 
 

@@ -81,7 +81,7 @@ class Suite:
         self.tally: Counter[str] = Counter()
 
     def parameters(self, case: dict[str, Any]) -> Parameters | None:
-        """The configuration by its name in the vectors; a sequence has none: DO-365B."""
+        """The named configuration of a vector; for a sequence, which names none, DO-365B."""
         name = str(case.get("config", "DO_365B_no_SUM")).removesuffix(".conf")
         if name not in PRESETS:
             return None
@@ -176,7 +176,7 @@ class Differences:
         return "ours"
 
     def changed(self, factor: float, dimension: int | None) -> bool:
-        """Whether thresholds, times and look-ahead scaled by a factor change what is said here."""
+        """True if scaling thresholds, times and look-ahead by `factor` changes the result of this dimension."""
         alerters = tuple(
             a._replace(
                 levels=tuple(

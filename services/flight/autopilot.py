@@ -38,7 +38,7 @@ class Follow:
 
 @dataclass(frozen=True)
 class Circle:
-    """Loiter on a circle at a speed [m/s] until told otherwise."""
+    """Loiter on a circle at a speed [m/s] until the next command."""
 
     hold: Hold
     speed_m_s: float

@@ -212,8 +212,8 @@ def lap_points(hold: Hold, start: Position) -> tuple[Position, ...]:
 
 
 def raised(lap: tuple[Position, ...], to_m: float, slope: float) -> tuple[Position, ...]:
-    """At most CLIMB_LAPS laps that climb from the lap's height to another, or as near as they come, at most
-    `slope` metres per metre flown."""
+    """At most CLIMB_LAPS laps that climb from the lap's altitude towards to_m [m], with at most `slope` metres of
+    altitude per metre flown."""
     points, alt, last = [lap[0]], lap[0].alt_m, lap[0]
     to_m = min(to_m, alt + CLIMB_LAPS * slope * polyline_length_m(lap))
     while alt < to_m - 1e-6:
@@ -243,7 +243,7 @@ def final_loiter(
 
 
 def with_hold(item: PlanItem, radius_m: float, zones: tuple[Zone, ...]) -> PlanItem:
-    """The item with a hold to wait on at its start pose, if it has none and one is possible."""
+    """The item with a hold to wait on at its start pose, if it has none and one can be flown."""
     if item.hold is not None:
         return item
     return replace(item, hold=tangent_hold(start_pose(item), radius_m, zones))

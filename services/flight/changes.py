@@ -64,7 +64,7 @@ def accept(state: State, out: Out) -> None:
 
 
 def change(config: Config, state: State, due: Sequence[Change], out: Out) -> State:
-    """These changes are known now; if they ask for another plan, that is asked for."""
+    """Apply mission changes that have become known; request a new plan if they require one."""
     known = without(known_at(config.mission, state.now_ms, dict(state.ends)), dict(state.landed))
     state, blown = blow(config, replace(state, known=known), out)
     ended = {c.zone_id for c in due if isinstance(c, ZoneEnd)}

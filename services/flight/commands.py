@@ -91,7 +91,7 @@ def velocity_command(vehicle_id: int, command_id: int, v: Velocity) -> Any:
 def loiter_command(
     projection: Projection, vehicle_id: int, command_id: int, hold: Hold, speed_m_s: float
 ) -> Any:
-    """Loiter on this circle until told otherwise."""
+    """A command to loiter on a circle at speed_m_s [m/s] until the next command."""
     action = lmcp.new(
         "LoiterAction",
         LoiterType="Circular",

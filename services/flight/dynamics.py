@@ -160,7 +160,7 @@ def advance(state: AirState, dt_s: float) -> AirState:
 
 
 def touching_down(state: AirState, ground_m: float, dt_s: float) -> AirState:
-    """The state whose coming step ends on the ground at the latest."""
+    """The state limited so that the next step of dt_s [s] ends on the ground at ground_m [m] at the lowest."""
     least = (ground_m - state.position.alt_m) / dt_s
     return state._replace(climb_m_s=max(state.climb_m_s, least))
 

@@ -58,7 +58,7 @@ def route(state: State, vehicle_id: int, out: Out) -> State:
 
 
 def report(state: State, vehicle_id: int, out: Out) -> State:
-    """How far a vehicle is on the way that UxAS flies it, and the way if it has not been told."""
+    """Report a vehicle's progress along the way that UxAS flies, and the way itself if it was not sent yet."""
     chain = state.chain(vehicle_id)
     if track_is_told(chain.suspended, chain.route_version != chain.told_version):
         state = route(state, vehicle_id, out)

@@ -97,7 +97,7 @@ def unfinished(
     now_ms: int,
     why: str,
 ) -> tuple[list[int], list[Any]]:
-    """Of these tasks those that have had no final word when the flight ends, and a TaskProgress for each.
+    """The tasks without a final status when the flight ends, and a TaskProgress for each.
 
     settled: tasks that have begun, ended and failed (left out included).
     """

@@ -24,7 +24,7 @@ ANEW_MS = 10_000
 
 
 def give_up(config: Config, state: State, out: Out) -> State:
-    """Fail the items whose legs are given up, and tell ICAROUS where its vehicle goes instead."""
+    """Fail the items whose legs are abandoned, and send ICAROUS the way that its vehicle flies instead."""
     longest_ms = round(1000 * LONGEST_LOOKAHEADS * state.mission.daa.lookahead_s)
     for vid in config.instances:
         chain = state.find(vid)

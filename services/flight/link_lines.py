@@ -210,5 +210,5 @@ def between(lines: Sequence[Message], asked: LinesMissing, number: str) -> list[
 
 
 def onward(way: Sequence[Message], reached: int) -> list[Message]:
-    """The way told last, and the waypoints of it that are reached."""
+    """The way sent last, and its waypoints that have been reached."""
     return [*way, *(WaypointReached(k) for k in range(reached))]

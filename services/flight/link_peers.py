@@ -55,7 +55,7 @@ class State:
     peers: tuple[Peer, ...] = ()
 
     def peer(self, vehicle_id: int) -> Peer | None:
-        """What is known of a vehicle's instance; None if it has none."""
+        """The state of a vehicle's instance; None if it has none."""
         return next((p for p in self.peers if p.vehicle_id == vehicle_id), None)
 
     def with_peer(self, peer: Peer) -> State:
@@ -65,7 +65,7 @@ class State:
 
 
 def links(before: State, after: State, now_ms: int) -> Iterator[NotHeard | HeardAgain]:
-    """Whose instance is not heard any more, and whose is again."""
+    """The vehicles whose ICAROUS instance was lost, and those whose instance is heard again, at now_ms [ms]."""
     for peer in after.peers:
         old = before.peer(peer.vehicle_id)
         was, alive = old is None or old.end.alive, peer.end.alive
@@ -91,5 +91,5 @@ def of_others(state: State, vehicle_id: int, projection: Projection) -> list[Mes
 
 
 def down_to(peer: Peer, told: Sequence[Message]) -> tuple[Down, ...]:
-    """Lines for an instance, if there are any and its connection stands."""
+    """Lines for an instance, if there are any and its connection is open."""
     return (Down(peer.vehicle_id, tuple(told)),) if told and peer.open else ()

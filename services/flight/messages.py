@@ -117,7 +117,7 @@ class Lost(NamedTuple):
 
 
 class GateIs(NamedTuple):
-    """How a vehicle's gate stands from now on, by the vehicle itself."""
+    """A change of a vehicle's gate, as the vehicle reports it."""
 
     vehicle_id: int
     gate: Gate
@@ -186,7 +186,7 @@ class Suspend(NamedTuple):
 
 
 class Because(NamedTuple):
-    """The vehicle has told what its ICAROUS does with authority (act: as in `Wish`), and why."""
+    """The vehicle reports what its ICAROUS does with authority (act: as in `Wish`), and the reason."""
 
     vehicle_id: int
     act: int
@@ -218,7 +218,7 @@ class Stands(NamedTuple):
 
 
 class HeardAgain(NamedTuple):
-    """It is heard again. by_uxas: UxAS has the vehicle, as its gate says."""
+    """The instance is heard again. by_uxas: UxAS has the vehicle, according to its gate."""
 
     vehicle_id: int
     now_ms: int
@@ -303,14 +303,14 @@ class Wished(NamedTuple):
 
 
 class Held(NamedTuple):
-    """The vehicle's own ICAROUS has a certificate for what it commands next, or has none."""
+    """Whether the vehicle's ICAROUS has a certificate for its next command."""
 
     now_ms: int
     offer: Offers | Uncertified
 
 
 class Surveyed(NamedTuple):
-    """Who is seen at a heartbeat, as the vehicle's surveillance has them."""
+    """The aircraft that a vehicle's surveillance shows at a heartbeat."""
 
     now_ms: int
     intruders: tuple[Intruder, ...]

@@ -17,7 +17,7 @@ from cratous.spec.mission.plan import Plan
 
 
 def gate_state(vehicle_id: int, now_ms: int, gate: Gate) -> Any:
-    """How a vehicle's gate stands, as a `GateState`."""
+    """A `GateState`: owner, epoch and offer of a vehicle's gate at now_ms [ms]."""
     return _of_gate("GateState", vehicle_id, now_ms, gate, Offered=gate.offered)
 
 
@@ -86,13 +86,13 @@ def mode_refused(vehicle_id: int, now_ms: int, line: SetMode, epoch: int, gate: 
 def authority_change(
     vehicle_id: int, now_ms: int, gate: Gate, reason: str, intruder_id: int
 ) -> Any:
-    """Who commands a vehicle from now on, since which epoch and why, as an `AuthorityChange`."""
+    """An `AuthorityChange`: who commands a vehicle from now_ms [ms] on, in which epoch and why."""
     more = {"Reason": reason, "IntruderID": intruder_id}
     return _of_gate("AuthorityChange", vehicle_id, now_ms, gate, **more)
 
 
 def plan_accepted(now_ms: int, plan: Plan, done: frozenset[int]) -> Any:
-    """By which plan is flown from now on, as a `PlanAccepted`; `done` are the tasks already flown."""
+    """A `PlanAccepted`: the plan in force from now_ms [ms] on; `done`: tasks already served."""
     return lmcp.new(
         "PlanAccepted",
         Time=now_ms,
@@ -120,7 +120,7 @@ def link_loss_state(said: WithoutLink) -> Any:
 
 
 def uxas_heard(said: Hears) -> Any:
-    """That a vehicle's ICAROUS does not hear UxAS any more, or hears it again, as a `UxasHeard`."""
+    """A `UxasHeard`: a vehicle's ICAROUS no longer hears UxAS, or hears it again."""
     return lmcp.new(
         "UxasHeard",
         VehicleID=said.vehicle_id,
@@ -131,7 +131,7 @@ def uxas_heard(said: Hears) -> Any:
 
 
 def take_off_state(said: TakesOff) -> Any:
-    """How a vehicle leaves the ground from now on, or why it stands, as a `TakeOffState`."""
+    """A `TakeOffState`: how a vehicle leaves the ground, or why it waits."""
     return _mode_told("TakeOffState", said)
 
 
@@ -169,7 +169,7 @@ def mission_change(now_ms: int, what: str, answer: str) -> Any:
 
 
 def mission_end(now_ms: int, outcome: str) -> Any:
-    """That the flight has ended and how, as a `MissionEnd`."""
+    """A `MissionEnd`: the flight has ended at now_ms [ms], and its outcome."""
     return lmcp.new("MissionEnd", Time=now_ms, Outcome=outcome)
 
 
@@ -181,5 +181,5 @@ def heartbeat(vehicle_id: int, now_ms: int, direction: str, sequence: int) -> An
 
 
 def bridge_status(vehicle_id: int, alive: bool, now_ms: int, note: str) -> Any:
-    """Whether the instance of a vehicle is heard, and why that is told."""
+    """A `BridgeStatus`: whether a vehicle's instance is heard at now_ms [ms], and why this is reported."""
     return lmcp.new("BridgeStatus", VehicleID=vehicle_id, Time=now_ms, Alive=alive, Note=note)

@@ -9,7 +9,7 @@ from cratous.spec.executive import BEGUN, ENDED, FAIL, FAILED, LEFT
 
 
 def life(task_id: int, starts: Container[int], ends: Container[int], failed: Container[int]) -> int:
-    """A task's life, by who is in the lists of those that have begun, ended and failed."""
+    """A task's state, from the lists of tasks that have begun, ended and failed."""
     if task_id in ends:
         return ENDED
     if task_id in failed:

@@ -120,7 +120,7 @@ class VehicleNode:
     terrain_m: float = 0.0
 
     def first(self) -> State:
-        """At mission start."""
+        """The state at mission start."""
         on_ground = isinstance(self.vehicle, GroundedVehicle)
         return State(first_state(self.vehicle), limits_of(self.vehicle), on_ground=on_ground)
 

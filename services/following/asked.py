@@ -25,7 +25,7 @@ RANGE_MOST_M = 1_000_000.0
 
 
 class Tower(NamedTuple):
-    """A radio tower: where it stands, north and east [m], and how far it reaches [m]."""
+    """A radio tower: position north and east [m], and range [m]."""
 
     at: Vec2
     range_m: float
@@ -50,7 +50,7 @@ class Asked(NamedTuple):
 
     @property
     def watches(self) -> bool:
-        """It is served by what its cameras see."""
+        """True if the task is served by what the cameras see."""
         return self.kind in ("WatchTask", "MultiVehicleWatchTask")
 
 
@@ -154,7 +154,7 @@ def unused_of(body: Any, world: Known) -> list[str]:
 
 
 def milliseconds(body: Any, key: str, most: int, default: int) -> int:
-    """A parameter of a task's message [ms], 1 to `most`; default: where it has none."""
+    """A duration parameter of a task message [ms], from 1 to `most`; `default` if it is not given."""
     for pair in body.Parameters:
         if pair.Key == key:
             text = pair.Value

@@ -26,7 +26,8 @@ class Motion(NamedTuple):
     route: tuple[Vec2, ...] = ()
 
     def after(self, seconds: float) -> Vec2:
-        """Where it is so much later [s]: along its route, which it enters where it is nearest; else straight on."""
+        """The motion extrapolated by `seconds` [s]: along its route from the nearest point on, else in a straight
+        line."""
         return self._along(math.hypot(*self.velocity) * seconds)
 
     def ahead(self, far_m: float) -> Vec2:
@@ -52,7 +53,7 @@ class Motion(NamedTuple):
         return Vec2(self.at.x + share * self.velocity.x, self.at.y + share * self.velocity.y)
 
     def halfway_to(self, place: Vec2) -> Motion:
-        """The motion of the middle between it and a place that stands."""
+        """The motion of the midpoint between it and a fixed position."""
 
         def middle(p: Vec2) -> Vec2:
             return Vec2((p.x + place.x) / 2, (p.y + place.y) / 2)

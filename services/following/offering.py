@@ -75,7 +75,7 @@ def options_of(
 
 
 def flying(vehicles: Sequence[Vehicle], task: Task, dropped: list[Dropped]) -> list[Vehicle]:
-    """The vehicles that may do a task that is flown; who drives is dropped with the reason."""
+    """The eligible vehicles that can fly a task; ground vehicles are dropped with the reason."""
     able = [v for v in vehicles if not task.eligible or v.id in task.eligible]
     driving = tuple(v.id for v in able if drives(v))
     if driving:

@@ -45,7 +45,7 @@ class Part(NamedTuple):
 
     @property
     def vehicle(self) -> int:
-        """Its id."""
+        """The vehicle's id."""
         return self.state.vehicle
 
 
@@ -55,7 +55,7 @@ def command_id(task: int, ticket: int) -> int:
 
 
 def follows(part: Part, body: Any, number: int) -> bool:
-    """Whether a state is of a vehicle that circles as this task has told it."""
+    """True if a state belongs to a vehicle that flies the circle commanded by this task."""
     return bool(
         part.held is not None and body.CurrentCommand == number and body.Mode.name == "Loiter"
     )
@@ -117,7 +117,7 @@ def circling(part: Part, task: int, number: int, asked: Asked, motion: Motion) -
 
 
 def loiter(part: Part, task: int) -> Any:
-    """The LoiterAction of the circle that a vehicle was told last, without an end."""
+    """The LoiterAction of the last circle commanded, without an end."""
     assert part.held is not None
     flyer, middle = part.option.flyer, Position(*part.held.at, part.option.flyer.alt_m)
     return lmcp.new(

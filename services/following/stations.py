@@ -107,7 +107,7 @@ def _way_m(asked: Asked, start: Vec2, there: Motion, goal: Station) -> float:
 
 
 def towards(start: Vec2, goal: Vec2, far_m: float) -> Vec2:
-    """The place so far [m] from a start on the straight way to a goal."""
+    """The point far_m [m] from `start` on the straight line to `goal`."""
     share = far_m / (math.dist(start, goal) or 1.0)
     return Vec2(start.x + share * (goal.x - start.x), start.y + share * (goal.y - start.y))
 

@@ -167,7 +167,7 @@ def plan_table(report: Data) -> Table:
 
 
 def later_plans(report: Data) -> Iterator[Words]:
-    """That others than the plan that stands here were flown, if so."""
+    """The statement that plans other than the one shown were flown; nothing if there were none."""
     more = report["log"]["by_topic"].get(ACCEPTED, 0) - 1
     if more > 0:
         yield Words(

@@ -99,7 +99,7 @@ def _held(known: Data, name: str) -> str:
 
 
 def blame_of_own(report: Data) -> Rows:
-    """For section 10: who was in command where one was violated."""
+    """For section 10: the commander at each violation of a user requirement."""
     return [
         (one["requirement"], one["title"], seconds(one["time_ms"]), sentence(one["blame"]))
         for one in own_requirements(report)

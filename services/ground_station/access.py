@@ -7,11 +7,12 @@ import os
 import re
 import secrets
 import socket
-from email.message import Message
 from ipaddress import IPv4Address, IPv6Address, ip_address
 from pathlib import Path
 from typing import Any
-from urllib.parse import parse_qs, urlencode
+from urllib.parse import urlencode
+
+from starlette.requests import Request
 
 from cratous.spec.errors import BadInput
 from cratous.spec.files.text_file import text_of
@@ -74,13 +75,16 @@ class Access:
         """The cookie that shows the token from now on, to this server alone, by no script and from no other site."""
         return f"{self.cookie(port)}={self.token}; Path=/; HttpOnly; SameSite=Strict"
 
-    def shown_by(self, headers: Message, query: str, port: int) -> str | None:
-        """How a request shows the token: `cookie`, `header` or `address`; None if it does not, or a wrong one."""
-        bearer = headers.get("Authorization", "")
+    def shown_by(self, request: Request) -> str | None:
+        """How a request shows the token: `cookie`, `header` or `address`, "" where it need not; None if it does not, or a
+        wrong one."""
+        if not self.token:
+            return ""
+        bearer = request.headers.get("authorization", "")
         found = {
-            "cookie": _cookie(headers, self.cookie(port)),
+            "cookie": request.cookies.get(self.cookie(request.scope["server"][1]), ""),
             "header": bearer.removeprefix(BEARER) if bearer.startswith(BEARER) else "",
-            "address": parse_qs(query).get(PARAMETER, [""])[0],
+            "address": request.query_params.get(PARAMETER, ""),
         }
         good = [how for how, shown in found.items() if self._is_token(shown)]
         return good[0] if good else None
@@ -137,13 +141,3 @@ def _in_url(host: str) -> str:
 def _with_port(hosts: set[str], port: int) -> set[str]:
     named = {_in_url(host).lower() for host in hosts}
     return {f"{host}:{port}" for host in named} | (named if port == HTTP else set())
-
-
-def _cookie(headers: Message, name: str) -> str:
-    """The value of a cookie; others of the same host may be of any form."""
-    for given in headers.get_all("Cookie", []):
-        for one in given.split(";"):
-            called, _, value = one.strip().partition("=")
-            if called == name:
-                return value
-    return ""

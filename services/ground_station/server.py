@@ -1,160 +1,50 @@
 """Serves the page and what it shows, a recording or two, over HTTP, to this machine alone unless asked otherwise.
 
 It answers only requests whose Host header names it as it is called, since a page of somewhere else could reach it
-under a name of its own (DNS rebinding). At another address than 127.0.0.1 whatever is asked needs a token (`access`).
+under a name of its own (DNS rebinding). At another address than 127.0.0.1 whatever is asked needs a token (`guard`).
 It gives out the page and the recording, and nothing of the disk by a name from outside. Of a replay it takes GET and
 HEAD alone; while a mission is flown or edited, commands too, from its own page (Origin) with their token.
 """
 
 from __future__ import annotations
 
-import gzip
 import json
-import socket
-import threading
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import suppress
-from http import HTTPStatus
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+import mimetypes
+import os
+from collections.abc import Awaitable, Callable, Mapping
 from importlib.resources import files
-from importlib.resources.abc import Traversable
-from socketserver import TCPServer
 from types import MappingProxyType
 from typing import Any, NamedTuple, Protocol
-from urllib.parse import parse_qs
 
-from cratous.services.ground_station.access import BEARER, Access
+from starlette.applications import Starlette
+from starlette.exceptions import HTTPException
+from starlette.middleware import Middleware
+from starlette.middleware.gzip import GZipMiddleware
+from starlette.requests import Request
+from starlette.responses import FileResponse, Response
+from starlette.routing import Mount, Route
+from starlette.staticfiles import StaticFiles
+
+from cratous.services.ground_station.access import Access
 from cratous.services.ground_station.beneath import Beneath
-from cratous.services.ground_station.live_session import LiveSession, NotObeyed
+from cratous.services.ground_station.guard import Guard
+from cratous.services.ground_station.live_session import NotObeyed
+from cratous.services.ground_station.shown import Recording
+from cratous.services.web.answers import body_of, in_thread, json_answer
+from cratous.services.web.server import WebServer
 from cratous.spec.errors import BadInput
-from cratous.spec.files.printable import json_text
 
-REQUEST_S = 10.0
-"""So long a client may take for its request."""
-MOST_AT_ONCE = 32
 LONGEST = 1000
 """Of a command [bytes]."""
 PAGE, PAGE_OF_TWO, PAGE_OF_EDITOR = "index.html", "compare.html", "edit.html"
 Order = Callable[[str, str, Any], dict[str, Any] | None]
 """Obeys what a page asks for, by its token and number; its answer, if there is one. Raises NotObeyed."""
+Endpoint = Callable[[Request], Awaitable[Response]]
 TYPES = {
-    "html": "text/html; charset=utf-8",
-    "css": "text/css; charset=utf-8",
-    "js": "text/javascript; charset=utf-8",
-    "svg": "image/svg+xml",
-}
-HEADERS = {
-    "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; "
-    "img-src 'self'{images}; connect-src 'self'; base-uri 'none'; form-action 'none'; "
-    "frame-ancestors 'none'",
-    "X-Content-Type-Options": "nosniff",
-    "Referrer-Policy": "no-referrer",
-    "Cross-Origin-Resource-Policy": "same-origin",
-    "Cross-Origin-Opener-Policy": "same-origin",
-    "Cache-Control": "no-store",
-}
-
-
-class Answer(NamedTuple):
-    """A whole answer; packed: the body by gzip, for who takes that."""
-
-    status: HTTPStatus
-    kind: str
-    body: bytes
-    packed: bytes | None = None
-
-
-def page_files(first: str = PAGE) -> dict[str, Answer]:
-    """The files of the page by their path; first: of PAGES, which `/` is."""
-    found = {}
-    for path, file in _below("", files(__package__).joinpath("page")):
-        if kind := TYPES.get(file.name.rpartition(".")[2]):
-            found[path] = Answer(HTTPStatus.OK, kind, file.read_bytes())
-    pages = {page: found.pop(f"/{page}") for page in (PAGE, PAGE_OF_TWO, PAGE_OF_EDITOR)}
-    return {**found, "/": pages[first]}
-
-
-def _below(path: str, one: Traversable) -> Iterator[tuple[str, Traversable]]:
-    """A file, or those of a folder and of all folders in it, with their paths."""
-    if one.is_file():
-        return iter([(path, one)])
-    return (found for each in one.iterdir() for found in _below(f"{path}/{each.name}", each))
-
-
-class Recorded:
-    """The recording, read in a thread of its own: the page is there at once and says that it waits."""
-
-    def __init__(self, read: Callable[[], dict[str, Any]], failed: Callable[[Exception], None]):
-        """read: gives the recording or raises BadInput; failed: is told why there is none."""
-        self._read, self._failed = read, failed
-        self._answer: Answer | None = None
-        self._thread = threading.Thread(target=self._run, daemon=True)
-        self._thread.start()
-
-    def _run(self) -> None:
-        try:
-            self._answer = _json(HTTPStatus.OK, self._read())
-        except BadInput as error:
-            self._answer = _json(HTTPStatus.UNPROCESSABLE_ENTITY, error.data())
-            self._failed(error)
-        except Exception as error:
-            told = f"internal error of CRATOUS: {type(error).__name__}: {error}"
-            self._answer = _json(HTTPStatus.INTERNAL_SERVER_ERROR, {"error": told})
-            self._failed(error)
-
-    def answer(self) -> Answer:
-        """The recording as JSON, or why there is none; waits until that is known."""
-        self._thread.join()
-        assert self._answer is not None
-        return self._answer
-
-
-def _json(status: HTTPStatus, data: dict[str, Any]) -> Answer:
-    body = json_text(data).encode()
-    return Answer(status, "application/json", body, gzip.compress(body, 3))
-
-
-class Recording(Protocol):
-    """What is shown."""
-
-    def answer(self) -> Answer:
-        """As JSON, or why there is none; waits until that is known."""
-
-
-class ReadAnew:
-    """What is read each time that a page opens."""
-
-    def __init__(self, read: Callable[[], dict[str, Any]]) -> None:
-        """read: gives it or raises BadInput."""
-        self._read = read
-
-    def answer(self) -> Answer:
-        """See `Recording`."""
-        try:
-            return _json(HTTPStatus.OK, self._read())
-        except BadInput as error:
-            return _json(HTTPStatus.UNPROCESSABLE_ENTITY, error.data())
-
-
-class LiveRecorded:
-    """A mission that is flown: what it says, and once the flight has ended, its results."""
-
-    def __init__(self, live: LiveSession, replay: Callable[[str], Recorded]) -> None:
-        """replay: of a folder of results."""
-        self._live, self._replay = live, replay
-        self._results: Recorded | None = None
-        self._opening = threading.Lock()
-
-    def answer(self) -> Answer:
-        """See `Recording`."""
-        if self._live.status["state"] == "ended":
-            with self._opening:
-                self._results = self._results or self._replay(self._live.status["folder"])
-            return self._results.answer()
-        try:
-            return _json(HTTPStatus.OK, {**self._live.begun(), "live": True})
-        except BadInput as error:
-            return _json(HTTPStatus.UNPROCESSABLE_ENTITY, error.data())
+    ".css": "text/css", ".html": "text/html", ".js": "text/javascript", ".png": "image/png",
+    ".svg": "image/svg+xml",
+}  # fmt: skip
+"""Of files of the page, whatever the machine has in its own tables."""
 
 
 class Watched(Protocol):
@@ -182,11 +72,8 @@ class Commands(NamedTuple):
     token: str = ""
 
 
-class GroundStation(ThreadingHTTPServer):
+class GroundStation(WebServer):
     """The server; `serve_forever` answers until `shutdown`."""
-
-    daemon_threads = True
-    request_queue_size = 128
 
     def __init__(
         self,
@@ -200,201 +87,141 @@ class GroundStation(ThreadingHTTPServer):
         """port: 0 takes a free one; access: where it listens and who is let in; live: the flight that is shown, if any;
         first: which page shows it; commands: what pages may ask for, by default those of the flight. Raises
         BadInput if the port cannot be had."""
-        self.recorded, self.live, self.pages = recorded, live, page_files(first)
         if commands is None:
             orders = {"/command": live.order} if live is not None and live.token else {}
             commands = Commands(orders, token="" if live is None else live.token)
-        self.commands, self.token = commands, commands.token
+        self.recorded, self.access = recorded, access
         self.beneath = Beneath()
         """What the map shows beneath all else."""
-        self.access = access
-        self.address_family = self.access.family
-        self._places = threading.Semaphore(MOST_AT_ONCE)
-        self._asking: dict[Any, None] = {}
-        self._lock = threading.Lock()
+        routes = [
+            Route("/", _page(first)),
+            Route("/recording.json", self._recording),
+            *(Route(path, self._beneath) for path in ("/overlays.json", "/tiles.json")),
+            *([] if live is None else [Route("/live.json", _told(live))]),
+            *(Route(path, _polled(read)) for path, read in commands.polled.items()),
+            *(
+                Route(path, _order(obey, commands.longest), methods=["POST"])
+                for path, obey in commands.orders.items()
+            ),
+            *(Route(f"/{page}", _absent) for page in (PAGE, PAGE_OF_TWO, PAGE_OF_EDITOR)),
+            Mount("/", StaticFiles(packages=[(str(__package__), "page")])),
+        ]
+        app = Starlette(
+            routes=routes,
+            middleware=[Middleware(GZipMiddleware, compresslevel=3)],
+            exception_handlers=_HANDLERS,
+        )
+        guarded = Guard(app, access, lambda: self.beneath.images)
         try:
-            super().__init__((self.access.address, port), _Handler)
+            super().__init__(guarded, port, access.address, access.family)
         except OSError as error:
             raise BadInput(
-                "cannot listen there", item="--port", expected=f"a free port of {self.access.host}",
-                got=f"{port}: {error.strerror}",
+                "cannot listen there", item="--port", expected=f"a free port of {access.host}",
+                got=f"{port}: {os.strerror(error.errno or 0)}",
             ) from None  # fmt: skip
-        self.url = self.access.url(self.server_port)
-        self.whole_url = self.access.whole_url(self.server_port, self.token)
+        self.url = access.url(self.port)
+        self.whole_url = access.whole_url(self.port, commands.token)
 
-    def server_bind(self) -> None:
-        TCPServer.server_bind(self)  # that of HTTPServer asks name servers who this is
-        self.server_name, self.server_port = self.access.host, self.server_address[1]
+    async def _recording(self, _: Request) -> Response:
+        return await self.recorded.answer()
 
-    def process_request(self, request: Any, client_address: Any) -> None:
-        if not self._places.acquire(blocking=False):
-            self._cut_off()
-            self._places.acquire()  # further clients wait in the queue of the socket
-        with self._lock:
-            self._asking[request] = None
-        super().process_request(request, client_address)
-
-    def _cut_off(self) -> None:
-        """Disconnect the client whose request has been pending longest, so that idle clients cannot take all places."""
-        with self._lock:
-            oldest = next(iter(self._asking), None)
-            if oldest is not None:
-                del self._asking[oldest]
-                with suppress(OSError):  # it is gone already
-                    oldest.shutdown(socket.SHUT_RDWR)
-
-    def asked(self, request: Any) -> None:
-        """A client has sent its request."""
-        with self._lock:
-            self._asking.pop(request, None)
-
-    def process_request_thread(self, request: Any, client_address: Any) -> None:
-        try:
-            super().process_request_thread(request, client_address)
-        finally:
-            self.asked(request)
-            self._places.release()
-
-    def handle_error(self, request: Any, client_address: Any) -> None:
-        """A client that went away is no concern of the others."""
+    async def _beneath(self, request: Request) -> Response:
+        asked = request.url
+        found = await in_thread(self.beneath.answer, asked.path, asked.query)
+        if found is None:
+            raise HTTPException(404)
+        return json_answer(found)
 
 
-class _Handler(BaseHTTPRequestHandler):
-    """One request of one client."""
+def _page(name: str) -> Endpoint:
+    for end, kind in TYPES.items():
+        mimetypes.add_type(kind, end)
 
-    server: GroundStation
-    timeout = REQUEST_S
-    server_version, sys_version = "cratous", ""
-    shown: str | None = None
-    """How the request shows the token."""
+    async def answer(_: Request) -> Response:
+        return FileResponse(str(files(__package__).joinpath("page", name)))
 
-    def parse_request(self) -> bool:
-        whole = super().parse_request()
-        if whole and self.command != "POST":  # of which the body is still to come
-            self.server.asked(self.connection)
-        return whole
+    return answer
 
-    def do_GET(self) -> None:
-        self._send(self._found(), body=True)
 
-    def do_HEAD(self) -> None:
-        self._send(self._found(), body=False)
+async def _absent(_: Request) -> Response:
+    raise HTTPException(404)  # of the pages there is the one that `/` is
 
-    def do_POST(self) -> None:
-        self.close_connection = True
-        refused = self._refused()
-        if refused is None and not self.server.commands.orders:
-            self.send_error(HTTPStatus.NOT_IMPLEMENTED)
-            return
-        self._send(refused or self._order(), body=True)
 
-    def _refused(self) -> Answer | None:
-        """The refusal of a request that calls the server by another name, or without the token; None for its own."""
-        access, port = self.server.access, self.server.server_port
-        hosts = self.headers.get_all("Host", [])
-        if not access.called(hosts, self.connection.getsockname(), port):
-            told = f"this server is {self.server.url} and answers to no other name"
-            return _json(HTTPStatus.MISDIRECTED_REQUEST, {"error": told})
-        if not access.token:
-            return None
-        self.shown = access.shown_by(self.headers, self.path.partition("?")[2], port)
-        if self.shown is None:
-            told = (
-                "this server needs the token of the address that was printed where it was started"
+def _sender(request: Request) -> tuple[str, str]:
+    """Token and number of the page, as it gives them."""
+    headers = request.headers
+    return headers.get("x-cratous-token", ""), headers.get("x-cratous-page", "")[:64]
+
+
+def _told(live: Watched) -> Endpoint:
+    """What is new of the flight, from the number of an update on."""
+
+    async def answer(request: Request) -> Response:
+        first = request.query_params.get("from", "0")
+        if not (first.isascii() and first.isdigit() and len(first) < 10):
+            raise HTTPException(
+                400, f"expected from=N, the number of an update; got {first[:20]!r}"
             )
-            return _json(HTTPStatus.UNAUTHORIZED, {"error": told})
-        return None
+        told = await in_thread(live.told, int(first))
+        return json_answer({**told, "who": live.who(*_sender(request))})
 
-    def _order(self) -> Answer:
-        """A command of a page."""
-        obey, longest = self.server.commands.orders.get(self.path), self.server.commands.longest
-        if obey is None:
-            return _json(HTTPStatus.NOT_FOUND, {"error": "there is no such page"})
-        if self.headers.get("Origin", "") != f"http://{self.headers['Host'].lower()}":
-            return _json(HTTPStatus.FORBIDDEN, {"error": "commands come from this page alone"})
-        if self.headers.get("Content-Type") != "application/json":
-            return _json(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, {"error": "expected JSON"})
-        length = self.headers.get("Content-Length", "")
-        if not (
-            length.isascii()
-            and length.isdigit()
-            and len(length) < 10
-            and 0 < int(length) <= longest
-        ):
-            told = f"expected 1 to {longest} bytes, with Content-Length"
-            return _json(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, {"error": told})
+    return answer
+
+
+def _polled(read: Callable[[], dict[str, Any]]) -> Endpoint:
+    async def answer(_: Request) -> Response:
+        return json_answer(await in_thread(read))
+
+    return answer
+
+
+def _order(obey: Order, longest: int) -> Endpoint:
+    """A command of a page."""
+
+    async def answer(request: Request) -> Response:
+        headers = request.headers
+        if request.url.query:  # a token of an address is not for commands
+            raise HTTPException(404)
+        if headers.get("origin") != f"http://{headers['host'].lower()}":
+            raise HTTPException(403, "commands come from this page alone")
+        if headers.get("content-type") != "application/json":
+            raise HTTPException(415, "expected JSON")
+        content = await body_of(request, longest)
         try:
-            content = self.rfile.read(int(length))
-            self.server.asked(self.connection)
             asked = json.loads(content)
         except (ValueError, RecursionError):
-            return _json(HTTPStatus.BAD_REQUEST, {"error": "this is no JSON"})
-        try:
-            answer = obey(*self._sender(), asked)
-        except NotObeyed as refused:
-            return _json(HTTPStatus(refused.status), {"error": refused.why})
-        except BadInput as error:
-            return _json(HTTPStatus.UNPROCESSABLE_ENTITY, error.data())
-        except Exception as error:
-            told = f"internal error of CRATOUS: {type(error).__name__}: {error}"
-            return _json(HTTPStatus.INTERNAL_SERVER_ERROR, {"error": told})
-        return _json(HTTPStatus.OK, {"done": True} if answer is None else answer)
+            raise HTTPException(400, "this is no JSON") from None
+        done = await in_thread(obey, *_sender(request), asked)
+        return json_answer({"done": True} if done is None else done)
 
-    def _sender(self) -> tuple[str, str]:
-        """Token and number of the page, as it gives them."""
-        return self.headers.get("X-Cratous-Token", ""), self.headers.get("X-Cratous-Page", "")[:64]
+    return answer
 
-    def _told(self, live: Watched, query: str) -> Answer:
-        """What is new of the flight, from the number of an update on."""
-        first = parse_qs(query).get("from", ["0"])[0]
-        if not (first.isascii() and first.isdigit() and len(first) < 10):
-            told = f"expected from=N, the number of an update; got {first[:20]!r}"
-            return _json(HTTPStatus.BAD_REQUEST, {"error": told})
-        return _json(HTTPStatus.OK, {**live.told(int(first)), "who": live.who(*self._sender())})
 
-    def _found(self) -> Answer:
-        refused = self._refused()
-        if refused is not None:
-            return refused
-        path, _, query = self.path.partition("?")
-        if path == "/recording.json":
-            return self.server.recorded.answer()
-        if path == "/live.json" and self.server.live is not None:
-            return self._told(self.server.live, query)
-        try:
-            beneath = self.server.beneath.answer(path, query)
-        except NotObeyed as refused_:
-            return _json(HTTPStatus(refused_.status), {"error": refused_.why})
-        except BadInput as error:
-            return _json(HTTPStatus.UNPROCESSABLE_ENTITY, error.data())
-        if beneath is not None:
-            return _json(HTTPStatus.OK, beneath)
-        if path in self.server.commands.polled:
-            return _json(HTTPStatus.OK, self.server.commands.polled[path]())
-        found = self.server.pages.get(path)
-        return found or _json(HTTPStatus.NOT_FOUND, {"error": "there is no such page"})
+async def _not_there(_: Request, error: Exception) -> Response:
+    return json_answer({"error": "there is no such page"}, 404)
 
-    def _send(self, answer: Answer, body: bool) -> None:
-        packed = answer.packed is not None and "gzip" in self.headers.get("Accept-Encoding", "")
-        content = answer.packed if packed and answer.packed is not None else answer.body
-        self.send_response(answer.status)
-        self.send_header("Content-Type", answer.kind)
-        self.send_header("Content-Length", str(len(content)))
-        if packed:
-            self.send_header("Content-Encoding", "gzip")
-        if answer.status is HTTPStatus.UNAUTHORIZED:
-            self.send_header("WWW-Authenticate", BEARER.strip())
-        if self.shown == "address":
-            self.send_header("Set-Cookie", self.server.access.kept(self.server.server_port))
-        self.end_headers()
-        if body:
-            self.wfile.write(content)
 
-    def end_headers(self) -> None:
-        images = self.server.beneath.images
-        for name, value in HEADERS.items():
-            self.send_header(name, value.format(images=f" {images}" if images else ""))
-        super().end_headers()
+async def _refused(_: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    return json_answer({"error": error.detail}, error.status_code, **(error.headers or {}))
 
-    def log_message(self, format: str, *args: Any) -> None:
-        """Requests are not told on the terminal."""
+
+async def _not_obeyed(_: Request, error: Exception) -> Response:
+    assert isinstance(error, NotObeyed)
+    return json_answer({"error": error.why}, error.status)
+
+
+async def _bad_input(_: Request, error: Exception) -> Response:
+    assert isinstance(error, BadInput)
+    return json_answer(error.data(), 422)
+
+
+async def _failed(_: Request, error: Exception) -> Response:
+    told = f"internal error of CRATOUS: {type(error).__name__}: {error}"
+    return json_answer({"error": told}, 500)
+
+
+_HANDLERS: dict[Any, Callable[[Request, Exception], Awaitable[Response]]] = {
+    404: _not_there, HTTPException: _refused, NotObeyed: _not_obeyed, BadInput: _bad_input,
+    Exception: _failed,
+}  # fmt: skip

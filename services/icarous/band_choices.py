@@ -30,7 +30,8 @@ def of_bands(bands: Bands, daa: Daa, sensed: Sensed, level: Choice) -> tuple[Cho
 
 
 def recovering(bands: Bands, daa: Daa, sensed: Sensed, level: Choice) -> tuple[Choice, ...]:
-    """Those that regain well clear, where nothing of their kind keeps it; the kind that the mission asks for first."""
+    """Resolutions that regain well clear, for kinds of manoeuvre without a conflict-free one; the kind preferred by
+    the mission first."""
     return tuple(
         one
         for dimension in steered_by(daa)

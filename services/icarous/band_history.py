@@ -9,7 +9,8 @@ from cratous.core.daa.state import Band
 
 
 class AlertHistory(NamedTuple):
-    """Of one intruder: the last raw levels, the level that is shown, and since when [s]; see `core.daa.history.Shown`."""
+    """Alert history of one intruder: the latest raw levels, the level shown, and since when [s]; see
+    `core.daa.history.Shown`."""
 
     intruder: str
     alerter: int

@@ -31,7 +31,7 @@ class Course(NamedTuple):
 
     @property
     def middle(self) -> Position:
-        """Of the circle."""
+        """The centre of the holding circle."""
         return Position(self.hold.north_m, self.hold.east_m, self.hold.alt_m)
 
     @property
@@ -41,7 +41,7 @@ class Course(NamedTuple):
 
     @property
     def flown_to_its_end(self) -> bool:
-        """Its way has been, or for a landing that to the last descent."""
+        """True if all of its way has been flown; for a landing, all but the final descent."""
         return not self.left[0 if self.site is None else 1 :]
 
     def flown(self, motion: Motion, beat_s: float) -> Course:
@@ -71,7 +71,7 @@ def courses(
 
 
 def radius_m(sensed: Sensed) -> float:
-    """Of the turns and circles that are flown [m]."""
+    """The radius of the turns and circles that are flown [m]."""
     return TURN_MARGIN * sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s
 
 

@@ -31,7 +31,7 @@ WIDEST = 1.5
 
 
 class Hold(NamedTuple):
-    """A disc that stands, as a piece of flight, and its radius [m]: the vehicle is within it."""
+    """Holding as a segment of flight: a fixed disc of a radius [m] that contains the vehicle."""
 
     piece: Piece
     radius_m: float

@@ -82,7 +82,7 @@ class Conflict(NamedTuple):
 
 @dataclass(frozen=True)
 class Instance:
-    """The service; what does not change: whose instance it is, and what it keeps clear of."""
+    """The service of one ICAROUS instance; constant: its vehicle, and what it keeps clear of."""
 
     config: Config
 

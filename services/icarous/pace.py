@@ -10,7 +10,7 @@ from cratous.services.icarous.messages import Sensed
 
 
 def pace_of(told: Told, sensed: Sensed) -> Pace | None:
-    """The speed that was told, as far as the airframe can fly it; None where none was told."""
+    """The commanded speed, limited to what the airframe can fly; None if none was commanded."""
     if not told.speed_m_s:
         return None
     ability = sensed.ability

@@ -59,7 +59,7 @@ def resumed(config: Config, state: State, sensed: Sensed, in_turn: frozenset[int
 
 
 def looked(config: Config, state: State, sensed: Sensed, ahead: Ahead) -> State:
-    """At a heartbeat under UxAS: which permits last. ahead: the way that is predicted now."""
+    """Re-check the permits at a heartbeat under UxAS: those that still hold are kept. ahead: the path predicted now."""
     seen = {other.id: other for other in sensed.intruders}
     after = []
     own = ahead._replace(volumes=(config.daa.well_clear,))

@@ -93,7 +93,7 @@ def turning(now: Tracks, before: Tracks, dt_s: float, loose: Tracks = ()) -> fro
 
 
 def loose_courses(intruders: tuple[Intruder, ...]) -> Tracks:
-    """By how much the course of an intruder may be off [rad], of those of which it may be."""
+    """Bound of the course error [rad] by intruder, for those whose course is uncertain."""
     found = []
     for other in intruders:
         v, off = other.velocity, other.spread.wide_m_s

@@ -36,7 +36,7 @@ class Dialects:
         return (self.usual, *self.others.values())
 
     def of(self, vehicle_id: int) -> Dialect:
-        """That of the instance of a vehicle."""
+        """The dialect spoken with a vehicle's instance."""
         return self.others.get(vehicle_id, self.usual)
 
     def ours(self, vehicle_id: int) -> bool:

@@ -75,7 +75,7 @@ def forgotten(peer: Peer, line: SetMode, fresh: bool) -> EpochTold | None:
 
 
 def told(vehicle_id: int, line: SetMode, over: EpochTold) -> list[Out]:
-    """That line, and why for the log."""
+    """Reply to a SETMOD of an epoch that is over: the EPOCH line, and the reason for the log."""
     text = f"vehicle {vehicle_id}: ICAROUS is in epoch {line.epoch}, which is over"
     why = Refuse("mode of an epoch that is over", f"{text}: it is told that {over.epoch} was given")
     return [why, Down(vehicle_id, (over,))]

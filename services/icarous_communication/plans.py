@@ -54,7 +54,7 @@ class Plan(NamedTuple):
 
 
 def part(plan: Plan, most: int | None) -> tuple[Position, ...]:
-    """What is told of a plan: all of it, or from `told` on as much as a peer can hold."""
+    """The part of a plan that is sent to a peer: all of it, or from `told` on as much as the peer can hold."""
     points = plan.track.points[plan.told :]
     return points if most is None else points[:most]
 

@@ -45,7 +45,7 @@ Places = tuple[tuple[float, float, float], ...]
 
 
 class Proposals:
-    """Of one service. on: the configuration lets UxAS plan live."""
+    """Plan proposals of one service. on: the configuration lets UxAS plan in flight."""
 
     def __init__(self) -> None:
         self._on, self._zones, self._router = True, tuple[Zone, ...](), Router(())
@@ -53,7 +53,7 @@ class Proposals:
         self._planned_ms: dict[int, tuple[int, ...]] = {}
 
     def connected(self, vid: int) -> list[Out]:
-        """An instance is there: it is told who plans live, and what it was given before is over."""
+        """An instance has connected: tell it who plans in flight; earlier proposals to it are void."""
         self._given.pop(vid, None)
         return [Down(vid, (UxasPlans() if self._on else IcarousPlans(),))]
 

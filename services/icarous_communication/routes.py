@@ -70,7 +70,7 @@ class Outstanding(NamedTuple):
 
 
 class Routes:
-    """Of one service. kind: of PLANNERS; wait_s: for an answer."""
+    """Route requests of one service. kind: one of PLANNERS; wait_s: limit for an answer [s]."""
 
     def __init__(
         self, name: str, contexts: Contexts, kind: int, wait_s: float, dialects: Dialects
@@ -84,7 +84,7 @@ class Routes:
         self._tickets = self._numbers = 0
 
     def begun(self) -> Say:
-        """That UxAS's own planner leaves routes to ICAROUS."""
+        """The message saying that UxAS's own planner leaves route requests to ICAROUS."""
         text = f"{self._name}: ICAROUS plans the routes ({self._kind})"
         return Say(lmcp.new("OwnRoutePlanner", Plans=False, Reason=text), self._name)
 
@@ -115,7 +115,7 @@ class Routes:
         return out
 
     def step(self, seated: Sequence[int]) -> list[Out]:
-        """Send what can be sent. seated: the vehicles whose instances are there."""
+        """Send the route requests that can be sent. seated: the vehicles whose instances are connected."""
         out: list[Out] = []
         kept: deque[Wanted] = deque()
         while self._waiting:

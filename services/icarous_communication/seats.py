@@ -45,7 +45,7 @@ class Seats:
 
     @property
     def vehicles(self) -> list[int]:
-        """Whose instances are there."""
+        """The vehicles whose instances are connected."""
         return sorted(self._vehicle.values())
 
     @property
@@ -66,7 +66,7 @@ class Seats:
         return None
 
     def hello(self, key: int, vehicle_id: int) -> Refusal | None:
-        """It says for whom it speaks; why that is refused, if it is."""
+        """Assign connection `key` to the vehicle that its HELLO names; the reason if that is refused."""
         had = self._vehicle.get(key)
         if had is not None:
             text = f"a second HELLO: {vehicle_id} after {had}"
@@ -83,7 +83,7 @@ class Seats:
         return None
 
     def speaks(self, key: int) -> None:
-        """Its first line is none of HELLO."""
+        """Connection `key` began with a line other than HELLO: `settle` assigns its vehicle in order of arrival."""
         if key in self._new:
             del self._new[key]
             self._unnamed.append(key)
@@ -115,7 +115,7 @@ class Seats:
         return self._vehicle.pop(key, None)
 
     def missing(self) -> str:
-        """Who is there and who is not, in words."""
+        """Which instances are connected and which are missing, in words."""
         named = sorted(self._vehicle.values())
         there = [f"vehicle {vid}" for vid in named]
         unnamed = len(self._unnamed) + len(self._new)

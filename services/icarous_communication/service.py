@@ -140,7 +140,7 @@ class IcarousCommunicationService:
         return State()
 
     def begin(self, state: State) -> tuple[State, Iterable[Any]]:
-        """Look again and again who is still heard; say who plans routes."""
+        """Start the periodic check of which instances are still heard, and announce who plans routes."""
         said = [] if self._routes is None else [self._routes.begun()]
         return state, [*self._deliver(said), Wake(WATCH_MS)]
 

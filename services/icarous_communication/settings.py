@@ -71,7 +71,7 @@ class Settings(NamedTuple):
 
     @property
     def dialects(self) -> Dialects:
-        """Of all peers."""
+        """The dialects of all peers."""
         return Dialects(self.dialect, {vid: one.dialect for one in self.others for vid in one.ids})
 
 

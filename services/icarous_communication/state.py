@@ -141,7 +141,7 @@ def air_state(body: Any, projection: Projection) -> AirState:
 
 
 def tellable(frame: Frame, bodies: Iterable[Any]) -> tuple[tuple[Zone, ...], list[Note]]:
-    """The zones that peers are told, and about the others why not."""
+    """The zones that are sent to peers, and for each other zone why it is not."""
     around = surroundings(frame, bodies, "MSL")
     return around.zones, [Note("WARN", text) for text in around.missing]
 
@@ -202,7 +202,7 @@ def free(state: State, vid: int) -> State:
 
 
 def turn_radius_of(craft: Craft, air: AirState) -> float:
-    """Of the turns of a way back [m]: those that its ICAROUS makes it of."""
+    """The turn radius [m] with which a vehicle's ICAROUS computes ways back."""
     profile = None if craft.configuration is None else craft.configuration.NominalFlightProfile
     bank = 0.0 if profile is None else math.radians(profile.MaxBankAngle)
     bank = min(bank, MOST_BANK_RAD) or DEFAULT_BANK_RAD
@@ -226,7 +226,7 @@ def at_the_time_of(
 
 
 def left_out(ids: Iterable[int]) -> list[Out]:
-    """That aircraft are not told as traffic."""
+    """Warnings that these aircraft are not reported as traffic, because their states are too old."""
     text = f"no state within {TRAFFIC_KEPT_MS} ms; not told as traffic"
     return [Note("WARN", f"vehicle {vid}: {text}") for vid in sorted(ids)]
 

@@ -110,12 +110,12 @@ def _loiter(lat_deg: float, long_deg: float, alt_m: float, air: AirState) -> Any
 
 
 def at_gate(name: str, vehicle_id: int, gate: Gate, sender: int, command: Any) -> Say:
-    """That a command has come to a vehicle's gate, and from whom, for whoever listens on the bus."""
+    """A `GatedCommand` for the bus: a command reached a vehicle's gate, and from which sender."""
     return Say(gated(vehicle_id, gate.epoch, sender, command), name)
 
 
 def in_flight(name: str, vehicle_id: int, gate: Gate, plan: Plan | None) -> list[Say]:
-    """What a vehicle flies already comes to its gate, when that stands for the first time."""
+    """The command that a vehicle already flies, for its gate when that is set up; none without a plan."""
     return [] if plan is None else [at_gate(name, vehicle_id, gate, UXAS, plan.command)]
 
 

@@ -159,7 +159,7 @@ class Communication:
         return state, [*out, come, command]
 
     def watch(self, state: State, now_ms: int) -> Step:
-        """Time has passed: who has fallen silent."""
+        """At now_ms [ms]: detect the instances that have fallen silent."""
         peers = [one.vehicle_id for one in state.link.peers]
         state, out = self._end(state, Watch(now_ms, frozenset(filter(self.dialects.ours, peers))))
         for vid in peers:

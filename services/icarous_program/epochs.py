@@ -18,7 +18,7 @@ _LINE = re.compile(rb"vehicle ([0-9]{1,18}) epoch ([0-9]{1,15}) (UxAS|ICAROUS)( 
 
 
 class EpochFile:
-    """Of one vehicle: the gate as it was told last. A new gate is written before anybody hears of it."""
+    """File that keeps one vehicle's latest gate; a new gate is written before any peer is told of it."""
 
     def __init__(self, path: Path, vehicle_id: int) -> None:
         self._path, self._vehicle_id = path, vehicle_id

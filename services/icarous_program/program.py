@@ -52,7 +52,7 @@ _LONGEST_POLL_MS = 200  # so that a signal is seen
 
 
 class UxasGone(CratousError):
-    """UxAS was not reached, or is gone, for longer than the program was told to wait."""
+    """UxAS could not be reached, or was lost, for longer than the configured wait."""
 
     exit_code = 3
 

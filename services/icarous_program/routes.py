@@ -43,13 +43,13 @@ CLIMBS_MOST_M = 200_000.0
 
 
 class Planner(NamedTuple):
-    """Of one vehicle: the plane, and what its airframe can do."""
+    """Route planner of one vehicle: the local plane, and the performance of its airframe."""
 
     projection: Projection
     limits: Limits
 
     def answer(self, asked: RouteRequest, zones: tuple[Zone, ...]) -> tuple[list[Message], str]:
-        """The lines of the answer, and why it has no points, if it has none."""
+        """The lines that answer a route request; and, if it has no points, the reason."""
         try:
             points, why = self._plan(asked, zones)
         except BadInput as error:

@@ -61,12 +61,12 @@ def another_time(seen: Seen, now_ms: int) -> bool:
 
 
 def kept(seen: SeenBy, now_ms: int) -> dict[int, Seen]:
-    """Those of which something was heard not too long ago."""
+    """The aircraft whose latest state is not older than TRAFFIC_KEPT_MS at now_ms [ms]."""
     return {vid: s for vid, s in seen.items() if not lasted(s.at_ms, now_ms, TRAFFIC_KEPT_MS)}
 
 
 def by_themselves(objects: SeenBy, direct: SeenBy, now_ms: int) -> frozenset[int]:
-    """Of whom OBJCT is stale or was none, and who tell their own state."""
+    """The aircraft that report their own state and of which OBJCT is missing or stale at now_ms [ms]."""
 
     def stale(vid: int) -> bool:
         return vid not in objects or lasted(objects[vid].at_ms, now_ms, LINK_LOST_MS)

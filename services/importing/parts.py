@@ -60,7 +60,8 @@ class Intruder(NamedTuple):
 
 
 class Parts(NamedTuple):
-    """Of one file, or of all. parameters: of a parameter file; notes: what was not taken over, in words."""
+    """What was read from one file or several. parameters: of a parameter file; notes: what was not imported, in
+    words."""
 
     ways: tuple[Way, ...] = ()
     fences: tuple[Fence, ...] = ()

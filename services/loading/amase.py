@@ -38,7 +38,7 @@ def is_scenario(path: Path) -> bool:
 
 
 def count_scenario_requests(path: Path) -> int:
-    """How many automation requests a scenario has; one that has none is one."""
+    """The number of automation requests in a scenario; at least 1."""
     return len(requests_of(_read(path)[1]))
 
 

@@ -359,7 +359,7 @@ def zone_end_problems(mission: Mission) -> Iterator[Finding]:
 
 @as_errors
 def start_problems(mission: Mission) -> Iterator[Finding]:
-    """Vehicles whose start is inside a keep-out or not inside a keep-in (padding included)."""
+    """Vehicles that start inside a keep-out zone or outside a keep-in zone (padding included)."""
     for k, vehicle in enumerate(mission.vehicles):
         for zone in mission.zones:
             if not start_is_allowed(vehicle.position, zone):

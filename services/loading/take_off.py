@@ -78,6 +78,6 @@ def _is_level(vehicle: GroundedVehicle, site: LandingSite, roll: float, terrain_
 
 
 def words(mission: Mission) -> str:
-    """Who starts on the ground, for reports."""
+    """Which vehicles start on the ground, in words, for reports."""
     names = ", ".join(str(one.id) for one in grounded(mission))
     return f"on the ground at the start, and taken off by ICAROUS: {names}"

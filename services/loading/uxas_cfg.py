@@ -41,7 +41,7 @@ PLAYED = frozenset(
 
 @dataclass(frozen=True)
 class Sent:
-    """A message file: its object, where it stands, and when it is sent [ms]."""
+    """A message file: its object, its position in the configuration, and when it is sent [ms]."""
 
     body: Any
     where: str

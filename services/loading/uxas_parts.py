@@ -72,7 +72,7 @@ def heading(degrees: float, where: str, item: str) -> float:
 
 
 def no_vehicle(configuration: Sent, item: str, what: str, expected: str, got: str) -> BadInput:
-    """The error for a configuration whose item makes no vehicle."""
+    """The error for a vehicle configuration with an invalid item."""
     text, where = f"vehicle {configuration.body.ID} {what}", configuration.where
     return BadInput(text, where=where, item=item, expected=expected, got=got)
 

@@ -54,7 +54,7 @@ def number(default: float | None, low: float | None = 0.0, high: float | None = 
 
 
 def choice(default: str, *choices: str) -> Attr:
-    """One of some words, whatever their case."""
+    """Reader of an attribute that takes one of several words, regardless of case."""
     return Attr("choice", default, choices=choices)
 
 
@@ -83,7 +83,7 @@ ROOT: Mapping[str, Attr] = {
 
 @dataclass(frozen=True)
 class Entry:
-    """A Service or Bridge element: its type, attributes and children, and where it stands."""
+    """A Service or Bridge element: type, attributes, children, and its position in the file."""
 
     kind: str
     type: str

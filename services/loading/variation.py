@@ -18,7 +18,7 @@ from cratous.spec.mission import Mission, Position, Task, Vehicle
 
 
 def vary(mission: Mission, document: Document, seed: int) -> Mission:
-    """Variant `seed` (> 0) of a mission by its `variation` section; BadInput if it has none."""
+    """Variant `seed` (> 0) of a mission, drawn as its `variation` section says; BadInput if it has none."""
     data = document.data.get("variation")
     key = ("variation",)
     if data is None:

@@ -36,7 +36,7 @@ _BLOCK = 1 << 16
 
 
 def json_line(entry: Entry) -> tuple[str, BadInput | None]:
-    """One line of JSON; the error says why a body stands in it undecoded."""
+    """An entry as one line of JSON; an undecodable body is included raw, with the error."""
     data, error = any_data(entry)
     head: dict[str, Any] = {
         "seq": entry.seq,

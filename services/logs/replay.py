@@ -101,7 +101,7 @@ def parse_address(text: str) -> tuple[str, int]:
 
 
 def connect(address: str, timeout_s: float = 10.0) -> socket.socket:
-    """A connection to a server; BadInput if nobody answers."""
+    """A connection to a server; BadInput if it does not answer within timeout_s [s]."""
     try:
         return socket.create_connection(parse_address(address), timeout=timeout_s)
     except OSError as error:

@@ -96,7 +96,7 @@ class Selection:
         return " AND ".join(parts), tuple(values)
 
     def check_types(self, topics: Iterable[str]) -> None:
-        """BadInput for a type that nobody knows and that is not among the topics of the log."""
+        """BadInput for a selected type that is neither known nor among the topics of the log."""
         there = list(topics)
         for name, test in self._wanted:
             if not _known(name) and not any(test(topic) for topic in there):

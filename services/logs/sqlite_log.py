@@ -36,7 +36,7 @@ class Closing(NamedTuple):
 
 
 class TopicCount(NamedTuple):
-    """How often a type stands in a log, and when first and last [ms]."""
+    """Number of messages of a type in a log; times of the first and the last [ms]."""
 
     topic: str
     messages: int

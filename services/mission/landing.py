@@ -25,7 +25,7 @@ def sites_of(mission: Mission) -> tuple[LandingSite, ...]:
 
 
 def site_under(place: Position, sites: Iterable[LandingSite]) -> LandingSite | None:
-    """The site on whose ground a place is; None in the air, and beside every site."""
+    """The landing site on which a position lies; None in the air or outside all sites."""
     for site in sites:
         north, east = place.north_m - site.north_m, place.east_m - site.east_m
         if on_ground(north, east, site.radius_m, place.alt_m - site.ground_m, SLACK_M):

@@ -236,7 +236,7 @@ def zoomed(camera: Camera, task: Task, height_m: float) -> Camera:
 
 
 def view_distance_m(view: View | None, height_m: float) -> float:
-    """How far from the target the sensor stands, on the ground [m]; 0 without a wanted view."""
+    """Horizontal distance from which the sensor looks at its target [m]; 0 if no view angle is required."""
     if view is None or view.elevation_rad <= -math.pi / 2 + 1e-6:
         return 0.0
     return height_m / math.tan(-view.elevation_rad)

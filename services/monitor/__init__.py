@@ -144,7 +144,7 @@ class Monitor:
         return self._last_ms
 
     def commands(self) -> dict[int, list[tuple[int, str]]]:
-        """By protected vehicle: since when [ms] who commands it, from 0 on, as its gate says."""
+        """For each protected vehicle the changes of command: since when [ms] who commands it, according to its gate."""
         return {number: list(seen.had) for number, seen in self.authority.vehicles.items()}
 
     def details(self) -> list[Verdict]:

@@ -57,7 +57,7 @@ class Beat:
 
     @property
     def in_time(self) -> bool:
-        """True iff none was late so far."""
+        """True if no heartbeat was late so far."""
         return bool(beats_result(self.beats))
 
 

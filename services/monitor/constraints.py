@@ -73,7 +73,7 @@ class Fence:
 
 
 class ConstraintWatch:
-    """Zones, order, timing and eligibility. `presence`: who was seen when."""
+    """Watch of zones, order, timing and eligibility. `presence`: which aircraft were observed when."""
 
     def __init__(self, mission: Mission, presence: Presence) -> None:
         self._mission, self._presence = mission, presence

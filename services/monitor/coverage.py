@@ -129,7 +129,7 @@ class CoverageWatch:
         return enough_seen(unseen, whole)
 
     def fraction(self, task: int) -> float | None:
-        """Fraction seen so far; None for a task that is no search."""
+        """Fraction of a search task covered so far, 0 to 1; None for other tasks."""
         if task in self._areas:
             return self._areas[task].fraction()
         if task not in self._total:

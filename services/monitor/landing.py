@@ -31,7 +31,7 @@ class Down:
 
     @property
     def good(self) -> bool:
-        """It came down on a site, stayed, and stands there."""
+        """True if it landed on a site, stayed there, and stands."""
         return bool(self.site) and not self.wrong and self.stands
 
     def words(self) -> str:
@@ -74,7 +74,7 @@ class LandingWatch:
         return next(flown), next(flown)
 
     def at_rest(self, seen: Callable[[int], bool]) -> dict[int, Down]:
-        """Who is on the ground, with those that have not left it, of whom all was seen."""
+        """The vehicles on the ground, including those that have not taken off yet and were always observed."""
         stood = {
             number: Down("its start", 0, stands=number in self._stood, began=True)
             for number in self._not_yet

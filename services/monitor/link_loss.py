@@ -110,7 +110,7 @@ class LinkLossWatch:
         told.said.append(f"{body.Mode.name} from {now_ms / 1000:.2f} s")
 
     def status(self, body: Any) -> None:
-        """UxAS's end says that a connection stands or has ended."""
+        """Process a BridgeStatus: UxAS's end reports that a connection is open or has ended."""
         told = self._told.get(body.VehicleID)
         if told is None:
             return

@@ -26,7 +26,7 @@ class Presence:
         self._spans: dict[int, list[Span]] = {}
 
     def step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
-        """Two successive instants; who is in both was seen between them."""
+        """Process two successive samples: aircraft in both were observed in between."""
         for number in before.keys() & after.keys():
             begin, end = before[number].time_ms, after[number].time_ms
             if not in_time(begin, end, self.step_ms):

@@ -41,7 +41,7 @@ class Kept(NamedTuple):
     doubt: str = ""
 
     def verdict(self, row: Row, times: Times, what: str) -> Verdict:
-        """The verdict on one of the rows, all of whose tasks have times."""
+        """The verdict on one row all of whose tasks have times."""
         found = row_verdict(row, times, what)
         return self.judged(replace(found, kernels=(*found.kernels, *self.kernels)))
 
@@ -54,7 +54,7 @@ class Kept(NamedTuple):
 
 
 def by_term(mission: Mission) -> tuple[str, ...]:
-    """Who decides about the relations of a mission; nobody where it has no tasks."""
+    """The kernels that decide the relations of a mission; none if it has no tasks."""
     return (qualified(term_parts),) if mission.tasks else ()
 
 

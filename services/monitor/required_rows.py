@@ -58,7 +58,7 @@ def fence_item(zone: Zone, vehicle: int) -> str:
 
 
 def eligible_item(task: int) -> str:
-    """The row on who flew a task."""
+    """The name of the row on which vehicle flew a task."""
     return f"eligibility: task {task} in flight"
 
 
@@ -78,7 +78,7 @@ def served_item(task: int) -> str:
 
 
 def authority_item(vehicle: int) -> str:
-    """The row on who commands a vehicle."""
+    """The name of the row on the authority over a vehicle."""
     return f"authority over vehicle {vehicle}"
 
 

@@ -124,7 +124,7 @@ class WholeStep:
 
 
 class SeparationWatch:
-    """Well clear of every protected vehicle. `presence`: who was seen when."""
+    """Watch of well clear for every protected vehicle. `presence`: which aircraft were observed when."""
 
     def __init__(self, mission: Mission, presence: Presence) -> None:
         self._mission, self._presence = mission, presence

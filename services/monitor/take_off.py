@@ -95,7 +95,7 @@ class TakeOffWatch:
             seen.notes.append(f"{body.Mode.name} from {now_ms / 1000:.2f} s")
 
     def gate(self, body: Any) -> None:
-        """How a gate stands."""
+        """Process a GateState."""
         seen = self._seen.get(body.VehicleID)
         if seen is not None:
             seen.icarous.append((body.Time, has_it(reported(body))))

@@ -166,7 +166,7 @@ class Contexts:
         return status(request_id, "Error", [("reason", text) for text in reasons_of(error)])
 
     def error(self, request_id: int) -> CratousError | None:
-        """Why a request has ended here without a plan, None if nobody here has ended it."""
+        """Why a request ended here without a plan; None if no service here ended it."""
         found = self._found.get(request_id)
         return found if found is None or isinstance(found, CratousError) else found.error
 

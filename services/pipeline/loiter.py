@@ -37,14 +37,14 @@ COMMANDS_FROM = 2**40
 
 
 class Due(NamedTuple):
-    """A loiter, and the action that a vehicle is told to do it by."""
+    """A loiter task, and the action by which a vehicle is commanded to do it."""
 
     loiter: Loiter
     action: Any
 
 
 class Work(NamedTuple):
-    """One request: what was told of it, its costs, and its loiters once it is assigned."""
+    """State of one request: its messages, its costs, and its loiters once it is assigned."""
 
     told: Told
     matrix: Any = None
@@ -52,7 +52,7 @@ class Work(NamedTuple):
 
 
 class Order(NamedTuple):
-    """A loiter that a vehicle is still to be told of, and the waypoint to go to after it."""
+    """A loiter that has still to be commanded, and the waypoint to go to after it."""
 
     due: Due
     waypoint: int

@@ -16,7 +16,7 @@ from cratous.spec.errors import BadInput
 
 
 class MissionWorld:
-    """What a mission has, by id; nobody has sent messages about it."""
+    """The contents of a mission, by id; not obtained from messages."""
 
     def __init__(self, inputs: Inputs) -> None:
         vehicles = [vehicle.id for vehicle in inputs.mission.vehicles]
@@ -59,7 +59,7 @@ class MissionSource:
         """Speeds and altitudes are the mission's."""
 
     def asks(self, service: str) -> bool:
-        """Nobody: options were held against the mission's zones and cameras, exactly."""
+        """False: options were already checked exactly against the mission's zones and cameras."""
         return False
 
     def inputs(self, request: Any, where: str) -> Inputs:

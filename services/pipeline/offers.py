@@ -26,7 +26,7 @@ OPTIONS = "uxas.messages.task.TaskPlanOptions"
 
 
 class Told(NamedTuple):
-    """Of one request: the request, and options by task."""
+    """Messages of one request: the request itself, and the options by task."""
 
     request: Any
     options: dict[int, Any]

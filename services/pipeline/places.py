@@ -43,7 +43,7 @@ class Way(NamedTuple):
 
 
 class RequestPlaces:
-    """Of one mission: places to and from messages, and routes between any of them."""
+    """Positions of one mission: conversion to and from messages, and routes between them."""
 
     def __init__(self, mission: Mission, finder: Routes) -> None:
         """finder: routes of the mission's vehicles among its zones; what is found is kept there."""

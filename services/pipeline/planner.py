@@ -87,7 +87,7 @@ def _answer(request: Any, plans: list[Any]) -> Any:
 
 
 def straight_costs(contexts: Contexts, request: Any) -> Any:
-    """The RoutePlanResponse whose costs are those of straight lines, whatever lies between."""
+    """The RoutePlanResponse with the costs of straight lines, obstacles ignored."""
     try:
         places, ways = _ways(contexts, request, request.RouteRequests)
         speed = places.mission.vehicle(request.VehicleID).speed_m_s

@@ -82,7 +82,7 @@ def option_routes_id(ticket: int) -> int:
 
 
 def sensors_asked(context: Context, task: Task) -> list[int]:
-    """The vehicles of which a footprint is needed: who may search, and has a camera for it."""
+    """The vehicles whose footprint is needed: those eligible to search that have a suitable camera."""
     if task.kind not in SEARCHES:
         return []
     return [
@@ -123,7 +123,7 @@ def blind(context: Context, task: Task, response: Any) -> frozenset[int]:
 
 
 def route_requests(context: Context, task_id: int, options: list[Option], ticket: int) -> list[Any]:
-    """One RoutePlanRequest for each vehicle that stands for its class, RouteID the option's."""
+    """One RoutePlanRequest for each vehicle that represents its class; the RouteID is the option's id."""
     of: dict[int, list[Option]] = {}
     for option in options:
         of.setdefault(option.vehicles[0], []).append(option)

@@ -23,19 +23,20 @@ Alien = tuple[int, int]
 
 
 class Unserved(NamedTuple):
-    """Kinds by task: those that others still have time to speak for, and those that nobody has."""
+    """Task kinds that no service here handles: those that others may still answer for, and those reported as
+    unhandled."""
 
     waiting: Mapping[Alien, str] = MappingProxyType({})
     named: Mapping[int, str] = MappingProxyType({})
 
     def arrived(self, task: Alien, kind: str) -> tuple[Unserved, Wake]:
-        """A task of a kind that nobody here does; when to look whether another has spoken."""
+        """A task of a kind that no service here handles; and when to check whether another has answered."""
         waiting = {**self.without([task[0]]).waiting, task: kind}
         kept = dict(list(waiting.items())[-MOST:])
         return self.without([task[0]])._replace(waiting=kept), Wake(OTHERS_MS, task)
 
     def without(self, tasks: Iterable[int]) -> Unserved:
-        """These are removed, told anew, or somebody has spoken for them."""
+        """Without these tasks: they were removed, replaced, or a service has answered for them."""
         gone = set(tasks)
         waiting = {task: kind for task, kind in self.waiting.items() if task[0] not in gone}
         return Unserved(waiting, {n: kind for n, kind in self.named.items() if n not in gone})

@@ -19,13 +19,13 @@ class Logic(Protocol):
         """All of them hold."""
 
     def some(self, formulas: Sequence[Any]) -> Any:
-        """At least one of them holds."""
+        """At least one of these formulas holds."""
 
     def one(self, formulas: Sequence[Any]) -> Any:
         """Exactly one of them holds."""
 
     def few(self, formulas: Sequence[Any]) -> Any:
-        """At most one of them holds."""
+        """At most one of these formulas holds."""
 
     def follows(self, premise: Any, formula: Any) -> Any:
         """The formula holds if the premise does."""

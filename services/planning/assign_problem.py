@@ -197,7 +197,7 @@ def parts(problem: AssignmentProblem) -> tuple[tuple[Part, ...], bool]:
 
 
 def not_all_of(term: algebra.Term) -> str:
-    """What is said where not all branches of a term are looked at, nothing where they are."""
+    """A note that not all branches of a term were searched; empty if all were."""
     count = algebra_meaning.count_branches(term)
     if count <= BRANCHES_MAX:
         return ""

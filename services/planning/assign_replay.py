@@ -51,7 +51,7 @@ def _times(
 
 
 def branch_of(problem: AssignmentProblem, steps: Sequence[Step]) -> Part:
-    """The branch whose tasks these are and whose rows hold; else one with these tasks."""
+    """The branch with these tasks whose rows hold; else a branch with these tasks."""
     done = {step.task_id for step in steps}
     if len(done) < len(steps):
         raise _wrong("a task is done twice")

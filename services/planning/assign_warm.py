@@ -72,12 +72,13 @@ def warm_passes(i: Instance) -> None:
 
 
 def simple_instance(semantics: str) -> Instance:
-    """Of four tasks in a row: fewer would be run by CPython."""
+    """An assignment problem of four tasks in sequence; smaller ones are solved in CPython."""
     return _instance(".(p1 p2 p3 p4)", (1,), semantics)
 
 
 def wide_instance(semantics: str) -> Instance:
-    """Of four tasks that four vehicles may share in any way: what can be dealt out in few ways CPython searches."""
+    """An assignment problem of four tasks that any of four vehicles may serve; with fewer combinations it would be
+    solved in CPython."""
     return _instance("|(p1 p2 p3 p4)", (1, 2, 3, 4), semantics)
 
 

@@ -101,7 +101,7 @@ class Parts:
         return self._known[part]
 
     def conflict(self, part: Part) -> frozenset[int]:
-        """Of a part without a schedule the smallest one found that has none."""
+        """For a part without a schedule, the smallest subset found that has none."""
         k, kept = part
         known = next((c for c in self.conflicts.get(k, ()) if c <= kept), None)
         if known is not None:

@@ -132,7 +132,7 @@ def _at_altitude(point: Position, flyer: Flyer) -> Position:
 
 
 def point_ways(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float) -> Iterator[Way]:
-    """Passes from which the point is seen for the whole dwell; circles if none lasts so long."""
+    """Passes from which a point is seen for the whole dwell time; circles if no pass is long enough."""
     target, dwell = task.points[0], max(task.duration_ms, MOMENT_MS)
     if task.loiter is not None:
         wide = replace(task.loiter, radius_m=max(task.loiter.radius_m, flyer.radius_m))

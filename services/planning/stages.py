@@ -85,7 +85,7 @@ def branches_of(mission: Mission, fixed: Sequence[Fixed]) -> tuple[tuple[Branch,
 
 
 def hold_of(option: Option, wait_ms: int, zones: Sequence[Zone]) -> Hold | None:
-    """A circle at the option's start whose laps take exactly wait_ms and obey the zones."""
+    """A holding circle at the option's start whose laps take exactly wait_ms [ms] and stay clear of the zones."""
     pose, speed = option.start, option.flyer.speed_m_s
     for laps in range(wait_ms // option.lap_ms, 0, -1):
         radius = speed * wait_ms / 1000 / (2 * math.pi * laps)

@@ -55,7 +55,7 @@ class AmaseLost(CratousError):
 
 
 class Phase(Enum):
-    """How far AMASE is with a flight: told nothing yet, aircraft taken out, put in, or flying."""
+    """Phase of the connection to AMASE: nothing sent yet, aircraft being removed, being inserted, or flying."""
 
     APART, CLEARING, PLACING, FLYING = range(4)
 

@@ -107,7 +107,7 @@ def level(body: Any, loiter: Any, state: Any) -> Any:
 
 
 def from_waypoint(mission: Any, state: Any) -> Any:
-    """A mission command from the waypoint on that the vehicle was last told to make for."""
+    """A mission command that starts at the waypoint to which the vehicle was last sent."""
     if state is None or state.CurrentWaypoint not in _numbers(mission):
         return mission
     return mission.copy(FirstWaypoint=state.CurrentWaypoint)

@@ -36,7 +36,7 @@ class ProcessEnded(CratousError):
         super().__init__(f"{self.told()}; its last lines: {' | '.join(lines) or 'none'}")
 
     def told(self) -> str:
-        """Who has ended how."""
+        """Which process ended, and its exit code or signal."""
         how = f"exit code {self.code}"
         if self.code not in range(256):
             how = f"signal {signal.Signals(-self.code).name}"
@@ -104,7 +104,7 @@ class Children:
         return child.pid
 
     def said(self, name: str) -> str:
-        """All that a process has said so far."""
+        """The output of a process so far."""
         return (self._logs / f"{name}.txt").read_text(encoding="utf-8", errors="replace")
 
     def watch(self) -> None:
@@ -116,7 +116,7 @@ class Children:
                 raise ProcessEnded(name, code, tuple(lines))
 
     def signalled(self, name: str, number: signal.Signals) -> None:
-        """Send a signal to those whose name begins so and that still run."""
+        """Send a signal to the running processes whose name begins with `name`."""
         for one, child in self.running.items():
             if one.startswith(name) and child.poll() is None:
                 child.send_signal(number)

@@ -21,7 +21,7 @@ class DirectLinks(NamedTuple):
 
     @property
     def words(self) -> tuple[str, ...]:
-        """What `cratous icarous` is told besides."""
+        """Additional command-line arguments of `cratous icarous`."""
         return ("--direct", f"{self.where.host}:{self.where.port}")
 
     @property

@@ -135,7 +135,7 @@ class FailingBridge:
 
     @property
     def ports(self) -> dict[int, int]:
-        """By vehicle, where its ICAROUS finds it."""
+        """The TCP port by vehicle to which its ICAROUS connects."""
         return {vid: one.getsockname()[1] for vid, one in self._listeners.items()}
 
     def leads_to(self, port: int) -> None:

@@ -16,7 +16,7 @@ _HEAD = re.compile(rb"([0-9]{1,18}),([0-9]{1,18}),[0-9]{1,18},([0-9]{1,18}),")
 
 
 class Forger:
-    """Of one connection, towards UxAS; what it does is drawn from `draw`."""
+    """Forges packets on one connection towards UxAS; which ones is drawn from `draw`."""
 
     def __init__(self, vehicle_id: int, draw: random.Random) -> None:
         self._vehicle_id, self._draw = vehicle_id, draw
@@ -35,8 +35,8 @@ class Forger:
             self._last = sequence, time_ms, acknowledged
 
     def packet(self, line: bytes) -> bytes:
-        """One of either direction that went by, again; or the line as ICAROUS's next packet: numbers and checksum are
-        right, the key is another one."""
+        """A forged packet: one of either direction repeated, or the line as ICAROUS's next packet, with valid numbers
+        and checksum but another key."""
         if self._heard and self._draw.random() < 1 / 2:
             return self._draw.choice(self._heard)
         sequence, time_ms, acknowledged = self._last

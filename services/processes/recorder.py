@@ -44,7 +44,7 @@ class Instant:
 
 
 class Recorder:
-    """Writes the messages of a flight onto a bus, in order; who taps it logs and judges them."""
+    """Publishes the messages of a flight on a bus in order, for the log and the monitor."""
 
     def __init__(self, mission: Mission, bus: Bus) -> None:
         self._plane, self._bus = Projection(mission.frame), bus
@@ -81,7 +81,7 @@ class Recorder:
         )
 
     def accepted(self, plan: Plan) -> None:
-        """By which plan is flown."""
+        """Record the plan in force."""
         self._say(plan_accepted(self.now_ms, plan, frozenset()))
 
     def heard(self, body: Any) -> None:

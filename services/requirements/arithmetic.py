@@ -55,7 +55,7 @@ Side = str | float | Term
 
 
 def terms(one: Side) -> Iterator[Term]:
-    """All terms of a side, parts before the whole, each as often as it stands there."""
+    """All terms of a side, sub-terms first, repeated terms included."""
     if isinstance(one, Term):
         for side in one.sides:
             yield from terms(side)
@@ -67,7 +67,7 @@ class Made(Protocol):
 
     @property
     def made(self) -> Term | None:
-        """Of what it is calculated; None: it stands in the trace."""
+        """The term from which the signal is computed; None: it is recorded in the trace."""
 
 
 def sources(names: Iterable[str], signals: Mapping[str, Made]) -> set[str]:

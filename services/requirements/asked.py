@@ -9,7 +9,7 @@ from cratous.services.requirements.specification import Requirement, Specificati
 
 
 def depends_on(one: Requirement) -> Formula | None:
-    """Of `a implies b`, a; of any other form nothing."""
+    """For `a implies b` the condition a; for any other form none."""
     formula = one.formula
     if isinstance(formula, Join) and not formula.is_and and isinstance(formula.phi, Not):
         return formula.phi.phi

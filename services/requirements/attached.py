@@ -24,7 +24,7 @@ POLL_S = 0.1
 
 
 class Attached:
-    """One connection, made again when it is lost; `find(kind)` is told of what is missing then."""
+    """A connection that is re-established when lost; `find(kind)` is called with what was missed."""
 
     def __init__(self, where: Address, report: Report, find: Callable[[str, int], None]) -> None:
         self._port: TcpPort | Subscription = (

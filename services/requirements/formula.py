@@ -177,7 +177,7 @@ def _horizons(formula: Formula) -> dict[int, int]:
 
 
 def waiting(formula: Formula, period: int) -> int:
-    """So many samples wait at most in any queue of its evaluation, where samples are at least a period apart."""
+    """The most samples that any queue of the evaluation holds, if samples are at least `period` apart."""
     longest, found = _horizons(formula), 0
     for part in parts(formula):
         old = part.low if isinstance(part, Bounded) and part.past else 0

@@ -153,7 +153,7 @@ def begun(tree: Any) -> None:
 
 
 def only_before(tree: Any, name: str) -> bool:
-    """Whether a name stands under `pre` alone, and for a number."""
+    """True if a name occurs only under `pre`, and as a number."""
     todo = [(tree, False)]
     while todo:
         node, late = todo.pop()

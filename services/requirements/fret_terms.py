@@ -73,7 +73,7 @@ class Names:
     real: bool = False
 
     def of(self, token: Any) -> Meaning:
-        """What a variable is; Wrong for one that nobody has declared."""
+        """The declared variable of a token; Wrong if it is undeclared."""
         name = str(token)
         found = self.bound.get(name, name)
         if isinstance(found, Unread):
@@ -85,7 +85,7 @@ class Names:
         return found
 
     def truth(self, token: Any) -> formulas.Formula:
-        """A variable that stands for itself."""
+        """A Boolean variable used as a formula."""
         found = self.of(token)
         if isinstance(found, bool):
             return formulas.TRUE if found else formulas.FALSE
@@ -118,7 +118,7 @@ class Names:
         return formulas.compared(values[0], relation, values[1])
 
     def named(self, side: Any) -> Any:
-        """Of what is calculated the name of its signal; anything else as it is."""
+        """The name of the signal made for a computed side; any other side unchanged."""
         if not isinstance(side, Term):
             return side
         self.signals.setdefault(side.text, Signal("float", side.unit, made=side))

@@ -1,17 +1,10 @@
-"""What a watch has found so far, as Prometheus reads it: text, served on this machine alone."""
+"""What a watch has found so far, as Prometheus reads it: text, which `metrics_server` serves."""
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-
 from cratous.services.requirements.watch import Watch
-from cratous.spec.errors import BadInput
 
 COUNTS = ("holds", "violated", "unknown")
-KIND = "text/plain; version=0.0.4; charset=utf-8"
 
 
 def text_of(watch: Watch, messages: int) -> str:
@@ -55,39 +48,3 @@ def text_of(watch: Watch, messages: int) -> str:
 
 def _quoted(text: str) -> str:
     return text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
-
-
-@contextmanager
-def served(port: int, text: Callable[[], str]) -> Iterator[int]:
-    """Serve the text at http://127.0.0.1:PORT/metrics in here; gives the port (0 takes a free one)."""
-
-    class Handler(BaseHTTPRequestHandler):
-        timeout = 5.0  # a reader that says nothing holds its thread no longer
-
-        def do_GET(self) -> None:
-            body = text().encode() if self.path == "/metrics" else b"look at /metrics\n"
-            self.send_response(200 if self.path == "/metrics" else 404)
-            self.send_header("Content-Type", KIND)
-            self.send_header("Content-Length", str(len(body)))
-            self.end_headers()
-            self.wfile.write(body)
-
-        def log_message(self, format: str, *args: object) -> None:
-            """Requests are not logged."""
-
-    try:
-        server = ThreadingHTTPServer(("127.0.0.1", port), Handler)
-    except OSError as error:
-        raise BadInput(
-            "cannot listen", where=f"127.0.0.1:{port}", item="--metrics",
-            expected="a free port of this machine", got=error.strerror or str(error),
-        ) from None  # fmt: skip
-    server.daemon_threads = True
-    thread = threading.Thread(target=server.serve_forever, daemon=True)
-    thread.start()
-    try:
-        yield server.server_address[1]
-    finally:
-        server.shutdown()
-        server.server_close()
-        thread.join()

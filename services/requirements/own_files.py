@@ -55,7 +55,7 @@ class OwnFile(NamedTuple):
         return {"file": self.name, "sha256": digest(self.text), "imports": parts}
 
     def specification(self) -> Specification:
-        """What it says; BadInput where no log of a flight can be held against it."""
+        """The parsed requirements; BadInput if no flight log can be checked against them."""
         found = language.read(self.text, self.name, dict(self.imports))
         needed: set[str] = set()
         for one in found.requirements:

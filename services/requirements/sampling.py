@@ -75,7 +75,7 @@ class Sampling:
 
     @property
     def findings(self) -> list[Finding]:
-        """All that was found so far; signals of which no value came are among them."""
+        """All findings so far, including signals without any value."""
         never = [Finding("never", name, -1, 1) for name in self.signals if name not in self.seen]
         gone = {one.signal for one in never}
         found = list(self._found.values())  # another thread may read it while samples come

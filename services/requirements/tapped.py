@@ -82,7 +82,7 @@ def refuse_untold(wanted: Mapping[str, Signal]) -> None:
 
 
 class Tapped:
-    """The messages of a tap; `find(kind)` is told of what is missing or cannot be read."""
+    """The messages of a tap; `find(kind)` is called with what was missed or cannot be decoded."""
 
     def __init__(
         self, tap: Tap, key_of: KeyOf, report: Report, find: Callable[[str, int], None]

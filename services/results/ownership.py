@@ -33,7 +33,7 @@ class Holding:
 
 
 def look(folder: Path) -> Holding:
-    """Whose the entries of a folder are."""
+    """Which entries of a folder were written by us, and which were not."""
     there = sorted(entry.name for entry in folder.iterdir())
     written = read_manifest(folder)
     if written is not None:

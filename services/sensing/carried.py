@@ -14,7 +14,8 @@ from cratous.spec.mission.sensing import Sensing
 
 
 class Sensors(NamedTuple):
-    """Whose sensors, and which. seed: of the mission's variant, beside their own; step_ms: since the step before."""
+    """Sensors of one vehicle. seed: of the mission's variant, beside their own; step_ms: time since the previous step
+    [ms]."""
 
     own_id: int
     sensing: Sensing

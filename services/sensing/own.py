@@ -33,7 +33,7 @@ class Own(NamedTuple):
 
 
 def first(sensor: Sensor, now_ms: int, air: Flown) -> Own:
-    """At the start."""
+    """The estimate of the own state at the start, at now_ms [ms]."""
     start = measured(sensor, now_ms, air.position, air.velocity)
     return Own(Estimate(*start), ((now_ms, air.position, air.velocity),))
 

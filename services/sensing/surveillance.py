@@ -22,8 +22,8 @@ from cratous.spec.mission import Mission, SensedDaa
 
 
 class Carrier(NamedTuple):
-    """Whose sensors these are, what does not change. daa: with the sensors; seed: of the mission's variant; cooperating:
-    the vehicles with an ICAROUS instance, of which ADS-B tells."""
+    """A vehicle with sensors, constant over the flight. daa: parameters with the sensors; seed: of the mission's
+    variant; cooperating: the vehicles with an ICAROUS instance, which ADS-B reports."""
 
     own_id: int
     daa: SensedDaa
@@ -51,7 +51,7 @@ class Shown(NamedTuple):
 
 
 def carriers(mission: Mission, instances: Iterable[int]) -> dict[int, Carrier]:
-    """Who has sensors: each vehicle with an instance, if the mission has any."""
+    """The vehicles with sensors: each that has an ICAROUS instance, if the mission defines sensors."""
     daa, step_ms = mission.daa, mission.simulation.step_ms
     if not isinstance(daa, SensedDaa):
         return {}
@@ -69,7 +69,7 @@ def stepped(
 
 
 def arrived(carrier: Carrier, before: Surveillance, now_ms: int) -> Surveillance:
-    """At a heartbeat: what has come by now is used."""
+    """Process the measurements that have arrived by the heartbeat at now_ms [ms]."""
     known = Carried(before.under_way, before.own)
     after, others = carried.came(carrier.own_id, known, now_ms)
     return Surveillance(*after, tracked(before.tracks, others, carrier.daa.sensing, now_ms))

@@ -126,7 +126,7 @@ def shown(a: Aircraft) -> Shown:
 
 
 def ground_motion(a: Aircraft, wind_m_s: tuple[float, float]) -> tuple[float, float]:
-    """Ground speed [m/s] and course [rad] as told; AMASE takes the wind off a second time."""
+    """Ground speed [m/s] and course [rad] as published; AMASE subtracts the wind twice."""
     north, east = a.motion.north_m_s, a.motion.east_m_s
     if a.airframe.compatible:
         north, east = north - wind_m_s[0], east - wind_m_s[1]
@@ -136,7 +136,7 @@ def ground_motion(a: Aircraft, wind_m_s: tuple[float, float]) -> tuple[float, fl
 def state(
     a: Aircraft, wind_m_s: tuple[float, float], time_ms: int, payloads: tuple[Any, ...] = ()
 ) -> tuple[Aircraft, Any]:
-    """The AirVehicleState that is told, and the aircraft that has told it."""
+    """The aircraft after publishing its AirVehicleState, and that message."""
     m, what = a.motion, shown(a)
     speed, course = ground_motion(a, wind_m_s)
     rates = body_rates(m)

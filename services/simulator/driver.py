@@ -105,7 +105,7 @@ class Drivers:
         self._mounted[body.ID] = payload.placed(self._mounted[body.ID], body)
 
     def remove(self, key: int) -> None:
-        """It is no longer there."""
+        """Remove a vehicle."""
         for held in (self.there, self._chassis, self._mounted):
             held.pop(key, None)
 

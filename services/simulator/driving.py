@@ -53,7 +53,7 @@ class Chassis(NamedTuple):
         return min(self.max_speed_m_s, sqrt(self.side_m_s2 * radius_m), self.turn_rad_s * radius_m)
 
     def still_from(self, speed_m_s: float, away_m: float) -> float:
-        """How fast it may be so far from where it has to have a speed [m/s]."""
+        """The highest speed [m/s] at away_m [m] before a point that has to be passed at speed_m_s [m/s]."""
         return sqrt(speed_m_s * speed_m_s + 2 * self.along_m_s2 * max(0.0, away_m))
 
 

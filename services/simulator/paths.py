@@ -103,7 +103,7 @@ class Paths:
         self._held[body.VehicleID] = body, False
 
     def drop(self, key: int) -> None:
-        """A vehicle is told something else, or is gone."""
+        """Forget a vehicle's path: it was commanded otherwise, or removed."""
         self._held.pop(key, None)
 
     def due(self, time_ms: int) -> Iterator[tuple[Any, bool]]:

@@ -27,7 +27,8 @@ class Camera(NamedTuple):
 
 
 class Gimbal(NamedTuple):
-    """Its configuration, where it points [deg], what it does, the corner and cycle of a scan; cameras."""
+    """State of a gimbal: configuration, pointing direction [deg], current action, corner and cycle of a scan; its
+    cameras."""
 
     configuration: Any
     azimuth_deg: float

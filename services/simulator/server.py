@@ -39,7 +39,7 @@ LINGER_S = 2.0
 
 
 class ClientGone(CratousError):
-    """One of the only clients of a simulator has gone before the end."""
+    """A required client of the simulator has disconnected before the end."""
 
     exit_code = 3
 

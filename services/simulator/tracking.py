@@ -43,7 +43,7 @@ class Tracks:
         return True
 
     def steered(self, key: int) -> None:
-        """A vehicle is told where to go: it does that, also when it has lost what it tracks."""
+        """A vehicle was commanded to go somewhere: it does, even if it loses what it tracks."""
         for held, track in self._held.items():
             if held[0] == key:
                 self._held[held] = track._replace(return_to=None)
@@ -54,7 +54,8 @@ class Tracks:
             del self._held[held]
 
     def perceived(self, body: Any, time_s: float) -> Iterator[tuple[int, Any]]:
-        """By an EntityPerception: vehicles and what their gimbals stare at now."""
+        """Process an EntityPerception at time_s [s]: update its tracks; by vehicle the gimbal command that points at
+        it."""
         for held, track in self._held.items():
             if track.entity and track.entity == body.PerceivedEntityID:
                 self._held[held] = track._replace(at=body.Location, seen_s=time_s, lost=False)

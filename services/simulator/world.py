@@ -49,7 +49,7 @@ MOST_VEHICLES = 1000
 
 
 class Event(NamedTuple):
-    """An object of a scenario, when it happens [s], and where it stands in the file."""
+    """An object of a scenario, its time [s], and its position in the file."""
 
     time_s: float
     body: Any

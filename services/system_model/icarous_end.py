@@ -44,7 +44,7 @@ class IcarousEnd:
         self.flown = False
 
     def has_beaten(self, now_ms: int) -> bool:
-        """Its heartbeat of this instant is over, or has begun."""
+        """True if its heartbeat of this instant has started or is over."""
         return self.beat_ms is not None and in_time(self.beat_ms, now_ms, 0)
 
     def wishes(self, gate: Gate, after: Gate, now_ms: int) -> None:
@@ -60,7 +60,7 @@ class IcarousEnd:
         self.due = True
 
     def commands(self, gate: Gate, now_ms: int) -> None:
-        """It has sent a command; Misfit if it flies nothing, or its command of this heartbeat is there."""
+        """It sends a command; Misfit if no state allows that, or this heartbeat already has its command."""
         self.flown = True
         if self.due:
             self.due = False
@@ -69,7 +69,7 @@ class IcarousEnd:
         self._beat(gate, now_ms, _goes_on, ASKED["command"], got)
 
     def is_silent(self, gate: Gate, now_ms: int) -> None:
-        """Its heartbeat was one in which it watched and did nothing; Misfit if it has to command."""
+        """Its heartbeat passes without any output; Misfit if it has to command."""
         self._beat(gate, now_ms, _watches, ASKED["silence"], "none")
 
     def _beat(

@@ -84,7 +84,7 @@ class UxasEnd:
         self._keep(after, "a mode refused", "a mode that cannot be true", got)
 
     def connects(self, now_ms: int) -> None:
-        """The connection stands, for the first time or again."""
+        """The connection is open, for the first time or again."""
         self.met, self.open, self.heard_ms = True, True, now_ms
         alive = (b._replace(end=b.end._replace(alive=True)) for b in self.possible)
         self.possible = frozenset(alive)
@@ -117,7 +117,7 @@ class UxasEnd:
         self._keep(agree, "a status of the link", f"alive {not alive}", f"alive {alive}: {note}")
 
     def sends_beat(self, sequence: int) -> None:
-        """A heartbeat to ICAROUS: the next number, while the connection stands."""
+        """A heartbeat is sent to ICAROUS; Misfit unless the connection is open and the number is the next."""
         if not self.open or sequence != self.downs + 1:
             number = f"number {self.downs + 1}" if self.open else "none without a connection"
             raise Misfit("a heartbeat to ICAROUS", number, f"number {sequence}")
@@ -131,7 +131,7 @@ class UxasEnd:
         self.heard_ms = now_ms
 
     def is_silent(self, now_ms: int) -> bool:
-        """By its heartbeats ICAROUS is silent for too long, and that has not been said."""
+        """True if ICAROUS's heartbeats have been missing for too long and that was not reported yet."""
         signs = (
             link_sign(b.end, ends.PASSED, self.heard_ms, now_ms, LINK_LOST_MS)
             for b in self.possible

@@ -131,7 +131,7 @@ class Actors(Flight):
     # what a trace lets happen ------------------------------------------------------------------
 
     def heartbeat(self, event: Event) -> None:
-        """ICAROUS looks; event.flag: nobody is met."""
+        """A heartbeat of ICAROUS; event.flag: no intruder is in conflict."""
         self.is_met = not event.flag
         before = self.icarous_states[VEHICLE].cycle.mode, self.gate
         for _ in range(MOST_BEATS if event.flag and before[0] == AVOID else 1):
@@ -193,7 +193,7 @@ class Actors(Flight):
 
     @property
     def gate(self) -> Gate:
-        """Of the vehicle."""
+        """The vehicle's gate."""
         return self.vehicle_states[VEHICLE].gate
 
     def happen(self, event: Event) -> Standing:

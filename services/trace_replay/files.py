@@ -31,7 +31,7 @@ class Trace(NamedTuple):
 
 
 def place(folder: Path, designs: Iterable[str]) -> dict[str, Path]:
-    """By design, the file of its trace in a folder, which is made; BadInput if a file of that name is no trace."""
+    """Trace files by design in a folder, which is created; BadInput if a file of such a name is not a trace."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -141,7 +141,7 @@ def _bodies(host: Host, folder: str, name: str, where: str) -> list[Any]:
 
 
 class SimulationTime:
-    """Test_SimulationTime: the bus' clock stands still until an entity's state tells the time."""
+    """Test_SimulationTime: the bus clock advances only with the times of entity states."""
 
     subscribes: tuple[str, ...] = (STATE,)
 

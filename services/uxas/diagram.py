@@ -46,7 +46,7 @@ class Pairs(NamedTuple):
 
 
 class AutomationDiagramDataService:
-    """It publishes nothing but a ServiceStatus where something could not be written."""
+    """Writes automation diagrams; publishes only a ServiceStatus when a file cannot be written."""
 
     subscribes: tuple[str, ...] = (REQUEST, RESPONSE)
 

@@ -29,7 +29,7 @@ GRAVITY_M_S2 = 9.80665
 
 
 class Leash(NamedTuple):
-    """The vehicle's configuration and state, requests so far, and the action in progress."""
+    """State: the vehicle's configuration and state, pending requests, and the action in progress."""
 
     configuration: Any = None
     state: Any = None

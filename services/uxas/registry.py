@@ -77,7 +77,7 @@ def contexts_of(host: Host) -> Contexts:
 
 
 def source_of(host: Host) -> MessageSource:
-    """What the messages have told the services of a process."""
+    """The message source shared by the services of a process."""
     contexts_of(host)  # which hears the messages
     source: MessageSource = host.shared["source"]
     return source

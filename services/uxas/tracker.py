@@ -24,7 +24,7 @@ State = dict[int, Tracked]
 
 
 class TaskTrackerService:
-    """It publishes nothing."""
+    """Tracks the state of every task; publishes nothing."""
 
     subscribes: tuple[str, ...] = (
         "afrl.cmasi.Task",

@@ -21,7 +21,7 @@ from cratous.spec.errors import BadInput
 
 
 class ZyreBridge(Bridge):
-    """A bridge whose port is a ZRE peer."""
+    """A bridge whose port is a ZRE node."""
 
     node: ZreNode
 
@@ -38,7 +38,7 @@ class ZyreBridge(Bridge):
         return tuple(self._entities.values())
 
     def handle(self, state: None, envelope: Envelope, now_ms: int) -> tuple[None, Iterable[Any]]:
-        """Whisper a message to all who want it."""
+        """Whisper a message to every peer that subscribes to it."""
         if not self.exports(envelope):
             return None, ()
         to = envelope.to

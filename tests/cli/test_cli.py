@@ -54,7 +54,7 @@ def test_each_command_explains_itself(run: Run, command: str) -> None:
 def test_help_imports_nothing_heavy() -> None:
     code = (
         "import sys; from cratous.services.cli import main; main(['--help']); "
-        "heavy = {'numpy', 'numba', 'z3', 'shapely', 'rich', 'lxml', 'jinja2', 'yaml'}; "
+        "heavy = {'numpy', 'numba', 'z3', 'shapely', 'rich', 'lxml', 'jinja2', 'yaml', 'starlette', 'uvicorn'}; "
         "print('HEAVY', sorted(heavy & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -231,5 +231,5 @@ def test_a_running_system_is_shown_while_it_runs(peer: Peer, tmp_path: Path) -> 
         page.until("document.querySelector('#aircraft tr[data-aircraft=\"3\"]')")
         peer.close()
         page.until("document.getElementById('live-state').textContent === 'cut off'")
-        assert ask(port, "/command", "POST", b"{}").status == 501
+        assert ask(port, "/command", "POST", b"{}").status == 405
         assert page.logged == []

@@ -123,7 +123,7 @@ def test_a_command_comes_from_the_page_itself(standing: Served) -> None:
         assert standing.sent("a", body, Origin=origin).status == 403
     assert standing.sent("a", body, Host="evil.example").status == 421
     assert standing.sent("a", body, Content_Type="text/plain").status == 415
-    assert standing.sent("a", body, Content_Length="-1").status == 413
+    assert standing.sent("a", body, Content_Length="-1").status == 400
     assert standing.sent("a", body, Content_Length="1001").status == 413
     assert ask(standing.port, "/command").status == 404
     assert standing.told()["status"]["state"] == "paused"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import mimetypes
 import shutil
 import signal
 import socket
@@ -15,15 +16,22 @@ from importlib.resources import files
 from pathlib import Path
 
 import pytest
-from ground_station_tools import LIMIT_S, ask, serving
+from ground_station_tools import LIMIT_S, PAGE, ask, page_files, serving
 from simulator_tools import mission, scenario, waypoint
 
 from cratous.services.cli import main
+from cratous.services.ground_station.access import Access
 from cratous.services.ground_station.recording import recording
-from cratous.services.ground_station.server import MOST_AT_ONCE, page_files
+from cratous.services.ground_station.server import GroundStation
+from cratous.services.ground_station.shown import ReadAnew
 from cratous.services.ground_station.verdicts import NO_REPORT, OTHER_LOG
+from cratous.services.web.connection import MOST_SILENT
 from cratous.spec.errors import BadInput
 
+KINDS = {
+    ".html": "text/html; charset=utf-8", ".css": "text/css; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8", ".svg": "image/svg+xml", ".png": "image/png",
+}  # fmt: skip
 LEAFLET = "/vendor/leaflet/"
 LEAFLET_NAMES = (
     b'"http://www.w3.org/2000/svg"', b"https://leafletjs.com", b"http://www.w3.org/2000/svg",
@@ -41,20 +49,42 @@ def test_the_page_and_all_that_it_names_are_there(port: int) -> None:
     page = ask(port, "/")
     assert page.status == 200
     assert page.headers["content-type"] == "text/html; charset=utf-8"
-    named = {path for path in page_files() if path[1:].encode() in page.body and path != "/"}
+    assert page.body == (PAGE / "index.html").read_bytes()
+    named = {path for path in page_files() if f'"{path}"'.encode() in page.body}
     assert named == {
         "/main.js", "/station.css", "/icon.svg", f"{LEAFLET}leaflet.js", f"{LEAFLET}leaflet.css",
     }  # fmt: skip
-    for path in page_files():
+    for path, file in page_files().items():
         got = ask(port, path)
         assert got.status == 200
+        assert got.headers["content-type"] == KINDS[file.suffix], path
+        assert got.body == file.read_bytes()
         assert int(got.headers["content-length"]) == len(got.body) > 100
 
 
+def test_a_file_that_a_browser_has_is_not_sent_again_and_parts_of_it_are(port: int) -> None:
+    first = ask(port, "/main.js")
+    again = ask(port, "/main.js", If_None_Match=first.headers["etag"])
+    assert (again.status, again.body) == (304, b"")
+    part = ask(port, "/main.js", Range="bytes=10-19")
+    assert (part.status, part.body) == (206, first.body[10:20])
+
+
+def test_what_a_file_is_does_not_hang_on_the_machine_s_own_tables(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Some of them call JavaScript plain text, which no browser runs then."""
+    for end in KINDS:
+        monkeypatch.setitem(mimetypes.types_map, end, "text/plain")
+    with GroundStation(ReadAnew(dict), 0, Access()):
+        for end, kind in KINDS.items():
+            assert mimetypes.guess_type(f"a/vendor/b{end}")[0] == kind.partition(";")[0]
+
+
 def test_nothing_of_the_page_comes_from_elsewhere() -> None:
-    for path, answer in page_files().items():
+    for path, file in {**page_files(), **{page.name: page for page in PAGE.glob("*.html")}}.items():
         # names of a namespace and of a home page, which are fetched by nobody
-        body = answer.body
+        body = file.read_bytes()
         for name in (b'"http://www.w3.org/2000/svg"', *(LEAFLET_NAMES if LEAFLET in path else ())):
             body = body.replace(name, b"")
         assert b"http" not in body.lower(), path
@@ -103,7 +133,7 @@ def test_no_other_path_gives_anything(port: int, path: str) -> None:
 
 def test_it_takes_nothing(port: int) -> None:
     for method in ("POST", "PUT", "DELETE", "OPTIONS", "NONSENSE"):
-        assert ask(port, "/", method).status == 501
+        assert ask(port, "/", method).status == 405
     assert ask(port, "/", "HEAD").body == b""
 
 
@@ -281,7 +311,7 @@ def test_silent_clients_hold_up_nobody(port: int) -> None:
 def test_who_floods_it_and_asks_nothing_is_cut_off(port: int) -> None:
     """More than it takes at once: the oldest go, and who asks is answered."""
     flood, began_s = [], time.monotonic()
-    for k in range(3 * MOST_AT_ONCE):
+    for k in range(3 * MOST_SILENT):
         flood.append(socket.create_connection(("127.0.0.1", port)))
         if k % 3:  # some begin a request, or the head of a command, and never end it
             flood[-1].sendall(b"GET / HT" if k % 3 == 1 else b"POST /command HTTP/1.0\r\n")

@@ -17,7 +17,8 @@ from ground_station_tools import LIMIT_S, Served, ask
 
 from cratous.services.exporting.exported import ALL, exported
 from cratous.services.ground_station.access import Access
-from cratous.services.ground_station.server import Commands, GroundStation, ReadAnew
+from cratous.services.ground_station.server import Commands, GroundStation
+from cratous.services.ground_station.shown import ReadAnew
 from cratous.services.loading.document import parse_document
 from cratous.services.loading.yaml_mission import loaded
 from cratous.services.logs.records import from_data
@@ -272,13 +273,12 @@ def test_an_error_of_ours_is_answered_as_one() -> None:
 
     shown = ReadAnew(dict)
     with GroundStation(shown, 0, Access(), commands=Commands({"/change": fails})) as server:
-        serving = threading.Thread(target=server.serve_forever, args=(0.05,))
+        serving = threading.Thread(target=server.serve_forever)
         serving.start()
         try:
             own = server.url[:-1]
             headers = {"Origin": own, "Content_Type": "application/json", "Content_Length": "2"}
-            port = server.server_address[1]
-            got = ask(port, "/change", "POST", b"{}", **headers)
+            got = ask(server.port, "/change", "POST", b"{}", **headers)
         finally:
             server.shutdown()
             serving.join(LIMIT_S)

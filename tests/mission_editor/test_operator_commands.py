@@ -11,13 +11,13 @@ from typing import Any
 
 import pytest
 from chromium_tools import Page, browsing
-from ground_station_tools import Served, flying
+from ground_station_tools import PAGE, Served, flying
 
 from cratous.services.cli import main
 from cratous.services.ground_station import live_session
 from cratous.services.ground_station.direct_orders import Directed, DirectOrders
 from cratous.services.ground_station.live_session import NotObeyed
-from cratous.services.ground_station.server import LONGEST, page_files
+from cratous.services.ground_station.server import LONGEST
 from cratous.services.loading.document import parse_document
 from cratous.services.loading.yaml_mission import loaded
 from cratous.services.mission_editor.operator_commands import (
@@ -98,7 +98,7 @@ def test_what_is_no_command_or_not_possible_is_refused(asked: Any, error: type[E
 
 
 def test_a_page_can_send_as_many_corners_as_it_draws() -> None:
-    (drawn,) = re.findall(r"keep_out: \[3, (\d+)\]", page_files()["/operate.js"].body.decode())
+    (drawn,) = re.findall(r"keep_out: \[3, (\d+)\]", (PAGE / "operate.js").read_text())
     assert int(drawn) == MOST_CORNERS
     farthest = [[-9_999_999.9, -9_999_999.9]] * MOST_CORNERS
     asked = {"do": "command", "command": {"what": "keep_out", "places": farthest}}

@@ -79,7 +79,7 @@ def test_pins_are_those_of_the_lock(root: Path, project: dict[str, Any]) -> None
     extras = project["optional-dependencies"]
     declared = project["dependencies"] + extras["prove"] + extras["sign"] + extras["pdf"]
     pins = dict(one.split("==") for one in declared if "==" in one)
-    assert set(pins) == {*COMPILER, "z3-solver", "cvc5", "cryptography", "reportlab"}
+    assert set(pins) == {*COMPILER, "uvicorn", "z3-solver", "cvc5", "cryptography", "reportlab"}
     assert pins == {name: lock[name] for name in pins}
     for record in ledger.read()["kernels"].values():
         for name in COMPILER:

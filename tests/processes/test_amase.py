@@ -51,11 +51,11 @@ def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def fake(tmp_path: Path) -> Iterator[Callable[[str], Fake]]:
+def fake(tmp_path: Path) -> Iterator[Callable[..., Fake]]:
     made: list[Fake] = []
 
-    def make(text: str = EMPTY) -> Fake:
-        made.append(Fake(tmp_path, text))
+    def make(text: str = EMPTY, rate: int = 4) -> Fake:
+        made.append(Fake(tmp_path, text, rate))
         made[-1].start()
         return made[-1]
 
@@ -323,7 +323,7 @@ def test_nobody_there_is_bad_input_before_anything_is_planned(
 def test_a_mission_is_flown_to_its_end_though_amase_is_begun_anew(
     root: Path, tmp_path: Path, fake: Callable[..., Fake]
 ) -> None:
-    simulator = fake()
+    simulator = fake(rate=10)
     said, out = tmp_path / "said", tmp_path / "out"
     words = [
         sys.executable, "-m", "cratous", "run", str(root / "examples/crossing/mission.yaml"), "--simulator",

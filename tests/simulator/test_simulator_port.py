@@ -266,7 +266,7 @@ def test_uxas_flies_its_waterway_mission_on_the_simulator(shared: Path, tmp_path
     path = tmp_path / "waterway.xml"
     path.write_text(text)
     folder = shared / "examples/openuxas/waterway"
-    with simulating(path, "--rate", "40", "--clients", "2") as (running, port):
+    with simulating(path, "--rate", "80", "--clients", "2") as (running, port):
         cfg = (folder / "cfg_run.xml").read_text()
         cfg = cfg.replace("../MessagesToSend/", f"{(folder / 'inputs').resolve()}/")
         cfg = re.sub(r'<Message MessageFileName="AirVehicle.*?/>', "", cfg)

@@ -34,8 +34,8 @@ def until(done: Callable[[], object]) -> None:
 class Fake:
     """`cratous sim --compatibility amase`: AMASE's port and defects, which can be killed and begun again."""
 
-    def __init__(self, folder: Path, text: str) -> None:
-        self.port, self._text = free_port(), text
+    def __init__(self, folder: Path, text: str, rate: int = 4) -> None:
+        self.port, self._text, self._rate = free_port(), text, rate
         self._children, self._folder, self._count = Children(folder, folder), folder, 0
 
     def start(self, clients: int = 0) -> None:
@@ -45,7 +45,7 @@ class Fake:
         (self._folder / "scenario.xml").write_text(self._text)
         self._children.start(
             name, "sim", str(self._folder / "scenario.xml"), "--listen", f"127.0.0.1:{self.port}",
-            "--rate", "4", "--compatibility", "amase", "--clients", str(clients),
+            "--rate", str(self._rate), "--compatibility", "amase", "--clients", str(clients),
         )  # fmt: skip
         until(lambda: "listening" in self._children.said(name))
 

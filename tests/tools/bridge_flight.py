@@ -109,6 +109,14 @@ def said(folder: Path) -> str:
     return "\n".join(file.read_text(errors="replace") for file in files if file.is_file())
 
 
+def listening(folder: Path) -> None:
+    """Wait until the `cratous uxas` of a folder waits for its ICAROUS; it may have to start first."""
+    end = time.monotonic() + 120.0
+    while "waiting: 0 of 1" not in said(folder):
+        assert time.monotonic() < end, said(folder)
+        time.sleep(0.02)
+
+
 def way(*points: tuple[float, float], vehicle: int = 1) -> Any:
     """A MissionCommand through these places at 300 m and 22 m/s, for task 7."""
     waypoints = []
@@ -203,6 +211,8 @@ class Proxy:
                     below.close()
                     continue
                 above.settimeout(None)
+                for end in (below, above):
+                    end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
                 self._sockets += [below, above]
                 for source, target, change in ((above, below, True), (below, above, False)):
                     pair = (source, target, change)

@@ -18,7 +18,11 @@ from urllib.parse import parse_qsl
 
 import pytest
 
+from cratous.services import ground_station
+
 LIMIT_S = 120
+PAGE = Path(str(ground_station.__file__)).parent / "page"
+"""The folder of the page's files."""
 
 
 class Got(NamedTuple):
@@ -143,6 +147,12 @@ def editing(mission: Path) -> Iterator[Served]:
     with _started(str(mission), "--edit", "--allow-unproved") as (running, line):
         port, _, token = line.partition(" ")[0].partition("/?token=")
         yield Served(running, int(port), token)
+
+
+def page_files() -> dict[str, Path]:
+    """The files of which pages are made, by the path at which each is served."""
+    found = {f"/{file.relative_to(PAGE)}": file for file in sorted(PAGE.rglob("*.*"))}
+    return {path: file for path, file in found.items() if file.suffix not in (".html", ".md")}
 
 
 def ask(port: int, path: str, method: str = "GET", body: bytes = b"", /, **headers: str) -> Got:

@@ -5,7 +5,6 @@ Nothing here uses the log writer or the message models: what stands in docs/refe
 
 from __future__ import annotations
 
-import copy
 import hashlib
 import json
 import sqlite3
@@ -82,7 +81,7 @@ Edit = Callable[[list[Message]], list[Message]]
 def edited(source: Path, target: Path, edit: Edit) -> Path:
     """A log with other messages, sealed anew."""
     meta, messages = read(source)
-    return write(target, meta, edit(copy.deepcopy(messages)))
+    return write(target, meta, edit(messages))
 
 
 def with_monitor(log: Path) -> Path:

@@ -67,6 +67,8 @@ class Client:
             except OSError:
                 assert time.monotonic() < end, "nobody listens"
                 time.sleep(0.05)
+        # else each second small frame waits for the acknowledgement of the first, 40 ms
+        self.sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.sock.setblocking(False)
         self.stream = sentinel.FrameStream()
         self.got: list[wire.AddressedMessage] = []

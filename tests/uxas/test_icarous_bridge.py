@@ -16,6 +16,7 @@ from bridge_flight import (
     command,
     configuration,
     icarous,
+    listening,
     mission_file,
     said,
     way,
@@ -128,7 +129,8 @@ def test_v2_flies_with_the_key_and_refuses_another_on_both_ends(
     more = f'NumberOfUAVs="1" VehicleIDs="1" Dialect="v2" Keys="{tmp_path / "keys"}"'
     cfg, sim_port, ics_port = configuration(tmp_path, more)
     with command(tmp_path, "uxas", "-cfgPath", str(cfg)):
-        with icarous(tmp_path, ics_port, "--v2", "--wait", "4", "--log", "wrong") as wrong:
+        listening(tmp_path)
+        with icarous(tmp_path, ics_port, "--v2", "--wait", "2", "--log", "wrong") as wrong:
             assert wrong.wait(60) == 3
         text = "the key of vehicle 1 is another one here"
         assert said(tmp_path).count(f"handshake failed: {text}") >= 1

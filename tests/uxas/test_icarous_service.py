@@ -13,7 +13,7 @@ import pytest
 from bridge_flight import PLANE, Aircraft, way
 from icarous_rig import Fake, Rig, state
 
-from cratous.bridge import lmcp
+from cratous.bridge import lmcp, text_connection
 from cratous.bridge import text_protocol as tp
 from cratous.services.icarous_communication import service
 from cratous.services.icarous_communication.service import NobodyCame
@@ -56,8 +56,9 @@ def test_it_waits_and_says_who_is_missing(tmp_path: Path, opened: list[Any]) -> 
 
 
 def test_instances_without_a_hello_get_the_lowest_ids_in_the_order_of_arrival(
-    tmp_path: Path, opened: list[Any]
+    tmp_path: Path, opened: list[Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(text_connection, "PARTING_S", 0.3)
     rig = Rig(tmp_path, 'NumberOfUAVs="2"', opened)
     first = rig.fake()
     second = rig.fake()
@@ -105,8 +106,9 @@ def test_an_aircraft_of_another_time_is_no_traffic_and_that_is_said(
 
 
 def test_two_instances_for_one_vehicle_and_a_stranger_are_refused(
-    tmp_path: Path, opened: list[Any]
+    tmp_path: Path, opened: list[Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(text_connection, "PARTING_S", 0.3)
     rig = Rig(tmp_path, 'NumberOfUAVs="2" VehicleIDs="1 2"', opened)
     one = rig.fake(hello=1)
     for hello, why in ((1, "a second instance for vehicle 1"), (9, "expected one of 1, 2")):

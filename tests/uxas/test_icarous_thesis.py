@@ -108,7 +108,8 @@ def test_the_command_speaks_it_and_another_dialect_is_refused_on_both_ends(
     more = 'NumberOfUAVs="1" VehicleIDs="1" Dialect="thesis"'
     cfg, sim_port, ics_port = flight.configuration(tmp_path, more)
     with flight.command(tmp_path, "uxas", "-cfgPath", str(cfg)):
-        with flight.icarous(tmp_path, ics_port, "--wait", "3", "--log", "wrong") as wrong:
+        flight.listening(tmp_path)
+        with flight.icarous(tmp_path, ics_port, "--wait", "2", "--log", "wrong") as wrong:
             assert wrong.wait(120) == 3
         reason = "line of another dialect: thesis is spoken here"
         assert f"the other end refuses: {reason}" in flight.said(tmp_path)
