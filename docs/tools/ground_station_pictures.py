@@ -1,6 +1,6 @@
 """Takes the pictures of the ground station in `docs/img`, in a headless Chromium, of what is flown, planned and watched.
 
-    PYTHONPATH=src:tests/tools:tests/mission_editor python docs/tools/ground_station_pictures.py [NAME...]
+    PYTHONPATH=$PWD/src:tests/tools python docs/tools/ground_station_pictures.py [NAME...]
 
 NAME: one of two, bands, live, hold, command, edit, attached, or replay; without any, all. Look at each one.
 """
@@ -20,9 +20,9 @@ from tempfile import TemporaryDirectory
 import chromium_tools
 from chromium_tools import READY, Page, browsing, playing
 from daidalus_sky import SEES, Craft, Sky, fly
+from editor_tools import write as type_into
 from ground_station_tools import Served, attaching, editing, flying, serving
 from log_tools import write as write_log
-from test_editor_page import write as type_into
 
 from cratous.bridge import lmcp
 from cratous.core.files.whole_file import replacing
@@ -154,6 +154,7 @@ def hold(work: Path) -> None:
         page.until("document.getElementById('confirm-command').open")
         page.value("document.getElementById('command-vehicle').value = 1")
         page.click("#command-yes")
+        page.until("!document.getElementById('confirm-command').open")
         until_ms(page, 200_000, 50)
         page.until("document.getElementById('live-text').textContent.includes('circles')")
         taken(page, "ground-station-hold.png")
