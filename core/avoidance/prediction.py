@@ -244,23 +244,56 @@ def out_of_reach(pieces: Sequence[Piece], other: Intruder, volume: WellClear) ->
 def ways_out_of_reach(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> bool:
     """True only if no piece can lose well clear: a bound on how far the places of the pieces are from those of the
     intruder's legs until they end, and on the closing speed. See `out_of_reach`."""
-    until_s = max(piece.start_s + piece.duration_s for piece in pieces)
+    until_s, own, fastest = _reached(pieces)
     if until_s == math.inf:
         return False
-    legs = [leg for leg in legs_of(other) if leg.start_s < until_s]
-    if not legs:  # the pieces are over as the intruder's flight begins
+    met = _legs_until(other, until_s)
+    if met is None:  # the pieces are over as the intruder's flight begins
         return True
-    last = legs[-1]
-    legs[-1] = last._replace(duration_s=min(last.duration_s, until_s - last.start_s))
-    own, its = _extent(pieces), _extent(legs)
+    its, its_fastest = met
     north = max(own[0] - its[1], its[0] - own[1], 0.0)
     east = max(own[2] - its[3], its[2] - own[3], 0.0)
-    return math.hypot(north, east) > _reach_m(
-        other, volume, until_s, _fastest(pieces) + _fastest(legs), 0.0
-    )
+    return math.hypot(north, east) > _reach_m(other, volume, until_s, fastest + its_fastest, 0.0)
 
 
-def _extent(pieces: Sequence[Piece]) -> tuple[float, float, float, float]:
+Extent = tuple[float, float, float, float]
+_own: list[tuple[Sequence[Piece], tuple[float, Extent, float]]] = [((), (0.0, (0.0,) * 4, 0.0))]
+"""The pieces that were asked of last, and what was said: one trajectory is asked of against many intruders."""
+_others: dict[int, tuple[tuple[Piece, ...], float, tuple[Extent, float] | None]] = {}
+"""The same of ways, which many trajectories are asked of against, by their identity."""
+MOST_WAYS = 4096
+
+
+def _reached(pieces: Sequence[Piece]) -> tuple[float, Extent, float]:
+    """Until when pieces last [s], how far they lead, and how fast at most [m/s]."""
+    known, said = _own[0]
+    if known is pieces and pieces:
+        return said
+    until_s = max(piece.start_s + piece.duration_s for piece in pieces)
+    said = until_s, _extent(pieces) if until_s < math.inf else (0.0,) * 4, _fastest(pieces)
+    if isinstance(pieces, tuple):  # of a list the pieces may change
+        _own[0] = pieces, said
+    return said
+
+
+def _legs_until(other: Intruder, until_s: float) -> tuple[Extent, float] | None:
+    """How far the legs of an intruder lead until an instant [s], and how fast at most [m/s]; None: there is none."""
+    known = _others.get(id(other.way)) if other.way else None
+    if known is not None and known[0] is other.way and known[1] == until_s:
+        return known[2]
+    legs, said = [leg for leg in legs_of(other) if leg.start_s < until_s], None
+    if legs:
+        last = legs[-1]
+        legs[-1] = last._replace(duration_s=min(last.duration_s, until_s - last.start_s))
+        said = _extent(legs), _fastest(legs)
+    if other.way:
+        if len(_others) >= MOST_WAYS:
+            _others.clear()
+        _others[id(other.way)] = other.way, until_s, said
+    return said
+
+
+def _extent(pieces: Sequence[Piece]) -> Extent:
     """The least and the greatest north, and east, of where pieces lead [m]."""
     norths, easts = list[float](), list[float]()
     for _, duration_s, (north, east, _), (north_s, east_s, _) in pieces:
@@ -376,6 +409,8 @@ def violated_s(
     pieces: Sequence[Piece], other: Intruder, volume: WellClear, grid_s: float = 1.0
 ) -> float:
     """About how long well clear is lost [s]: only to rank manoeuvres that all lose it."""
+    if pieces and ways_out_of_reach(pieces, other, volume):
+        return 0.0
     lost = 0.0
     for piece, straight_on in ((p, leg) for run, leg in meetings(pieces, other) for p in run):
         count = max(1, math.ceil(piece.duration_s / grid_s))
