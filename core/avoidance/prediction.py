@@ -281,16 +281,27 @@ def _legs_until(other: Intruder, until_s: float) -> tuple[Extent, float] | None:
     known = _others.get(id(other.way)) if other.way else None
     if known is not None and known[0] is other.way and known[1] == until_s:
         return known[2]
-    legs, said = [leg for leg in legs_of(other) if leg.start_s < until_s], None
-    if legs:
-        last = legs[-1]
-        legs[-1] = last._replace(duration_s=min(last.duration_s, until_s - last.start_s))
-        said = _extent(legs), _fastest(legs)
+    said = _extent_until(legs_of(other) if not other.way else other.way, until_s)
     if other.way:
         if len(_others) >= MOST_WAYS:
             _others.clear()
         _others[id(other.way)] = other.way, until_s, said
     return said
+
+
+def _extent_until(legs: Sequence[Piece], until_s: float) -> tuple[Extent, float] | None:
+    """The same of legs one after the other; that an intruder stands where the last one ends adds no place to these."""
+    low_n = low_e = math.inf
+    high_n = high_e = fastest = -math.inf
+    for start_s, duration_s, (north, east, _), (north_s, east_s, _) in legs:
+        if start_s >= until_s:
+            break
+        lasts_s = min(duration_s, until_s - start_s)
+        there_n, there_e = north + north_s * lasts_s, east + east_s * lasts_s
+        low_n, high_n = min(low_n, north, there_n), max(high_n, north, there_n)
+        low_e, high_e = min(low_e, east, there_e), max(high_e, east, there_e)
+        fastest = max(fastest, math.hypot(north_s, east_s))
+    return None if low_n == math.inf else ((low_n, high_n, low_e, high_e), fastest)
 
 
 def _extent(pieces: Sequence[Piece]) -> Extent:
