@@ -15,6 +15,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
+from cratous.core.avoidance.extent import bounds, fastest, reached, reached_until
 from cratous.core.daa.uncertainty import LEAST_ERROR, Uncertainty, uncertain_conflict
 from cratous.core.kernel import Vec2, driver
 from cratous.core.well_clear import StandardThresholds, Thresholds, violation, violation_within
@@ -244,78 +245,17 @@ def out_of_reach(pieces: Sequence[Piece], other: Intruder, volume: WellClear) ->
 def ways_out_of_reach(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> bool:
     """True only if no piece can lose well clear: a bound on how far the places of the pieces are from those of the
     intruder's legs until they end, and on the closing speed. See `out_of_reach`."""
-    until_s, own, fastest = _reached(pieces)
-    if until_s == math.inf:
+    until_s, own_bounds = reached(pieces)
+    if own_bounds is None:
         return False
-    met = _legs_until(other, until_s)
+    way = other.way
+    met = reached_until(way, until_s) if way else bounds(legs_of(other), until_s)
     if met is None:  # the pieces are over as the intruder's flight begins
         return True
-    its, its_fastest = met
+    (own, own_m_s), (its, its_m_s) = own_bounds, met
     north = max(own[0] - its[1], its[0] - own[1], 0.0)
     east = max(own[2] - its[3], its[2] - own[3], 0.0)
-    return math.hypot(north, east) > _reach_m(other, volume, until_s, fastest + its_fastest, 0.0)
-
-
-Extent = tuple[float, float, float, float]
-_own: list[tuple[Sequence[Piece], tuple[float, Extent, float]]] = [((), (0.0, (0.0,) * 4, 0.0))]
-"""The pieces that were asked of last, and what was said: one trajectory is asked of against many intruders."""
-_others: dict[int, tuple[tuple[Piece, ...], float, tuple[Extent, float] | None]] = {}
-"""The same of ways, which many trajectories are asked of against, by their identity."""
-MOST_WAYS = 4096
-
-
-def _reached(pieces: Sequence[Piece]) -> tuple[float, Extent, float]:
-    """Until when pieces last [s], how far they lead, and how fast at most [m/s]."""
-    known, said = _own[0]
-    if known is pieces and pieces:
-        return said
-    until_s = max(piece.start_s + piece.duration_s for piece in pieces)
-    said = until_s, _extent(pieces) if until_s < math.inf else (0.0,) * 4, _fastest(pieces)
-    if isinstance(pieces, tuple):  # of a list the pieces may change
-        _own[0] = pieces, said
-    return said
-
-
-def _legs_until(other: Intruder, until_s: float) -> tuple[Extent, float] | None:
-    """How far the legs of an intruder lead until an instant [s], and how fast at most [m/s]; None: there is none."""
-    known = _others.get(id(other.way)) if other.way else None
-    if known is not None and known[0] is other.way and known[1] == until_s:
-        return known[2]
-    said = _extent_until(legs_of(other) if not other.way else other.way, until_s)
-    if other.way:
-        if len(_others) >= MOST_WAYS:
-            _others.clear()
-        _others[id(other.way)] = other.way, until_s, said
-    return said
-
-
-def _extent_until(legs: Sequence[Piece], until_s: float) -> tuple[Extent, float] | None:
-    """The same of legs one after the other; that an intruder stands where the last one ends adds no place to these."""
-    low_n = low_e = math.inf
-    high_n = high_e = fastest = -math.inf
-    for start_s, duration_s, (north, east, _), (north_s, east_s, _) in legs:
-        if start_s >= until_s:
-            break
-        lasts_s = min(duration_s, until_s - start_s)
-        there_n, there_e = north + north_s * lasts_s, east + east_s * lasts_s
-        low_n, high_n = min(low_n, north, there_n), max(high_n, north, there_n)
-        low_e, high_e = min(low_e, east, there_e), max(high_e, east, there_e)
-        fastest = max(fastest, math.hypot(north_s, east_s))
-    return None if low_n == math.inf else ((low_n, high_n, low_e, high_e), fastest)
-
-
-def _extent(pieces: Sequence[Piece]) -> Extent:
-    """The least and the greatest north, and east, of where pieces lead [m]."""
-    norths, easts = list[float](), list[float]()
-    for _, duration_s, (north, east, _), (north_s, east_s, _) in pieces:
-        norths += (north, north + north_s * duration_s)
-        easts += (east, east + east_s * duration_s)
-    return min(norths), max(norths), min(easts), max(easts)
-
-
-def _fastest(pieces: Sequence[Piece]) -> float:
-    """The greatest horizontal speed of pieces [m/s]."""
-    return max(math.hypot(piece.velocity[0], piece.velocity[1]) for piece in pieces)
+    return math.hypot(north, east) > _reach_m(other, volume, until_s, own_m_s + its_m_s, 0.0)
 
 
 def _reach_m(
@@ -336,7 +276,7 @@ def leg_out_of_reach(
     at_s, until_s = max(first.start_s, leg.start_s), min(ends_s, leg.start_s + leg.duration_s)
     own, its = after(first, at_s - first.start_s), after(leg, at_s - leg.start_s)
     far = math.hypot(own.north_m - its.north_m, own.east_m - its.east_m)
-    closing = _fastest(pieces) + math.hypot(leg.velocity[0], leg.velocity[1])
+    closing = fastest(pieces) + math.hypot(leg.velocity[0], leg.velocity[1])
     return far > _reach_m(other, volume, until_s, closing, until_s - at_s)
 
 

@@ -33,7 +33,6 @@ from cratous.spec.daa.parameters import (
     sensitivity,
 )
 
-
 EXACTLY = Sigma()
 """Of a state that is known as it is."""
 

@@ -39,6 +39,7 @@ from cratous.spec.mission import Position, WellClear, Zone, ZoneKind
 STEADY = Growth(0.0, 0.0, 0.0)
 """The tube of an intruder that is where it is predicted."""
 
+
 def hold_at(place: Position, start_s: float, horizon_s: float) -> Piece:
     """A hold about a place, from start_s until horizon_s [s]."""
     return Piece(start_s, horizon_s - start_s, place, STANDING)

@@ -40,7 +40,9 @@ def _drawn(draw: random.Random, count: int) -> Intruders:
     volumes[:, :5] = VOLUME
     kinds = np.array([draw.choice((0, 1, 2, 3, 4)) for _ in range(count)])
     sides = np.array([[draw.choice((0, 0, 0, 1)), 0] for _ in range(count)])
-    return Intruders(states, kinds, volumes, np.array([draw.choice((25.0, 60.0)) for _ in kinds]), sides)
+    return Intruders(
+        states, kinds, volumes, np.array([draw.choice((25.0, 60.0)) for _ in kinds]), sides
+    )
 
 
 @pytest.mark.parametrize("dimension", [HDIR, HS, VS])
