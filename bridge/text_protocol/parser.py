@@ -118,7 +118,7 @@ class StreamParser:
                 self._labels[layout.message] = _labels_of(layout, self._thesis)
         self._limits, self._max_line, self._original_peer = limits, max_line, original_peer
         ours = [one for layouts in self._layouts.values() for one in layouts]
-        self._plain = {} if self._thesis else plain_lines(ours, limits)
+        self._plain = {} if self._thesis else plain_lines(tuple(ours), limits)
         self._pending = bytearray()
         self._dropping = False
         self._line = 1

@@ -6,8 +6,10 @@ too, and is read by `parser`, which says what is wrong; what is read here it rea
 
 from __future__ import annotations
 
+import functools
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from cratous.bridge.text_protocol.layouts import FieldLayout, Kind, Layout, Limits
@@ -24,25 +26,31 @@ _KINDS = {
 }
 
 
+MOST_KNOWN = 512
+"""So many lines are remembered with what they say: the same one goes to every vehicle at a heartbeat."""
+
+
 class Plain(NamedTuple):
     """How one message is read. read: the whole line; values: of each field; within: which value lies from where to
-    where, else the line is not plain."""
+    where, else the line is not plain; known: lines that were read last."""
 
     read: re.Pattern[bytes]
     message: type[Message]
     names: tuple[str, ...]
     values: tuple[Callable[[bytes], Any], ...]
     within: tuple[tuple[int, float, float], ...]
+    known: dict[bytes, Message]
 
 
-def plain_lines(layouts: Iterable[Layout], limits: Limits) -> dict[bytes, Plain]:
+@functools.cache
+def plain_lines(layouts: tuple[Layout, ...], limits: Limits) -> Mapping[bytes, Plain]:
     """By the first bytes of their tag: the messages of one form, each of whose fields is always there."""
     found = {}
     for layout in layouts:
         fields = layout.fields
         if not layout.form and not any(f.optional or f.kind is Kind.TEXT for f in fields):
             found[layout.tag.encode()[:TAG_BYTES]] = _plain(layout, limits)
-    return found
+    return MappingProxyType(found)
 
 
 def _plain(layout: Layout, limits: Limits) -> Plain:
@@ -58,7 +66,7 @@ def _plain(layout: Layout, limits: Limits) -> Plain:
     ]
     names = tuple(field.attribute for field in layout.fields)
     read = re.compile(pattern + rb"\r?")
-    return Plain(read, layout.message, names, tuple(values), tuple(within))
+    return Plain(read, layout.message, names, tuple(values), tuple(within), {})
 
 
 def _field(field: FieldLayout) -> tuple[bytes, Callable[[bytes], Any]]:
@@ -78,11 +86,19 @@ def _bounds(field: FieldLayout, limits: Limits) -> tuple[float, float]:
 
 def message_of(plain: Plain, data: bytes, start: int, end: int) -> Message | None:
     """The message of the line from start to end of data, without its newline; None if it is not plain."""
-    match = plain.read.fullmatch(data, start, end)
+    line = bytes(data[start:end])
+    known = plain.known.get(line)
+    if known is not None:
+        return known
+    match = plain.read.fullmatch(line)
     if match is None:
         return None
     values = [value(text) for value, text in zip(plain.values, match.groups(), strict=True)]
     for k, low, high in plain.within:
         if not low <= values[k] <= high:
             return None
-    return plain.message(**dict(zip(plain.names, values, strict=True)))
+    message = plain.message(**dict(zip(plain.names, values, strict=True)))
+    if len(plain.known) >= MOST_KNOWN:
+        plain.known.clear()
+    plain.known[line] = message
+    return message

@@ -15,6 +15,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
+from cratous.core.avoidance.extent import bounds, fastest, reached, reached_until
 from cratous.core.daa.uncertainty import LEAST_ERROR, Uncertainty, uncertain_conflict
 from cratous.core.kernel import Vec2, driver
 from cratous.core.well_clear import StandardThresholds, Thresholds, violation, violation_within
@@ -244,34 +245,17 @@ def out_of_reach(pieces: Sequence[Piece], other: Intruder, volume: WellClear) ->
 def ways_out_of_reach(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> bool:
     """True only if no piece can lose well clear: a bound on how far the places of the pieces are from those of the
     intruder's legs until they end, and on the closing speed. See `out_of_reach`."""
-    until_s = max(piece.start_s + piece.duration_s for piece in pieces)
-    if until_s == math.inf:
+    until_s, own_bounds = reached(pieces)
+    if own_bounds is None:
         return False
-    legs = [leg for leg in legs_of(other) if leg.start_s < until_s]
-    if not legs:  # the pieces are over as the intruder's flight begins
+    way = other.way
+    met = reached_until(way, until_s) if way else bounds(legs_of(other), until_s)
+    if met is None:  # the pieces are over as the intruder's flight begins
         return True
-    last = legs[-1]
-    legs[-1] = last._replace(duration_s=min(last.duration_s, until_s - last.start_s))
-    own, its = _extent(pieces), _extent(legs)
+    (own, own_m_s), (its, its_m_s) = own_bounds, met
     north = max(own[0] - its[1], its[0] - own[1], 0.0)
     east = max(own[2] - its[3], its[2] - own[3], 0.0)
-    return math.hypot(north, east) > _reach_m(
-        other, volume, until_s, _fastest(pieces) + _fastest(legs), 0.0
-    )
-
-
-def _extent(pieces: Sequence[Piece]) -> tuple[float, float, float, float]:
-    """The least and the greatest north, and east, of where pieces lead [m]."""
-    norths, easts = list[float](), list[float]()
-    for _, duration_s, (north, east, _), (north_s, east_s, _) in pieces:
-        norths += (north, north + north_s * duration_s)
-        easts += (east, east + east_s * duration_s)
-    return min(norths), max(norths), min(easts), max(easts)
-
-
-def _fastest(pieces: Sequence[Piece]) -> float:
-    """The greatest horizontal speed of pieces [m/s]."""
-    return max(math.hypot(piece.velocity[0], piece.velocity[1]) for piece in pieces)
+    return math.hypot(north, east) > _reach_m(other, volume, until_s, own_m_s + its_m_s, 0.0)
 
 
 def _reach_m(
@@ -292,7 +276,7 @@ def leg_out_of_reach(
     at_s, until_s = max(first.start_s, leg.start_s), min(ends_s, leg.start_s + leg.duration_s)
     own, its = after(first, at_s - first.start_s), after(leg, at_s - leg.start_s)
     far = math.hypot(own.north_m - its.north_m, own.east_m - its.east_m)
-    closing = _fastest(pieces) + math.hypot(leg.velocity[0], leg.velocity[1])
+    closing = fastest(pieces) + math.hypot(leg.velocity[0], leg.velocity[1])
     return far > _reach_m(other, volume, until_s, closing, until_s - at_s)
 
 
@@ -376,6 +360,8 @@ def violated_s(
     pieces: Sequence[Piece], other: Intruder, volume: WellClear, grid_s: float = 1.0
 ) -> float:
     """About how long well clear is lost [s]: only to rank manoeuvres that all lose it."""
+    if pieces and ways_out_of_reach(pieces, other, volume):
+        return 0.0
     lost = 0.0
     for piece, straight_on in ((p, leg) for run, leg in meetings(pieces, other) for p in run):
         count = max(1, math.ceil(piece.duration_s / grid_s))

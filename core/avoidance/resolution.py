@@ -150,11 +150,15 @@ def resolve(
             close = close or candidate._replace(clear=True, first_violation_s=None)
             continue
         first = min(t for t in (traffic_s, zone_s) if t is not None)
-        lost = 0.0
-        if first <= 1.0:
-            lost = sum(violated_s(pieces, other, scene.volume) for other in scene.intruders)
         # a zone met before a turn back could avoid it counts as the worst case
-        rank = (-1.0 if zone_s is not None and zone_s < near_s else first, -lost)
+        until_s = -1.0 if zone_s is not None and zone_s < near_s else first
+        most_s = math.inf
+        if fallback is not None:
+            if until_s < fallback[0][0]:
+                continue
+            most_s = -fallback[0][1] if until_s == fallback[0][0] else math.inf
+        lost_s = _lost_s(pieces, scene, most_s) if first <= 1.0 else 0.0
+        rank = (until_s, -lost_s)
         if fallback is None or rank > fallback[0]:
             fallback = (rank, candidate._replace(first_violation_s=first))
     found = later or close
@@ -162,6 +166,16 @@ def resolve(
         return found
     assert fallback is not None, "there is always a candidate"
     return fallback[1]
+
+
+def _lost_s(pieces: Sequence[Piece], scene: Scene, most_s: float) -> float:
+    """About how long well clear is lost to intruders, one after the other [s]; no less than most_s, if it is no less."""
+    lost_s = 0.0
+    for other in scene.intruders:
+        lost_s += violated_s(pieces, other, scene.volume)
+        if lost_s >= most_s:
+            break
+    return lost_s
 
 
 def _pieces(now: Motion, ability: Ability, choice: Choice, horizon_s: float) -> tuple[Piece, ...]:

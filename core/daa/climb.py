@@ -161,27 +161,26 @@ def altitude_conflict(
 @driver(checked_by=("in_conflict",))
 def in_reach(
     own: np.ndarray, intruders: Intruders, i: int, regaining: Regaining, looking: Looking
-) -> bool:
-    """Whether intruder i matters at any altitude: only these change, the flight over ground does not.
+) -> tuple[bool, bool]:
+    """Whether intruder i's volume matters at any altitude, and whether its recovery cylinder does: only altitudes
+    change, the flight over ground does not.
 
     One that is not in conflict where it stays at the same height is so at no height and climb rate
     (`daa_conflict_at_no_height_beside`).
     """
     other, w, kind = intruders.states[i], intruders.volumes[i], intruders.kinds[i]
-    if kind == SUM_KIND:
-        return True
     until_s = max(looking.lookahead_s, intruders.horizons[i])
     v = Vec2(own[3] - other[3], own[4] - other[4])
     s = Vec2(
         own[0] - other[0] + v.x * looking.project_s, own[1] - other[1] + v.y * looking.project_s
     )
     volume = Thresholds(w[0], w[1], w[2], w[3], w[4])
-    if in_conflict(kind, s, v, 0.0, 0.0, volume, 0.0, until_s):
-        return True
-    if not regaining.recovering:
-        return False
+    near = regaining.begin_s <= intruders.horizons[i] and (
+        kind == SUM_KIND or in_conflict(kind, s, v, 0.0, 0.0, volume, 0.0, until_s)
+    )
     cylinder = Thresholds(regaining.radius_m, regaining.half_m, 0.0, 0.0, 0.0)
-    return in_conflict(3, s, v, 0.0, 0.0, cylinder, 0.0, until_s)
+    held = regaining.recovering and in_conflict(3, s, v, 0.0, 0.0, cylinder, 0.0, until_s)
+    return near, held
 
 
 @driver(checked_by=("in_conflict", "climb", "height", "until"))
@@ -205,9 +204,9 @@ def safe_altitudes(
     lead = 0
     cylinder = np.zeros(11)
     cylinder[0], cylinder[1] = regaining.radius_m, regaining.half_m
-    near = np.zeros(chosen.size, dtype=np.bool_)
+    near, held_clear = np.zeros(chosen.size, dtype=np.bool_), np.zeros(chosen.size, dtype=np.bool_)
     for c in range(chosen.size):
-        near[c] = in_reach(ways.right[0], intruders, chosen[c], regaining, looking)
+        near[c], held_clear[c] = in_reach(ways.right[0], intruders, chosen[c], regaining, looking)
     for k in range(targets.size):
         red = False
         for c in range(chosen.size):
@@ -216,15 +215,13 @@ def safe_altitudes(
                 q = lead
             elif c <= lead:
                 q = c - 1
-            if not near[q]:
-                continue
             i = chosen[q]
-            if begin_s <= horizons[i]:
+            if near[q] and begin_s <= horizons[i]:
                 red = altitude_conflict(
                     ways, targets[k], others[i], kinds[i], volumes[i],
                     Looked(begin_s, horizons[i], False), looking,
                 )  # fmt: skip
-            if regaining.recovering and not red:
+            if regaining.recovering and held_clear[q] and not red:
                 held = Looked(0.0, min(begin_s, horizons[i]), begin_s <= horizons[i])
                 red = altitude_conflict(ways, targets[k], others[i], 3, cylinder, held, looking)
             if red:

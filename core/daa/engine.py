@@ -18,7 +18,7 @@ from cratous.core.daa.alerting import level_times, raw_levels
 from cratous.core.daa.bands import Raw, Traffic, last_times, out_of_range, raw_bands
 from cratous.core.daa.records import Tables
 from cratous.core.daa.spread import spread_conflict
-from cratous.core.daa.state import HDIR, Aircraft, Coordination, LevelTimes
+from cratous.core.daa.state import HDIR, Aircraft, Coordination, LevelTimes, Sigma
 from cratous.core.daa.urgency import coordination, sides
 from cratous.core.readings.tiered import swift
 from cratous.spec.daa.parameters import (
@@ -32,6 +32,9 @@ from cratous.spec.daa.parameters import (
     Volume,
     sensitivity,
 )
+
+EXACTLY = Sigma()
+"""Of a state that is known as it is."""
 
 
 def thresholds(volume: Volume, alt_m: float) -> Volume:
@@ -90,6 +93,12 @@ def region_level(alerter: Alerter, region: int) -> tuple[int, Level] | None:
     return next(((k, x) for k, x in enumerate(alerter.levels) if x.region == region), None)
 
 
+def _regions_of(alerter: Alerter) -> list[tuple[int, int]]:
+    """The regions that levels of an alerter colour, each with the index of the first one."""
+    found = ((region, region_level(alerter, region)) for region in range(FAR, NEAR + 1))
+    return [(region, one[0]) for region, one in found if one is not None]
+
+
 def _root(east: float, north: float, both: float) -> float:
     """Standard deviation along the worst direction; both: root of the covariance, with its sign."""
     a, b, c = east * east, north * north, math.copysign(both * both, both)
@@ -100,6 +109,8 @@ def _root(east: float, north: float, both: float) -> float:
 def errors_of(p: Parameters, own: Aircraft, other: Aircraft) -> np.ndarray:
     """The uncertainties of a pair as `core.daa.uncertainty.lost` takes them: z-scores times the
     standard deviations of both."""
+    if own.sigma == EXACTLY and other.sigma == EXACTLY:
+        return np.array([0.0, 0.0, 0.0, 0.0, 0.0, p.h_vel_z_distance_m])
     pos = vel = 0.0
     for x in (own.sigma, other.sigma):
         pos += _root(x.s_ew_m, x.s_ns_m, x.s_en_m)
@@ -191,14 +202,11 @@ def look(
         np.zeros((4, n), dtype=np.bool_),
         keep,
     )
+    mapped = {a: _regions_of(p.alerters[a]) for a in set(index) if a >= 0}
     for i, a in enumerate(index):
         if a < 0:
             continue
-        for region in range(FAR, NEAR + 1):
-            found = region_level(p.alerters[a], region)
-            if found is None:
-                continue
-            k = found[0]
+        for region, k in mapped[a]:
             traffic.mapped[region, i] = True
             traffic.kinds[region, i] = t.kinds[a, k]
             traffic.volumes[region, i] = [*t.volumes[a, k], *errors[i]]

@@ -251,10 +251,11 @@ class Session:
             region: tuple(o.id for i, o in enumerate(others) if seen.traffic.conflict[region, i])
             for region in range(FAR, NEAR + 1)
         }
-        found = (
-            region_level(p.alerters[a], p.corrective_region) if a >= 0 else None
-            for a in seen.alerters
-        )
+        levels = {
+            a: region_level(p.alerters[a], p.corrective_region) if a >= 0 else None
+            for a in set(seen.alerters)
+        }
+        found = (levels[a] for a in seen.alerters)
         metrics = tuple(
             metrics_of(own, o, 0.0 if f is None else f[1].volume.dthr_m)
             for o, f in zip(others, found, strict=True)

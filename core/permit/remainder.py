@@ -7,6 +7,7 @@ too is the caller's to check.
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Sequence
 
 from cratous.core.avoidance.prediction import (
@@ -31,14 +32,12 @@ from cratous.core.permit.pieces import (
     permitted,
     piece_clear,
 )
+from cratous.core.permit.whole_numbers import Moving, in_whole_numbers
 from cratous.core.readings.exact import exact
 from cratous.spec.mission import Position, WellClear, Zone, ZoneKind
 
 STEADY = Growth(0.0, 0.0, 0.0)
 """The tube of an intruder that is where it is predicted."""
-
-Moving = tuple[Vec2, float, float, float]
-"""Velocity [m/s], climb [m/s, up], duration [s] and rho [m], as in `core.permit.pieces.Piece`."""
 
 
 def hold_at(place: Position, start_s: float, horizon_s: float) -> Piece:
@@ -131,7 +130,10 @@ def way_permits(
 def _run_permits(pieces: Sequence[Piece], other: Intruder, volume: WellClear, rho_m: float) -> bool:
     """The same against one that flies straight on, and is seen as the first piece begins."""
     met = meeting(pieces[0].position, other, volume)
-    return bool(exact(permitted, [moving(piece, rho_m) for piece in pieces], met))
+    moved = [moving(piece, rho_m) for piece in pieces]
+    with contextlib.suppress(OverflowError, ValueError):  # not finite: the reading says which
+        moved, met = in_whole_numbers(moved, met)
+    return bool(exact(permitted, moved, met))
 
 
 @driver(checked_by=("locate", "comes_within", "keep_out_leg_ok", "keep_in_leg_ok"))

@@ -60,30 +60,31 @@ def with_ways(
     if not in_time(told.heard_ms, sensed.now_ms, LINK_LOST_MS):
         return (), sensed.intruders
     steered, was = dict(told.steered), dict(courses)
-    known = {one.vehicle_id: one for one in before}
+    known, points_of = {one.vehicle_id: one for one in before}, dict(told.others)
     ways, others = list[Followed](), list[Intruder]()
     for other in sensed.intruders:
-        points = told.way_of(other.id)
         if other.id in steered:
             others.append(_steered(other, steered[other.id], was.get(other.id), sensed, beat_s))
             continue
-        if not points or not _speed_m_s(other):
+        points, speed = points_of.get(other.id, ()), _speed_m_s(other)
+        if not points or not speed:
             others.append(other)
             continue
         old = known.get(other.id)
-        window_m = WINDOW_BEATS * beat_s * _speed_m_s(other)
+        window_m = WINDOW_BEATS * beat_s * speed
         if old is None or old.points is not points:
             # on a new connection it may be anywhere on it
             old = Followed(other.id, points, Track(points), 0.0)
             window_m = old.track.length_m
         at_m = old.track.nearest(other.position, old.at_m, window_m).s_m
-        ways.append(old._replace(at_m=at_m))
+        ways.append(Followed(other.id, points, old.track, at_m))
         kept = keeps_to(old.track.at(at_m), other.position, daa, seen=other.spread)
         off_rad = smallest_turn(old.track.heading_rad(at_m), _course_rad(other.velocity))
         kept = kept and not turns(off_rad, _turn_rate(other, sensed), ASTRAY_S)
         way = _along(old.track, at_m, other, until_s) if kept else ()
         hold_m = _hold_m(other, sensed) if way else 0.0
-        others.append(other._replace(way=way, hold_m=hold_m))
+        id_, position, velocity, cooperates, _, _, spread = other
+        others.append(Intruder(id_, position, velocity, cooperates, way, hold_m, spread))
     return tuple(ways), tuple(others)
 
 
