@@ -117,7 +117,6 @@ def _waiter(process: subprocess.Popen[bytes], limit_s: float | None) -> Callable
     def wait() -> None:
         with contextlib.suppress(subprocess.TimeoutExpired):
             process.wait(limit_s)
-        is_kept.cache_clear()  # what was not kept may be now
 
     return wait
 
