@@ -14,6 +14,7 @@ The ledger's gate compares code with files, so it is asked before: inside, it vo
 from __future__ import annotations
 
 import contextlib
+import inspect
 import itertools
 import threading
 from collections import Counter
@@ -24,7 +25,7 @@ from typing import Any
 
 from cratous.core import ledger
 from cratous.core.kernel import REGISTRY, Fold, entry_of, qualified
-from cratous.core.kernel.sources import reached
+from cratous.core.kernel.sources import names_of, ours, reached
 from cratous.core.readings import exact, tiered
 from cratous.core.readings.machine.compiled import EXACT, Reading
 from cratous.spec.errors import BadInput
@@ -81,12 +82,9 @@ class Calls:
         """Inside, entries into a loop and into its parts are not counted; one loop at a time."""
         name = qualified(function)
         if name not in self._parts:
-            self._parts[name] = sorted(_parts(function) | ({name} & self._known))
-        counts = [
-            (part, self._counts[part, PYTHON])
-            for part in self._parts[name]
-            if (part, PYTHON) in self._counts
-        ]
+            self._parts[name] = sorted(_enters(function) & self._known)
+        keys = [(part, PYTHON) for part in self._parts[name]]
+        counts = [(key[0], self._counts[key]) for key in keys if key in self._counts]
         with _looping:
             before = [next(count) for _, count in counts]
             try:
@@ -149,6 +147,19 @@ def _parts(function: Any) -> set[str]:
     return names | {
         name for name, entry in REGISTRY.items() if entry.kind == "fold" and f"fold {name}" in found
     }
+
+
+def _enters(function: Callable[..., Any]) -> set[str]:
+    """The functions that one calls, and those that they call, itself included, while entries are counted."""
+    found, todo = {qualified(function)}, [function]
+    while todo:
+        plain = inspect.unwrap(todo.pop())
+        for used in names_of(plain.__code__):
+            callee = plain.__globals__.get(used)
+            if inspect.isfunction(callee) and ours(callee) and qualified(callee) not in found:
+                found.add(qualified(callee))
+                todo.append(callee)
+    return found
 
 
 @contextlib.contextmanager
