@@ -44,6 +44,9 @@ from cratous.spec.mission import Mission, Zone, ZoneKind
 class Started:
     """Stands for processes that compile: what was started, and how often it was waited for."""
 
+    pid = -1
+    """No process."""
+
     def __init__(self, arguments: list[str], env: dict[str, str], **_: Any) -> None:
         self.name, self.waits, self.ended, self.env = arguments[-1], 0, False, env
         ALL.append(self)
@@ -94,6 +97,15 @@ def test_little_work_and_what_is_kept_start_nothing(
     ahead.begin([mission(50)])
     ahead.begin_all()
     assert begun == []
+
+
+def test_what_may_not_be_needed_stands_back(
+    begun: list[Started], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    back: list[tuple[str, int]] = []
+    monkeypatch.setattr(ahead, "_stand_back", lambda process, by: back.append((process.name, by)))
+    ahead.begin([mission(ahead.MANY_TASKS)])
+    assert back == [(coming.ROUTES, ahead.BEHIND)]
 
 
 def test_on_one_core_who_answers_waits_before_and_who_plans_compiles(
@@ -220,7 +232,6 @@ def test_what_has_ended_already_is_not_set_back_and_not_ended(
     def gone(*_: int) -> None:
         raise ProcessLookupError
 
-    monkeypatch.setattr(Started, "pid", 0, raising=False)
     monkeypatch.setattr(ahead.os, "setpriority", gone)
     ahead.beside(["module"], 5)
     (process,) = begun
