@@ -69,7 +69,7 @@ def begin(missions: Iterable[Mission]) -> None:
 
 def _begin_squares() -> None:
     """Have compiled what any area's squares need."""
-    if all(map(is_kept, SQUARE_LOOPS)):
+    if all(is_kept(loop) for loop in SQUARE_LOOPS):
         return
     ended = _waiter(_start([__name__, SQUARES]), WAIT_S)
     for loop in SQUARE_LOOPS:
