@@ -2,8 +2,8 @@
 
 `core.readings.machine.compiled.machine` compiles the text that CPython runs, so which of the two ran cannot be seen
 in what comes out (`tests/routing/test_routing.py`); only the time differs. Short jobs start without the
-compiler. Compiling takes seconds, so machine code that an earlier run has kept is used much sooner;
-not while calls are counted, as which reading ran is then told (`by_work_alone`).
+compiler. Compiling takes seconds, so machine code that is kept, by an earlier run or by a process beside, is used
+much sooner. Who counts calls is given each loop with what runs it (`entered_by`), as counts do not depend on which.
 """
 
 import contextlib
@@ -13,17 +13,17 @@ from typing import Any
 
 from cratous.core.kernel import qualified
 
-SOON, MUCH, WORTH = 300, 3_000, 60_000
-"""After so much work the compiled loop is used: if it is kept, if work alone counts, if it is not kept."""
-DEAR = {"cratous.core.daa.guidance.guide": 4, "cratous.core.routing.bulk.direct_many": 4}
-"""Loops that take long to compile wait for so many times as much where work alone counts: CPython has done it sooner."""
-_patience: list[int | None] = [None]
+Loop = Callable[..., Any]
+SOON, WORTH = 300, 60_000
+"""After so much work the compiled loop is used: if it is kept, and if it is not."""
+_at_once: list[bool] = [False]
+_entered: list[Callable[[Loop, Loop], Loop] | None] = [None]
 _done: Counter[str] = Counter()
-_compiled: dict[str, Callable[..., Any]] = {}
+_compiled: dict[str, Loop] = {}
 _coming: dict[str, Callable[[], None]] = {}
 
 
-def expect(function: Callable[..., Any], wait: Callable[[], None]) -> None:
+def expect(function: Loop, wait: Callable[[], None]) -> None:
     """Another process makes this function's machine code; `wait` returns when that has ended, well or not.
 
     When work reaches the limit that is waited for, and nothing else depends on it.
@@ -31,20 +31,26 @@ def expect(function: Callable[..., Any], wait: Callable[[], None]) -> None:
     _coming[qualified(function)] = wait
 
 
-def swift(function: Callable[..., Any], work: int = 1) -> Callable[..., Any]:
+def swift(function: Loop, work: int = 1) -> Loop:
     """The function as it stands, or compiled once enough has been done with it.
 
     work: how much this call does; a unit is about what CPython does in a tenth of a millisecond.
     """
+    run, enter = _chosen(function, work), _entered[-1]
+    return run if enter is None else enter(function, run)
+
+
+def _chosen(function: Loop, work: int) -> Loop:
     name = qualified(function)
     known = _compiled.get(name)
     if known is not None:
         return known
-    _done[name] += work
-    if _done[name] <= _limit(function, _done[name]):
+    before = _done[name]
+    _done[name] = before + work
+    if not _is_time(function, before, before + work):
         return function
     wait = _coming.pop(name, None)
-    if wait is not None:
+    if wait is not None and not _is_kept(function):
         wait()
     from cratous.core.readings.machine.compiled import machine
 
@@ -52,40 +58,35 @@ def swift(function: Callable[..., Any], work: int = 1) -> Callable[..., Any]:
     return _compiled[name]
 
 
-def _limit(function: Callable[..., Any], done: int) -> int:
-    """How much is done with a function before it is compiled."""
-    fixed = _patience[-1]
-    if fixed is not None:
-        return fixed * DEAR.get(qualified(function), 1)
-    if done <= SOON:
-        return SOON
+def _is_time(function: Loop, before: int, done: int) -> bool:
+    """Whether a function is compiled now, of which so much had been done before and is with this call."""
+    if _at_once[-1] or done > WORTH:
+        return True
+    # it is looked for now and then: a process beside may have made it since
+    return (done - 1) // SOON > max(before - 1, 0) // SOON and _is_kept(function)
+
+
+def _is_kept(function: Loop) -> bool:
     from cratous.core.readings.machine.compiled import is_kept
 
-    return SOON if is_kept(function) else WORTH
-
-
-def _begin_anew() -> None:
-    _done.clear()
-    _compiled.clear()
+    return is_kept(function)
 
 
 @contextlib.contextmanager
-def by_work_alone() -> Iterator[None]:
-    """Inside, when the compiler takes over follows from the work done inside, and from nothing else."""
-    _begin_anew()
-    _patience.append(MUCH)
+def entered_by(enter: Callable[[Loop, Loop], Loop]) -> Iterator[None]:
+    """Inside, what `swift` gives is what `enter` makes of a function and of what runs it."""
+    _entered.append(enter)
     try:
         yield
     finally:
-        _patience.pop()
-        _begin_anew()
+        _entered.pop()
 
 
 @contextlib.contextmanager
 def at_once() -> Iterator[None]:
     """Inside, everything is compiled at its first call: for a cache that is to be complete."""
-    _patience.append(-1)
+    _at_once.append(True)
     try:
         yield
     finally:
-        _patience.pop()
+        _at_once.pop()

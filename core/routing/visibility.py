@@ -8,14 +8,15 @@ every leg of it is put to the proved kernels: `core.routing.bulk`.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from cratous.core.geofence.mission_leg_arrays import table
-from cratous.core.readings.tiered import swift
+from cratous.core.readings.tiered import SOON, swift
 from cratous.core.routing.bulk import (
     BAD_START,
     FOUND,
@@ -33,8 +34,10 @@ from cratous.core.routing.dubins import RIGHT, pose_after
 from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.plan import Pose
 
-DIRECT_WORK, AROUND_WORK = 4, 30
+DIRECT_WORK, AROUND_WORK = 3, 10
 """What CPython does for a direct route beside zones, and for one around them, as `swift` counts it."""
+BLOCK = 300
+"""So many routes are searched at once: machine code that a process beside has made meanwhile is used for the next ones."""
 
 
 class Route(NamedTuple):
@@ -91,23 +94,9 @@ def routes(
     )  # fmt: skip
     turning = Turning(float(radius_m), float(max_slope), float(roadmap.chord_error_m))
     zones = table(roadmap.zones)
-    direct = swift(direct_many, n * (DIRECT_WORK if roadmap.zones else 1))
-    direct(np.ascontiguousarray(starts), np.ascontiguousarray(ends), turning, zones, found)
-    others = np.flatnonzero(found.codes == NOT_DIRECT)
-    if not len(others):
-        return found
-    run = swift(route_many, len(others) * AROUND_WORK)
-    altitudes = starts[others, 2]
-    for alt in np.unique(altitudes):
-        at = others[altitudes == alt]
-        some = Routed(*(part[at] if len(part) == n else part for part in found))
-        run(
-            np.ascontiguousarray(starts[at]), np.ascontiguousarray(ends[at]), turning, zones,
-            Rings(*roadmap.ring_arrays, roadmap.seen(float(alt))), some,
-        )  # fmt: skip
-        for part, filled in zip(found, some, strict=True):
-            if len(part) == n:
-                part[at] = filled
+    poses, work = (starts, ends), DIRECT_WORK if roadmap.zones else 1
+    _search(direct_many, work, poses, (turning, zones), found, np.arange(n))
+    _around(starts, ends, turning, roadmap, found, np.flatnonzero(found.codes == NOT_DIRECT))
     return found
 
 
@@ -123,16 +112,41 @@ def lengths_around(
         np.empty(n, np.int64), np.empty(n), np.empty(n, np.int64), np.empty((1, LINKS_MOST + 2, 4))
     )
     turning = Turning(float(radius_m), float(max_slope), float(roadmap.chord_error_m))
-    run = swift(route_many, n * AROUND_WORK)
-    for alt in np.unique(starts[:, 2]):
-        at = np.flatnonzero(starts[:, 2] == alt)
-        some = Routed(found.codes[at], found.metres[at], found.links[at], found.poses)
-        run(
-            np.ascontiguousarray(starts[at]), np.ascontiguousarray(ends[at]), turning, table(roadmap.zones),
-            Rings(*roadmap.ring_arrays, roadmap.seen(float(alt))), some,
-        )  # fmt: skip
-        found.codes[at], found.metres[at], found.links[at] = some[:3]
+    _around(starts, ends, turning, roadmap, found, np.arange(n))
     return found
+
+
+def _around(
+    starts: np.ndarray,
+    ends: np.ndarray,
+    turning: Turning,
+    roadmap: Roadmap,
+    found: Routed,
+    which: np.ndarray,
+) -> None:
+    """Search these routes around zones, those of one altitude together."""
+    zones, altitudes = table(roadmap.zones), starts[which, 2]
+    for alt in np.unique(altitudes):
+        rings = Rings(*roadmap.ring_arrays, roadmap.seen(float(alt)))
+        here = which[altitudes == alt]
+        _search(route_many, AROUND_WORK, (starts, ends), (turning, zones, rings), found, here)
+
+
+def _search(
+    loop: Callable[..., None], work: int, poses: tuple[np.ndarray, ...], given: tuple[Any, ...], found: Routed,
+    which: np.ndarray,
+) -> None:  # fmt: skip
+    """Have a loop find these routes, a block at a time; work: of one; given: what it is called with beside the poses."""
+    n = len(found.codes)
+    for k in range(0, len(which), BLOCK):
+        at = which[k : k + BLOCK]
+        some = Routed(*(part[at] if len(part) == n else part for part in found))
+        # the first block tells all that is to be done, each other one asks again what there is to do it with
+        run = swift(loop, SOON if k else len(which) * work)
+        run(*(np.ascontiguousarray(part[at]) for part in poses), *given, some)
+        for part, filled in zip(found, some, strict=True):
+            if len(part) == n:
+                part[at] = filled
 
 
 def start_point(pose: Pose) -> Position:

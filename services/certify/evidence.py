@@ -5,14 +5,19 @@ call, the exact reading of one state), has an entry that counts and hands on to 
 before: that runs unchanged, and calls between kernels are counted as any others. The function objects
 stay, so no call is missed however the function is held; threads count, other processes do not.
 
+A loop over arrays (`core.readings.tiered`) is run by CPython or as machine code, whichever there is. Its entry is
+counted, and what it calls is not: that is told as a part of it, so that counts are the same with any cache.
+
 The ledger's gate compares code with files, so it is asked before: inside, it vouches for nothing.
 """
 
 from __future__ import annotations
 
 import contextlib
+import inspect
 import itertools
 import threading
+from collections import Counter
 from collections.abc import Callable, Iterator
 from functools import cache
 from types import CodeType, FunctionType
@@ -20,14 +25,15 @@ from typing import Any
 
 from cratous.core import ledger
 from cratous.core.kernel import REGISTRY, Fold, entry_of, qualified
-from cratous.core.kernel.sources import reached
+from cratous.core.kernel.sources import names_of, ours, reached
 from cratous.core.readings import exact, tiered
 from cratous.core.readings.machine.compiled import EXACT, Reading
 from cratous.spec.errors import BadInput
 
-PYTHON = "CPython"
-"""How a function is entered that CPython runs as written; the other ways are `Reading.how`."""
+PYTHON, LOOP = "CPython", "CPython or machine code"
+"""How a function is entered that CPython runs as written, and a loop that may be compiled; the other ways are `Reading.how`."""
 _counting = threading.Lock()
+_looping = threading.RLock()
 
 
 class Calls:
@@ -39,6 +45,8 @@ class Calls:
         self._done: dict[tuple[str, str], int] = {}
         self._known = frozenset(REGISTRY)
         self._late: list[str] = []
+        self._parts: dict[str, list[str]] = {}
+        self._taken: Counter[str] = Counter()
 
     def entry(self, name: str) -> Callable[[], int]:
         """What counts one call of a registered function as it is written."""
@@ -56,6 +64,36 @@ class Calls:
         """A kernel or fold was read exactly for one state."""
         self._add(function, EXACT)
 
+    def looped(self, function: Callable[..., Any], run: Callable[..., Any]) -> Callable[..., Any]:
+        """A loop that counts once, whatever runs it."""
+        ran = run.run if isinstance(run, Reading) else run
+
+        def loop(*given: Any) -> Any:
+            self._add(function, LOOP)
+            if ran is not function:
+                return ran(*given)
+            with self._apart(function):
+                return ran(*given)
+
+        return loop
+
+    @contextlib.contextmanager
+    def _apart(self, function: Callable[..., Any]) -> Iterator[None]:
+        """Inside, entries into a loop and into its parts are not counted; one loop at a time."""
+        name = qualified(function)
+        if name not in self._parts:
+            self._parts[name] = sorted(_enters(function) & self._known)
+        keys = [(part, PYTHON) for part in self._parts[name]]
+        counts = [(key[0], self._counts[key]) for key in keys if key in self._counts]
+        with _looping:
+            before = [next(count) for _, count in counts]
+            try:
+                yield
+            finally:
+                # what was asked for here is no entry either
+                for (part, count), then in zip(counts, before, strict=True):
+                    self._taken[part] += next(count) - then + 1
+
     def _add(self, function: Any, how: str) -> None:
         name = qualified(function)
         self._functions[name] = function
@@ -69,6 +107,8 @@ class Calls:
     def close(self) -> None:
         """No more is counted."""
         found = {key: next(count) for key, count in list(self._counts.items())}
+        for name, taken in self._taken.items():
+            found[name, PYTHON] -= taken
         self._done = {key: number for key, number in found.items() if number}
         self._late = sorted(REGISTRY.keys() - self._known)
 
@@ -109,12 +149,25 @@ def _parts(function: Any) -> set[str]:
     }
 
 
+def _enters(function: Callable[..., Any]) -> set[str]:
+    """The functions that one calls, and those that they call, itself included, while entries are counted."""
+    found, todo = {qualified(function)}, [function]
+    while todo:
+        plain = inspect.unwrap(todo.pop())
+        for used in names_of(plain.__code__):
+            callee = plain.__globals__.get(used)
+            if inspect.isfunction(callee) and ours(callee) and qualified(callee) not in found:
+                found.add(qualified(callee))
+                todo.append(callee)
+    return found
+
+
 @contextlib.contextmanager
 def counted() -> Iterator[Calls]:
     """Count all entries inside; ask for the result (`Calls.data`) after it.
 
-    How much has been done with a loop is forgotten at the beginning, and what was found by work before: what is
-    compiled, and what is asked, follows from this work alone. Raises BadInput where entries are being counted already.
+    What was found by work before is forgotten at the beginning: what is asked follows from this work alone.
+    Raises BadInput where entries are being counted already.
     """
     if not _counting.acquire(blocking=False):
         raise BadInput(
@@ -127,7 +180,7 @@ def counted() -> Iterator[Calls]:
         layers.forget()
         calls = Calls()
         with contextlib.ExitStack() as stack:
-            stack.enter_context(tiered.by_work_alone())
+            stack.enter_context(tiered.entered_by(calls.looped))
             stack.callback(calls.close)
             for name, entry in REGISTRY.items():
                 if not isinstance(entry.function, Fold):

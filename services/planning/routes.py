@@ -150,8 +150,9 @@ class Routes:
             self._times.update((key, None) for key in left if key not in set(flat))
             left = flat
         around = len(left) > coming.MANY_WAYS and self._lead_around(left)
-        if len(left) > coming.MANY_WAYS:
-            coming.ready(coming.AROUND if around else coming.ROUTES)
+        kind = coming.AROUND if around else coming.ROUTES
+        if len(left) > coming.WORTH_WAITING[kind]:
+            coming.ready(kind)
         for roadmap in self._roadmaps(flyer.radius_m):
             if not left:
                 return

@@ -66,9 +66,8 @@ def is_worth(formulas: Iterable[Formula], samples: int) -> bool:
     from cratous.core.readings.machine.compiled import is_kept
     from cratous.core.requirements import whole_trace as loops
 
-    return all(
-        map(is_kept, (loops.reached, loops.not_of, loops.joined, loops.until_of, loops.since_of))
-    )
+    used = (loops.reached, loops.not_of, loops.joined, loops.until_of, loops.since_of)
+    return all(is_kept(loop) for loop in used)
 
 
 class Whole:

@@ -51,6 +51,8 @@ SQUARES = "squares"
 SQUARE_LOOPS = (grid_squares, mark_seen)
 WAIT_S = 120.0
 """A process that compiles is not waited for any longer."""
+BEHIND = 10
+"""How much what is compiled and may not be needed stands back behind what plans (`nice`)."""
 
 
 def begin(missions: Iterable[Mission]) -> None:
@@ -67,7 +69,7 @@ def begin(missions: Iterable[Mission]) -> None:
 
 def _begin_squares() -> None:
     """Have compiled what any area's squares need."""
-    if all(map(is_kept, SQUARE_LOOPS)):
+    if all(is_kept(loop) for loop in SQUARE_LOOPS):
         return
     ended = _waiter(_start([__name__, SQUARES]), WAIT_S)
     for loop in SQUARE_LOOPS:
@@ -78,16 +80,24 @@ def begin_all(around: bool = False) -> None:
     """Have compiled what every larger plan needs, unless it is kept. around: many ways will lead around zones."""
     for name in (coming.AROUND if around else coming.ROUTES, coming.ASSIGNMENT):
         if not is_kept(LOOPS[name]):
-            coming.expect(name, _waiter(_start([__name__, name]), WAIT_S))
+            process = _start([__name__, name])
+            if name != coming.ASSIGNMENT:  # CPython finds most missions' routes sooner
+                _stand_back(process, BEHIND)
+            coming.expect(name, _waiter(process, WAIT_S))
 
 
 def beside(module: list[str], stands_back: int) -> None:
     """Have a module of ours compile behind what this process does, which uses it once that has ended."""
     process = _start(module)
+    _stand_back(process, stands_back)
+    threading.Thread(target=_waiter(process, None), daemon=True).start()
+
+
+def _stand_back(process: subprocess.Popen[bytes], by: int) -> None:
+    """Put a process behind this one (`nice`)."""
     with contextlib.suppress(OSError):  # it has ended already
         own = os.getpriority(os.PRIO_PROCESS, 0)
-        os.setpriority(os.PRIO_PROCESS, process.pid, own + stands_back)
-    threading.Thread(target=_waiter(process, None), daemon=True).start()
+        os.setpriority(os.PRIO_PROCESS, process.pid, own + by)
 
 
 def _cores() -> int:
@@ -117,7 +127,6 @@ def _waiter(process: subprocess.Popen[bytes], limit_s: float | None) -> Callable
     def wait() -> None:
         with contextlib.suppress(subprocess.TimeoutExpired):
             process.wait(limit_s)
-        is_kept.cache_clear()  # what was not kept may be now
 
     return wait
 

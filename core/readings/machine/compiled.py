@@ -181,11 +181,16 @@ def machine(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 @functools.cache
+def _kept_as(function: Callable[..., Any]) -> tuple[str, str]:
+    """The folder of the cache with a function's machine code, and how its files are called."""
+    made, name = _entry_text(function)
+    return folder_name(made.text), f"*.{name}-*.nbc"
+
+
 def is_kept(function: Callable[..., Any]) -> bool:
     """Whether `machine` finds this function's machine code in the cache, so that it is quick."""
-    made, name = _entry_text(function)
-    folder = private_cache() / folder_name(made.text) / "__pycache__"
-    return any(folder.glob(f"*.{name}-*.nbi"))
+    folder, files = _kept_as(function)
+    return any((private_cache() / folder / "__pycache__").glob(files))
 
 
 def _flat(hint: Any) -> int:
