@@ -16,7 +16,7 @@ from cratous.services.certify.rejudge import not_as_flown, subject, watch
 from cratous.services.certify.report import Judged, build_report, report_text, write_report
 from cratous.services.certify.verdicts import constraint_rows, plan_rows
 from cratous.services.logs.log import read_meta
-from cratous.services.logs.source import DOUBTS, doubts
+from cratous.services.logs.source import DOUBTS, NO_END, doubts
 from cratous.services.mission.wind import known_at
 from cratous.services.requirements.own_files import OwnFile
 from cratous.services.results.names import LOG_NAME, OWN, REPORT_NAME
@@ -35,8 +35,8 @@ def report_of(log: Path, own: Sequence[OwnFile] = ()) -> FromLog:
     """The report as the log gives it. BadInput where the log is none of a flight, or not what its writer left."""
     from cratous.services.monitor.plan_check import check_plan
 
-    # that a flight was cut off its rows say themselves
-    doubted = [DOUBTS[one] for one in doubts(log) if one != "cut off"]
+    # that the flight was not seen to its end its rows say themselves
+    doubted = [DOUBTS[one] for one in doubts(log) if one not in NO_END]
     wrong = not_as_flown(log)
     if wrong:
         raise BadInput(wrong[0].partition(": ")[2], where=str(log))
