@@ -122,7 +122,10 @@ def test_a_selection_is_not_called_cut_off(cut: Path, capsys: pytest.CaptureFixt
     assert main(words) == 0
     assert doubts(part) == ["selected"]
     capsys.readouterr()
-    assert main(["monitor", str(part), "--requirements", str(cut / "own.req"), "--allow-unproved"]) == 1
+    assert (
+        main(["monitor", str(part), "--requirements", str(cut / "own.req"), "--allow-unproved"])
+        == 1
+    )
     said = capsys.readouterr().out
     assert "cut off" not in said
     assert DOUBTS["selected"] in said
