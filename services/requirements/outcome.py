@@ -50,12 +50,12 @@ class Outcome:
 
     @property
     def verdict(self) -> str:
-        """violated, unknown, undecided, or holds: the last only where every sample is decided."""
+        """violated, unknown, undecided, or holds: the last only where there is a sample and every one is decided."""
         if self.violated:
             return "violated"
-        if self.unknown or not self.whole:
+        if self.unknown or not self.whole or not (self.holds or self.undecided):
             return "unknown"
-        return "undecided" if self.undecided or not self.holds else "holds"
+        return "undecided" if self.undecided else "holds"
 
     @property
     def so_far(self) -> str:
