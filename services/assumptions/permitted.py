@@ -26,6 +26,8 @@ from cratous.spec.mission import FaultySimulation, Mission, Position
 
 NEAR = 0.5
 """From this share of the cylinder on the kernel is asked: 1 is at its wall."""
+FAR = 1.001
+"""So many times DTHR, by the greatest share so far, is far enough away to tell whatever a double rounds."""
 SEEN = "flown as looked at"
 """The assumption whose watch notes when an aircraft was not seen."""
 IN_HAND = ("Offered", "Known", "Left")
@@ -141,6 +143,11 @@ class PermittedWatch:
             return []
         volume, (a, b) = self._volume, (here.at, there.at)
         north, east, up = b.north_m - a.north_m, b.east_m - a.east_m, b.alt_m - a.alt_m
+        most = min(self._record.extreme or 0.0, NEAR)
+        if max(abs(north), abs(east)) * most > FAR * volume.dthr_m:
+            # its share is less than the greatest so far, and than what the kernel is asked from on
+            self._record.see_again(0.0, len(told))
+            return []
         beside = math.hypot(north, east)
         share = min(_share(volume.dthr_m, beside), _share(volume.zthr_m, abs(up)))
         self._record.see(share)

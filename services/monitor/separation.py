@@ -123,8 +123,9 @@ class WholeStep:
         a0, a1, a2, a3, a4, a5 = self._at[own]
         b0, b1, b2, b3, b4, b5 = self._at[other]
         x, y, z = a0 - b0, a1 - b1, a2 - b2
-        s: Any = Vec2(x * span, y * span)
-        v = Vec2(a3 - b3 - x, a4 - b4 - y)
+        # as Vec2(x, y), in half the time
+        s: Any = tuple.__new__(Vec2, (x * span, y * span))
+        v = tuple.__new__(Vec2, (a3 - b3 - x, a4 - b4 - y))
         return bool(violation_within(s, v, z * span, a5 - b5 - z, thresholds, span))
 
     def _asked(self, own: int) -> tuple[int, StandardThresholds]:
