@@ -238,10 +238,10 @@ def rebuilt(log: Path, written: dict[str, Any]) -> tuple[dict[str, Any], dict[st
     if wrong:  # one sentence says it; what differs in detail says no more
         report["proofs"] = written.get("proofs")
     wrong += lacking
-    told = read_meta(log).get(ASSUMPTIONS)
-    if told is not None:
+    recorded = read_meta(log).get(ASSUMPTIONS)
+    if recorded is not None:
         broken = broken_of(report["assumptions"])
-        wrong += differences(told, broken, f"{LOG_NAME}: meta.{ASSUMPTIONS}")
+        wrong += differences(recorded, broken, f"{LOG_NAME}: meta.{ASSUMPTIONS}")
     elif "assumptions" not in written:
         silent["assumptions"] = "the report was made before they were watched"
     if BLAME not in written:
