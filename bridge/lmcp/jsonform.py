@@ -24,6 +24,7 @@ from cratous.bridge.lmcp.objects import (
     unknown_field,
     within,
 )
+from cratous.bridge.lmcp.plain_text import plain_object
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import json_of
 
@@ -114,6 +115,10 @@ def to_json(obj: LmcpObject) -> str:
 
 def from_json(text: str | bytes, where: str = "") -> Any:
     """The object of a JSON text; BadInput (with `where`) for anything that is not one."""
+    if type(text) is str:
+        plain = plain_object(text)
+        if plain is not None:
+            return plain
     return from_dict(json_of(text, where), where)
 
 

@@ -23,11 +23,12 @@ class AheadWatch:
 
     kinds = ("TruthState",)
 
-    def __init__(self, mission: Mission) -> None:
+    def __init__(self, mission: Mission, positions: Positions | None = None) -> None:
+        """positions: those of others that see the same samples."""
         self._room = room_of(mission.daa)
         self._period_ms = mission.simulation.heartbeat_ms
         self._step_ms = mission.simulation.step_ms
-        self._positions = Positions()
+        self._positions = positions or Positions()
         self._last_ms = {v.id: 0 for v in mission.vehicles}
         self._last_ms |= {t.id: t.appears_ms for t in mission.traffic}
         self._gone_ms = gone_ms(mission)

@@ -26,19 +26,27 @@ class ClockWatch:
 
     def __init__(self) -> None:
         self._last_ms = 0
+        self._asked_ms: int | None = None
         self._record = Record("s back", 0, (in_time,), waits="no message was seen")
 
     def message(self, message: Message) -> None:
         """Any message; those that say their own time are counted."""
-        own = message.kind in OWN_TIME
-        for time_ms in (message.time_ms, message.body.Time) if own else (message.time_ms,):
+        own, now_ms = message.kind in OWN_TIME, message.time_ms
+        if now_ms == self._asked_ms and (not own or message.body.Time == now_ms):
+            if own:  # of this instant against itself both have been asked, and held
+                self._record.see_again(0.0, 2)
+            return
+        all_ok = True
+        for time_ms in (now_ms, message.body.Time) if own else (now_ms,):
             ok = in_time(self._last_ms, time_ms, ANY_LATER)
             if own or not ok:
                 self._record.see(max(0, self._last_ms - time_ms) / 1000)
             if not ok:
                 text = f"a {message.kind} of {_s(time_ms)} after a message of {_s(self._last_ms)}"
                 self._record.check(ok, self._last_ms, 0, text)
-        self._last_ms = message.time_ms
+            all_ok = all_ok and ok
+        self._asked_ms = now_ms if all_ok and self._last_ms == now_ms else None
+        self._last_ms = now_ms
 
     def end(self, at_ms: int) -> None:
         """End of the messages at at_ms [ms]: no check is pending."""
@@ -103,6 +111,8 @@ class DeliveryWatch:
         self._next = dict.fromkeys(mission.instances, 1)
         self._came: dict[int, set[int]] = {number: set() for number in mission.instances}
         self._looked: tuple[int, ...] = ()
+        self._late = False
+        """Whether one was late at the last look at all."""
         none = "" if self._next else NO_INSTANCE
         self._record = Record("s", self._bound_ms / 1000, (in_time,), none)
         self._record.waits = "no heartbeat was seen"
@@ -115,8 +125,12 @@ class DeliveryWatch:
         kind, now_ms, _, body = message
         if kind not in ("Heartbeat", "TruthState"):
             return
-        if kind == "Heartbeat" and body.Direction.name == "Up" and body.VehicleID in self._next:
+        if kind == "Heartbeat" and body.VehicleID in self._next and body.Direction.name == "Up":
             self._come(body.VehicleID, body.Sequence, now_ms)
+            if now_ms in self._looked and not self._late:
+                # of the others nothing has changed
+                self._late = self._is_late(body.VehicleID, self._next[body.VehicleID], now_ms)
+                return
             self._looked = ()
         if now_ms not in self._looked:
             self._looked = (now_ms,)
@@ -138,14 +152,19 @@ class DeliveryWatch:
             self._next[vehicle] += 1
 
     def _look(self, now_ms: int) -> None:
-        """The first heartbeat that has not come: is it late?"""
+        self._late = False
         for vehicle, number in self._next.items():
-            sent_ms = self._sent_ms(number)
-            ok = in_time(sent_ms, max(sent_ms, now_ms), self._bound_ms)
-            if not ok:
-                self._record.see((now_ms - sent_ms) / 1000)
-                text = f"heartbeat {number} of {_s(sent_ms)} had not come by {_s(now_ms)}"
-                self._record.check(ok, sent_ms + self._bound_ms, vehicle, text)
+            self._late |= self._is_late(vehicle, number, now_ms)
+
+    def _is_late(self, vehicle: int, number: int, now_ms: int) -> bool:
+        """Whether the first heartbeat that has not come is."""
+        sent_ms = self._sent_ms(number)
+        if in_time(sent_ms, max(sent_ms, now_ms), self._bound_ms):
+            return False
+        self._record.see((now_ms - sent_ms) / 1000)
+        text = f"heartbeat {number} of {_s(sent_ms)} had not come by {_s(now_ms)}"
+        self._record.check(False, sent_ms + self._bound_ms, vehicle, text)
+        return True
 
     def end(self, at_ms: int) -> None:
         """What has not come by now, and is late, has not been delivered."""
@@ -166,6 +185,7 @@ class ChangeWatch:
         self._line_ms = PERIODS * mission.simulation.heartbeat_ms
         self._gates = dict.fromkeys(mission.instances, UNTOUCHED)
         self._since = dict.fromkeys(mission.instances, 0)
+        self._offers: list[int] = []
         none = "" if self._gates else NO_INSTANCE
         taken_s, told_s = 2 * self._line_ms / 1000, self._line_ms / 1000
         self._taken = Record("s", taken_s, (in_time,), none, waits="no offer was made")
@@ -183,6 +203,7 @@ class ChangeWatch:
             if not epoch_given(before, gate.epoch):
                 self._since[body.VehicleID] = now_ms
             self._gates[body.VehicleID] = gate
+            self._offers = [number for number, one in self._gates.items() if one.offered]
         elif kind == "GatedCommand" and body.VehicleID in self._gates:
             self._command(message)
 
@@ -203,9 +224,7 @@ class ChangeWatch:
         self._told.check(ok, since_ms + self._line_ms, number, text)
 
     def _look(self, now_ms: int) -> None:
-        for number, gate in self._gates.items():
-            if not gate.offered:
-                continue
+        for number in self._offers:
             since_ms = self._since[number]
             open_ms = max(0, now_ms - since_ms)
             self._taken.see(open_ms / 1000)

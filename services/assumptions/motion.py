@@ -54,7 +54,7 @@ def is_within(off: Position, room: Room) -> bool:
     if not all(map(math.isfinite, numbers)):
         return False
     ratios = [x.as_integer_ratio() for x in numbers]
-    unit = math.lcm(*(below for _, below in ratios))
+    unit = max(below for _, below in ratios)  # powers of two
     # whole numbers of one unit: exact, and CPython's fastest
     whole: list[Any] = [above * (unit // below) for above, below in ratios]
     north, east, up, wide, high = whole
@@ -95,15 +95,20 @@ class Positions:
 
     def __init__(self) -> None:
         self._coming: dict[int, Velocity] = {}
+        self._newest: tuple[Message, Seen] | None = None
 
     def seen(self, message: Message) -> Seen:
-        """The sample, with the velocity that led there."""
+        """The sample, with the velocity that led there; asked again of the newest message it is the same."""
+        if self._newest is not None and self._newest[0] is message:
+            return self._newest[1]
         body = message.body
         coming = Velocity(body.VelocityNorth, body.VelocityEast, body.VelocityDown)
         came = self._coming.get(body.VehicleID, coming)
         self._coming[body.VehicleID] = coming
         place = Position(body.North, body.East, body.Altitude)
-        return Seen(message.time_ms, place, came)
+        seen = Seen(message.time_ms, place, came)
+        self._newest = message, seen
+        return seen
 
 
 class IntruderWatch:
@@ -111,11 +116,12 @@ class IntruderWatch:
 
     kinds = ("AuthorityChange", "SensedState", "TruthState")
 
-    def __init__(self, mission: Mission) -> None:
+    def __init__(self, mission: Mission, positions: Positions | None = None) -> None:
+        """positions: those of others that see the same samples."""
         self._room = room_of(mission.daa)
         self._ahead_ms = round(1000 * mission.daa.lookahead_s)
         self._instances = frozenset(mission.instances)
-        self._positions = Positions()
+        self._positions = positions or Positions()
         self._avoided: dict[int, set[int]] = {}
         self._sources: dict[tuple[int, int], int] = {}
         self._base: dict[tuple[int, int], Seen] = {}
@@ -215,12 +221,13 @@ class TrackingWatch:
 
     kinds = ("GateState", "GatedCommand", "TruthState")
 
-    def __init__(self, mission: Mission) -> None:
+    def __init__(self, mission: Mission, positions: Positions | None = None) -> None:
+        """positions: those of others that see the same samples."""
         self._room = room_of(mission.daa)
         self._period_ms = mission.simulation.heartbeat_ms
         self._bank = {v.id: v.max_bank_rad for v in mission.vehicles}
         self._gates = dict.fromkeys(mission.instances, UNTOUCHED)
-        self._positions = Positions()
+        self._positions = positions or Positions()
         self._ordered: dict[int, Order] = {}
         self._paths: dict[int, Path] = {}
         none = "" if mission.instances else NO_INSTANCE

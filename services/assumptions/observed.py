@@ -54,6 +54,8 @@ class Record:
     broken: Break | None = None
     waits: str = "nothing that rests on it has happened"
     gaps: list[str] = field(default_factory=list)
+    fresh: list[Record] = field(default_factory=list, repr=False, compare=False)
+    """Where it puts itself when it breaks."""
 
     def see(self, value: float | None) -> None:
         """One look, and what was measured in it."""
@@ -64,10 +66,18 @@ class Record:
             most = value if self.extreme is None else max(self.extreme, value)
             self.extreme = min(most, float_info.max)
 
+    def see_again(self, value: float, times: int) -> None:
+        """So many looks more, each with a measure that is no more than any before but for the first."""
+        if self.extreme is None:
+            self.see(value)
+            times -= 1
+        self.checks += times
+
     def check(self, holds: bool, since_ms: int, vehicle_id: int, text: str) -> None:
         """What a kernel has answered; the first time that it was no is kept."""
         if not holds and self.broken is None:
             self.broken = Break(since_ms, vehicle_id, text)
+            self.fresh.append(self)
 
     def unseen_between(self, who: str, last_ms: int, now_ms: int, step_ms: int) -> None:
         """Note a gap of more than one step [ms] between two samples of an aircraft; only the first is kept."""

@@ -26,6 +26,8 @@ from cratous.spec.mission import FaultySimulation, Mission, Position
 
 NEAR = 0.5
 """From this share of the cylinder on the kernel is asked: 1 is at its wall."""
+FAR = 1.001
+"""So many times DTHR, by the greatest share so far, is far enough away to tell whatever a double rounds."""
 SEEN = "flown as looked at"
 """The assumption whose watch notes when an aircraft was not seen."""
 IN_HAND = ("Offered", "Known", "Left")
@@ -61,8 +63,14 @@ class PermittedWatch:
         self._beat_ms = dict.fromkeys(mission.instances, -1)
         self._period_ms = mission.simulation.heartbeat_ms
         self._places: dict[int, Place] = {}
+        self._of_instant: dict[int, dict[int, Place]] = {}
+        """The newest place of each aircraft, by its time and then by its number."""
         self._since_ms: dict[int, int] = {}
         self._sensed = set[tuple[int, int]]()
+        self._met: dict[int, set[int]] = {number: set() for number in mission.instances}
+        """Of each instance the aircraft that were there at its last heartbeat, as far as it was asked."""
+        self._permits: dict[int, tuple[int, bool]] = {}
+        """Of each instance when it was last asked what is permitted, and the answer, while nothing has changed."""
         none = "" if mission.instances else NO_INSTANCE
         if mission.instances and isinstance(mission.simulation, FaultySimulation):
             none = "with faults of the bridge the log does not say at which heartbeats ICAROUS has looked"
@@ -89,12 +97,15 @@ class PermittedWatch:
         number = body.VehicleID
         if number not in self._gates:
             return
+        self._permits.pop(number, None)
         if kind == "GateState":
             self._gates[number] = reported(body)
         elif kind == "HandState" and body.Change.name in IN_HAND:
             since_ms = now_ms if body.Change.name == "Offered" else self._hands[number].since_ms
             self._hands[number] = InHand(since_ms, body.Expiry)
         elif kind == "Heartbeat" and body.Direction.name == "Up":
+            if not in_time(self._beat_ms[number], now_ms, ANY_LATER):
+                self._met[number].clear()
             self._beat_ms[number] = now_ms
 
     def _here(self, body: Any) -> None:
@@ -106,37 +117,55 @@ class PermittedWatch:
         self._since_ms.setdefault(number, body.Time)
         if number in self._gates:
             self._against_zones(number, before or place, place)
-        for other, there in self._places.items():
-            if other != number and in_time(place.time_ms, there.time_ms, 0):
-                self._pair(number, other)
-
-    def _pair(self, one: int, other: int) -> None:
-        """Two aircraft of one instant, for each of them of which something was concluded."""
-        here, there = self._places[one], self._places[other]
+        there = self._of_instant.setdefault(place.time_ms, {})
+        if before is not None and not in_time(before.time_ms, place.time_ms, 0):
+            left = self._of_instant[before.time_ms]
+            del left[number]
+            if not left:
+                del self._of_instant[before.time_ms]
         # who rolls, stands or has landed is not kept clear of
-        if here.stands or there.stands:
-            return
-        told = [
-            (own, off)
-            for own, off in ((one, other), (other, one))
-            if own in self._gates
-            and self._is_seen(own, off)
-            and self._is_permitted(own, here.time_ms)
-        ]
+        hits: dict[int, list[tuple[int, str]]] = {}
+        for other, its in () if place.stands else there.items():
+            if other != number and not its.stands:
+                hit = self._pair(number, other, place, its)
+                if hit:
+                    hits[other] = hit
+        there[number] = place
+        for other in self._places if hits else ():
+            for own, where in hits.get(other, ()):
+                self._found(own, place.time_ms, where)
+
+    def _pair(self, one: int, other: int, here: Place, there: Place) -> list[tuple[int, str]]:
+        """Two aircraft that fly at one instant, for each of them of which something was concluded: whose cylinder is
+        broken, in words."""
+        told = self._told(one, other, here.time_ms) + self._told(other, one, here.time_ms)
         if not told:
-            return
+            return []
         volume, (a, b) = self._volume, (here.at, there.at)
         north, east, up = b.north_m - a.north_m, b.east_m - a.east_m, b.alt_m - a.alt_m
+        most = min(self._record.extreme or 0.0, NEAR)
+        if max(abs(north), abs(east)) * most > FAR * volume.dthr_m:
+            # its share is less than the greatest so far, and than what the kernel is asked from on
+            self._record.see_again(0.0, len(told))
+            return []
         beside = math.hypot(north, east)
         share = min(_share(volume.dthr_m, beside), _share(volume.zthr_m, abs(up)))
-        for _ in told:
-            self._record.see(share)
-        if not share <= NEAR and self._hit(north, east, up):
-            for own, off in told:
-                where = (
-                    f"is {beside:.4g} m beside and {abs(up):.4g} m above or below aircraft {off}"
-                )
-                self._found(own, here.time_ms, where)
+        self._record.see(share)
+        self._record.see_again(share, len(told) - 1)
+        if share <= NEAR or not self._hit(north, east, up):
+            return []
+        apart = f"is {beside:.4g} m beside and {abs(up):.4g} m above or below aircraft"
+        return [(own, f"{apart} {off}") for own, off in told]
+
+    def _told(self, own: int, other: int, now_ms: int) -> tuple[tuple[int, int], ...]:
+        """The two, where something was concluded of one about the other."""
+        if own not in self._gates:
+            return ()
+        asked_ms, is_so = self._permits.get(own, (None, False))
+        if asked_ms != now_ms:
+            is_so = self._is_permitted(own, now_ms)
+            self._permits[own] = now_ms, is_so
+        return ((own, other),) if is_so and self._is_seen(own, other) else ()
 
     def _against_zones(self, own: int, before: Place, here: Place) -> None:
         """What was flown since the last sample with a certificate that knew of the zones."""
@@ -174,7 +203,10 @@ class PermittedWatch:
         """Whether it was seen at the last heartbeat, or before."""
         if self._senses:
             return (own, other) in self._sensed
-        return in_time(self._since_ms[other], self._beat_ms[own], ANY_LATER)
+        met = self._met[own]
+        if other not in met and in_time(self._since_ms[other], self._beat_ms[own], ANY_LATER):
+            met.add(other)
+        return other in met
 
     def _is_permitted(self, own: int, now_ms: int) -> bool:
         """Whether it was concluded that this instant is clear."""

@@ -12,11 +12,11 @@ from cratous.core.files.whole_file import write_atomically
 from cratous.services.assumptions.listing import State
 from cratous.services.certify.flight_record import flown_of
 from cratous.services.certify.own_again import named, shown, together
-from cratous.services.certify.rejudge import not_as_flown, subject, watch
+from cratous.services.certify.rejudge import not_as_flown, subject, watched_and_told
 from cratous.services.certify.report import Judged, build_report, report_text, write_report
 from cratous.services.certify.verdicts import constraint_rows, plan_rows
 from cratous.services.logs.log import read_meta
-from cratous.services.logs.source import DOUBTS, doubts
+from cratous.services.logs.source import DOUBTS, NO_END, doubts
 from cratous.services.mission.wind import known_at
 from cratous.services.requirements.own_files import OwnFile
 from cratous.services.results.names import LOG_NAME, OWN, REPORT_NAME
@@ -35,8 +35,8 @@ def report_of(log: Path, own: Sequence[OwnFile] = ()) -> FromLog:
     """The report as the log gives it. BadInput where the log is none of a flight, or not what its writer left."""
     from cratous.services.monitor.plan_check import check_plan
 
-    # that a flight was cut off its rows say themselves
-    doubted = [DOUBTS[one] for one in doubts(log) if one != "cut off"]
+    # that the flight was not seen to its end its rows say themselves
+    doubted = [DOUBTS[one] for one in doubts(log) if one not in NO_END]
     wrong = not_as_flown(log)
     if wrong:
         raise BadInput(wrong[0].partition(": ")[2], where=str(log))
@@ -55,11 +55,12 @@ def report_of(log: Path, own: Sequence[OwnFile] = ()) -> FromLog:
         for one in named(meta)
         if one not in given
     ]
-    watched = watch(log)
+    watched, told = watched_and_told(log, mission)
     rows = [_doubted(row, doubted) for row in constraint_rows(watched.verdicts, "flight")]
     rows += plan_rows(check_plan(known_at(mission, 0), plan))
     assumptions = [_not_held(row, doubted) for row in watched.assumptions]
-    report = build_report(mission, plan, Judged(rows, assumptions, watched.commands), log, flown)
+    judged = Judged(rows, assumptions, watched.commands, told)
+    report = build_report(mission, plan, judged, log, flown)
     said = [f"{one[0].upper()}{one[1:]}: nothing in flight holds." for one in doubted]
     report["limits"] = [*said, *report["limits"]]
     if plan.certificate:

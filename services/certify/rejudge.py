@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Container, Sequence
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -15,6 +15,8 @@ from cratous.services.certify.flight_record import flown_of
 from cratous.services.certify.own_again import files_in, together, with_own
 from cratous.services.certify.report import (
     Judged,
+    Telling,
+    Told,
     build_report,
     mission_hash,
     plan_hash,
@@ -28,7 +30,7 @@ from cratous.services.certify.verdicts import (
     constraint_rows,
     plan_rows,
 )
-from cratous.services.logs.log import read_envelopes, read_log, read_meta
+from cratous.services.logs.log import Heard, read_heard, read_log, read_meta
 from cratous.services.logs.records import from_data
 from cratous.services.logs.sqlite_log import SqliteLog
 from cratous.services.mission.wind import known_at
@@ -80,17 +82,23 @@ class Watched(NamedTuple):
     end_ms: int
 
 
-def watch(log: Path) -> Watched:
-    """What a fresh monitor says that sees the messages of a log."""
+def watch(log: Path, messages: Iterable[Heard] | None = None) -> Watched:
+    """What a fresh monitor says that sees the messages of a log. messages: these, from whoever reads them."""
     from cratous.services.monitor import Monitor
 
     meta = read_meta(log)
     command = meta.get("command")
     original = isinstance(command, str) and with_original_clients(command)
     monitor = Monitor(*subject(log), says_beats=not original, on_board=meta.get(HEARD) is True)
-    for envelope in read_envelopes(log):
-        monitor.tap(envelope)
+    for heard in read_heard(log) if messages is None else messages:
+        monitor.tap(heard)
     return Watched(monitor.verdicts(), monitor.assumptions(), monitor.commands(), monitor.end_ms)
+
+
+def watched_and_told(log: Path, mission: Mission) -> tuple[Watched, Told]:
+    """What a monitor and what the reader of the flight make of a log, by one pass over it."""
+    telling = Telling(log, mission)
+    return watch(log, telling.heard()), telling.told()
 
 
 @dataclass(frozen=True)
@@ -223,17 +231,17 @@ def rebuilt(log: Path, written: dict[str, Any]) -> tuple[dict[str, Any], dict[st
     mission, plan = subject(log)
     flown, silent, wrong, lacking = flown_of(read_meta(log), written, str(log))
     rows = plan_rows(check_plan(known_at(mission, 0), plan))
-    watched = watch(log)
+    watched, told = watched_and_told(log, mission)
     rows += constraint_rows(watched.verdicts, "flight")
-    judged = Judged(rows, watched.assumptions, watched.commands)
+    judged = Judged(rows, watched.assumptions, watched.commands, told)
     report = json.loads(report_text(build_report(mission, plan, judged, log, flown)))
     if wrong:  # one sentence says it; what differs in detail says no more
         report["proofs"] = written.get("proofs")
     wrong += lacking
-    told = read_meta(log).get(ASSUMPTIONS)
-    if told is not None:
+    recorded = read_meta(log).get(ASSUMPTIONS)
+    if recorded is not None:
         broken = broken_of(report["assumptions"])
-        wrong += differences(told, broken, f"{LOG_NAME}: meta.{ASSUMPTIONS}")
+        wrong += differences(recorded, broken, f"{LOG_NAME}: meta.{ASSUMPTIONS}")
     elif "assumptions" not in written:
         silent["assumptions"] = "the report was made before they were watched"
     if BLAME not in written:

@@ -9,19 +9,19 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cratous import __version__
 from cratous.core.files.whole_file import write_atomically
 from cratous.services.certify.blame import Commands, blame_rows
 from cratous.services.certify.limits import LIMITS, of_states
 from cratous.services.certify.running_code import running_code
-from cratous.services.certify.timeline import Flight, bars, read_flight
+from cratous.services.certify.timeline import Flight, FlightReader, bars, read_flight
 from cratous.services.certify.verdicts import requirement_rows, with_promised, without_ground
-from cratous.services.logs.log import read_digest, read_log
+from cratous.services.logs.log import Heard, Reading
 from cratous.services.logs.records import fingerprint, to_data
 from cratous.services.monitor.required_rows import watched
 from cratous.services.results.names import (
@@ -71,11 +71,52 @@ class Flown:
 
 @dataclass(frozen=True)
 class Judged:
-    """What was found. rows: of `verdicts.constraint_rows`; assumptions, commands: of `Monitor`."""
+    """What was found. rows: of `verdicts.constraint_rows`; assumptions, commands: of `Monitor`; told: what the log
+    says, where it has been read already."""
 
     rows: Iterable[dict[str, Any]]
     assumptions: list[dict[str, Any]]
     commands: Commands
+    told: Told | None = None
+
+
+class Told(NamedTuple):
+    """What a log says of its flight, and the digest of its messages."""
+
+    flight: Flight
+    digest: str
+
+
+class Telling:
+    """Reads what a log says of its flight, beside whoever else needs its messages."""
+
+    def __init__(self, log: Path, mission: Mission) -> None:
+        self._reading = Reading(log)
+        self._reader = FlightReader(vehicle.id for vehicle in mission.vehicles)
+
+    def heard(self) -> Iterator[Heard]:
+        """The messages; each has been taken here when the next one comes."""
+        from cratous.bridge.lmcp.jsonform import from_json
+        from cratous.bridge.lmcp.plain_text import plain_object
+
+        for entry in self._reading:
+            text = str(entry.body)
+            plain = plain_object(text)
+            body = from_json(text) if plain is None else plain
+            # as Heard(...), in a third of the time
+            yield tuple.__new__(Heard, (entry.time_ms, entry.source, entry.topic, body))
+            self._reader.add(entry, plain)
+
+    def told(self) -> Told:
+        """What they say, once all have come."""
+        return Told(self._reader.finish(), self._reading.digest)
+
+
+def told_by(log: Path, mission: Mission) -> Told:
+    """What a log says, by a pass over it for nobody else."""
+    reading = Reading(log)
+    flight = read_flight(reading, (vehicle.id for vehicle in mission.vehicles))
+    return Told(flight, reading.digest)
 
 
 def mission_hash(mission: Mission) -> str:
@@ -108,7 +149,7 @@ def build_report(
     kernels that the ledger does not vouch for is at best unknown, and so is one in processes of which an
     assumption is broken.
     """
-    flight = read_flight(read_log(log), (vehicle.id for vehicle in mission.vehicles))
+    flight, digest = judged.told or told_by(log, mission)
     done = {task for task, end in flight.served.items() if end["phase"] == "Complete"}
     seen = watched(mission, flight.end_ms, done, set(flight.accepted or plan.chosen))
     found = with_promised(list(judged.rows), seen)
@@ -152,7 +193,7 @@ def build_report(
         },
         "log": {
             "file": LOG_NAME,
-            "digest": read_digest(log),
+            "digest": digest,
             "messages": sum(flight.counts.values()),
             "by_topic": dict(sorted(flight.counts.items())),
         },

@@ -139,6 +139,41 @@ def read_log(path: Path) -> Iterator[Row]:
             yield Row(*entry[:4], to_text(entry))
 
 
+class Heard(NamedTuple):
+    """A message of a log with its body read, for who does not ask for more of its envelope."""
+
+    time_ms: int
+    source: str
+    topic: str
+    body: Any
+
+
+class Reading:
+    """One pass over all messages of a log, bodies as JSON text; `digest` is theirs once it has ended, "" before."""
+
+    def __init__(self, path: Path) -> None:
+        self.path, self.digest = path, ""
+
+    def __iter__(self) -> Iterator[Entry]:
+        digest = Digest()
+        with SqliteLog(self.path) as log:
+            for entry in log.entries():
+                digest.feed(entry)
+                if type(entry.body) is str:
+                    yield entry
+                else:
+                    yield entry._replace(body=to_text(entry))
+        self.digest = digest.hex()
+
+
+def read_heard(path: Path) -> Iterator[Heard]:
+    """The messages of a log, bodies read."""
+    from cratous.bridge.lmcp.jsonform import from_json
+
+    for row in read_log(path):
+        yield Heard(row.time_ms, row.source, row.topic, from_json(row.body))
+
+
 def read_meta(path: Path) -> dict[str, Any]:
     """All meta entries as plain data."""
     with SqliteLog(path) as log:

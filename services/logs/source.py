@@ -173,9 +173,12 @@ DOUBTS = {
     "lost": "messages of the log are missing",
     "selected": "messages of the log were selected, and the others are not here",
     "cut off": "the flight was cut off: the log stops before its mission ends",
+    "unended": "the log has no end of its mission: the flight was cut off, or that message is not here",
 }
 """What keeps a log from being whole, or a flight from being seen to its end, in words."""
 BEGINS, ENDS = "cratous.PlanAccepted", "cratous.MissionEnd"
+NO_END = frozenset(("cut off", "unended"))
+"""Of DOUBTS those that say until when a flight was seen."""
 
 
 def doubts(path: Path) -> list[str]:
@@ -185,7 +188,11 @@ def doubts(path: Path) -> list[str]:
         is_open = bool(source.end()) and source.closing() is None
         is_lost = bool(source.holes() + sum(gap.missing for gap in source.gaps()))
         meta = source.meta()
-        is_flight = BEGINS in topics or ("mission" in meta and "selected" not in meta)
-    is_cut = is_flight and ENDS not in topics and not is_open
-    so = {"open": is_open, "lost": is_lost, "selected": "selected" in meta, "cut off": is_cut}
+    is_selected, is_whose = "selected" in meta, "mission" in meta
+    is_flight = BEGINS in topics or is_whose
+    has_no_end = is_flight and ENDS not in topics and not is_open and not is_selected
+    # only whoever flies writes the mission: others may have begun late, ended early, or left messages out
+    is_cut = has_no_end and is_whose and not is_lost
+    so = {"open": is_open, "lost": is_lost, "selected": is_selected, "cut off": is_cut}
+    so["unended"] = has_no_end and not is_cut
     return [kind for kind, is_so in so.items() if is_so]

@@ -24,7 +24,7 @@ TABLE_NAMES = "SELECT name FROM sqlite_master WHERE type = 'table'"
 UNDECODED, NO_TEXT = "Could not decode to UTF-8", "text that is not UTF-8"
 OPTIONAL_KINDS = frozenset((str, type(None)))
 _OF_MESSAGE = (int, int, str, str, str)
-PLAIN_KINDS = frozenset((_OF_MESSAGE, (*_OF_MESSAGE, *[type(None)] * 5)))
+_WITHOUT_ENVELOPE = (*_OF_MESSAGE, *[type(None)] * 5)
 """Of the rows of a flight; all others that are right take longer to tell."""
 
 
@@ -191,8 +191,11 @@ class SqliteLog:
 
 def entry_of(row: tuple[Any, ...]) -> Entry:
     """The entry of a row; sqlite3.DatabaseError if a value is not of its kind."""
+    kinds = tuple(map(type, row))
+    if kinds == _WITHOUT_ENVELOPE:
+        return tuple.__new__(Entry, row)  # as Entry(*row), in a third of the time
     entry = Entry(*row)
-    if tuple(map(type, row)) in PLAIN_KINDS:
+    if kinds == _OF_MESSAGE:
         return entry
     right = type(entry.seq) is type(entry.time_ms) is int
     right = right and type(entry.source) is type(entry.topic) is str

@@ -69,6 +69,16 @@ class WholeUnits:
         times = tthr * 1000, tcoa * 1000
         self._parts_of_ms = math.lcm(*(x.denominator for x in times))
         self._times = [int(x * self._parts_of_ms) for x in times]
+        self._newest: dict[int, tuple[Sample, list[tuple[int, int]]]] = {}
+
+    def ratios(self, number: int, sample: Sample) -> list[tuple[int, int]]:
+        """Numerators and denominators of a place; where one step ends the next begins, so the newest is kept."""
+        kept = self._newest.get(number)
+        if kept is not None and kept[0] is sample:
+            return kept[1]
+        found = [x.as_integer_ratio() for x in sample.position[:3]]
+        self._newest[number] = sample, found
+        return found
 
     def step(self, before: dict[int, Sample], after: dict[int, Sample]) -> WholeStep:
         """A step of all that were seen at both ends of it."""
@@ -98,29 +108,36 @@ class WholeStep:
     ) -> None:
         self._before, self._after = before, after
         seen = before.keys() & after.keys()
-        ratios = {
-            i: [x.as_integer_ratio() for one in (before[i], after[i]) for x in one.position[:3]]
-            for i in seen
-        }
+        ratios = {i: units.ratios(i, before[i]) + units.ratios(i, after[i]) for i in seen}
         parts = {below for found in ratios.values() for _, below in found}
         unit = math.lcm(units.part, *parts)
         self._at = {i: [n * (unit // below) for n, below in r] for i, r in ratios.items()}
         self._units, self._unit = units, unit
         self._by_span: dict[int, StandardThresholds] = {}
+        self._of_own: dict[int, tuple[int, StandardThresholds]] = {}
 
     def lost(self, own: int, other: int) -> bool:
         """Whether well clear of two aircraft is lost during the step."""
+        asked = self._of_own.get(own)
+        span, thresholds = asked if asked is not None else self._asked(own)
+        a0, a1, a2, a3, a4, a5 = self._at[own]
+        b0, b1, b2, b3, b4, b5 = self._at[other]
+        x, y, z = a0 - b0, a1 - b1, a2 - b2
+        # as Vec2(x, y), in half the time
+        s: Any = tuple.__new__(Vec2, (x * span, y * span))
+        v = tuple.__new__(Vec2, (a3 - b3 - x, a4 - b4 - y))
+        return bool(violation_within(s, v, z * span, a5 - b5 - z, thresholds, span))
+
+    def _asked(self, own: int) -> tuple[int, StandardThresholds]:
+        """The span of an aircraft's step, and the thresholds for it."""
         took_ms = self._after[own].time_ms - self._before[own].time_ms
         span = took_ms * self._units.parts_of_ms
         if span <= 0:
             raise ValueError(f"a span of {took_ms} ms")
         if span not in self._by_span:
             self._by_span[span] = self._units.thresholds(self._unit, span)
-        a, b = self._at[own], self._at[other]
-        x, y, z = a[0] - b[0], a[1] - b[1], a[2] - b[2]
-        u, v, w = a[3] - b[3] - x, a[4] - b[4] - y, a[5] - b[5] - z
-        s: Any = Vec2(x * span, y * span)
-        return bool(violation_within(s, Vec2(u, v), z * span, w, self._by_span[span], span))
+        self._of_own[own] = span, self._by_span[span]
+        return self._of_own[own]
 
 
 class SeparationWatch:
@@ -162,7 +179,9 @@ class SeparationWatch:
         self, key: tuple[int, int], before: dict[int, Sample], after: dict[int, Sample], lost: bool
     ) -> bool:
         own, other = key
-        pair = self.pairs.setdefault(key, Pair())
+        pair = self.pairs.get(key)
+        if pair is None:
+            pair = self.pairs[key] = Pair()
         pair.checks += 1
         if pair.measured is not before[own]:  # else that was the end of the step before
             self._measure(pair, before[own], before[other])

@@ -21,9 +21,9 @@ class Outcome:
 
     undecided: samples whose verdict needs more than the trace has; decided_at: when the first violation was
     known; whole: nothing of the trace is known to be missing; until: the last sample; lacks: why nothing holds, apart
-    from a flight that was cut off there; unauthenticated: of what it was held against nothing says who said it;
-    margins: of each comparison; blamed: the parts of the
-    formula that are to blame for the first violation.
+    from an end that is not there; stops: how the log ends then; unauthenticated: of what it was held against nothing
+    says who said it; margins: of each comparison; blamed: the parts of the formula that are to blame for the first
+    violation.
     """
 
     requirement: Requirement
@@ -38,6 +38,7 @@ class Outcome:
     whole: bool = True
     until: int = -1
     lacks: str = ""
+    stops: str = "the flight was cut off"
     unauthenticated: bool = False
     margins: list[Margin] = field(default_factory=list)
     blamed: tuple[Part, ...] = ()
@@ -49,12 +50,12 @@ class Outcome:
 
     @property
     def verdict(self) -> str:
-        """violated, unknown, undecided, or holds: the last only where every sample is decided."""
+        """violated, unknown, undecided, or holds: the last only where there is a sample and every one is decided."""
         if self.violated:
             return "violated"
-        if self.unknown or not self.whole:
+        if self.unknown or not self.whole or not (self.holds or self.undecided):
             return "unknown"
-        return "undecided" if self.undecided or not self.holds else "holds"
+        return "undecided" if self.undecided else "holds"
 
     @property
     def so_far(self) -> str:
@@ -68,7 +69,7 @@ class Outcome:
             undecided = f"; {self.holds} samples hold and {self.undecided} are undecided"
         if self.lacks:
             return f"violated at no sample {until}, but {self.lacks}, so nothing holds{undecided}"
-        why = f"{until}, where the flight was cut off; what came after is unseen{undecided}"
+        why = f"{until}, where {self.stops}; what came after is unseen{undecided}"
         # what looks back alone is decided at each sample by what was flown
         at_each = not undecided and not self.horizon
         return f"held at each sample {why}" if at_each else f"holds so far, {why}"

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import isfinite
 
-from cratous.services.logs.source import DOUBTS
+from cratous.services.logs.source import DOUBTS, NO_END
 from cratous.services.requirements.specification import Signal, Specification
 
 Sample = dict[str, float | None]
@@ -88,12 +88,18 @@ class Sampling:
 
     @property
     def lacks(self) -> str:
-        """Why nothing holds though the flight was not cut off, in words; empty where there is no such reason."""
-        kinds = {kind for kind, _ in self._found}.intersection(NOT_WHOLE) - {"cut off"}
+        """Why nothing holds apart from an end that is not there, in words; empty where there is no such reason."""
+        kinds = {kind for kind, _ in self._found}.intersection(NOT_WHOLE) - NO_END
         said = ["samples or messages are missing"] if kinds - {"faster"} else []
         if "faster" in kinds:
             said.append("a signal changes faster than its rate")
         return " and ".join(said)
+
+    @property
+    def stops(self) -> str:
+        """How a log ends that has no end of its mission, in words."""
+        is_cut = ("cut off", "") in self._found
+        return "the flight was cut off" if is_cut else "the log has no end of its mission"
 
     def samples(self, rows: Iterable[Row]) -> Iterator[tuple[int, Sample]]:
         """The samples of the rows, with times that rise."""

@@ -151,6 +151,7 @@ class Watch:
             outcome.undecided = self.count - outcome.holds - outcome.violated - outcome.unknown
             outcome.whole = self.sampling.is_whole and self.sampling.has_begun
             outcome.until, outcome.lacks = self.last, self.sampling.lacks
+            outcome.stops = self.sampling.stops
             outcome.unauthenticated = self.is_unauthenticated(outcome)
         findings = tuple(self.sampling.findings) if self.spec.timed else ()
         return Watched(tuple(self.outcomes), findings)
