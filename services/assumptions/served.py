@@ -62,6 +62,8 @@ class ServedWatch:
 
     def message(self, message: Message) -> None:
         """Who commands a vehicle, to which item it flies, and how that ends."""
+        if message.kind not in self.kinds:
+            return
         body, now_ms = message.body, message.time_ms
         if message.kind == UNHEARD:
             self._spared.add(body.VehicleID)

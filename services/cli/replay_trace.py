@@ -20,7 +20,8 @@ def replay_trace(files: tuple[Path, ...], as_json: bool) -> None:
 
     Each is played from the start of a flight of one vehicle: gate, ICAROUS, the UxAS end and the executive are
     those of `cratous run`, and SETMOD lines go over its sockets. What arrives, and when, is the trace's. After each
-    event gate, ICAROUS and UxAS have to stand as the trace says; the first that does not is told.
+    event gate, ICAROUS and UxAS have to stand as the trace says; the first that does not is told. A trace of the
+    certificate in hand is played on the vehicle that holds it: gate, surveillance and autopilot of `cratous run`.
 
     Example: cratous replay-trace traces/*.json
 
@@ -29,12 +30,12 @@ def replay_trace(files: tuple[Path, ...], as_json: bool) -> None:
     """
     from cratous.services.cli.progress import waiting
     from cratous.services.trace_replay.files import read
-    from cratous.services.trace_replay.play import play
+    from cratous.services.trace_replay.play import play, play_hand
 
     code, rows = 0, []
     for file, trace in [(file, read(file)) for file in files]:
         with waiting(f"playing {file}", as_json):
-            played = play(trace.entries)
+            played = play_hand(trace.entries) if trace.of_hand else play(trace.entries)
         good = bool(played.why) == bool(trace.wrong)
         code = code if good else 1
         rows.append({"file": str(file), "design": trace.design, **played._asdict(), "good": good})
