@@ -139,7 +139,10 @@ def test_a_trace_keeps_its_kind_in_a_file(tmp_path: Path) -> None:
     write(file, told)
     assert read(file) == told
     assert HAND_FORMAT in file.read_text()
-    for old, new, item in (('"time"', '"heartbeat"', "event.kind"), ("certificate", "authority", "")):
+    for old, new, item in (
+        ('"time"', '"heartbeat"', "event.kind"),
+        ("certificate", "authority", ""),
+    ):
         text = file.read_text()
         file.write_text(text.replace(old, new))
         with pytest.raises(BadInput, match="not a trace") as refused:
