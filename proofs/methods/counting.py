@@ -92,16 +92,20 @@ def first_counted() -> Counted:
 
 def any_event(c: Claim) -> Event:
     """Anything that may happen."""
-    counted = [c.whole(f"met_{n}") for n in ("takeovers", "surprises", "ended")]
-    truths = c.boolean("avoiding"), c.boolean("permitted")
-    met = Encounter(*counted, *truths, c.whole("met_until"))
+    met = Encounter(
+        c.whole("met_takeovers"), c.whole("met_surprises"), c.whole("met_ended"),
+        c.boolean("avoiding"), c.boolean("permitted"), c.whole("met_until"),
+    )  # fmt: skip
     loss = Loss(c.whole("mode_without"), c.whole("since"))
-    times = [c.whole(n) for n in ("heard", "now", "bound", "least", "soon")]
+    heard, now, bound, least, soon = (
+        c.whole(n) for n in ("heard", "now", "bound", "least", "soon")
+    )
     report = Gate(c.whole("report_owner"), c.whole("report_epoch"), c.boolean("report_offered"))
     return Event(
         c.whole("happens"), met, c.boolean("allowed"), c.whole("until"), c.boolean("foreseen"),
-        c.boolean("zone"), loss, c.boolean("way_free"), *times, c.whole("sender"),
-        c.whole("command_epoch"), report, c.whole("report_made"), c.boolean("says"), c.whole("began"),
+        c.boolean("zone"), loss, c.boolean("way_free"), heard, now, bound, least, soon,
+        c.whole("sender"), c.whole("command_epoch"), report, c.whole("report_made"),
+        c.boolean("says"), c.whole("began"),
     )  # fmt: skip
 
 
@@ -205,4 +209,5 @@ def _tallied(
         heard=0, upsets=0, others=0, withdrawn=0, before=new.made - new.known, open_then=new.open,
         made_then=new.made,
     )  # fmt: skip
-    return c.when(item, begun, new)
+    tallied: counting.Tally = c.when(item, begun, new)
+    return tallied

@@ -33,10 +33,11 @@ def any_on_chain(c: Claim) -> OnChain:
     flown = ending.Flown(
         items, phase, c.boolean("suspended"), c.whole("takeovers"), c.whole("under")
     )
-    names = ("since", "own", "stay", "served", "declared", "life")
-    return OnChain(
-        flown, serving.Course(*[c.whole(n) for n in names], c.boolean("home"), c.boolean("bounded"))
+    since, own, stay, served, declared, life = (
+        c.whole(n) for n in ("since", "own", "stay", "served", "declared", "life")
     )
+    truths = c.boolean("home"), c.boolean("bounded")
+    return OnChain(flown, serving.Course(since, own, stay, served, declared, life, *truths))
 
 
 def first_on_chain(items: Any) -> OnChain:
