@@ -30,21 +30,21 @@ def replay_trace(files: tuple[Path, ...], as_json: bool) -> None:
     """
     from cratous.services.cli.progress import waiting
     from cratous.services.trace_replay.files import read
-    from cratous.services.trace_replay.play import play, play_hand
+    from cratous.services.trace_replay.play import play_trace
 
     code, rows = 0, []
     for file, trace in [(file, read(file)) for file in files]:
         with waiting(f"playing {file}", as_json):
-            played = play_hand(trace.entries) if trace.of_hand else play(trace.entries)
+            played = play_trace(trace)
         good = bool(played.why) == bool(trace.wrong)
         code = code if good else 1
         rows.append({"file": str(file), "design": trace.design, **played._asdict(), "good": good})
         if as_json:
             continue
         click.secho(printable(f"{trace.design}: {trace.says}"), bold=True)
-        for number, entry in enumerate(trace.entries[: played.followed + 1], 1):
+        for number, text in enumerate(trace.texts[: played.followed + 1], 1):
             left = number > played.followed
-            click.echo(printable(f"  {number}. {entry.text}{': NOT SO' if left else ''}"))
+            click.echo(printable(f"  {number}. {text}{': NOT SO' if left else ''}"))
         if played.why:
             click.secho(f"  what flies leaves the trace: {played.why}", fg=None if good else "red")
         elif trace.wrong:

@@ -40,6 +40,11 @@ class Trace(NamedTuple):
     entries: Entries
 
     @property
+    def texts(self) -> tuple[str, ...]:
+        """Its events, as a user reads them."""
+        return tuple(one.text for one in self.entries)
+
+    @property
     def of_hand(self) -> bool:
         """It is of the certificate in hand, else of authority."""
         return any(isinstance(one, hand_trace.Entry) for one in self.entries)

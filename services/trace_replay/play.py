@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from cratous.services.trace_replay.actors import Actors
+from cratous.services.trace_replay.files import Trace
 from cratous.services.trace_replay.holder import Holder
 from cratous.services.trace_replay.never_sent import NeverSent
 from cratous.spec.system import hand_trace
@@ -20,6 +21,13 @@ class Played(NamedTuple):
 
     followed: int
     why: str
+
+
+def play_trace(told: Trace) -> Played:
+    """Play a trace of either kind from the start of a flight."""
+    if told.of_hand:
+        return play_hand([one for one in told.entries if isinstance(one, hand_trace.Entry)])
+    return play([one for one in told.entries if isinstance(one, Entry)])
 
 
 def play(entries: Sequence[Entry]) -> Played:
