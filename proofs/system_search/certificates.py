@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from cratous.core.permit import hand as hands
 from cratous.core.permit.hand import KNOWN, LEFT, OFFERED, Hand, Offer
+from cratous.spec.system import hand_trace
 
 RESERVE = 2
 """So many heartbeats at least are certain after an offer, if more than that was."""
@@ -62,23 +63,21 @@ class Held(NamedTuple):
     returned: bool = False
 
 
-class Told(NamedTuple):
-    """An entry of a trace, as a user reads it."""
-
-    text: str
-
-
 class HandEvent(NamedTuple):
-    """What happens, the state afterwards, and what is wrong with it, or nothing."""
+    """What happens, as a user reads it; the state afterwards; what is wrong with it, or nothing; the same as data."""
 
     text: str
     after: Held
     wrong: str = ""
+    event: hand_trace.Event = hand_trace.Event("")
 
     @property
-    def entry(self) -> Told:
+    def entry(self) -> hand_trace.Entry:
         """The step as an entry of a trace."""
-        return Told(self.text)
+        now, hand = self.after.now, self.after.hand
+        return hand_trace.Entry(
+            self.text, self.event, hand_trace.InHand(now, max(now, hand.expiry_ms))
+        )
 
 
 @dataclass(frozen=True)
@@ -100,16 +99,20 @@ class HandDesign:
                 for lasts in (SHORT, LONG):
                     yield _offers(state, begins, lasts)
         for sent in sorted(state.offers):
-            yield self._arrives(state, sent)
+            arrives = hand_trace.Event(hand_trace.ARRIVES, sent.flies)
+            yield self._arrives(state, sent)._replace(event=arrives)
         if state.known < MOST_NEWS:
-            yield _becomes_known(state, True)
-            yield _becomes_known(state, False)
+            known = hand_trace.Event(hand_trace.KNOWN, state.flies)
+            yield _becomes_known(state, True)._replace(event=known)
+            yield _becomes_known(state, False)._replace(event=known)
         for answer in sorted(state.answers):
-            yield self._told(state, answer)
+            told = hand_trace.Event(hand_trace.ANSWER, answer.flies, permitted=answer.permitted)
+            yield self._told(state, answer)._replace(event=told)
         if state.left < MOST_LEFT:
-            yield self._leaves(state)
+            left = hand_trace.Event(hand_trace.LEFT, state.made + 1)
+            yield self._leaves(state)._replace(event=left)
         if state.now < LAST:
-            yield self._passes(state)
+            yield self._passes(state)._replace(event=hand_trace.Event(hand_trace.TIME))
 
     def _arrives(self, state: Held, sent: Sent) -> HandEvent:
         offer, now, before = sent.offer, state.now, state.hand
@@ -171,7 +174,8 @@ def _offers(state: Held, begins: int, lasts: int) -> HandEvent:
     offer = Offer(hand.id + 1, hand.id, sigma, hand.knowledge, sigma + lasts)
     sent = Sent(offer, made, state.flies, state.known)
     after = state._replace(made=made, offers=state.offers | {sent})
-    return HandEvent(f"ICAROUS makes {_named(sent)}", after)
+    event = hand_trace.Event(hand_trace.OFFER, made, sigma, offer.expiry_ms)
+    return HandEvent(f"ICAROUS makes {_named(sent)}", after, event=event)
 
 
 def _becomes_known(state: Held, permitted: bool) -> HandEvent:

@@ -31,10 +31,12 @@ LOOKED = "system_a_way_that_is_looked_ahead_at_is_clear"
 FENCED = "system_no_zone_is_entered_until_a_surprise_or_an_expiry"
 NEAR_LEGS = "system_whoever_is_near_a_checked_leg_obeys_the_zones"
 RANK = "system_the_rank_of_a_mission_falls_at_each_heartbeat"
+SERVED = "system_a_chain_is_served_where_takeovers_and_stays_are_bounded"
+FEW = "system_uxas_counts_a_takeover_once_for_each_intruder_and_surprise"
 BEARS_ON: dict[str, tuple[str, ...]] = {
     "G1": (FENCED, NEAR_LEGS, HAND),
     "G2": (CLEAR, LOOKED, HAND),
-    "G3": (MISSION_ENDS, RANK, TAKEOVER_LASTS),
+    "G3": (MISSION_ENDS, RANK, TAKEOVER_LASTS, SERVED, FEW),
     "G4": (*AUTHORITY, TAKEOVER_ENDS, TAKEOVER_LASTS),
     "G5": (SILENCE,),
 }

@@ -26,6 +26,7 @@ from cratous.services.assumptions.observed import (
 )
 from cratous.services.assumptions.permitted import PermittedWatch
 from cratous.services.assumptions.sensed import SensedWatch
+from cratous.services.assumptions.served import ServedWatch
 from cratous.spec.mission import Mission
 
 
@@ -55,6 +56,7 @@ class AssumptionWatch:
             AwayWatch(mission),
             SettledWatch(),
             GivenUpWatch(mission),
+            ServedWatch(mission),
             HeardWatch(mission, on_board),
             WayBackWatch(mission, on_board),
             *others,

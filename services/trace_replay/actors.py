@@ -36,6 +36,7 @@ from cratous.services.flight.vehicle import UNTOUCHED
 from cratous.services.icarous_program.epochs import EpochFile
 from cratous.services.pipeline.plan import make_plan
 from cratous.services.trace_replay import scene
+from cratous.services.trace_replay.never_sent import NeverSent
 from cratous.services.trace_replay.scene import INTRUDER, VEHICLE
 from cratous.spec.authority.cycle import AVOID
 from cratous.spec.system.trace import (
@@ -61,10 +62,6 @@ class Held(NamedTuple):
     epoch: int
     changes: int
     body: Any
-
-
-class NeverSent(Exception):
-    """The trace delivers a message that was never sent."""
 
 
 class _HoldingBridge(Bridge):

@@ -5,7 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from cratous.services.trace_replay.actors import Actors, NeverSent
+from cratous.services.trace_replay.actors import Actors
+from cratous.services.trace_replay.files import Trace
+from cratous.services.trace_replay.holder import Holder
+from cratous.services.trace_replay.never_sent import NeverSent
+from cratous.spec.system import hand_trace
 from cratous.spec.system.trace import NOTHING, Entry, Standing
 
 NAMES = ("UxAS", "ICAROUS")
@@ -19,6 +23,13 @@ class Played(NamedTuple):
     why: str
 
 
+def play_trace(told: Trace) -> Played:
+    """Play a trace of either kind from the start of a flight."""
+    if told.of_hand:
+        return play_hand([one for one in told.entries if isinstance(one, hand_trace.Entry)])
+    return play([one for one in told.entries if isinstance(one, Entry)])
+
+
 def play(entries: Sequence[Entry]) -> Played:
     """Play a trace from the start of a flight."""
     with Actors() as actors:
@@ -30,6 +41,25 @@ def play(entries: Sequence[Entry]) -> Played:
             if why := differs(entry.after, stands):
                 return Played(number, why)
     return Played(len(entries), "")
+
+
+def play_hand(entries: Sequence[hand_trace.Entry]) -> Played:
+    """Play a trace of the certificate in hand from the start of a flight."""
+    holder = Holder()
+    for number, entry in enumerate(entries):
+        try:
+            stands = holder.happen(entry.event)
+        except NeverSent as error:
+            return Played(number, str(error))
+        if stands != entry.after:
+            return Played(number, f"{_holds(stands)}, in the trace {_holds(entry.after)}")
+    return Played(len(entries), "")
+
+
+def _holds(stands: hand_trace.InHand) -> str:
+    if stands.until <= stands.now:
+        return f"nothing is certain at heartbeat {stands.now}"
+    return f"what is in hand at heartbeat {stands.now} is certain until {stands.until}"
 
 
 def differs(told: Standing, flown: Standing) -> str:

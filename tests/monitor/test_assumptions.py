@@ -161,7 +161,10 @@ def test_faults_of_the_bridge_break_what_is_assumed_of_the_link(
     mission = with_faults(**faults)
     rows = judged(mission, list(flown(mission)))
     found = {name for name, row in rows.items() if row["state"] == "broken"}
-    assert broken <= found <= broken | {"offers taken", "takeovers told", "intruder in its tube"}
+    # the flight ends at its limit, long before its task
+    unserved = {"flown in time", "no other failure"}
+    often = {"offers taken", "takeovers told", "intruder in its tube"}
+    assert broken <= found <= broken | often | unserved
     for name in {"delivery from ICAROUS"} & broken:
         assert rows[name]["observed"] > rows[name]["bound"] == 1.0
     for name in {"delivery to ICAROUS"} & broken:

@@ -1,0 +1,5 @@
+"""What no actor can be given."""
+
+
+class NeverSent(Exception):
+    """The trace delivers a message that was never sent."""
