@@ -32,7 +32,8 @@ class ClockWatch:
     def message(self, message: Message) -> None:
         """Any message; those that say their own time are counted."""
         own, now_ms = message.kind in OWN_TIME, message.time_ms
-        if now_ms == self._asked_ms and (not own or message.body.Time == now_ms):
+        asked = self._asked_ms is not None and in_time(self._asked_ms, now_ms, 0)
+        if asked and (not own or in_time(now_ms, message.body.Time, 0)):
             if own:  # of this instant against itself both have been asked, and held
                 self._record.see_again(0.0, 2)
             return
@@ -45,7 +46,7 @@ class ClockWatch:
                 text = f"a {message.kind} of {_s(time_ms)} after a message of {_s(self._last_ms)}"
                 self._record.check(ok, self._last_ms, 0, text)
             all_ok = all_ok and ok
-        self._asked_ms = now_ms if all_ok and self._last_ms == now_ms else None
+        self._asked_ms = now_ms if all_ok and in_time(self._last_ms, now_ms, 0) else None
         self._last_ms = now_ms
 
     def end(self, at_ms: int) -> None:

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 from cratous.core.authority.gate import gate_accepts
 from cratous.core.authority.timeliness import in_time
+from cratous.core.avoidance.way_ahead import near_line
 from cratous.core.kernel import Vec2
 from cratous.core.readings.exact import exact
 from cratous.core.well_clear import cylinder_violation
@@ -28,6 +29,7 @@ NEAR = 0.5
 """From this share of the cylinder on the kernel is asked: 1 is at its wall."""
 FAR = 1.001
 """So many times DTHR, by the greatest share so far, is far enough away to tell whatever a double rounds."""
+HERE = Vec2(0.0, 0.0)
 SEEN = "flown as looked at"
 """The assumption whose watch notes when an aircraft was not seen."""
 IN_HAND = ("Offered", "Known", "Left")
@@ -144,7 +146,7 @@ class PermittedWatch:
         volume, (a, b) = self._volume, (here.at, there.at)
         north, east, up = b.north_m - a.north_m, b.east_m - a.east_m, b.alt_m - a.alt_m
         most = min(self._record.extreme or 0.0, NEAR)
-        if max(abs(north), abs(east)) * most > FAR * volume.dthr_m:
+        if most > 0 and not near_line(Vec2(north, east), HERE, HERE, FAR * volume.dthr_m / most):
             # its share is less than the greatest so far, and than what the kernel is asked from on
             self._record.see_again(0.0, len(told))
             return []
@@ -162,7 +164,7 @@ class PermittedWatch:
         if own not in self._gates:
             return ()
         asked_ms, is_so = self._permits.get(own, (None, False))
-        if asked_ms != now_ms:
+        if asked_ms is None or not in_time(asked_ms, now_ms, 0):
             is_so = self._is_permitted(own, now_ms)
             self._permits[own] = now_ms, is_so
         return ((own, other),) if is_so and self._is_seen(own, other) else ()

@@ -10,8 +10,10 @@ from __future__ import annotations
 from typing import Any
 
 from cratous.core.authority.gate import ICAROUS, UXAS, gate_accepts
+from cratous.core.authority.timeliness import in_time
 from cratous.core.avoidance.prediction import Intruder, Piece
 from cratous.core.permit.hand import Offer
+from cratous.services.assumptions.observed import ANY_LATER
 from cratous.services.flight.commands import gated, velocity_command
 from cratous.services.flight.holding import Ground
 from cratous.services.flight.messages import (
@@ -101,7 +103,8 @@ class Holder:
 
     def _offer(self, event: Event) -> None:
         """ICAROUS takes the vehicle, if it has not got it, and makes an offer on what is in hand."""
-        if not self._now_ms // self._unit_ms <= event.begins < event.until:
+        begun = not in_time(self._now_ms // self._unit_ms, event.begins, ANY_LATER)
+        if begun or in_time(event.until, event.begins, ANY_LATER):
             raise NeverSent("ICAROUS offers nothing that has begun, or is permitted for no time")
         if not self._by_icarous:
             self._wish(TAKE_OVER)
@@ -158,11 +161,10 @@ class Holder:
 
     def _time(self, _event: Event) -> None:
         """Fly until the next heartbeat of the trace, at which whoever has the vehicle commands."""
-        end_ms = self._now_ms + self._unit_ms
-        while self._now_ms < end_ms:
-            self._send(Choose(self._now_ms))
+        for begins_ms in range(self._now_ms, self._now_ms + self._unit_ms, self._step_ms):
+            self._send(Choose(begins_ms))
             self._send(Move())
-            self._now_ms += self._step_ms
+            self._now_ms = begins_ms + self._step_ms
             if self._now_ms % self._ground.heartbeat_ms == 0:
                 if self._by_icarous:
                     self._command(ICAROUS)
