@@ -27,6 +27,9 @@ Place = tuple[int, int]
 Taken = Callable[[str, Mapping[Place, z3.ExprRef]], set[Place]]
 """Those arguments of some that are found to take many values by running the statement (`proofs.running.nudged`)
 at numbers that are made of a hash of what it says."""
+Held = Callable[[str, Mapping[int, Mapping[Place, z3.ExprRef]]], set[int]]
+"""Those uses of kernels, of some with their arguments, whose results a definition decides at many values of these
+(`proofs.running.other_results`)."""
 
 FEW = 8
 """An argument with no more values than these is told their number."""
@@ -42,17 +45,29 @@ class Given:
 
     def many(self, terms: list[z3.ExprRef]) -> set[int]:
         """Those terms that have two values as near as can be; all are asked at once first. Masks are counted."""
-        terms = [term for term in terms if not z3.is_bv(term)]
-        values = free_values([*self.premises, *terms])
-        others = [(v, z3.Const(f"{v}!other", v.sort())) for v in values]
-        twice = [*self.premises, *[z3.substitute(one, *others) for one in self.premises]]
-        width = self._width(terms)
-        apart = {t.get_id(): _near(t, z3.substitute(t, *others), width) for t in terms}
+        twice, apart = self._twice([term for term in terms if not z3.is_bv(term)])
         if self.possible([*twice, *apart.values()]) == "sat":
             return set(apart)
         if len(apart) == 1:
             return set()
         return {key for key, near in apart.items() if self.possible([*twice, near]) == "sat"}
+
+    def apart(self, terms: list[z3.ExprRef]) -> str:
+        """Each term has two such values: sat, unsat or unknown. No term is a mask."""
+        twice, apart = self._twice(terms)
+        first = self.possible([*twice, *apart.values()])
+        if first == "sat" or len(apart) == 1:
+            return first
+        return worst(self.possible([*twice, near]) for near in apart.values())
+
+    def _twice(
+        self, terms: list[z3.ExprRef]
+    ) -> tuple[list[z3.BoolRef], dict[int, z3.BoolRef]]:
+        values = free_values([*self.premises, *terms])
+        others = [(v, z3.Const(f"{v}!other", v.sort())) for v in values]
+        twice = [*self.premises, *[z3.substitute(one, *others) for one in self.premises]]
+        width = self._width(terms)
+        return twice, {t.get_id(): _near(t, z3.substitute(t, *others), width) for t in terms}
 
     def _width(self, terms: list[z3.ExprRef]) -> Fraction:
         """Which number it is, nobody chooses who states the premises: it is made of their hash.
@@ -74,6 +89,16 @@ class Given:
                 break
             found.append(value)
         return len(found)
+
+
+def worst(answers: Iterable[str]) -> str:
+    """That of several answers which says the least for a theorem; it asks for no more after an unsat."""
+    found = "sat"
+    for answer in answers:
+        if answer == "unsat":
+            return answer
+        found = answer if answer == "unknown" else found
+    return found
 
 
 def enough(term: z3.ExprRef, values: set[Any]) -> bool:

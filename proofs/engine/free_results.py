@@ -1,0 +1,125 @@
+"""Whether a theorem's goals could be false, were a kernel's result free, at more than a few arguments.
+
+A condition in a goal (`c.implies(x == 3, ...)`) restricts a theorem as a premise does, and no premise tells. So the
+claim is stated once more with results that may be any value of their type: where a goal is false then, and is not
+with other results of definitions too, it holds the kernel against the definition. Two such places are asked for at
+which an argument differs by next to nothing, as `argument_values` asks of premises.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, get_args, get_origin, get_type_hints
+
+import z3
+
+from cratous.core.kernel import Fold
+from cratous.proofs.engine.argument_values import Given, Place, Possible, worst
+from cratous.proofs.engine.claim import Claim
+from cratous.proofs.engine.lift import join
+from cratous.proofs.engine.terms import free_names, fresh, known, leaves, statement
+
+
+@dataclass(repr=False)
+class FreeResults(Claim):
+    """A claim whose uses of kernels, and of definitions, may each be switched to any result."""
+
+    switches: dict[int, z3.BoolRef] = field(default_factory=dict)
+    arguments: dict[Place, z3.ExprRef] = field(default_factory=dict)
+    of_folds: set[int] = field(default_factory=set)
+    said: list[tuple[list[z3.BoolRef], list[z3.BoolRef], z3.BoolRef]] = field(default_factory=list)
+    free: dict[Any, tuple[z3.BoolRef, Any]] = field(default_factory=dict)
+    kept: list[Any] = field(default_factory=list)
+    number: int = 0
+    rows: bool = False
+
+    def _freed(self, what: str, function: Callable[..., Any], args: Any, value: Any) -> Any:
+        terms = [known(leaf) for leaf in leaves(args)]
+        if not any(map(free_names, terms)):
+            return value
+        self.kept += terms
+        key = (what, function, tuple(term.get_id() for term in terms))
+        if key not in self.free:
+            name = f"{what}!{len(self.free)}"
+            any_value = _any(name, get_type_hints(function)["return"])
+            self.free[key] = z3.Bool(f"{name}!switch"), any_value
+        switch, any_value = self.free[key]
+        return join([(switch, any_value), (z3.Not(switch), value)])
+
+    def use(self, kernel: Callable[..., Any], *args: Any, when: Any = True) -> Any:
+        value = self._freed("kernel", kernel, args, super().use(kernel, *args, when=when))
+        key = ("kernel", kernel, tuple(known(leaf).get_id() for leaf in leaves(args)))
+        if key in self.free:
+            self.switches[self.number] = self.free[key][0]
+        self.number += 1
+        return value
+
+    def define(self, definition: Callable[..., Any], *args: Any) -> Any:
+        # its values at numbers that are written down stand in the goals
+        self.rows |= all(isinstance(leaf, int) for leaf in leaves(args))
+        return self._freed("definition", definition, args, super().define(definition, *args))
+
+    def fold(self, kernel_fold: Fold[Any], **how: Any) -> None:
+        """It has no condition but its premises."""
+        uses = 1 if kernel_fold.finish is None else 2
+        self.of_folds |= set(range(self.number, self.number + uses))
+        self.number += uses
+
+    def step(self, goal: Any, text: str) -> None:
+        """It helps to prove the goals."""
+
+    def show(self, goal: Any, text: str = "the claim") -> None:
+        self.said.append((list(self.premises), list(self.facts), statement(goal)))
+
+    def cases(self, *conditions: Any, goal: Any, text: str = "the claim") -> None:
+        self.show(goal, text)
+
+    def _owe(self, kind: str, text: str, goal: z3.BoolRef) -> None:
+        """What is owed is another reading's matter."""
+
+    def _closed(self, *_: Any) -> None:
+        """As for what is owed."""
+
+    def excluded(self, use: int, *, by_definition: bool) -> z3.BoolRef:
+        """Some goal excludes a result of this use; by_definition: because of what a definition says."""
+        switches = [switch for switch, _ in self.free.values()]
+        ours = self.switches[use]
+        off = [(s, z3.BoolVal(s.eq(ours))) for s in switches]
+        meant = [(s, z3.BoolVal(s.eq(ours) or str(s).startswith("definition"))) for s in switches]
+        found = []
+        for premises, facts, goal in self.said:
+            here = z3.And(*premises)
+            wrong = z3.substitute(z3.And(here, *facts, z3.Not(goal)), *off)
+            right = z3.substitute(z3.Implies(here, goal), *meant)
+            found.append(z3.And(wrong, right) if by_definition else wrong)
+        return z3.Or(*found)
+
+
+def _any(name: str, kind: Any) -> Any:
+    if get_origin(kind) is tuple:
+        return tuple(_any(f"{name}.{k}", part) for k, part in enumerate(get_args(kind)))
+    return fresh(name, kind)
+
+
+def settled(
+    claim: FreeResults, asked: Mapping[int, Mapping[Place, z3.ExprRef]], possible: Possible
+) -> dict[int, str]:
+    """For each of these uses, with its arguments: sat, unsat or unknown."""
+    return {use: _of(claim, use, list(terms.values()), possible) for use, terms in asked.items()}
+
+
+def _of(claim: FreeResults, use: int, terms: list[z3.ExprRef], possible: Possible) -> str:
+    if use in claim.of_folds:
+        return "sat"
+    if use not in claim.switches:
+        return "unknown"
+    terms = [term for term in terms if not z3.is_bv(term)]
+    numbers = [term for term in terms if not z3.is_bool(term)]
+    excluded = claim.excluded(use, by_definition=not claim.rows)
+    answers = [Given([excluded], possible).apart(numbers) if numbers else possible([excluded])]
+    if len(numbers) < len(terms):
+        # of a truth value both count, though a definition may decide nothing at one of them
+        plain = Given([claim.excluded(use, by_definition=False)], possible)
+        answers.append(plain.apart([term for term in terms if z3.is_bool(term)]))
+    return worst(answers)
