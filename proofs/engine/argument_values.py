@@ -27,8 +27,10 @@ Place = tuple[int, int]
 Taken = Callable[[str, Mapping[Place, z3.ExprRef]], set[Place]]
 """Those arguments of some that are found to take many values by running the statement (`proofs.running.nudged`)
 at numbers that are made of a hash of what it says."""
-Held = Callable[[str, Mapping[int, Mapping[Place, z3.ExprRef]]], set[int]]
-"""Those uses of kernels, of some with their arguments, whose results a definition decides at many values of these
+Uses = Mapping[int, Mapping[Place, z3.ExprRef]]
+"""Uses of kernels by number, each with those of its arguments that are not written down."""
+Held = Callable[[str, Uses, Possible], set[int]]
+"""Those uses of some whose results the theorem's goals decide at many values of their arguments
 (`proofs.running.other_results`)."""
 
 FEW = 8
@@ -60,9 +62,7 @@ class Given:
             return first
         return worst(self.possible([*twice, near]) for near in apart.values())
 
-    def _twice(
-        self, terms: list[z3.ExprRef]
-    ) -> tuple[list[z3.BoolRef], dict[int, z3.BoolRef]]:
+    def _twice(self, terms: list[z3.ExprRef]) -> tuple[list[z3.BoolRef], dict[int, z3.BoolRef]]:
         values = free_values([*self.premises, *terms])
         others = [(v, z3.Const(f"{v}!other", v.sort())) for v in values]
         twice = [*self.premises, *[z3.substitute(one, *others) for one in self.premises]]

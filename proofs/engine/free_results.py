@@ -8,14 +8,14 @@ which an argument differs by next to nothing, as `argument_values` asks of premi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, get_args, get_origin, get_type_hints
 
 import z3
 
 from cratous.core.kernel import Fold
-from cratous.proofs.engine.argument_values import Given, Place, Possible, worst
+from cratous.proofs.engine.argument_values import Given, Possible, Uses, worst
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.lift import join
 from cratous.proofs.engine.terms import free_names, fresh, known, leaves, statement
@@ -26,7 +26,6 @@ class FreeResults(Claim):
     """A claim whose uses of kernels, and of definitions, may each be switched to any result."""
 
     switches: dict[int, z3.BoolRef] = field(default_factory=dict)
-    arguments: dict[Place, z3.ExprRef] = field(default_factory=dict)
     of_folds: set[int] = field(default_factory=set)
     said: list[tuple[list[z3.BoolRef], list[z3.BoolRef], z3.BoolRef]] = field(default_factory=list)
     free: dict[Any, tuple[z3.BoolRef, Any]] = field(default_factory=dict)
@@ -76,7 +75,9 @@ class FreeResults(Claim):
         self.show(goal, text)
 
     def _owe(self, kind: str, text: str, goal: z3.BoolRef) -> None:
-        """What is owed is another reading's matter."""
+        """A part of an induction is a goal; what functions and lemmas owe is another reading's matter."""
+        if kind in ("base", "step", "use"):
+            self.said.append((list(self.premises), list(self.facts), goal))
 
     def _closed(self, *_: Any) -> None:
         """As for what is owed."""
@@ -102,10 +103,10 @@ def _any(name: str, kind: Any) -> Any:
     return fresh(name, kind)
 
 
-def settled(
-    claim: FreeResults, asked: Mapping[int, Mapping[Place, z3.ExprRef]], possible: Possible
-) -> dict[int, str]:
-    """For each of these uses, with its arguments: sat, unsat or unknown."""
+def settled(claim: FreeResults | None, asked: Uses, possible: Possible) -> dict[int, str]:
+    """For each of these uses: sat, unsat or unknown; claim: None where it cannot be stated so."""
+    if claim is None:
+        return dict.fromkeys(asked, "unknown")
     return {use: _of(claim, use, list(terms.values()), possible) for use, terms in asked.items()}
 
 

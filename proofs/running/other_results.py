@@ -20,10 +20,12 @@ from typing import Any
 import z3
 
 from cratous.core.kernel import Fold
-from cratous.proofs.engine.argument_values import Held, Place, enough
+from cratous.proofs.engine.argument_values import Held, Place, Possible, Uses, enough
 from cratous.proofs.engine.claim import Claim
+from cratous.proofs.engine.free_results import FreeResults, settled
+from cratous.proofs.engine.lift import LiftError
 from cratous.proofs.engine.terms import leaves
-from cratous.proofs.engine.theorem_files import load_claim
+from cratous.proofs.engine.theorem_files import load_claim, load_lemma
 from cratous.proofs.running.late_values import now
 from cratous.proofs.running.nudged import STOPS, Nudged, Observed, no_lemma
 from cratous.proofs.running.statement import truth
@@ -40,21 +42,42 @@ Call = tuple[Callable[..., Any], tuple[Any, ...]]
 """A function, and numbers it is given."""
 
 
-def held(name: str, claim: Claim, folder: Path) -> Held | None:
-    """Finds the uses of kernels that a theorem's goals hold against a definition; claim: the same, stated.
+def held(name: str, claim: Claim, folder: Path) -> Held:
+    """Finds the uses of kernels that a theorem's goals hold against a definition; claim: the same, stated."""
+    statement = load_claim(name, folder)[0]
 
-    None for one that asks for the calls of a function, as for `nudged.taken`.
-    """
-    if claim.asked:
+    def found(seed: str, asked: Uses, possible: Possible) -> set[int]:
+        # no run sees the calls of a function
+        held = set() if claim.asked else _found(statement, seed, asked, FIRST_RUNS)
+        rest = {use: terms for use, terms in asked.items() if use not in held}
+        if not rest:
+            return held
+        answers = settled(_freed(statement, folder), rest, possible)
+        held |= {use for use, answer in answers.items() if answer == "sat"}
+        left = {use: rest[use] for use, answer in answers.items() if answer == "unknown"}
+        if left and not claim.asked:
+            held |= _found(statement, seed, left, RUNS)
+        # a row of a table is at one place by what it is
+        return held | {use for use, terms in left.items() if not terms}
+
+    return found
+
+
+def _freed(statement: Callable[[Any], None], folder: Path) -> FreeResults | None:
+    """The claim with free results; None where it cannot be stated so."""
+    claim = FreeResults(load=functools.cache(lambda other: load_lemma(other, folder)))
+    try:
+        statement(claim)
+    except (LiftError, TypeError, ValueError, RuntimeError, AttributeError, KeyError, IndexError):
         return None
-    return functools.partial(_found, load_claim(name, folder)[0])
+    return claim
 
 
 def _found(
     statement: Callable[[Any], None],
     seed: str,
-    asked: Mapping[int, Mapping[Place, z3.ExprRef]],
-    runs: int = FIRST_RUNS,
+    asked: Uses,
+    runs: int,
 ) -> set[int]:
     """Those of some uses, each with its arguments that are no numbers which are written down."""
     values: dict[Place, set[Any]] = {place: set() for use in asked.values() for place in use}
@@ -129,7 +152,9 @@ class _Place:
             if not wrong.false:
                 continue
             if wrong.rows:
-                return BY_DEFINITION  # its values at numbers that are written down stand in the goals
+                return (
+                    BY_DEFINITION  # its values at numbers that are written down stand in the goals
+                )
             found = GOAL
             for meant in wrong.definitions:
                 if meant not in wrong.results:
@@ -182,7 +207,9 @@ class _Replaced(Observed):
     def _run(self, function: Callable[..., Any], args: tuple[Any, ...]) -> Any:
         call = (function, now(args))
         if call not in self.results:
-            self.results[call] = self.given[call] if call in self.given else super()._run(function, args)
+            self.results[call] = (
+                self.given[call] if call in self.given else super()._run(function, args)
+            )
         return self.results[call]
 
     def fold(self, kernel_fold: Fold[Any], **how: Any) -> None:
@@ -212,7 +239,14 @@ def _others(value: Any, seed: str) -> Iterator[Any]:
         yield from (value + apart for apart in (1, -1, 2, -2, 7, -7))
     elif isinstance(value, Fraction):
         by = 1 + Fraction(int(sha256(seed.encode()).hexdigest(), 16), 2**256)
-        yield from (value + by, value - by, value + by / 64, value - by / 64, value + 64 * by, value - 64 * by)
+        yield from (
+            value + by,
+            value - by,
+            value + by / 64,
+            value - by / 64,
+            value + 64 * by,
+            value - 64 * by,
+        )
 
 
 def _shape(value: Any) -> Any:
