@@ -58,7 +58,7 @@ class Given:
         """Each term has two such values: sat, unsat or unknown. No term is a mask."""
         twice, apart = self._twice(terms)
         first = self.possible([*twice, *apart.values()])
-        if first == "sat" or len(apart) == 1:
+        if first != "unsat" or len(apart) == 1:
             return first
         return worst(self.possible([*twice, near]) for near in apart.values())
 
@@ -92,13 +92,8 @@ class Given:
 
 
 def worst(answers: Iterable[str]) -> str:
-    """That of several answers which says the least for a theorem; it asks for no more after an unsat."""
-    found = "sat"
-    for answer in answers:
-        if answer == "unsat":
-            return answer
-        found = answer if answer == "unknown" else found
-    return found
+    """The first of several answers that is not sat; it asks for no more then."""
+    return next((answer for answer in answers if answer != "sat"), "sat")
 
 
 def enough(term: z3.ExprRef, values: set[Any]) -> bool:

@@ -15,7 +15,7 @@ from typing import Any, get_args, get_origin, get_type_hints
 import z3
 
 from cratous.core.kernel import Fold
-from cratous.proofs.engine.argument_values import Given, Possible, Uses, worst
+from cratous.proofs.engine.argument_values import Given, Possible, Uses
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.lift import join
 from cratous.proofs.engine.terms import free_names, fresh, known, leaves, statement
@@ -118,9 +118,9 @@ def _of(claim: FreeResults, use: int, terms: list[z3.ExprRef], possible: Possibl
     terms = [term for term in terms if not z3.is_bv(term)]
     numbers = [term for term in terms if not z3.is_bool(term)]
     excluded = claim.excluded(use, by_definition=not claim.rows)
-    answers = [Given([excluded], possible).apart(numbers) if numbers else possible([excluded])]
-    if len(numbers) < len(terms):
+    answer = Given([excluded], possible).apart(numbers) if numbers else possible([excluded])
+    if answer == "sat" and len(numbers) < len(terms):
         # of a truth value both count, though a definition may decide nothing at one of them
         plain = Given([claim.excluded(use, by_definition=False)], possible)
-        answers.append(plain.apart([term for term in terms if z3.is_bool(term)]))
-    return worst(answers)
+        return plain.apart([term for term in terms if z3.is_bool(term)])
+    return answer

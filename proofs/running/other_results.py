@@ -33,10 +33,8 @@ from cratous.proofs.running.statement import truth
 NO, GOAL, BY_DEFINITION = 0, 1, 2
 """No goal excludes another result; one does; it does because of what a definition says."""
 
-PLACES = 200
-"""So many places are tried for a statement."""
-FIRST_RUNS, RUNS = 200, 2000
-"""So many runs are made for it at most: before the solver is asked, and after it did not know."""
+CALLS = 15_000
+"""So many calls of functions are made for a theorem at most."""
 
 Call = tuple[Callable[..., Any], tuple[Any, ...]]
 """A function, and numbers it is given."""
@@ -48,17 +46,12 @@ def held(name: str, claim: Claim, folder: Path) -> Held:
 
     def found(seed: str, asked: Uses, possible: Possible) -> set[int]:
         # no run sees the calls of a function
-        held = set() if claim.asked else _found(statement, seed, asked, FIRST_RUNS)
+        held = set() if claim.asked else _found(statement, seed, asked)
         rest = {use: terms for use, terms in asked.items() if use not in held}
-        if not rest:
-            return held
-        answers = settled(_freed(statement, folder), rest, possible)
-        held |= {use for use, answer in answers.items() if answer == "sat"}
-        left = {use: rest[use] for use, answer in answers.items() if answer == "unknown"}
-        if left and not claim.asked:
-            held |= _found(statement, seed, left, RUNS)
-        # a row of a table is at one place by what it is
-        return held | {use for use, terms in left.items() if not terms}
+        if rest:
+            answers = settled(_freed(statement, folder), rest, possible)
+            held |= {use for use, answer in answers.items() if answer != "unsat"}
+        return held
 
     return found
 
@@ -77,16 +70,15 @@ def _found(
     statement: Callable[[Any], None],
     seed: str,
     asked: Uses,
-    runs: int,
 ) -> set[int]:
     """Those of some uses, each with its arguments that are no numbers which are written down."""
     values: dict[Place, set[Any]] = {place: set() for use in asked.values() for place in use}
     many: set[Place] = set()
     meant: set[int] = set()
     found: set[int] = set()
-    left = [runs]
+    left = [CALLS]
     hairs = (0, 1) if any(z3.is_real(t) for use in asked.values() for t in use.values()) else (0,)
-    for number in range(PLACES):
+    for number in range(CALLS):
         places = [_Place(statement, f"{seed} {number}", some, left) for some in hairs]
         for use in sorted(asked.keys() - found):
             how = _least(place.holds(use) for place in places)
@@ -133,10 +125,10 @@ class _Place:
 
     def _run(self, results: Mapping[Call, Any], *, strict: bool = True) -> _Replaced:
         on = _Replaced(Nudged(self.seed, self.hairs), no_lemma, results=results, strict=strict)
-        self.left[0] -= 1
         with contextlib.suppress(*STOPS):
             if self.left[0] > 0:
                 self.statement(on)
+        self.left[0] -= 1 + len(on.results)
         return on
 
     def holds(self, use: int) -> int:
