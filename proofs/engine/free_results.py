@@ -8,7 +8,7 @@ which an argument differs by next to nothing, as `argument_values` asks of premi
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from dataclasses import dataclass, field
 from typing import Any, get_args, get_origin, get_type_hints
 
@@ -31,7 +31,6 @@ class FreeResults(Claim):
     free: dict[Any, tuple[z3.BoolRef, Any]] = field(default_factory=dict)
     kept: list[Any] = field(default_factory=list)
     number: int = 0
-    rows: bool = False
 
     def _freed(self, what: str, function: Callable[..., Any], args: Any, value: Any) -> Any:
         terms = [known(leaf) for leaf in leaves(args)]
@@ -55,8 +54,6 @@ class FreeResults(Claim):
         return value
 
     def define(self, definition: Callable[..., Any], *args: Any) -> Any:
-        # its values at numbers that are written down stand in the goals
-        self.rows |= all(isinstance(leaf, int) for leaf in leaves(args))
         return self._freed("definition", definition, args, super().define(definition, *args))
 
     def fold(self, kernel_fold: Fold[Any], **how: Any) -> None:
@@ -103,21 +100,31 @@ def _any(name: str, kind: Any) -> Any:
     return fresh(name, kind)
 
 
-def settled(claim: FreeResults | None, asked: Uses, possible: Possible) -> dict[int, str]:
-    """For each of these uses: sat, unsat or unknown; claim: None where it cannot be stated so."""
+def settled(
+    claim: FreeResults | None, asked: Uses, rows: Container[int], possible: Possible
+) -> dict[int, str]:
+    """For each of these uses: sat, unsat or unknown.
+
+    claim: None where it cannot be stated so; rows: uses whose definitions are evaluated at known numbers.
+    """
     if claim is None:
         return dict.fromkeys(asked, "unknown")
-    return {use: _of(claim, use, list(terms.values()), possible) for use, terms in asked.items()}
+    found = {}
+    for use, terms in asked.items():
+        if use in claim.of_folds:
+            found[use] = "sat"
+        elif use in claim.switches:
+            found[use] = _of(claim, use, list(terms.values()), (use not in rows, possible))
+        else:
+            found[use] = "unknown"
+    return found
 
 
-def _of(claim: FreeResults, use: int, terms: list[z3.ExprRef], possible: Possible) -> str:
-    if use in claim.of_folds:
-        return "sat"
-    if use not in claim.switches:
-        return "unknown"
+def _of(claim: FreeResults, use: int, terms: list[z3.ExprRef], how: tuple[bool, Possible]) -> str:
+    by_definition, possible = how
     terms = [term for term in terms if not z3.is_bv(term)]
     numbers = [term for term in terms if not z3.is_bool(term)]
-    excluded = claim.excluded(use, by_definition=not claim.rows)
+    excluded = claim.excluded(use, by_definition=by_definition)
     answer = Given([excluded], possible).apart(numbers) if numbers else possible([excluded])
     if answer == "sat" and len(numbers) < len(terms):
         # of a truth value both count, though a definition may decide nothing at one of them

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import z3
 
@@ -24,7 +24,7 @@ from cratous.proofs.engine.argument_values import Held, Place, Possible, Uses, e
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.free_results import FreeResults, settled
 from cratous.proofs.engine.lift import LiftError
-from cratous.proofs.engine.terms import leaves
+from cratous.proofs.engine.terms import free_names, known, leaves
 from cratous.proofs.engine.theorem_files import load_claim, load_lemma
 from cratous.proofs.running.late_values import now
 from cratous.proofs.running.nudged import STOPS, Nudged, Observed, no_lemma
@@ -33,7 +33,7 @@ from cratous.proofs.running.statement import truth
 NO, GOAL, BY_DEFINITION = 0, 1, 2
 """No goal excludes another result; one does; it does because of what a definition says."""
 
-CALLS = 15_000
+CALLS = 4_000
 """So many calls of functions are made for a theorem at most."""
 
 Call = tuple[Callable[..., Any], tuple[Any, ...]]
@@ -43,17 +43,42 @@ Call = tuple[Callable[..., Any], tuple[Any, ...]]
 def held(name: str, claim: Claim, folder: Path) -> Held:
     """Finds the uses of kernels that a theorem's goals hold against a definition; claim: the same, stated."""
     statement = load_claim(name, folder)[0]
+    rows = _rows(claim)
 
     def found(seed: str, asked: Uses, possible: Possible) -> set[int]:
         # no run sees the calls of a function
-        held = set() if claim.asked else _found(statement, seed, asked)
+        held = set() if claim.asked else _found(_Statement(statement, rows), seed, asked)
         rest = {use: terms for use, terms in asked.items() if use not in held}
         if rest:
-            answers = settled(_freed(statement, folder), rest, possible)
+            answers = settled(_freed(statement, folder), rest, rows, possible)
             held |= {use for use, answer in answers.items() if answer != "unsat"}
         return held
 
     return found
+
+
+class _Statement(NamedTuple):
+    """A statement; rows: its uses of kernels for which a definition is evaluated at numbers written down in them.
+
+    These are the definition's results, and stand in the goals: no other ones are tried.
+    """
+
+    run: Callable[[Any], None]
+    rows: frozenset[int]
+
+
+def _rows(claim: Claim) -> frozenset[int]:
+    runs = getattr(claim, "runs", ())
+    points = [_written(run.args) for run in runs if run.role == "definition"]
+    points = [point for point in points if point and None not in point]
+    uses = [_written(run.args) for run in runs if run.role == "kernel"]
+    return frozenset(n for n, use in enumerate(uses) if any(point <= use for point in points))
+
+
+def _written(args: tuple[Any, ...]) -> set[str | None]:
+    """The numbers among arguments that are written down; None stands for all others."""
+    terms = [known(leaf) for leaf in leaves(args)]
+    return {None if free_names(term) else str(term) for term in terms}
 
 
 def _freed(statement: Callable[[Any], None], folder: Path) -> FreeResults | None:
@@ -66,11 +91,7 @@ def _freed(statement: Callable[[Any], None], folder: Path) -> FreeResults | None
     return claim
 
 
-def _found(
-    statement: Callable[[Any], None],
-    seed: str,
-    asked: Uses,
-) -> set[int]:
+def _found(statement: _Statement, seed: str, asked: Uses) -> set[int]:
     """Those of some uses, each with its arguments that are no numbers which are written down."""
     values: dict[Place, set[Any]] = {place: set() for use in asked.values() for place in use}
     many: set[Place] = set()
@@ -113,10 +134,9 @@ def _least(found: Iterator[int]) -> int:
 class _Place:
     """A statement at one place."""
 
-    def __init__(
-        self, statement: Callable[[Any], None], seed: str, hairs: int, left: list[int]
-    ) -> None:
-        self.statement, self.seed, self.hairs, self.left = statement, seed, hairs, left
+    def __init__(self, of: _Statement, seed: str, hairs: int, left: list[int]) -> None:
+        self.statement, self.rows = of.run, of.rows
+        self.seed, self.hairs, self.left = seed, hairs, left
 
     @functools.cached_property
     def base(self) -> _Replaced:
@@ -143,10 +163,8 @@ class _Place:
             wrong = self._run({call: other})
             if not wrong.false:
                 continue
-            if wrong.rows:
-                return (
-                    BY_DEFINITION  # its values at numbers that are written down stand in the goals
-                )
+            if use in self.rows:
+                return BY_DEFINITION
             found = GOAL
             for meant in wrong.definitions:
                 if meant not in wrong.results:
@@ -173,7 +191,6 @@ class _Replaced(Observed):
     of_folds: set[int] = field(default_factory=set)
     false: set[int] = field(default_factory=set)
     asked: int = 0
-    rows: bool = False
     outside: bool = False
 
     def __post_init__(self) -> None:
@@ -191,7 +208,6 @@ class _Replaced(Observed):
 
     def define(self, definition: Callable[..., Any], *args: Any) -> Any:
         call = (definition, now(args))
-        self.rows |= all(isinstance(leaf, int) for leaf in leaves(args))
         if call not in self.definitions:
             self.definitions.append(call)
         return super().define(definition, *args)
