@@ -148,8 +148,8 @@ class Claim:
     def assume(self, condition: Any, *, owner: str, reason: str) -> None:
         """Take something for granted; it stays in the ledger, with owner and reason, for ever."""
         self.assumed.append(statement(condition))
-        self.facts.append(statement(condition))
-        self.assumptions.append((str(statement(condition)), owner, reason))
+        self.facts.append(self.assumed[-1])
+        self.assumptions.append((str(self.assumed[-1]), owner, reason))
 
     def use(self, kernel: Callable[..., Any], *args: Any, when: Any = True) -> Any:
         """Run a kernel of `core` on these values; the theorem is about it.
