@@ -22,6 +22,7 @@ from cratous.core.ledger.package_home import Home
 from cratous.proofs import ledger
 from cratous.proofs.engine import prover, solver_memory, worker_processes
 from cratous.proofs.engine.cache import Answer, Cache
+from cratous.proofs.engine.theorem_files import home_folder
 from cratous.proofs.phases import TimedCache
 from cratous.spec.errors import BadInput
 
@@ -78,7 +79,7 @@ def answered(name: str, home: Home, folder: Path | None) -> dict[str, Any]:
     folder: where this machine keeps its own answers. Raises what stating the theorem raises.
     """
     solver_memory.keep()
-    asked = partial(_answered, name, prover.home_folder(home), folder, os.getpid())
+    asked = partial(_answered, name, home_folder(home), folder, os.getpid())
     try:
         # the statement must come out as where it is asked for, so it is made in a fresh process
         return worker_processes.call(asked)
@@ -134,7 +135,7 @@ def said_proved(
             lean.add(progress.name)
 
     ledger.prove_theorems(
-        names, folder=prover.home_folder(home), jobs=jobs, cache=cache, tell=hear,
+        names, folder=home_folder(home), jobs=jobs, cache=cache, tell=hear,
         write=lambda *_: cache.taken,  # in the theorem's own process, where its answers were taken
     )  # fmt: skip
     return sorted(lean)

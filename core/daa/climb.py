@@ -158,20 +158,15 @@ def altitude_conflict(
     return False
 
 
-@kernel(implements="daa.meaning.violated_at")
-def in_conflict_at_a_height(
-    kind: int, s: Vec2, v: Vec2, thresholds: Thresholds, t_s: float
-) -> bool:
-    """True iff the volume is violated at some t in [0, t_s] by one that flies straight on beside the other, at its
-    height; so if not, it is not violated at any other height either. Arguments as for `in_conflict`."""
-    return in_conflict(kind, s, v, 0, 0, thresholds, 0, t_s)
-
-
-@driver(checked_by=("in_conflict_at_a_height",))
+@driver(checked_by=("in_conflict",))
 def in_reach(
     own: np.ndarray, intruders: Intruders, i: int, regaining: Regaining, looking: Looking
 ) -> bool:
-    """Whether intruder i matters at any altitude: only these change, the flight over ground does not."""
+    """Whether intruder i matters at any altitude: only these change, the flight over ground does not.
+
+    One that is not in conflict where it stays at the same height is so at no height and climb rate
+    (`daa_conflict_at_no_height_beside`).
+    """
     other, w, kind = intruders.states[i], intruders.volumes[i], intruders.kinds[i]
     if kind == SUM_KIND:
         return True
@@ -181,15 +176,15 @@ def in_reach(
         own[0] - other[0] + v.x * looking.project_s, own[1] - other[1] + v.y * looking.project_s
     )
     volume = Thresholds(w[0], w[1], w[2], w[3], w[4])
-    if in_conflict_at_a_height(kind, s, v, volume, until_s):
+    if in_conflict(kind, s, v, 0.0, 0.0, volume, 0.0, until_s):
         return True
     if not regaining.recovering:
         return False
     cylinder = Thresholds(regaining.radius_m, regaining.half_m, 0.0, 0.0, 0.0)
-    return in_conflict_at_a_height(3, s, v, cylinder, until_s)
+    return in_conflict(3, s, v, 0.0, 0.0, cylinder, 0.0, until_s)
 
 
-@driver(checked_by=("in_conflict", "in_conflict_at_a_height", "climb", "height", "until"))
+@driver(checked_by=("in_conflict", "climb", "height", "until"))
 def safe_altitudes(
     ways: Manoeuvres, intruders: Intruders, chosen: np.ndarray, regaining: Regaining,
     looking: Looking, safe: np.ndarray,

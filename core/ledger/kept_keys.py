@@ -8,6 +8,7 @@ still read and hashed at each start, and any difference makes the walks be done 
 from __future__ import annotations
 
 import contextlib
+import gc
 import hashlib
 import json
 import os
@@ -59,10 +60,23 @@ def made_anew(
 
 
 def _made(keys: Keys, known: Mapping[str, Entry], data: Mapping[str, Any]) -> Found:
-    return {
-        name: keys.of(entry, data["kernels"][name]["theorems"], data["theorems"])
-        for name, entry in known.items()
-    }
+    with _no_garbage():
+        return {
+            name: keys.of(entry, data["kernels"][name]["theorems"], data["theorems"])
+            for name, entry in known.items()
+        }
+
+
+@contextlib.contextmanager
+def _no_garbage() -> Iterator[None]:
+    """Inside, nothing looks for garbage among a million nodes of syntax, of which hardly any is."""
+    was = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was:
+            gc.enable()
 
 
 def _is_found(found: Any, known: Mapping[str, Entry]) -> bool:

@@ -15,9 +15,20 @@ from cratous.core.kernel import qualified
 
 SOON, MUCH, WORTH = 300, 3_000, 60_000
 """After so much work the compiled loop is used: if it is kept, if work alone counts, if it is not kept."""
+DEAR = {"cratous.core.daa.guidance.guide": 4, "cratous.core.routing.bulk.direct_many": 4}
+"""Loops that take long to compile wait for so many times as much where work alone counts: CPython has done it sooner."""
 _patience: list[int | None] = [None]
 _done: Counter[str] = Counter()
 _compiled: dict[str, Callable[..., Any]] = {}
+_coming: dict[str, Callable[[], None]] = {}
+
+
+def expect(function: Callable[..., Any], wait: Callable[[], None]) -> None:
+    """Another process makes this function's machine code; `wait` returns when that has ended, well or not.
+
+    When work reaches the limit that is waited for, and nothing else depends on it.
+    """
+    _coming[qualified(function)] = wait
 
 
 def swift(function: Callable[..., Any], work: int = 1) -> Callable[..., Any]:
@@ -32,6 +43,9 @@ def swift(function: Callable[..., Any], work: int = 1) -> Callable[..., Any]:
     _done[name] += work
     if _done[name] <= _limit(function, _done[name]):
         return function
+    wait = _coming.pop(name, None)
+    if wait is not None:
+        wait()
     from cratous.core.readings.machine.compiled import machine
 
     _compiled[name] = machine(function)
@@ -42,7 +56,7 @@ def _limit(function: Callable[..., Any], done: int) -> int:
     """How much is done with a function before it is compiled."""
     fixed = _patience[-1]
     if fixed is not None:
-        return fixed
+        return fixed * DEAR.get(qualified(function), 1)
     if done <= SOON:
         return SOON
     from cratous.core.readings.machine.compiled import is_kept

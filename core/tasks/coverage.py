@@ -78,7 +78,7 @@ def square_array(vertices: tuple[Corner, ...], side_m: float) -> Any:
     rows, columns = (max(1, math.ceil(gap / side_m)) for gap in (high - low).tolist())
     found = np.empty((rows * columns, 2))
     edges = np.ascontiguousarray(np.hstack([corners, np.roll(corners, -1, axis=0)]))
-    count = swift(grid_squares, rows * columns // 10)(
+    count = swift(grid_squares, rows * columns // 4)(
         edges, float(low[0]), float(low[1]), rows, columns, side_m, found
     )
     return found[:count].copy()

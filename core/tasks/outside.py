@@ -71,7 +71,7 @@ def _met(vertices: Sequence[Corner], rings: Sequence[Sequence[Corner]], side_m: 
     rows, columns = (max(1, int(np.ceil(gap / side_m))) for gap in span.tolist())
     edges = [(*p, *q) for ring in rings for p, q in pairwise((*ring, ring[0]))]
     found = np.empty((rows * columns, 2))
-    count = swift(grid_squares, rows * columns // 10)(
+    count = swift(grid_squares, rows * columns // 4)(
         np.array(edges, float), float(low[0]), float(low[1]), rows, columns, side_m, found
     )
     return found[:count].copy()

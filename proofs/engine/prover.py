@@ -21,7 +21,6 @@ import z3
 
 from cratous.core.kernel import entry_of, qualified
 from cratous.core.kernel.sources import altered, ours, place, position
-from cratous.core.ledger.package_home import Home
 from cratous.proofs.engine import definition_subset, plain_numbers, reachable_paths
 from cratous.proofs.engine.argument_values import Held, Taken
 from cratous.proofs.engine.cache import Answer, Cache
@@ -395,16 +394,7 @@ def prove_file(
     return prove(name, claim, sentence, rlimit=rlimit, cache=cache, tell=tell)
 
 
-def home_folder(home: Home) -> Path:
-    """Where the theorems of a home lie; raises BadInput if there is no such folder."""
-    if not home.theorems.is_dir():
-        raise BadInput(
-            "the package has no theorems", where=home.name, expected="a folder `theorems`"
-        )
-    return home.theorems
-
-
 __all__ = [
-    "FOLDER", "RLIMIT", "Outcome", "Owed", "Theorem", "home_folder", "load_claim", "logic_of",
+    "FOLDER", "RLIMIT", "Outcome", "Owed", "Theorem", "load_claim", "logic_of",
     "prove", "prove_file", "question", "smt2", "sorts", "state", "theorem_files",
 ]  # fmt: skip

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from cratous.core.kernel.names import near
 from cratous.core.kernel.sources import place
-from cratous.core.ledger.package_home import PRODUCT
+from cratous.core.ledger.package_home import PRODUCT, Home
 from cratous.proofs.engine import theorem_subset, theorem_values
 from cratous.proofs.engine.claim import Claim
 from cratous.spec.errors import BadInput
@@ -19,6 +19,15 @@ from cratous.spec.errors import BadInput
 FOLDER = PRODUCT.theorems
 _LISTED: dict[Path, dict[str, Path]] = {}
 """The theorems of each folder, as they were listed last."""
+
+
+def home_folder(home: Home) -> Path:
+    """Where the theorems of a home lie; raises BadInput if there is no such folder."""
+    if not home.theorems.is_dir():
+        raise BadInput(
+            "the package has no theorems", where=home.name, expected="a folder `theorems`"
+        )
+    return home.theorems
 
 
 def theorem_files(folder: Path = FOLDER) -> dict[str, Path]:

@@ -1,9 +1,8 @@
 """Proves all theorems and writes what came of it into the ledger.
 
-Its files hold facts only (no times, no machine): they are the same on every machine that proves the
-same code with the same solver, so CI can compare them byte by byte. Theorems are proved on all
-cores, each in a process forked from the same state, so that the result does not depend on how
-they are spread.
+Its files hold facts only (no times, no machine): they are the same on every machine that proves the same code with
+the same solver, so CI can compare them byte by byte. Theorems are proved on all cores, each in a process forked from
+the same state, so that the result does not depend on how they are spread.
 """
 
 from __future__ import annotations
@@ -34,6 +33,7 @@ from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.cpu_limit import may_be_killed, of_the_user, what_ended
 from cratous.proofs.engine.solver_order import ask_apart
 from cratous.proofs.engine.subset import Finding, lint_all
+from cratous.proofs.engine.theorem_files import home_folder
 from cratous.proofs.ledger.proof_recall import Recall
 from cratous.proofs.running.all import compare_all, told
 from cratous.proofs.running.nudged import taken
@@ -231,7 +231,7 @@ def prove_all(
     `prove_theorems`, for those that are proved anew.
     """
     entries = gate.load_all(home)
-    folder = prover.home_folder(home)
+    folder = home_folder(home)
     wanted = list(names)
     memory = recall or Recall(None)
     kept = {name: theorem for name in wanted if (theorem := memory.get(name)) is not None}
@@ -374,20 +374,17 @@ def records(
 
 
 def changed_theorems(home: Home = PRODUCT) -> list[str]:
-    """Theorems that are new, or about a kernel whose key differs from the ledger's.
-
-    Those that ask for whatever is registered are among them where any kernel's differs.
-    """
+    """Theorems that are new, about a kernel whose key differs from the ledger's, or, if any does, ask what is registered."""
     data, keys = gate.read(home.records), gate.Keys(home)
     entries = gate.load_all(home)
-    stale = set()
+    stale, found = set(), []
     for name, entry in entries.items():
-        record = data["kernels"].get(name)
-        now = keys.of(entry, record["theorems"], data["theorems"]) if record else None
-        if record is None or not record["proved"] or now != record["key"]:
+        record = data["kernels"].get(name) or {"proved": False}
+        if not record["proved"] or record["key"] != keys.of(
+            entry, record["theorems"], data["theorems"]
+        ):
             stale.add(name)
-    found = []
-    for name in prover.theorem_files(prover.home_folder(home)):
+    for name in prover.theorem_files(home_folder(home)):
         record = data["theorems"].get(name)
         met = record is None or record["status"] != "proved" or stale & set(record["kernels"])
         if met or (stale and keys.asks_registry(name)):

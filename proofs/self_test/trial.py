@@ -31,6 +31,7 @@ from cratous.proofs.engine import (
     symbolic,
     worker_processes,
 )
+from cratous.proofs.engine.theorem_files import home_folder
 from cratous.proofs.judgement import Judgement, judge
 from cratous.proofs.ledger.report_formats import failure_text
 from cratous.proofs.self_test.case import Case
@@ -120,7 +121,7 @@ def _proved(package: str, folder: Path, without: str) -> tuple[str, str, bool]:
     try:
         home = gate.package(package)
         entries = gate.load_all(home)
-        names = list(prover.theorem_files(prover.home_folder(home)))
+        names = list(prover.theorem_files(home_folder(home)))
         if not names:
             raise BadInput("the package has no theorems", where=home.name)
         found = judge(names, home, jobs=1, machine=bool(without))

@@ -109,7 +109,7 @@ class PermittedWatch:
             pairs = []
         pairs += [(own, number) for own in self._gates if own != number and own in self._places]
         for own, other in pairs:
-            if self._places[own].time_ms == self._places[other].time_ms:
+            if in_time(self._places[own].time_ms, self._places[other].time_ms, 0):
                 self._pair(own, other)
 
     def _pair(self, own: int, other: int) -> None:
@@ -176,7 +176,7 @@ class PermittedWatch:
             if in_time(until_ms, now_ms, ANY_LATER):
                 return ""
             return f"a certificate is in hand until {until_ms / 1000:.2f} s"
-        if beat_ms < 0 or not in_time(beat_ms, now_ms, self._period_ms):
+        if not (in_time(0, beat_ms, ANY_LATER) and in_time(beat_ms, now_ms, self._period_ms)):
             return ""
         return f"at the heartbeat of {beat_ms / 1000:.2f} s ICAROUS left it to UxAS"
 
@@ -190,4 +190,4 @@ class PermittedWatch:
 
 def _share(size_m: float, off_m: float) -> float:
     """How much of the cylinder's size is left, at most 1e6: 1 at the wall, more inside."""
-    return min(size_m / off_m, 1e6) if off_m > 0 else 1e6
+    return min(size_m / max(off_m, 1e-9), 1e6)

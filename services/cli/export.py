@@ -99,7 +99,8 @@ def export(
 def _planned(mission: Mission, allow_unproved: bool) -> tuple[Plan, int]:
     """The plan, and what `cratous plan` would end with; NoPlan if there is none."""
     from cratous.core import ledger
-    from cratous.services.cli.job import left_out_lines, new_bus, plan_and_check
+    from cratous.services.cli.job import new_bus, plan_and_check
+    from cratous.services.cli.plan_lines import left_out_lines
     from cratous.services.cli.progress import waiting
 
     with waiting("holding the code against its proofs", False):

@@ -173,7 +173,8 @@ def _planned(loaded: Mission, job: _Job) -> tuple[dict[str, Any], int]:
 
 def _print(loaded: Mission, made: Any, checks: list[Any], data: dict[str, Any]) -> None:
     """The plan, its constraints and notes as tables."""
-    from cratous.services.cli.job import absent_lines, left_out_lines, plan_line
+    from cratous.services.cli.job import absent_lines
+    from cratous.services.cli.plan_lines import left_out_lines, plan_line
     from cratous.services.cli.relation_places import RelationPlaces
     from cratous.services.cli.show import margin_text, say, table
 

@@ -192,6 +192,7 @@ def prove(
     from cratous.proofs import ledger
     from cratous.proofs import recheck as again
     from cratous.proofs.engine import cache, prover
+    from cratous.proofs.engine.theorem_files import home_folder
     from cratous.proofs.judgement import Memory, judge
     from cratous.proofs.ledger import report_formats
     from cratous.proofs.ledger.proof_recall import Recall
@@ -224,7 +225,7 @@ def prove(
     home = gate.package(package_name or "cratous")
     gate.load_all()
     gate.load_all(home)
-    folder = prover.home_folder(home)
+    folder = home_folder(home)
     every = list(prover.theorem_files(folder))
     patterns = only or ("*",)
     names = [name for name in every if any(fits(name, pattern) for pattern in patterns)]

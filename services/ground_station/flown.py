@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from cratous.core.authority.timeliness import in_time
 from cratous.services.certify.timeline import Flight, FlightReader
 from cratous.services.ground_station.bands import Bands
 from cratous.services.ground_station.shapes import Shapes
@@ -111,7 +112,8 @@ def _absences(mission: Mission) -> list[dict[str, Any]]:
         for number, change in without_vehicles(mission, begin_ms).items():
             why = "lost" if change.kind == VEHICLE_LOST else "not joined"
             before = next((one for one in reversed(found) if one["vehicle"] == number), None)
-            if before is not None and before["to_ms"] == begin_ms and before["why"] == why:
+            goes_on = before is not None and in_time(before["to_ms"], begin_ms, 0)
+            if before is not None and goes_on and before["why"] == why:
                 before["to_ms"] = end_ms
                 continue
             found.append({"vehicle": number, "from_ms": begin_ms, "to_ms": end_ms, "why": why})

@@ -11,6 +11,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from cratous.core.avoidance.way_ahead import near_line
+from cratous.core.kernel import Vec2
 from cratous.services.mission.frames import Projection
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import at_most, json_of
@@ -66,9 +68,14 @@ def in_frame(shapes: Sequence[Shape], frame: Frame) -> list[dict[str, Any]]:
         places = [
             [round(float(n), 1), round(float(e), 1)] for n, e in zip(north, east, strict=True)
         ]
-        if all(math.hypot(*place) <= NEAR_M for place in places):  # what is nowhere is not, either
+        if all(_is_near(Vec2(*place)) for place in places):
             told.append({"places": places, "area": one.area, "name": one.name})
     return told
+
+
+def _is_near(place: Vec2) -> bool:
+    """Whether it is near enough to the origin to be shown; what is nowhere is not."""
+    return all(map(math.isfinite, place)) and near_line(Vec2(0.0, 0.0), place, place, NEAR_M)
 
 
 def _shapes(data: Any, name: str, place: tuple[str, str]) -> Iterator[Shape]:

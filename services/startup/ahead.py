@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import atexit
 import contextlib
+import gc
 import math
 import os
 import subprocess
@@ -25,6 +26,7 @@ from cratous.core.assignment.annealing import anneal
 from cratous.core.assignment.anytime import greedy, improve
 from cratous.core.assignment.layers import look_ahead, tables
 from cratous.core.geofence.mission_leg_arrays import table
+from cratous.core.readings import tiered
 from cratous.core.readings.machine.compiled import is_kept, machine
 from cratous.core.routing.bulk import (
     LINKS_MOST,
@@ -34,24 +36,42 @@ from cratous.core.routing.bulk import (
     direct_many,
     route_many,
 )
+from cratous.core.tasks.coverage_arrays import grid_squares, mark_seen
 from cratous.services.planning import coming
 from cratous.services.planning.assign_warm import simple_instance
 from cratous.services.planning.detours import expected
 from cratous.services.processes.leash import ENDS_WITH, end_with_parent
 from cratous.spec.assignment.search import TIME
-from cratous.spec.mission import Mission
+from cratous.spec.mission import AREAS, Mission
 
 MANY_TASKS = 5
 """A mission of so many tasks has ways enough that CPython does not search them."""
+SQUARES = "squares"
+"""Machine code of `SQUARE_LOOPS`, which any mission with an area uses."""
+SQUARE_LOOPS = (grid_squares, mark_seen)
 WAIT_S = 120.0
 """A process that compiles is not waited for any longer."""
 
 
 def begin(missions: Iterable[Mission]) -> None:
     """Have compiled what the plans of these missions need, if that is much and there is a core for it."""
-    large = [one for one in missions if len(one.tasks) >= MANY_TASKS]
-    if large and _cores() > 1:
+    known = [*missions]
+    large = [one for one in known if len(one.tasks) >= MANY_TASKS]
+    if _cores() == 1:
+        return
+    if any(task.kind in AREAS for one in known for task in one.tasks):
+        _begin_squares()
+    if large:
         begin_all(around=any(map(expected, large)))
+
+
+def _begin_squares() -> None:
+    """Have compiled what any area's squares need."""
+    if all(map(is_kept, SQUARE_LOOPS)):
+        return
+    ended = _waiter(_start([__name__, SQUARES]), WAIT_S)
+    for loop in SQUARE_LOOPS:
+        tiered.expect(loop, ended)
 
 
 def begin_all(around: bool = False) -> None:
@@ -126,6 +146,13 @@ def _no_routes() -> Routed:
     return Routed(whole, np.empty(0), whole, np.empty((1, LINKS_MOST + 2, 4)))
 
 
+def make_squares() -> None:
+    """The squares of an area, and those that footprints see, of no area."""
+    none = np.empty((0, 4))
+    machine(grid_squares)(none, 0.0, 0.0, 0, 0, 1.0, np.empty((0, 2)))
+    machine(mark_seen)(np.empty((0, 2)), 0.5, np.empty((0, 4, 2)), np.empty(0, np.bool_))
+
+
 def make_assignment() -> None:
     """Bounds, tables and the improvement at random of a little problem."""
     instance = simple_instance(TIME)
@@ -139,6 +166,7 @@ MAKERS = {
     coming.ROUTES: make_routes,
     coming.AROUND: make_around,
     coming.ASSIGNMENT: make_assignment,
+    SQUARES: make_squares,
 }
 LOOPS: dict[str, Callable[..., object]] = {
     coming.ROUTES: direct_many,
@@ -149,4 +177,5 @@ LOOPS: dict[str, Callable[..., object]] = {
 
 if __name__ == "__main__":
     end_with_parent()
+    gc.disable()  # the compiler leaves little garbage, and looking for it takes a tenth of its time
     MAKERS[sys.argv[1]]()

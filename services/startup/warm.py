@@ -12,6 +12,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -23,7 +24,13 @@ from cratous.core.readings.machine.compiled import compiled
 from cratous.core.readings.tiered import at_once
 from cratous.core.well_clear import horizontal_violation, violation, violation_within
 from cratous.services.planning import assign_warm, coming
+from cratous.services.requirements import whole
+from cratous.services.requirements.evaluation import TRUE
+from cratous.services.requirements.formula import Always, Bounded, Join, Not, Reaches
+from cratous.services.requirements.outcome import Outcome
+from cratous.services.requirements.specification import Requirement
 from cratous.services.startup import ahead, little_missions
+from cratous.spec.daa.parameters import DCPA, Spread
 
 ENCOUNTER = """NAME sx sy sz trk gs vs time
 unitless [nmi] [nmi] [ft] [deg] [knot] [fpm] [s]
@@ -58,12 +65,34 @@ def warm_daa() -> None:
     from cratous.services.daa.excuse import judge_step
     from cratous.services.daa.explain import explain
 
+    near = Spread(0.5, 20.0, 5.0, 200.0)
+    known = named_or_file("do_365b").parameters
+    spread = tuple(
+        a._replace(levels=tuple(one._replace(spread=near) for one in a.levels))
+        for a in known.alerters
+    )
     with tempfile.TemporaryDirectory() as folder, at_once():
         file = Path(folder) / "encounter.daa"
         file.write_text(ENCOUNTER, encoding="utf-8")
-        for step in run(file, named_or_file("do_365b").parameters):
+        for step in run(file, known):
             explain(step.parameters, step.instant)
             judge_step(step)
+            step.instant.last_times(step.parameters, 0)
+        # levels that what is near raises too, and an ownship that keeps to its side
+        sided = replace(known, alerters=spread, conflict_crit=True, urgency_strategy=DCPA)
+        for step in run(file, sided):
+            explain(step.parameters, step.instant)
+
+
+def warm_requirements() -> None:
+    """What judges a whole trace by requirements, at two samples."""
+    columns = whole.Columns("x")
+    for time in (0, 1):
+        columns.add(time, {"x": 1.0})
+    reaches = Reaches("x", 0.0)
+    since = Bounded(reaches, Join(reaches, Not(reaches), True), 0, 1, True)
+    formula = Bounded(since, Always(TRUE), 0, 1, False)
+    whole.Whole(columns).fill(Outcome(Requirement("", "", formula), 1), formula)
 
 
 def warm_gate() -> None:
@@ -81,6 +110,7 @@ PLANNING: tuple[Step, ...] = (
 OTHERS: tuple[Step, ...] = (
     ("detect and avoid", warm_daa),
     ("well clear over arrays", warm_kernels),
+    ("requirements over a whole trace", warm_requirements),
     ("what the gate reads", warm_gate),
 )
 CHAINS = (PLANNING, OTHERS)

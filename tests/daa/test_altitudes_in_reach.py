@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from cratous.core.daa import climb
-from cratous.core.daa.climb import in_conflict_at_a_height, safe_altitudes
+from cratous.core.daa.climb import safe_altitudes
 from cratous.core.daa.records import Intruders, Looking, Manoeuvres, Regaining
 from cratous.core.daa.volume import in_conflict
 from cratous.core.kernel import Vec2
@@ -73,7 +73,7 @@ def test_beside_at_the_same_height_is_the_worst() -> None:
         there = Vec2(s.x + t * v.x, s.y + t * v.y)
         if in_conflict(kind, there, v, z, climbs, limits, 0.0, draw.uniform(0, 20)):
             met += 1
-            assert in_conflict_at_a_height(kind, s, v, limits, t + 20.0)
+            assert in_conflict(kind, s, v, 0.0, 0.0, limits, 0.0, t + 20.0)
     assert met > 20
     far = Vec2(3000.0, 0.0)
-    assert not in_conflict_at_a_height(0, far, Vec2(0.0, 0.0), limits, math.inf)
+    assert not in_conflict(0, far, Vec2(0.0, 0.0), 0.0, 0.0, limits, 0.0, math.inf)

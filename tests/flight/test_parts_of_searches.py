@@ -12,7 +12,8 @@ from cratous.bridge import lmcp
 from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.judge import judge
 from cratous.services.bus import Bus
-from cratous.services.cli.job import Settings, left_out_lines, refuse_bad_plan, run_mission
+from cratous.services.cli.job import Settings, refuse_bad_plan, run_mission
+from cratous.services.cli.plan_lines import left_out_lines
 from cratous.services.loading import load
 from cratous.services.monitor.plan_check import PART, WHOLE, check_plan
 from cratous.services.pipeline.plan import make_plan

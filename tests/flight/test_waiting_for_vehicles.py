@@ -10,7 +10,8 @@ import pytest
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus
-from cratous.services.cli.job import left_out_lines, plan_and_check
+from cratous.services.cli.job import plan_and_check
+from cratous.services.cli.plan_lines import left_out_lines
 from cratous.services.flight.loop import fly
 from cratous.services.loading import load
 from cratous.services.monitor import Monitor

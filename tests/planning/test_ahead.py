@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import importlib
 import os
 import subprocess
 import sys
 import time
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +22,13 @@ from cratous.core.assignment.anytime import greedy, improve
 from cratous.core.assignment.layers import look_ahead, tables
 from cratous.core.assignment.problem import START
 from cratous.core.assignment.tables import latest_tables
+from cratous.core.kernel import qualified
+from cratous.core.readings import tiered
 from cratous.core.readings.machine.compiled import machine
 from cratous.core.readings.tiered import at_once
 from cratous.core.routing.bulk import direct_many, route_many
 from cratous.core.routing.visibility import Roadmap, lengths_around, routes
+from cratous.core.tasks.coverage_arrays import mark_seen
 from cratous.services.planning import coming, stages
 from cratous.services.planning import routes as planned
 from cratous.services.planning.assign import solve
@@ -229,7 +234,8 @@ def test_who_has_begun_plans_nothing_that_the_gate_refuses(
     from cratous.services.cli import main
 
     def refused(**_: Any) -> None:
-        assert [process.name for process in begun] == [coming.ROUTES, coming.ASSIGNMENT]
+        names = [process.name for process in begun]
+        assert names == [ahead.SQUARES, coming.ROUTES, coming.ASSIGNMENT]
         raise Refused("the code is not what was proved")
 
     monkeypatch.setattr(ahead, "MANY_TASKS", 1)
@@ -327,3 +333,32 @@ def test_what_is_made_ahead_is_what_a_plan_calls() -> None:
         tables(instance, look_ahead(instance), 20)
     assert [list(machine(loop).run.signatures) for loop in loops] == kinds  # type: ignore[attr-defined]
     assert all(len(kind) == 1 for kind in kinds)
+
+
+def test_an_area_has_its_squares_compiled_ahead_and_who_needs_them_waits_once(
+    begun: list[Started], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tiered, "_coming", {})
+    monkeypatch.setattr(tiered, "_done", Counter())
+    monkeypatch.setattr(tiered, "_compiled", {})
+    area = little_missions.mission(
+        [task for task in little_missions.TASKS if "area_search" in task], zone=""
+    )
+    ahead.begin([area])
+    assert [process.name for process in begun] == [ahead.SQUARES]
+    (process,) = begun
+    with tiered.by_work_alone():
+        assert tiered.swift(mark_seen, tiered.MUCH) is mark_seen
+        assert process.waits == 0
+        assert tiered.swift(mark_seen, 1) is machine(mark_seen)
+        assert tiered.swift(mark_seen, 1) is machine(mark_seen)
+    assert process.waits == 1
+
+
+def test_a_loop_that_is_dear_to_compile_is_left_to_cpython_for_longer() -> None:
+    with tiered.by_work_alone():
+        assert tiered.swift(direct_many, 4 * tiered.MUCH) is direct_many
+        assert tiered.swift(direct_many, 1) is machine(direct_many)
+    for name in tiered.DEAR:
+        module, _, function = name.rpartition(".")
+        assert qualified(getattr(importlib.import_module(module), function)) == name

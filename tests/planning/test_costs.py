@@ -13,8 +13,8 @@ from planning_tools import FOUR, TWO, mission
 from cratous.bridge import lmcp
 from cratous.core.assignment.problem import START
 from cratous.services.bus import Bus
-from cratous.services.cli.job import plan_line
 from cratous.services.cli.plan import why_lines
+from cratous.services.cli.plan_lines import plan_line
 from cratous.services.loading import load
 from cratous.services.pipeline.plan import cost_of, make_plan
 from cratous.services.planning import stages

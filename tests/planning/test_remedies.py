@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from planning_tools import FOUR, TWO, box, mission, task
 
-from cratous.services.cli.job import left_out_lines
+from cratous.services.cli.plan_lines import left_out_lines
 from cratous.services.loading import load
 from cratous.services.logs.records import to_data
 from cratous.services.pipeline.plan import make_plan

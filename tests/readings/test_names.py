@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
 from types import ModuleType
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -16,7 +17,14 @@ import z3
 
 from cratous.core.kernel import REGISTRY, names
 from cratous.core.readings.exact import exact
-from cratous.core.readings.machine.compiled import FLAGS, WITHIN, _entry_text, compiled, machine
+from cratous.core.readings.machine.compiled import (
+    FLAGS,
+    WITHIN,
+    _entry_text,
+    compiled,
+    load,
+    machine,
+)
 from cratous.core.readings.machine.source_text import SourceText
 from cratous.proofs.engine.lift import lift
 from cratous.proofs.engine.symbolic import SymReal
@@ -205,3 +213,37 @@ def test_a_file_pattern_that_matches_nothing_is_an_error(tmp_path: Path) -> None
     assert names.files(tmp_path, "*.py") == [tmp_path / "a.py"]
     with pytest.raises(BadInput, match=r"no file matches; expected \*.txt"):
         names.files(tmp_path, "*.txt")
+
+
+def scaled(value: float, times: int, turned: bool, pair: tuple[int, int]) -> float:
+    """Numbers of each type."""
+    return (0.0 - value if turned else value) * times + pair[0] - pair[1]
+
+
+class Kept(NamedTuple):
+    """A record of written numbers."""
+
+    value: float
+    turned: bool
+
+
+def calls_with_written_numbers(value: float, times: int, turned: bool) -> float:
+    """As the callee's types, in every way in which a number can be written."""
+    kept = Kept(0, True)
+    found = scaled(0, 2, False, (0, times)) + scaled(value, times, turned, (times, -1))
+    found += scaled(LIMIT, turned=True, times=3, pair=(1, 2))
+    return found + scaled(kept.value, 3, kept.turned, (LIMIT, 1))
+
+
+LIMIT = 7
+
+
+def test_what_is_called_with_written_numbers_is_compiled_once() -> None:
+    text = SourceText("njit")
+    name = text.add(calls_with_written_numbers)
+    module = load(text.text)
+    for given in ((1.5, 3, True), (-2.0, 0, False)):
+        assert getattr(module, name)(*given) == calls_with_written_numbers(*given)
+    for one in (scaled, Kept):
+        (made,) = [n for n in vars(module) if n.endswith(f"__{one.__name__}")]
+        assert len(getattr(module, made).signatures) == 1

@@ -10,11 +10,15 @@ from __future__ import annotations
 import ast
 import builtins
 import dis
+import functools
 import inspect
 import math
 import types
 from collections.abc import Callable
-from typing import Any, get_type_hints
+from itertools import zip_longest
+from typing import Any, get_args, get_origin, get_type_hints
+
+import numpy as np
 
 from cratous.core.kernel import Fold, entry_of
 from cratous.core.kernel.sources import text_of
@@ -176,6 +180,47 @@ class _Renaming(ast.NodeTransformer):
     def visit_Name(self, node: ast.Name) -> ast.expr:
         return ast.Name(self.renamed.get(node.id, node.id), node.ctx)
 
+    def visit_Call(self, node: ast.Call) -> ast.expr:
+        """A call of our own code, its written numbers as the callee's types: else each is compiled for by itself."""
+        called = self.function.__globals__.get(getattr(node.func, "id", ""))
+        local = getattr(node.func, "id", "") not in self.renamed
+        kinds = {} if local or called is None else _parameters(called)
+        if kinds:
+            each = zip_longest(node.args, [*kinds.values()][: len(node.args)])
+            node.args = [self._typed(one, kind) for one, kind in each]
+            for word in node.keywords:
+                word.value = self._typed(word.value, kinds.get(word.arg or ""))
+        return self.generic_visit(node)  # type: ignore[return-value]
+
+    def _typed(self, given: ast.expr, kind: Any) -> ast.expr:
+        """A written number as it is of this type; anything else as it stands."""
+        if isinstance(given, ast.Tuple) and get_origin(kind) is tuple:
+            parts = get_args(kind)
+            if len(parts) != len(given.elts) or ... in parts:
+                return given
+            each = zip(given.elts, parts, strict=True)
+            return ast.Tuple([self._typed(*one) for one in each], ast.Load())
+        value: Any = None
+        sign = isinstance(given, ast.UnaryOp) and isinstance(given.op, ast.USub)
+        written = given.operand if isinstance(given, ast.UnaryOp) and sign else given
+        if isinstance(written, ast.Constant):
+            value = written.value
+            if sign and type(value) is int and value:
+                value = -value
+            elif sign:
+                return given
+        elif isinstance(given, ast.Name) and given.id in self.renamed:
+            value = self.function.__globals__[given.id]
+        if kind is float and type(value) is int and float(value) == value:
+            return ast.Constant(float(value))
+        if kind not in _TYPED or type(value) is not kind:
+            return given
+        home = self.text.reference(np, "numpy", "numpy")
+        return ast.Call(
+            ast.Attribute(ast.Name(home, ast.Load()), _TYPED[kind], ast.Load()),
+            [ast.Constant(value)], [],
+        )  # fmt: skip
+
     def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
         if isinstance(node.value, ast.Name) and node.value.id in self.renamed:
             module = self.function.__globals__[node.value.id]
@@ -191,6 +236,25 @@ class _Renaming(ast.NodeTransformer):
         if node.value is None:
             return None
         return self.generic_visit(ast.Assign([node.target], node.value))  # type: ignore[return-value]
+
+
+_TYPED = {int: "int64", bool: "bool_"}
+"""What makes a value out of a written number, whose type alone says its value."""
+
+
+@functools.cache
+def _parameters(called: Any) -> dict[str, Any]:
+    """The types of a function's parameters or a record's fields, by name; none of what is not ours to call so."""
+    if inspect.isclass(called) and hasattr(called, "_fields"):
+        return get_type_hints(called)
+    if not inspect.isfunction(called):
+        return {}
+    plain = inspect.unwrap(called)
+    try:
+        hints = get_type_hints(plain)
+    except NameError:  # types that only the checker imports
+        return {}
+    return {name: hints.get(name) for name in inspect.signature(plain).parameters}
 
 
 def _definition(function: Callable[..., Any]) -> ast.FunctionDef:
