@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
 import z3
 
@@ -32,6 +32,16 @@ Uses = Mapping[int, Mapping[Place, z3.ExprRef]]
 Held = Callable[[str, Uses, Possible], set[int]]
 """Those uses of some whose results the theorem's goals decide at many values of their arguments
 (`proofs.running.other_results`)."""
+
+
+class Runs(NamedTuple):
+    """What runs of a statement tell of it, if it can be run."""
+
+    taken: Taken | None = None
+    held: Held | None = None
+
+
+NO_RUNS = Runs()
 
 FEW = 8
 """An argument with no more values than these is told their number."""

@@ -68,7 +68,6 @@ class Claim:
     asked: bool = False
     hidden: bool = False
     assumptions: list[tuple[str, str, str]] = field(default_factory=list)
-    assumed: list[z3.BoolRef] = field(default_factory=list)
     goals: list[z3.BoolRef] = field(default_factory=list)
     stubs: dict[Callable[..., Any], Stub] = field(default_factory=dict)
     roots: list[z3.BoolRef] = field(default_factory=list)
@@ -147,9 +146,8 @@ class Claim:
 
     def assume(self, condition: Any, *, owner: str, reason: str) -> None:
         """Take something for granted; it stays in the ledger, with owner and reason, for ever."""
-        self.assumed.append(statement(condition))
-        self.facts.append(self.assumed[-1])
-        self.assumptions.append((str(self.assumed[-1]), owner, reason))
+        self.facts.append(statement(condition))
+        self.assumptions.append((str(statement(condition)), owner, reason))
 
     def use(self, kernel: Callable[..., Any], *args: Any, when: Any = True) -> Any:
         """Run a kernel of `core` on these values; the theorem is about it.

@@ -86,7 +86,10 @@ class FreeResults(Claim):
         off = [(s, z3.BoolVal(s.eq(ours))) for s in switches]
         meant = [(s, z3.BoolVal(s.eq(ours) or str(s).startswith("definition"))) for s in switches]
         found = []
+        name = ours.decl().name()
         for premises, facts, goal in self.said:
+            if name not in free_names(z3.And(*premises, goal)):
+                continue  # it says nothing of this use
             here = z3.And(*premises)
             wrong = z3.substitute(z3.And(here, *facts, z3.Not(goal)), *off)
             right = z3.substitute(z3.Implies(here, goal), *meant)

@@ -132,7 +132,7 @@ def _beside_their_definitions(claim: Claim) -> set[str]:
 
 def _restricting(claim: Claim) -> list[z3.BoolRef]:
     """Premises and assumptions; with what is known of the results that they speak of, roots and closed functions."""
-    premises = [*claim.premises, *claim.assumed]
+    premises = [*claim.premises, *getattr(claim, "assumed", ())]
     own = {claim.prefix + name for name in claim.names}
     results = set().union(*[free_names(premise) for premise in premises]) - own
     return [*premises, *claim.facts] if results else premises

@@ -36,8 +36,7 @@ from cratous.proofs.engine.subset import Finding, lint_all
 from cratous.proofs.engine.theorem_files import home_folder
 from cratous.proofs.ledger.proof_recall import Recall
 from cratous.proofs.running.all import compare_all, told
-from cratous.proofs.running.nudged import taken
-from cratous.proofs.running.other_results import held
+from cratous.proofs.running.other_results import runs
 from cratous.proofs.running.theorem import Functions, run
 from cratous.spec.errors import BadInput
 
@@ -101,9 +100,8 @@ def _work(
     try:
         claim, sentence = prover.state(name, folder)
         tell = partial(_tell, name, out)
-        takes, holds = taken(name, claim, folder), held(name, claim, folder)
         theorem = prover.prove(
-            name, claim, sentence, cache=cache, tell=tell, taken=takes, held=holds
+            name, claim, sentence, cache=cache, tell=tell, runs=runs(name, claim, folder)
         )
         functions = None
         if theorem.proved:

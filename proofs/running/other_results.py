@@ -20,14 +20,14 @@ from typing import Any, NamedTuple
 import z3
 
 from cratous.core.kernel import Fold
-from cratous.proofs.engine.argument_values import Held, Place, Possible, Uses, enough
+from cratous.proofs.engine.argument_values import Held, Place, Possible, Runs, Uses, enough
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.free_results import FreeResults, settled
 from cratous.proofs.engine.lift import LiftError
 from cratous.proofs.engine.terms import free_names, known, leaves
 from cratous.proofs.engine.theorem_files import load_claim, load_lemma
 from cratous.proofs.running.late_values import now
-from cratous.proofs.running.nudged import STOPS, Nudged, Observed, no_lemma
+from cratous.proofs.running.nudged import STOPS, Nudged, Observed, no_lemma, taken
 from cratous.proofs.running.statement import truth
 
 NO, GOAL, BY_DEFINITION = 0, 1, 2
@@ -38,6 +38,11 @@ CALLS = 4_000
 
 Call = tuple[Callable[..., Any], tuple[Any, ...]]
 """A function, and numbers it is given."""
+
+
+def runs(name: str, claim: Claim, folder: Path) -> Runs:
+    """What runs of a theorem tell of it; claim: the same, stated."""
+    return Runs(taken(name, claim, folder), held(name, claim, folder))
 
 
 def held(name: str, claim: Claim, folder: Path) -> Held:
