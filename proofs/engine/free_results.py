@@ -20,6 +20,9 @@ from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.lift import join
 from cratous.proofs.engine.terms import free_names, fresh, known, leaves, statement
 
+PARTS = 3000
+"""A question with more parts than these is not asked."""
+
 
 @dataclass(repr=False)
 class FreeResults(Claim):
@@ -97,6 +100,18 @@ class FreeResults(Claim):
         return z3.Or(*found)
 
 
+def _is_large(term: z3.ExprRef) -> bool:
+    """It has more parts than the solver is asked about here: it counts none of its effort on reading them."""
+    seen: set[int] = set()
+    todo = [term]
+    while todo and len(seen) <= PARTS:
+        part = todo.pop()
+        if part.get_id() not in seen:
+            seen.add(part.get_id())
+            todo += part.children()
+    return len(seen) > PARTS
+
+
 def _any(name: str, kind: Any) -> Any:
     if get_origin(kind) is tuple:
         return tuple(_any(f"{name}.{k}", part) for k, part in enumerate(get_args(kind)))
@@ -128,6 +143,8 @@ def _of(claim: FreeResults, use: int, terms: list[z3.ExprRef], how: tuple[bool, 
     terms = [term for term in terms if not z3.is_bv(term)]
     numbers = [term for term in terms if not z3.is_bool(term)]
     excluded = claim.excluded(use, by_definition=by_definition)
+    if _is_large(excluded):
+        return "unknown"
     answer = Given([excluded], possible).apart(numbers) if numbers else possible([excluded])
     if answer == "sat" and len(numbers) < len(terms):
         # of a truth value both count, though a definition may decide nothing at one of them
