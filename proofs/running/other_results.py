@@ -153,7 +153,7 @@ class _Place:
         with contextlib.suppress(*STOPS):
             if self.left[0] > 0:
                 self.statement(on)
-        self.left[0] -= 1 + len(on.results)
+        self.left[0] -= 1 + len(on.found)
         return on
 
     def holds(self, use: int) -> int:
@@ -161,10 +161,10 @@ class _Place:
         if use in self.base.of_folds:
             return BY_DEFINITION  # an induction has no condition but its premises
         call = self.base.kernels.get(use)
-        if call not in self.base.results:
+        if call not in self.base.found:
             return NO
         found = NO
-        for other in _others(self.base.results[call], self.seed):
+        for other in _others(self.base.found[call], self.seed):
             wrong = self._run({call: other})
             if not wrong.false:
                 continue
@@ -172,10 +172,10 @@ class _Place:
                 return BY_DEFINITION
             found = GOAL
             for meant in wrong.definitions:
-                if meant not in wrong.results:
+                if meant not in wrong.found:
                     continue
-                for result in (other, *_others(wrong.results[meant], self.seed)):
-                    if _shape(result) != _shape(wrong.results[meant]):
+                for result in (other, *_others(wrong.found[meant], self.seed)):
+                    if _shape(result) != _shape(wrong.found[meant]):
                         continue
                     right = self._run({call: other, meant: result})
                     if any(n <= right.asked and n not in right.false for n in wrong.false):
@@ -189,7 +189,7 @@ class _Place:
 class _Replaced(Observed):
     """A run of a statement with other results of some calls; notes which goals are false."""
 
-    results: dict[Call, Any] = field(default_factory=dict)
+    results: Mapping[Call, Any] = field(default_factory=dict)
     strict: bool = True
     kernels: dict[int, Call] = field(default_factory=dict)
     definitions: list[Call] = field(default_factory=list)
@@ -199,7 +199,7 @@ class _Replaced(Observed):
     outside: bool = False
 
     def __post_init__(self) -> None:
-        self.given, self.results = self.results, {}
+        self.given, self.found = self.results, dict[Call, Any]()
 
     def premise(self, condition: Any) -> None:
         self.outside = True
@@ -219,11 +219,11 @@ class _Replaced(Observed):
 
     def _run(self, function: Callable[..., Any], args: tuple[Any, ...]) -> Any:
         call = (function, now(args))
-        if call not in self.results:
-            self.results[call] = (
+        if call not in self.found:
+            self.found[call] = (
                 self.given[call] if call in self.given else super()._run(function, args)
             )
-        return self.results[call]
+        return self.found[call]
 
     def fold(self, kernel_fold: Fold[Any], **how: Any) -> None:
         first = self.uses
