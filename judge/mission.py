@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from cratous.judge.fields import Node
 from cratous.judge.plane import fault_of_ring
+from cratous.judge.views import in_log
 from cratous.spec.errors import BadInput
 
 Point = tuple[float, float]
@@ -46,7 +47,7 @@ class Vehicle:
 
 @dataclass(frozen=True)
 class Task:
-    """What is asked for. shape, size_m, length_m: of a loiter; pattern, extent_m: of a pattern."""
+    """What is asked for. shape, size_m, length_m: of a loiter; pattern, extent_m: of a pattern; views_deg: see `views`."""
 
     id: int
     kind: str
@@ -61,6 +62,7 @@ class Task:
     length_m: float = 0.0
     pattern: str = ""
     extent_m: float = 0.0
+    views_deg: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -374,6 +376,7 @@ def _task(data: Node) -> Task:
         length_m=length,
         pattern=data["pattern"].text if data.has("pattern") else "",
         extent_m=data["extent_m"].real,
+        views_deg=in_log(data),
     )
     check_task(found, data)
     return found

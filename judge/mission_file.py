@@ -15,6 +15,7 @@ import yaml
 from cratous.judge import mission as m
 from cratous.judge.earth import to_local
 from cratous.judge.fields import Node
+from cratous.judge.views import in_file
 from cratous.spec.errors import BadInput
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -181,6 +182,7 @@ class _Reader:
             length_m=length,
             pattern=data.get("pattern", "").text,
             extent_m=data.get("extent_m", 0.0).real,
+            views_deg=in_file(data),
         )
         m.check_task(found, data)
         return found

@@ -13,6 +13,7 @@ from cratous.judge.log import Look
 from cratous.judge.mission import Point, Task
 from cratous.judge.shares import forbidden_note
 from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED
+from cratous.judge.views import as_asked
 from cratous.judge.work import Flight, nearest_m
 
 SHARE = 0.99
@@ -45,9 +46,34 @@ def _looks(flight: Flight, task: Task) -> list[tuple[Look, list[Point]]]:
             continue
         local = [to_local(mission.latitude_deg, mission.longitude_deg, *c) for c in look.corners]
         corners = [c for c in local if c is not None]
-        if len(corners) == len(local):
+        if len(corners) == len(local) and _shows(flight, task, look, corners):
             found.append((look, corners))
     return found
+
+
+def _shows(flight: Flight, task: Task, look: Look, corners: list[Point]) -> bool:
+    """Whether the image shows the ground as the task asks, from where the vehicle truly was."""
+    here = _place(flight, look)
+    ground_m = flight.mission.terrain_m if look.centre is None else look.centre[2]
+    # where nobody knows the place, the gap in the track keeps the task from being said to be served
+    return here is None or as_asked(here, ground_m, corners, task.views_deg)
+
+
+def _place(flight: Flight, look: Look) -> tuple[float, float, float] | None:
+    """Where the vehicle was at a look, on a leg that is known; None if no such position is."""
+    track = flight.tracks.get(look.vehicle)
+    index = track.from_index(look.time_ms) if track else 0
+    if track is None or index >= len(track.states):
+        return None
+    after = track.states[index]
+    if after.time_ms == look.time_ms:
+        return after.north_m, after.east_m, after.alt_m
+    before = track.states[index - 1] if index else after
+    if before.time_ms >= look.time_ms or before.time_ms in track.unknown:
+        return None
+    part = (look.time_ms - before.time_ms) / (after.time_ms - before.time_ms)
+    north, east, alt = (b + part * (a - b) for b, a in zip(before[1:4], after[1:4], strict=True))
+    return north, east, alt
 
 
 def _suits(flight: Flight, task: Task, look: Look) -> bool:
@@ -74,16 +100,12 @@ def _suits(flight: Flight, task: Task, look: Look) -> bool:
 
 def _slant_m(flight: Flight, look: Look) -> float | None:
     """From the aircraft to the place below the middle of its view [m]."""
-    track = flight.tracks.get(look.vehicle)
-    index = track.from_index(look.time_ms) if track else 0
-    if track is None or index >= len(track.states) or look.centre is None:
+    here = _place(flight, look)
+    if here is None or look.centre is None:
         return None
-    state = track.states[index]
     mission = flight.mission
     centre = to_local(mission.latitude_deg, mission.longitude_deg, *look.centre[:2])
-    if state.time_ms != look.time_ms or centre is None:
-        return None
-    return math.dist((state.north_m, state.east_m, state.alt_m), (*centre, look.centre[2]))
+    return None if centre is None else math.dist(here, (*centre, look.centre[2]))
 
 
 def _resolves(flight: Flight, task: Task) -> bool:

@@ -13,7 +13,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
+    from cratous.services.ground_station.access import Access
     from cratous.services.ground_station.server import GroundStation, Recorded
+    from cratous.services.ground_station.tiles import Tiles
+
+    Listening = tuple[int, Access]
+    """At which port and address, and who is let in."""
 
 MISSIONS = (".yaml", ".yml")
 FLIGHT, PLANNER = "cratous.services.cli.serve_flight", "cratous.services.cli.serve_plan"
@@ -24,7 +29,15 @@ FLIGHT, PLANNER = "cratous.services.cli.serve_flight", "cratous.services.cli.ser
 @click.argument("other", metavar="[RUN_B]", required=False, type=click.Path(path_type=Path))
 @click.option(
     "--port", type=click.IntRange(0, 65535), default=8760, show_default=True,
-    help="Port on 127.0.0.1; 0 takes a free one.",
+    help="Port; 0 takes a free one.",
+)  # fmt: skip
+@click.option(
+    "--host", metavar="ADDRESS", default="127.0.0.1", show_default=True,
+    help="Listen there. Others than 127.0.0.1 need a token, and are not encrypted.",
+)  # fmt: skip
+@click.option(
+    "--access-token-file", "token_file", metavar="FILE", type=click.Path(path_type=Path),
+    help="The token that readers need. [environment: CRATOUS_ACCESS_TOKEN; else a new one]",
 )  # fmt: skip
 @click.option("--edit", is_flag=True, help="MISSION: edit and plan it; nothing flies.")
 @click.option(
@@ -35,6 +48,10 @@ FLIGHT, PLANNER = "cratous.services.cli.serve_flight", "cratous.services.cli.ser
     "--overlay", "overlays", metavar="FILE.geojson", multiple=True, type=click.Path(path_type=Path),
     help="Show this beneath the map: coast, roads, airspace; again for more.",
 )  # fmt: skip
+@click.option(
+    "--tiles", metavar="URL", help="Pictures beneath the map, as https://HOST/{z}/{x}/{y}.png."
+)
+@click.option("--tiles-attribution", metavar="TEXT", help="What the map says of the pictures.")
 @click.option("--out", type=click.Path(path_type=Path), help="MISSION: folder for results. [out]")
 @click.option("--seed", type=click.IntRange(0), help="MISSION: variant; 0 is as written.")
 @click.option("--no-daa", is_flag=True, help="MISSION: avoidance off; the requirements stay.")
@@ -43,10 +60,12 @@ def serve(
     run: Path | None,
     other: Path | None,
     port: int,
+    host: str,
+    token_file: Path | None,
     edit: bool,
     attach: str | None,
     overlays: tuple[Path, ...],
-    **flight: Any,
+    **more: Any,
 ) -> int:
     """Replay a RUN in the browser, or two side by side, or fly a MISSION there.
 
@@ -66,12 +85,16 @@ def serve(
     With --edit the mission is edited: on the map, as text, its relations with the place of an error
     while they are typed; it is planned as it stands, and saved to its file.
 
-    --overlay shows shapes of GeoJSON files beneath the map. They are a picture: nothing is planned, flown
-    or judged by them.
+    --overlay shows shapes of GeoJSON files beneath the map, --tiles pictures of a tile server, which then is told by
+    the browser what part of the world is looked at. Nothing is planned, flown or judged by them.
 
     Map with tracks, routes, zones, tasks and takeovers, altitudes over time, verdicts, and events to
     jump to. The address of the page names the instant, so it can be kept. Only this machine reaches
-    it, and nothing comes from elsewhere.
+    it, unless --host says otherwise, and nothing but --tiles comes from elsewhere.
+
+    With --host, other machines reach it, and whatever they ask for needs a token: that of the address that
+    is printed, or of a file or the environment. There is no TLS: who can listen on the way reads all of it,
+    the token too.
 
     \b
     Example:  cratous serve out/crossing
@@ -81,9 +104,13 @@ def serve(
 
     Exit codes: 0 asked to end (Ctrl-C, SIGTERM), 2 bad input.
     """
+    from cratous.services.ground_station.access import LOOPBACK, access_of
+    from cratous.services.ground_station.beneath import Beneath
     from cratous.services.ground_station.overlays import overlays_of
     from cratous.spec.files.printable import printable
 
+    flight = {name: value for name, value in more.items() if not name.startswith("tiles")}
+    tiles = _tiles(more["tiles"], more["tiles_attribution"])
     if (run is None) == (attach is None):
         raise click.UsageError("one of them is shown: RUN or MISSION, or --attach HOST:PORT")
     missions = [path for path in (run, other) if path and _is_mission(path)]
@@ -94,21 +121,21 @@ def serve(
         raise click.UsageError("--edit needs a MISSION, and goes without --out, --seed, --no-daa")
     if not missions and any(_is_given(value) for value in flight.values()):
         raise click.UsageError("--out, --seed, --no-daa, --allow-unproved need a MISSION")
-    shapes = overlays_of(overlays)
+    beneath, listening = Beneath(overlays_of(overlays), tiles), (port, access_of(host, token_file))
     with ExitStack() as stack:
         if attach is not None:
-            server, name = _watching(attach, port, stack), attach
+            server, name = _watching(attach, listening, stack), attach
         else:
             assert run is not None
             name = f"{run}" if other is None else f"{run} and {other}"
             if edit:
-                server = _editing(run, port, flight["allow_unproved"], stack)
+                server = _editing(run, listening, flight["allow_unproved"], stack)
             elif missions:
-                server = _flying(run, port, flight, stack)
+                server = _flying(run, listening, flight, stack)
             else:
-                server = _replaying(run, other, port, stack)
+                server = _replaying(run, other, listening, stack)
 
-        server.overlays = shapes
+        server.beneath = beneath
 
         def stop(*_: object) -> None:
             # from a thread: it waits for the loop that this signal interrupts
@@ -116,10 +143,22 @@ def serve(
 
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             signal.signal(number, stop)
-        token = f"?token={server.token}" if server.token else ""
-        click.echo(printable(f"{name}: {server.url}{token} (Ctrl-C ends it)"))
+        click.echo(printable(f"{name}: {server.whole_url} (Ctrl-C ends it)"))
+        if host != LOOPBACK:
+            click.echo(
+                "cratous: other machines can reach this, and nothing is encrypted (no TLS)",
+                err=True,
+            )
         server.serve_forever(poll_interval=0.2)
     return 0
+
+
+def _tiles(url: str | None, attribution: str | None) -> Tiles | None:
+    from cratous.services.ground_station.tiles import tiles_of
+
+    if url is None and attribution is not None:
+        raise click.UsageError("--tiles-attribution needs --tiles")
+    return None if url is None else tiles_of(url, attribution or "")
 
 
 def _is_given(value: Any) -> bool:
@@ -141,7 +180,9 @@ def _replayed(path: Path) -> Recorded:
     return Recorded(lambda: recording(path), _failed)
 
 
-def _editing(mission: Path, port: int, allow_unproved: bool, stack: ExitStack) -> GroundStation:
+def _editing(
+    mission: Path, listening: Listening, allow_unproved: bool, stack: ExitStack
+) -> GroundStation:
     from cratous.services.ground_station.server import (
         PAGE_OF_EDITOR,
         Commands,
@@ -153,10 +194,14 @@ def _editing(mission: Path, port: int, allow_unproved: bool, stack: ExitStack) -
     editor = stack.enter_context(closing(Editor(mission, PLANNER, allow_unproved)))
     commands = Commands(editor.orders, LONGEST, {"/planned.json": editor.planned}, editor.token)
     shown = ReadAnew(editor.opened)
-    return stack.enter_context(GroundStation(shown, port, first=PAGE_OF_EDITOR, commands=commands))
+    return stack.enter_context(
+        GroundStation(shown, *listening, first=PAGE_OF_EDITOR, commands=commands)
+    )
 
 
-def _flying(mission: Path, port: int, flight: dict[str, Any], stack: ExitStack) -> GroundStation:
+def _flying(
+    mission: Path, listening: Listening, flight: dict[str, Any], stack: ExitStack
+) -> GroundStation:
     from cratous.services.ground_station.live_session import Direct, LiveSession
     from cratous.services.ground_station.server import GroundStation, LiveRecorded
     from cratous.services.mission_editor.operator_commands import DIRECT, commanded, directed
@@ -181,10 +226,10 @@ def _flying(mission: Path, port: int, flight: dict[str, Any], stack: ExitStack) 
     direct = Direct(DIRECT, checked, flown_with)
     live = stack.enter_context(closing(LiveSession(FLIGHT, asked, amended, direct)))
     flown = LiveRecorded(live, lambda folder: _replayed(Path(folder)))
-    return stack.enter_context(GroundStation(flown, port, live))
+    return stack.enter_context(GroundStation(flown, *listening, live))
 
 
-def _watching(address: str, port: int, stack: ExitStack) -> GroundStation:
+def _watching(address: str, listening: Listening, stack: ExitStack) -> GroundStation:
     from cratous.bridge.port import address as read_address
     from cratous.services.ground_station.attached_session import AttachedSession
     from cratous.services.ground_station.server import GroundStation, ReadAnew
@@ -192,20 +237,22 @@ def _watching(address: str, port: int, stack: ExitStack) -> GroundStation:
     text = address if "://" in address else f"tcp://{address}"
     where = read_address(text, ("tcp",), item="--attach")
     session = stack.enter_context(closing(AttachedSession(where)))
-    return stack.enter_context(GroundStation(ReadAnew(session.begun), port, session))
+    return stack.enter_context(GroundStation(ReadAnew(session.begun), *listening, session))
 
 
-def _replaying(run: Path, other: Path | None, port: int, stack: ExitStack) -> GroundStation:
+def _replaying(
+    run: Path, other: Path | None, listening: Listening, stack: ExitStack
+) -> GroundStation:
     from cratous.services.ground_station.comparison import check_comparable, comparison
     from cratous.services.ground_station.server import PAGE_OF_TWO, GroundStation, Recorded
     from cratous.services.logs.source import open_log
 
     open_log(run).close()  # what is no log is told before anything listens
     if other is None:
-        return stack.enter_context(GroundStation(_replayed(run), port))
+        return stack.enter_context(GroundStation(_replayed(run), *listening))
     check_comparable(run, other)
     both = Recorded(functools.partial(comparison, run, other), _failed)
-    return stack.enter_context(GroundStation(both, port, first=PAGE_OF_TWO))
+    return stack.enter_context(GroundStation(both, *listening, first=PAGE_OF_TWO))
 
 
 def _is_mission(path: Path) -> bool:

@@ -61,6 +61,7 @@ def _plan(asked: Asked, tell: Tell) -> None:
         planning_told,
     )
     from cratous.services.logs.records import to_data
+    from cratous.services.mission.windows import windows
     from cratous.spec.mission.guarantees import exit_code
 
     standing = ledger.require(allow_unproved=first["allow_unproved"])
@@ -77,6 +78,7 @@ def _plan(asked: Asked, tell: Tell) -> None:
             "state": "planned",
             "text": plan_line(mission, made, checks),
             "plan": to_data(made),
+            "windows": [window._asdict() for window in windows(made)],
             "constraints": constraint_rows(checks, "plan"),
             "notes": [*left_out_lines(made), *absent_lines(mission), *mission.notes],
             "proofs": standing.line,

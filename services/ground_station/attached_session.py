@@ -191,6 +191,7 @@ class AttachedSession:
                 "live": True, "flight": 0, "attached": self._where.text, "next": self._count,
                 "name": self._where.text, "source": "messages",
                 "frame": to_data(self._positions.frame or Frame(0.0, 0.0)),
+                "located": self._positions.frame is not None,
                 "end_ms": self._attached.now_ms(), "outcome": "watched", "volume": None,
                 "window_ms": self._window_ms, "vehicles": self._vehicles,
                 "zones": [dict(one) for one in self._zones],

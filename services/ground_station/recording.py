@@ -108,6 +108,7 @@ def _told(source: Source, entries: Iterator[Entry]) -> dict[str, Any]:
         "name": source.path.name,
         "source": "messages",
         "frame": to_data(frame),
+        "located": positions.frame is not None,
         "end_ms": end_ms,
         "outcome": "the log names no mission",
         "vehicles": positions.vehicles(),

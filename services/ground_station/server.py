@@ -1,9 +1,9 @@
-"""Serves the page and what it shows, a recording or two, over HTTP, to this machine alone.
+"""Serves the page and what it shows, a recording or two, over HTTP, to this machine alone unless asked otherwise.
 
-It listens on 127.0.0.1 and answers only requests whose Host header names it so, since a page of
-somewhere else could reach it under a name of its own (DNS rebinding). It gives out the files of the
-page and the recording, and nothing of the disk by a name from outside. Of a replay it takes GET and
-HEAD alone; while a mission is flown or edited, commands too, from its own page (Origin) with the token.
+It answers only requests whose Host header names it as it is called, since a page of somewhere else could reach it
+under a name of its own (DNS rebinding). At another address than 127.0.0.1 whatever is asked needs a token (`access`).
+It gives out the page and the recording, and nothing of the disk by a name from outside. Of a replay it takes GET and
+HEAD alone; while a mission is flown or edited, commands too, from its own page (Origin) with their token.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from contextlib import suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
+from socketserver import TCPServer
 from types import MappingProxyType
 from typing import Any, NamedTuple, Protocol
 from urllib.parse import parse_qs
 
+from cratous.services.ground_station.access import BEARER, Access
+from cratous.services.ground_station.beneath import Beneath
 from cratous.services.ground_station.live_session import LiveSession, NotObeyed
-from cratous.services.ground_station.overlays import Shape, in_frame
 from cratous.spec.errors import BadInput
 from cratous.spec.files.printable import json_text
-from cratous.spec.mission import Frame
 
-HOST = "127.0.0.1"
 REQUEST_S = 10.0
 """So long a client may take for its request."""
 MOST_AT_ONCE = 32
@@ -44,7 +44,7 @@ TYPES = {
 }
 HEADERS = {
     "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; "
-    "img-src 'self'; connect-src 'self'; base-uri 'none'; form-action 'none'; "
+    "img-src 'self'{images}; connect-src 'self'; base-uri 'none'; form-action 'none'; "
     "frame-ancestors 'none'",
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
@@ -185,33 +185,39 @@ class GroundStation(ThreadingHTTPServer):
         self,
         recorded: Recording,
         port: int,
+        access: Access,
         live: Watched | None = None,
         first: str = PAGE,
         commands: Commands | None = None,
     ) -> None:
-        """port: 0 takes a free one; live: the flight that is shown, if it is one; first: which page
-        shows it; commands: what pages may ask for, by default those of the flight. Raises BadInput if the port
-        cannot be had."""
+        """port: 0 takes a free one; access: where it listens and who is let in; live: the flight that is shown, if any;
+        first: which page shows it; commands: what pages may ask for, by default those of the flight. Raises
+        BadInput if the port cannot be had."""
         self.recorded, self.live, self.pages = recorded, live, page_files(first)
         if commands is None:
             orders = {"/command": live.order} if live is not None and live.token else {}
             commands = Commands(orders, token="" if live is None else live.token)
         self.commands, self.token = commands, commands.token
-        self.overlays: tuple[Shape, ...] = ()
+        self.beneath = Beneath()
         """What the map shows beneath all else."""
+        self.access = access
+        self.address_family = self.access.family
         self._places = threading.Semaphore(MOST_AT_ONCE)
         self._asking: dict[Any, None] = {}
         self._lock = threading.Lock()
         try:
-            super().__init__((HOST, port), _Handler)
+            super().__init__((self.access.address, port), _Handler)
         except OSError as error:
             raise BadInput(
-                "cannot listen there", item="--port", expected="a free port of this machine",
+                "cannot listen there", item="--port", expected=f"a free port of {self.access.host}",
                 got=f"{port}: {error.strerror}",
             ) from None  # fmt: skip
-        number = self.server_address[1]
-        self.names = {f"{name}:{number}" for name in (HOST, "localhost")}
-        self.url = f"http://{HOST}:{number}/"
+        self.url = self.access.url(self.server_port)
+        self.whole_url = self.access.whole_url(self.server_port, self.token)
+
+    def server_bind(self) -> None:
+        TCPServer.server_bind(self)  # that of HTTPServer asks name servers who this is
+        self.server_name, self.server_port = self.access.host, self.server_address[1]
 
     def process_request(self, request: Any, client_address: Any) -> None:
         if not self._places.acquire(blocking=False):
@@ -252,6 +258,8 @@ class _Handler(BaseHTTPRequestHandler):
     server: GroundStation
     timeout = REQUEST_S
     server_version, sys_version = "cratous", ""
+    shown: str | None = None
+    """How the request shows the token."""
 
     def parse_request(self) -> bool:
         whole = super().parse_request()
@@ -266,19 +274,29 @@ class _Handler(BaseHTTPRequestHandler):
         self._send(self._found(), body=False)
 
     def do_POST(self) -> None:
-        if not self.server.commands.orders:
+        self.close_connection = True
+        refused = self._refused()
+        if refused is None and not self.server.commands.orders:
             self.send_error(HTTPStatus.NOT_IMPLEMENTED)
             return
-        self.close_connection = True
-        self._send(self._elsewhere() or self._order(), body=True)
+        self._send(refused or self._order(), body=True)
 
-    def _elsewhere(self) -> Answer | None:
-        """The refusal of a request that calls the server by another name; None for its own."""
+    def _refused(self) -> Answer | None:
+        """The refusal of a request that calls the server by another name, or without the token; None for its own."""
+        access, port = self.server.access, self.server.server_port
         hosts = self.headers.get_all("Host", [])
-        if len(hosts) == 1 and hosts[0].lower() in self.server.names:
+        if not access.called(hosts, self.connection.getsockname(), port):
+            told = f"this server is {self.server.url} and answers to no other name"
+            return _json(HTTPStatus.MISDIRECTED_REQUEST, {"error": told})
+        if not access.token:
             return None
-        told = f"this server is {self.server.url} and answers to no other name"
-        return _json(HTTPStatus.MISDIRECTED_REQUEST, {"error": told})
+        self.shown = access.shown_by(self.headers, self.path.partition("?")[2], port)
+        if self.shown is None:
+            told = (
+                "this server needs the token of the address that was printed where it was started"
+            )
+            return _json(HTTPStatus.UNAUTHORIZED, {"error": told})
+        return None
 
     def _order(self) -> Answer:
         """A command of a page."""
@@ -327,30 +345,23 @@ class _Handler(BaseHTTPRequestHandler):
             return _json(HTTPStatus.BAD_REQUEST, {"error": told})
         return _json(HTTPStatus.OK, {**live.told(int(first)), "who": live.who(*self._sender())})
 
-    def _beneath(self, query: str) -> Answer:
-        """What the map shows beneath all else, in the frame with the origin that is asked for."""
-        given = parse_qs(query)
-        try:
-            latitude, longitude = (float(given[name][0]) for name in ("latitude", "longitude"))
-            if not (abs(latitude) <= 90 and abs(longitude) <= 180):
-                raise ValueError
-        except (LookupError, ValueError):
-            told = "expected latitude=DEG&longitude=DEG, the origin of a frame"
-            return _json(HTTPStatus.BAD_REQUEST, {"error": told})
-        shapes = in_frame(self.server.overlays, Frame(latitude, longitude))
-        return _json(HTTPStatus.OK, {"shapes": shapes})
-
     def _found(self) -> Answer:
-        elsewhere = self._elsewhere()
-        if elsewhere is not None:
-            return elsewhere
+        refused = self._refused()
+        if refused is not None:
+            return refused
         path, _, query = self.path.partition("?")
         if path == "/recording.json":
             return self.server.recorded.answer()
         if path == "/live.json" and self.server.live is not None:
             return self._told(self.server.live, query)
-        if path == "/overlays.json":
-            return self._beneath(query)
+        try:
+            beneath = self.server.beneath.answer(path, query)
+        except NotObeyed as refused_:
+            return _json(HTTPStatus(refused_.status), {"error": refused_.why})
+        except BadInput as error:
+            return _json(HTTPStatus.UNPROCESSABLE_ENTITY, error.data())
+        if beneath is not None:
+            return _json(HTTPStatus.OK, beneath)
         if path in self.server.commands.polled:
             return _json(HTTPStatus.OK, self.server.commands.polled[path]())
         found = self.server.pages.get(path)
@@ -364,13 +375,18 @@ class _Handler(BaseHTTPRequestHandler):
         self.send_header("Content-Length", str(len(content)))
         if packed:
             self.send_header("Content-Encoding", "gzip")
+        if answer.status is HTTPStatus.UNAUTHORIZED:
+            self.send_header("WWW-Authenticate", BEARER.strip())
+        if self.shown == "address":
+            self.send_header("Set-Cookie", self.server.access.kept(self.server.server_port))
         self.end_headers()
         if body:
             self.wfile.write(content)
 
     def end_headers(self) -> None:
+        images = self.server.beneath.images
         for name, value in HEADERS.items():
-            self.send_header(name, value)
+            self.send_header(name, value.format(images=f" {images}" if images else ""))
         super().end_headers()
 
     def log_message(self, format: str, *args: Any) -> None:

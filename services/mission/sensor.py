@@ -17,6 +17,7 @@ from cratous.core.geofence.planar import edges_of, locate
 from cratous.core.kernel import Vec2
 from cratous.core.readings.tiered import swift
 from cratous.core.tasks.footprints import nearest_on_line, points_in_quads
+from cratous.services.mission.asked_views import FLATTEST_RAD, near_asked
 from cratous.spec.mission import Camera, Position, Task, View
 
 if TYPE_CHECKING:
@@ -39,12 +40,17 @@ class Look(NamedTuple):
 
 
 def footprints(
-    looks: np.ndarray | Sequence[Look], height_m: float, camera: Camera, shrink: float = 1.0
+    looks: np.ndarray | Sequence[Look],
+    height_m: float,
+    camera: Camera,
+    shrink: float = 1.0,
+    flattest_rad: float = FLATTEST_RAD,
 ) -> np.ndarray:
     """Footprint corners of many looks, shape (n, 4, 2) as north, east; NaN where there is none.
 
     height_m: above ground, > 0; shrink: factor on the tangents of the half field of view, below 1
-    to keep a margin. There is no footprint if a corner ray does not meet the ground.
+    to keep a margin. There is no footprint if a corner ray does not meet the ground, or meets it more
+    flatly than `flattest_rad`.
     """
     import numpy as np
 
@@ -64,7 +70,8 @@ def footprints(
         r, u = right * half, up * half / camera.aspect
         ahead = np.cos(elevation) - u * np.sin(elevation)
         down = -(np.sin(elevation) + u * np.cos(elevation))
-        reach = np.where(down > 1e-3, height_m / np.where(down > 1e-3, down, 1.0), np.nan)
+        steep = (down > 1e-3) & (down >= math.tan(flattest_rad) * np.hypot(ahead, r))
+        reach = np.where(steep, height_m / np.where(steep, down, 1.0), np.nan)
         corners[:, k, 0] = data[:, 0] + reach * (ahead * np.cos(look) - r * np.sin(look))
         corners[:, k, 1] = data[:, 1] + reach * (ahead * np.sin(look) + r * np.cos(look))
     corners[np.isnan(corners).any(axis=(1, 2))] = np.nan
@@ -253,11 +260,12 @@ def covered_by(
     height = min(p.alt_m for p in path) - terrain_m
     places = sample_line(path, max(10.0, height / 15))
     looks = looks_of(places, line, task.view, height)
+    looks = looks[near_asked(looks, height, task, camera)]
     return covered(line[::every], looks, height, camera, shrink)
 
 
 def coverage(path: Sequence[Position], task: Task, camera: Camera, terrain_m: float = 0.0) -> float:
-    """Fraction of the task's line (sampled every 10 m) that a flight along `path` sees.
+    """Fraction of the task's line (sampled every 10 m) that a flight along `path` sees as it is asked to.
 
     path: in the order of flight, two or more points. The gimbal aims as `looks_of` says.
     """
@@ -276,8 +284,11 @@ def share_seen(
         return 0.0
     places = sample_line(path, max(10.0, height / 15))
     looks = looks_of(places, np.array([point]), task.view, height)
+    asked = near_asked(looks, height, task, camera)
     seen = [
-        not np.isnan(quad[0, 0]) and sees(tuple((float(n), float(e)) for n, e in quad), point)
-        for quad in footprints(looks, height, camera)
+        near
+        and not np.isnan(quad[0, 0])
+        and sees(tuple((float(n), float(e)) for n, e in quad), point)
+        for near, quad in zip(asked.tolist(), footprints(looks, height, camera), strict=True)
     ]
     return sum(seen) / len(seen)

@@ -17,10 +17,11 @@ from cratous.services.ground_station.live_session import NotObeyed
 from cratous.services.loading.document import parse_document
 from cratous.services.loading.yaml_mission import loaded
 from cratous.services.logs.records import from_data
+from cratous.services.mission_editor.completed import LISTS, VEHICLES, completed
 from cratous.services.mission_editor.plan_process import PlanProcess
 from cratous.services.mission_editor.relations import relations
 from cratous.services.mission_editor.sketch import sketch
-from cratous.services.mission_editor.text_edits import MissionText
+from cratous.services.mission_editor.text_edits import PLACE, MissionText
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import MISSION_BYTES
 from cratous.spec.files.text_file import text_of
@@ -30,8 +31,6 @@ LONGEST = 2 * MISSION_BYTES
 """Of what a page sends [bytes]: the text, as JSON."""
 FARTHEST_M = 1e7
 """Farther from the origin of the frame nothing is put."""
-LISTS = ("zones", "tasks")
-"""To which items are added on the map."""
 Order = Callable[[str, str, Any], dict[str, Any]]
 
 
@@ -100,7 +99,12 @@ class Editor:
             name, item = asked.get("list"), asked.get("item")
             if name not in LISTS or not isinstance(item, dict):
                 raise NotObeyed(400, f"expected list: one of {', '.join(LISTS)}, and item")
-            return {"text": mission.added(name, {"id": _next_id(mission, name), **item})}
+            if name == VEHICLES:
+                place = item.get("position")
+                if set(item) != {"position"} or not isinstance(place, dict):
+                    raise NotObeyed(400, "expected item: the position of a vehicle")
+                item = {"position": {axis: _number(place, axis) for axis in PLACE}}
+            return {"text": mission.added(name, completed(mission, name, item))}
         key = asked.get("key")
         if not isinstance(key, list) or not all(type(part) in (str, int) for part in key):
             raise NotObeyed(400, "expected key: a list of names and numbers")
@@ -211,16 +215,6 @@ def _number(asked: dict[str, Any], name: str) -> float:
     if type(value) not in (int, float) or not abs(value) < FARTHEST_M:
         raise NotObeyed(400, f"expected {name}: a number of metres")
     return float(value)
-
-
-def _next_id(mission: MissionText, name: str) -> int:
-    """One that no item of the list has, nor a zone that comes later."""
-    data = mission.data
-    items = list(data.get(name) or ())
-    if name == "zones":
-        items += [c["zone"] for c in data.get("changes") or () if isinstance(c.get("zone"), dict)]
-    ids = [one["id"] for one in items if isinstance(one, dict) and isinstance(one.get("id"), int)]
-    return max([0, *ids]) + 1
 
 
 def _digest(text: str) -> str:

@@ -18,7 +18,7 @@ from cratous.spec.errors import BadInput
 from cratous.spec.mission import Frame
 
 PLACE, DEGREES = ("north_m", "east_m"), ("latitude_deg", "longitude_deg")
-_PLAIN = re.compile(r"[a-z]+(_[a-z]+)+")
+_PLAIN = re.compile(r"(?!(true|false|null|yes|no|on|off|y|n)$)[a-z]+(_[a-z]+)*")
 """Texts that YAML reads as nothing else."""
 
 

@@ -19,6 +19,7 @@ from cratous.core.schedule.rows import row_holds
 from cratous.core.tasks.coverage_steps import enough_seen
 from cratous.core.tasks.service import Watched as Seen
 from cratous.core.tasks.service import service_verdict
+from cratous.core.tasks.stations import in_ring
 from cratous.services.monitor.coverage import CoverageWatch
 from cratous.services.monitor.landing import Down
 from cratous.services.monitor.observation import Ending, Presence
@@ -205,6 +206,8 @@ class CompletionWatch:
         asked: list[Callable[..., Any]] = [edge_against] if doing.judged_near else []
         if kind is TaskKind.LOITER and doing.touched and not doing.too_near:
             asked.append(row_holds)
+        if task in self._coverage.looked:
+            asked.append(in_ring)
         if kind in SEARCHES:
             asked.append(enough_seen)
         seen = self._coverage.kernels.get(task)
@@ -217,7 +220,15 @@ class CompletionWatch:
             return ""
         span, ending = (doing.began_ms, doing.complete_ms), Ending(doing.complete_ms, over=True)
         gaps = (self._presence.unseen(v, span, ending) for v in sorted(doing.flown_by))
-        return next(filter(None, gaps), "")
+        return next(filter(None, gaps), "") or self._not_sharp(number)
+
+    def _not_sharp(self, number: int) -> str:
+        """Why it is not known how finely a task was seen; empty where it is, or nothing is asked for."""
+        flyers = [self._vehicles[v] for v in self._tasks[number].flown_by if v in self._vehicles]
+        known = all(camera.pixels for flyer in flyers for camera in flyer.cameras)
+        if not max(self._kinds[number].gsd_m, 0.0) or known:
+            return ""
+        return "how many pixels its camera has is not known"
 
     def _missed(self, number: int) -> str:
         """What a must-fly or loiter task lacks to be served; empty if nothing."""

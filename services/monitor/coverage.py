@@ -3,7 +3,8 @@
 A point of a line (sampled at most 10 m apart) or the one point of a point search is seen when it
 lies in a reported footprint or on its edge, by the kernel `locate`. An area is cut into squares;
 one is seen when all of it lies in one footprint, by the kernel `square_within`, and those that are
-not count in full against the search: the fraction given is a lower bound.
+not count in full against the search: the fraction given is a lower bound. Which footprints count
+for a task is said in `monitor.looks`.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from cratous.core.tasks.coverage import (
 from cratous.core.tasks.coverage_arrays import mark_seen
 from cratous.core.tasks.coverage_steps import enough_seen
 from cratous.services.mission.frames import Projection
+from cratous.services.monitor.looks import Look, counts, looks_of
 from cratous.spec.mission import AREAS, SEARCHES, Mission, Task
 
 SAMPLE_M = 10.0
@@ -79,25 +81,30 @@ class CoverageWatch:
 
     def __init__(self, mission: Mission) -> None:
         self._projection = Projection(mission.frame)
+        self._cameras = {vehicle.id: vehicle.cameras for vehicle in mission.vehicles}
         searches = [t for t in mission.tasks if t.kind in SEARCHES]
+        self._tasks = {t.id: t for t in searches}
         self._areas = {t.id: _Area(t) for t in searches if t.kind in AREAS}
         self._unseen = {t.id: sample(t) for t in searches if t.kind not in AREAS}
+        self.looked: set[int] = set()
+        """The tasks for which it was asked whether a footprint counts."""
         self.kernels: dict[int, str] = {}
         """Who decided what was seen of a task, for those of which anything may have been."""
         self._total = {task: len(points) for task, points in self._unseen.items()}
 
     def state(self, body: Any, active: list[int]) -> None:
         """A vehicle's state with its payloads, while it was doing the `active` tasks."""
-        for task in active:
-            if task not in self._areas and not self._unseen.get(task):
-                continue
-            for payload in body.PayloadStateList:
-                corners = getattr(payload, "Footprint", None)
-                if corners and len(corners) >= 3:
-                    self._look(task, [(c.Latitude, c.Longitude) for c in corners])
+        open_ = [t for t in active if t in self._areas or self._unseen.get(t)]
+        if not open_:
+            return
+        for one in looks_of(body, self._cameras.get(body.ID, ()), self._projection):
+            self.looked |= set(open_)
+            for task in open_:
+                if counts(one, self._tasks[task]):
+                    self._look(task, one)
 
-    def _look(self, task: int, corners: list[tuple[float, float]]) -> None:
-        quad = [self._projection.to_local(*corner) for corner in corners]
+    def _look(self, task: int, one: Look) -> None:
+        quad = list(one.corners)
         if task in self._areas:
             self.kernels[task] = qualified(mark_seen)
             self._areas[task].look(quad)

@@ -85,7 +85,9 @@ def footprint(
     view = mount.view_deg(gsd, slant)
     limits = (radians(elevation), radians(elevation), 0.0, 0.0)
     camera = Camera(0, radians(view), mount.aspect, *limits, wavelength="AllAny", pixels=1)
-    corners = footprints([Look(0.0, 0.0, 0.0, centre, 0.0)], altitude, camera)[0]
+    # what is asked here is where the image lies, and not what counts as seen
+    look = Look(0.0, 0.0, 0.0, centre, 0.0)
+    corners = footprints([look], altitude, camera, flattest_rad=0.0)[0]
     if corners[0, 0] != corners[0, 0]:
         return None  # its upper edge looks above the horizon
     width = 2 * slant * tan(radians(view / 2))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 from judge_tools import Scene, changed, task, vehicle, verdicts
@@ -92,6 +93,28 @@ def test_lines_are_seen(tmp_path: Path) -> None:
         served(tmp_path, coarse | {"gsd_m": 9.0}, looks=[first, last], vehicles=[blind]) == "holds"
     )
     assert served(tmp_path, asked | {"gsd_m": 0.5}, looks=[first, last]) == "unknown"
+
+
+def test_a_look_counts_where_the_view_asked_for_looks_and_not_near_the_horizon(
+    tmp_path: Path,
+) -> None:
+    asked = task(1, "line_search", (0, 0), (1000, 0))
+    down = {"azimuth_rad": 0.0, "elevation_rad": math.radians(-90)}
+    ahead = down | {"elevation_rad": math.radians(-45)}
+    # from 60 m north at 300 m; the second to the horizon, as a camera that looks ahead has it
+    near, far = (3000, box(-1, 600, -150, 150)), (3000, box(-1, 57_000, -150, 150))
+    second = (5000, box(499, 1001, -150, 150))
+    assert served(tmp_path, asked, looks=[far]) == "violated"
+    assert served(tmp_path, asked | {"view": down}, looks=[far]) == "violated"
+    assert served(tmp_path, asked, looks=[near, second]) == "holds"
+    assert served(tmp_path, asked | {"view": ahead}, looks=[near, second]) == "holds"
+    # their middles lie about 30 and 60 degrees off straight down
+    assert served(tmp_path, asked | {"view": down}, looks=[near, second]) == "violated"
+    both = {"view": down, "views": [ahead]}
+    assert served(tmp_path, asked | both, looks=[near, second]) == "holds"
+    below = [(t, box(n - 130, n + 130)) for t, n in ((3000, 60), (5000, 100))]
+    short = task(1, "line_search", (0, 0), (200, 0), view=down)
+    assert served(tmp_path, short, looks=below) == "holds"
 
 
 def test_areas_are_seen(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ import pytest
 from ground_station_tools import LIMIT_S, Served, ask
 
 from cratous.services.exporting.exported import ALL, exported
+from cratous.services.ground_station.access import Access
 from cratous.services.ground_station.server import Commands, GroundStation, ReadAnew
 from cratous.services.loading.document import parse_document
 from cratous.services.loading.yaml_mission import loaded
@@ -66,7 +67,10 @@ def test_bad_changes_are_refused_with_what_and_where(editor: Served, mission: Pa
     assert got.status == 422
     assert got.data()["item"] == "tasks[9]"
     for asked in (
-        {"do": "fly"}, {"do": "add", "list": "vehicles", "item": {}}, {"do": "move", "key": "tasks"},
+        {"do": "fly"}, {"do": "add", "list": "changes", "item": {}}, {"do": "add", "list": "vehicles", "item": {}},
+        {"do": "add", "list": "vehicles", "item": {"position": {"north_m": 1}}},
+        {"do": "add", "list": "vehicles", "item": {"position": {"north_m": 1, "east_m": 1}, "id": 7}},
+        {"do": "move", "key": "tasks"},
         {"do": "move", "key": ["tasks"], "north_m": True, "east_m": 0},
         {"do": "move", "key": ["tasks"], "north_m": 1e300, "east_m": 0}, {"do": "put", "key": ["a"]},
     ):  # fmt: skip
@@ -266,7 +270,7 @@ def test_an_error_of_ours_is_answered_as_one() -> None:
         raise ZeroDivisionError("of no consequence")
 
     shown = ReadAnew(dict)
-    with GroundStation(shown, 0, commands=Commands({"/change": fails})) as server:
+    with GroundStation(shown, 0, Access(), commands=Commands({"/change": fails})) as server:
         serving = threading.Thread(target=server.serve_forever, args=(0.05,))
         serving.start()
         try:

@@ -6,10 +6,13 @@ import json
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from chromium_tools import Page, browsing
 from ground_station_tools import Served
+
+from cratous.services.mission_editor.text_edits import MissionText
 
 TEXT = "document.getElementById('text').value"
 pytestmark = pytest.mark.slow
@@ -176,18 +179,118 @@ def test_relations_that_are_undone_before_the_text_was_looked_at_are_undone_in_t
 
 
 def test_a_place_is_dragged_and_removed_with_its_task(page: Page) -> None:
-    x, y = place(page, 0, 2500)
-    to = place(page, 600, 2000)
-    mouse = "Input.dispatchMouseEvent"
-    page.call(mouse, type="mousePressed", x=x, y=y, button="left", clickCount=1)
-    page.call(mouse, type="mouseMoved", x=to[0], y=to[1], button="left")
-    page.call(mouse, type="mouseReleased", x=to[0], y=to[1], button="left", clickCount=1)
+    drag(page, (0, 2500), (600, 2000))
     page.until(f"!{TEXT}.includes('east_m: 2500, alt_m: 300')")
     page.until("!document.getElementById('remove').disabled")
     page.click("#remove")
     page.until(f"!{TEXT}.includes('delivery point')")
     page.until("document.getElementById('problems').textContent.includes('relations')")
     assert page.value("document.getElementById('plan').disabled")
+
+
+def test_a_vehicle_an_area_and_a_loiter_are_drawn_dragged_and_undone(
+    page: Page, mission: Path
+) -> None:
+    before = page.value(TEXT)
+    page.click("[data-tool=vehicle]")
+    assert "as of the first vehicle" in page.text("hint")
+    click_map(page, -800, 1200)
+    page.until("document.querySelectorAll('#export-vehicle option').length === 3")
+    page.click("[data-tool=area_search]")
+    for north, east in ((300, 900), (300, 1500), (700, 1500)):
+        click_map(page, north, east)
+    page.key("Enter")
+    page.until(f"{TEXT}.includes('kind: area_search')")
+    page.click("[data-tool=loiter]")
+    assert page.value("!document.getElementById('circles').hidden")
+    page.value("document.getElementById('circles-s').value = '0'")
+    click_map(page, -400, 1200)
+    click_map(page, -400, 1500)
+    assert "More than 0" in page.text("hint")
+    page.value("document.getElementById('circles-s').value = '75'")
+    page.click("#circles-s")
+    page.key("Enter")
+    page.until(f"{TEXT}.includes('kind: loiter')")
+    assert page.value("document.getElementById('circles').hidden")
+    drawn = _data(page)
+    new, area, loiter = drawn["vehicles"][-1], *drawn["tasks"][-2:]
+    first = drawn["vehicles"][0]
+    assert new["id"] == 3
+    assert new["speed_m_s"] == first["speed_m_s"]
+    assert new["position"]["alt_m"] == first["position"]["alt_m"]
+    assert (new["position"]["north_m"], new["position"]["east_m"]) == near(-800, 1200)
+    assert [(p["north_m"], p["east_m"]) for p in area["points"]] == [
+        near(300, 900), near(300, 1500), near(700, 1500),
+    ]  # fmt: skip
+    ((centre,), radius_m) = loiter["points"], loiter["radius_m"]
+    assert (centre["north_m"], centre["east_m"]) == near(-400, 1200)
+    assert radius_m == pytest.approx(300, abs=30)
+    assert loiter["duration_s"] == 75
+    page.click("#save")
+    page.until("document.getElementById('saved').textContent === 'saved'")
+    drag(page, (new["position"]["north_m"], new["position"]["east_m"]), (-1000, 900))
+    page.until(f"!{TEXT}.includes('north_m: {new['position']['north_m']}')")
+    place_now = _data(page)["vehicles"][-1]["position"]
+    assert (place_now["north_m"], place_now["east_m"]) == near(-1000, 900)
+    page.until("!document.getElementById('remove').disabled")
+    page.click("#remove")
+    page.until("document.querySelectorAll('#export-vehicle option').length === 2")
+    for _ in range(5):
+        page.click("#undo")
+    page.until(f"{TEXT} === {json.dumps(before)}")
+    for _ in range(3):
+        page.click("#redo")
+    page.until(f"{TEXT} === {json.dumps(mission.read_text(encoding='utf-8'))}")
+
+
+def near(north: float, east: float) -> Any:
+    """A place, to within what two pixels of the map are."""
+    return pytest.approx((north, east), abs=25)
+
+
+def _data(page: Page) -> Any:
+    return MissionText(page.value(TEXT), "the page").data
+
+
+def drag(page: Page, at: tuple[float, float], to: tuple[float, float]) -> None:
+    """Drag what is at a place of the map to another one."""
+    (x, y), (x1, y1) = place(page, *at), place(page, *to)
+    mouse = "Input.dispatchMouseEvent"
+    page.call(mouse, type="mousePressed", x=x, y=y, button="left", clickCount=1)
+    page.call(mouse, type="mouseMoved", x=x1, y=y1, button="left")
+    page.call(mouse, type="mouseReleased", x=x1, y=y1, button="left", clickCount=1)
+
+
+def test_windows_of_tasks_are_bands_behind_the_bars(page: Page) -> None:
+    write(page, "relations", "|(p1 p2_[20000-9000000])")
+    page.until(f"{TEXT}.includes('p2_[20000-9000000]')")
+    page.click("#plan")
+    page.until("document.querySelectorAll('#gantt .bar').length === 2")
+    assert page.value(
+        "[...document.querySelectorAll('#gantt .window')].map(w => w.dataset.window)"
+    ) == ["2"]
+    title = page.value("document.querySelector('#gantt .window title').textContent")
+    assert title.startswith("p2 may be done from 20.0 to 9000.0 s\n`p2_[20000-9000000]`: p2 starts")
+    spans = (
+        "(q => [q.x.baseVal.value, q.x.baseVal.value + q.width.baseVal.value])"
+        "(document.querySelector('#gantt {}'))"
+    )
+    band, bar = (
+        page.value(spans.format(".window rect")),
+        page.value(spans.format('.bar[data-task="2"]')),
+    )
+    assert band[0] <= bar[0]
+    assert (bar[1], band[1]) == pytest.approx(
+        (630, 630)
+    )  # it ends where the chart does, without an edge
+    assert page.value("document.querySelectorAll('#gantt .window line').length") == 1
+    before = (
+        "(w => w.compareDocumentPosition(document.querySelector('#gantt .bar[data-task=\"2\"]')))"
+        "(document.querySelector('#gantt .window'))"
+    )
+    assert page.value(before) & 4  # drawn first, so beneath
+    label = page.value("document.querySelector('#gantt .bar[data-task=\"2\"]').ariaLabel")
+    assert "; may be done from 20.0 to 9000.0 s. Why" in label
 
 
 def test_what_is_wrong_is_listed_and_leads_to_its_line(page: Page) -> None:

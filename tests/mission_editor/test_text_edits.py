@@ -165,3 +165,10 @@ def test_whatever_a_comment_or_label_says(label: str, north: float, east: float,
         {"id": 1},
         {"id": 2, "label": label},
     ]
+
+
+def test_a_word_stands_as_it_is_and_one_that_yaml_reads_otherwise_in_quotes() -> None:
+    text = MissionText("tasks:\n  - id: 1\n    kind: must_fly\n", "m.yaml").added(
+        "tasks", {"id": 3, "kind": "loiter", "label": "on", "wavelength": "no"}
+    )
+    assert '    kind: loiter\n    label: "on"\n    wavelength: "no"\n' in text

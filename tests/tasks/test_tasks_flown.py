@@ -108,6 +108,20 @@ def test_an_area_whose_footprints_miss_a_part_is_not_served() -> None:
     assert verdict.margin < -1
 
 
+def test_an_area_of_which_all_is_seen_near_the_horizon_is_not_served() -> None:
+    to_horizon = ((0.5, -0.5), (0.5, 0.5), (-0.1, 0.5), (-0.1, -0.5))
+
+    def ahead(body: Any) -> None:
+        if body.type_name.endswith("AirVehicleState"):
+            for payload in body.PayloadStateList:
+                for corner, (north, east) in zip(payload.Footprint or (), to_horizon, strict=False):
+                    corner.Latitude, corner.Longitude = 45.0 + north, -120.0 + east
+
+    verdict = flown(area(SMALL), ahead)["task 1 served"]
+    assert verdict.outcome is Outcome.VIOLATED
+    assert "covered 0.00 %" in verdict.note
+
+
 @pytest.mark.long
 def test_the_example_is_flown_and_every_search_covered(tmp_path: Path) -> None:
     of = load(EXAMPLE)

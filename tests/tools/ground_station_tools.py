@@ -14,6 +14,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
+from urllib.parse import parse_qsl
 
 import pytest
 
@@ -87,17 +88,19 @@ class Served(NamedTuple):
 
 
 @contextlib.contextmanager
-def _started(*words: str, cwd: Path | None = None) -> Iterator[tuple[subprocess.Popen[str], str]]:
+def _started(
+    *words: str, cwd: Path | None = None, host: str = "127.0.0.1", **environment: str
+) -> Iterator[tuple[subprocess.Popen[str], str]]:
     running = subprocess.Popen(
         [sys.executable, "-m", "cratous", "serve", *words, "--port", "0"], cwd=cwd,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+        env={**os.environ, "PYTHONUNBUFFERED": "1", **environment},
     )  # fmt: skip
     try:
         assert running.stdout is not None
         line = running.stdout.readline()
-        assert "http://127.0.0.1:" in line, line
-        yield running, line.partition("http://127.0.0.1:")[2]
+        assert f"http://{host}:" in line, line
+        yield running, line.partition(f"http://{host}:")[2]
     finally:
         if running.poll() is None:
             running.kill()
@@ -105,10 +108,18 @@ def _started(*words: str, cwd: Path | None = None) -> Iterator[tuple[subprocess.
 
 
 @contextlib.contextmanager
-def serving(*paths: Path) -> Iterator[tuple[subprocess.Popen[str], int]]:
+def serving(*paths: Path | str) -> Iterator[tuple[subprocess.Popen[str], int]]:
     """`cratous serve PATH...` on a free port: the process and the port; it is ended at the end."""
     with _started(*map(str, paths)) as (running, line):
         yield running, int(line.partition("/")[0])
+
+
+@contextlib.contextmanager
+def serving_at(host: str, *words: str, **environment: str) -> Iterator[tuple[int, dict[str, str]]]:
+    """`cratous serve WORDS --host HOST` on a free port: the port and what the printed address has behind `?`."""
+    with _started(*words, "--host", host, host=host, **environment) as (_, line):
+        port, _, rest = line.partition(" ")[0].partition("/")
+        yield int(port), dict(parse_qsl(rest.removeprefix("?")))
 
 
 @contextlib.contextmanager

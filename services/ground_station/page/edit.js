@@ -4,12 +4,13 @@ import { color, colorOf } from "./canvas.js";
 import { EditMap } from "./edit_map.js";
 import { gantt, routes } from "./edit_plan.js";
 import * as relations from "./edit_relations.js";
+import { OF_MAP, TOOLS, places } from "./edit_tools.js";
 import { open, theme } from "./opening.js";
 
 const by = id => document.getElementById(id);
 const token = new URLSearchParams(location.search).get("token") || "";
 const ROUTED = ["geojson", "kml", "qgc"]; // formats that may have the routes of a plan
-const SETTLED_MS = 250, POLL_MS = 300, CORNERS = { keep_out: 3, keep_in: 3, must_fly: 1, line_search: 2 };
+const SETTLED_MS = 250, POLL_MS = 300;
 
 class Refused extends Error {}
 
@@ -42,7 +43,7 @@ class Editor {
       moved: (key, north_m, east_m) => this.change({ do: "move", key, north_m, east_m }),
       clicked: (north, east) => this.point(north, east),
       finished: () => this.finish(),
-      picked: key => { by("remove").disabled = key === null || !["zones", "tasks"].includes(key[0]); },
+      picked: key => { by("remove").disabled = key === null || !OF_MAP.includes(key[0]); },
     });
     this.listen();
     by("text").value = this.text;
@@ -158,35 +159,36 @@ class Editor {
     }
   }
 
-  draw(tool) {
-    this.tool = tool;
-    this.map.drawing = tool ? [] : null;
-    for (const button of document.querySelectorAll("#tools [data-tool]")) button.classList.toggle("on", button.dataset.tool === tool);
-    by("finish").hidden = !tool || CORNERS[tool] === 1;
+  draw(name) {
+    const tool = TOOLS[name];
+    this.tool = tool ? name : null;
+    this.map.take(tool);
+    for (const button of document.querySelectorAll("#tools [data-tool]")) button.classList.toggle("on", button.dataset.tool === this.tool);
+    by("finish").hidden = !tool || Boolean(tool.most);
     by("cancel").hidden = !tool;
-    by("hint").textContent = !tool ? "" : CORNERS[tool] === 1 ? "Click where it is to be." : `Click ${CORNERS[tool]} places or more, then Enter.`;
-    this.map.redraw();
+    by("circles").hidden = !tool?.circles;
+    by("hint").textContent = tool ? tool.hint : "";
   }
 
   point(north, east) {
-    this.map.drawing.push([Math.round(north * 10) / 10, Math.round(east * 10) / 10]);
+    const { drawing } = this.map;
+    drawing.push([Math.round(north * 10) / 10, Math.round(east * 10) / 10]);
     this.map.redraw();
-    if (CORNERS[this.tool] === 1) this.finish();
+    if (places(drawing).length >= TOOLS[this.tool].most) this.finish();
   }
 
   finish() {
-    const { tool } = this, drawn = this.map.drawing;
-    // a double click is two places at one point
-    const places = drawn.filter((place, k) => !k || place[0] !== drawn[k - 1][0] || place[1] !== drawn[k - 1][1]);
-    if (places.length < CORNERS[tool]) { by("hint").textContent = `${CORNERS[tool]} places are needed.`; return; }
+    const tool = TOOLS[this.tool], clicked = places(this.map.drawing);
+    if (clicked.length < tool.least) { by("hint").textContent = `${tool.least} places are needed.`; return; }
+    const circles_s = by("circles-s").valueAsNumber;
+    if (tool.circles && !(circles_s > 0)) { by("hint").textContent = "For how many seconds does it circle? More than 0."; return; }
     this.draw(null);
-    if (tool.startsWith("keep")) this.change({ do: "add", list: "zones", item: { kind: tool, vertices: places } });
-    else this.change({ do: "add", list: "tasks", item: { kind: tool, points: places.map(([north_m, east_m]) => ({ north_m, east_m })) } });
+    this.change({ do: "add", list: tool.list, item: tool.item(clicked, circles_s) });
   }
 
   remove() {
     const key = this.map.picked;
-    if (key && ["zones", "tasks"].includes(key[0])) this.change({ do: "remove", key: key.slice(0, 2) });
+    if (key && OF_MAP.includes(key[0])) this.change({ do: "remove", key: key.slice(0, 2) });
   }
 
   back(from, to) {
@@ -286,7 +288,7 @@ class Editor {
     this.state(this.planned.text, told.exit_code !== 0);
     const { drawn } = this.found;
     this.map.routes(routes(told.plan, drawn.starts));
-    by("gantt").replaceChildren(gantt(told.plan, drawn.vehicles, id => colorOf(this.map.recording, id) || color("c0"), task => this.why(task)));
+    by("gantt").replaceChildren(gantt(told.plan, told.windows, drawn.vehicles, id => colorOf(this.map.recording, id) || color("c0"), task => this.why(task)));
     by("plan-notes").replaceChildren(...told.notes.map(note => Object.assign(document.createElement("li"), { textContent: note })));
     const head = by("constraints").createTHead().insertRow();
     for (const name of ["constraint", "verdict", "note"]) head.append(Object.assign(document.createElement("th"), { textContent: name }));
@@ -332,11 +334,11 @@ class Editor {
     });
     addEventListener("beforeunload", event => { if (this.settled || this.text !== this.saved || this.typing()) event.preventDefault(); });
     addEventListener("keydown", event => {
-      const key = event.key.toLowerCase(), typing = event.target.tagName === "TEXTAREA";
+      const key = event.key.toLowerCase(), typing = ["TEXTAREA", "INPUT"].includes(event.target.tagName);
       if (event.ctrlKey || event.metaKey) {
         const act = { s: () => this.save(), z: () => this.back(this.past, this.future), y: () => this.back(this.future, this.past) }[key];
         if (act) { event.preventDefault(); act(); }
-      } else if (!typing && event.key === "Enter" && this.tool && event.target.tagName !== "BUTTON") this.finish();
+      } else if (event.key === "Enter" && this.tool && !["TEXTAREA", "BUTTON"].includes(event.target.tagName)) this.finish();
       else if (event.key === "Escape") this.draw(null);
       else if (!typing && event.key === "Delete") this.remove();
     });

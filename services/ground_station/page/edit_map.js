@@ -1,6 +1,7 @@
 // The map of the editor: zones, tasks, starts and a plan; places are dragged, shapes drawn by clicks.
 
 import { color, colorOf, sized } from "./canvas.js";
+import { named } from "./labels.js";
 import { FlightMap } from "./map.js";
 
 const NEAR = 9;
@@ -9,7 +10,7 @@ export class EditMap extends FlightMap {
   // asked: { moved(key, north, east), clicked(north, east), finished(), viewed() }
   constructor(canvas, asked) {
     super(canvas, { vehicles: [], tracks: {}, tasks: [], zones: [], footprints: [], routes: [], takeovers: [] }, view => { this.state.view = view; this.redraw(); });
-    Object.assign(this, { asked, state: { time: 0, view: null }, places: [], starts: [], picked: null, drawing: null, dragged: null });
+    Object.assign(this, { asked, state: { time: 0, view: null }, places: [], starts: [], picked: null, tool: null, drawing: null, pointed: null, dragged: null });
     this.edit();
   }
 
@@ -44,10 +45,25 @@ export class EditMap extends FlightMap {
     this.names();
     for (const place of this.places) this.handle(place);
     if (this.drawing) {
-      this.path(this.drawing, false);
+      this.begun();
       this.stroke(color("icarous"), 2.5, [6, 4]);
       for (const [north, east] of this.drawing) this.square(north, east, color("icarous"), true);
     }
+  }
+
+  // tool: of TOOLS, or none any more
+  take(tool) {
+    Object.assign(this, { tool, drawing: tool ? [] : null, pointed: null });
+    this.redraw();
+  }
+
+  // the path of what is being drawn: a circle through the pointer, or from place to place to it
+  begun() {
+    const places = this.pointed && this.drawing.length ? [...this.drawing, this.pointed] : this.drawing;
+    if (!this.tool.circles || places.length < 2) { this.path(places, this.tool.closed && places.length > 2); return; }
+    const [[x, y], [px, py]] = places.map(place => this.xy(...place));
+    this.pen.beginPath();
+    this.pen.arc(x, y, Math.hypot(px - x, py - y), 0, 7);
   }
 
   start(start) {
@@ -61,7 +77,7 @@ export class EditMap extends FlightMap {
     this.fill(colorOf(this.recording, start.id), 1);
     pen.restore();
     const vehicle = this.recording.vehicles.find(one => one.id === start.id);
-    this.labels.add(`${vehicle?.label || ""} ${start.id}`.trim(), x, y, 14, -8, colorOf(this.recording, start.id), true);
+    this.labels.add(vehicle ? named(vehicle) : String(start.id), x, y, 14, -8, colorOf(this.recording, start.id), true);
   }
 
   square(north, east, ink, full) {
@@ -103,6 +119,7 @@ export class EditMap extends FlightMap {
       this.redraw();
     }, true);
     canvas.addEventListener("pointermove", event => {
+      if (this.drawing?.length) { this.pointed = this.under(event.offsetX, event.offsetY); this.redraw(); }
       if (!this.dragged) return;
       event.stopImmediatePropagation();
       const [north, east] = this.under(event.offsetX, event.offsetY);

@@ -1,6 +1,8 @@
 // A plan beside the mission: who does what when, its routes on the map, its constraints.
 
-const SVG = "http://www.w3.org/2000/svg", ROW = 26, LEFT = 90, WIDE = 640;
+import { named } from "./labels.js";
+
+const SVG = "http://www.w3.org/2000/svg", ROW = 30, LEFT = 90, WIDE = 640;
 
 function element(name, attributes, text) {
   const found = document.createElementNS(SVG, name);
@@ -22,8 +24,21 @@ export function routes(plan, starts) {
   return [...used].map(vehicle => ({ time_ms: 0, vehicle, points: found.get(vehicle) }));
 }
 
-// asked: called with the task that is picked
-export function gantt(plan, vehicles, ink, asked) {
+const seconds = ms => (ms / 1000).toFixed(1);
+const span = one => `may be done from ${seconds(one.from_ms)} to ${seconds(one.to_ms)} s`;
+
+// when a task may be done: a band with an edge at each end that is on the chart, and where it comes from
+function window_(one, x, end, y) {
+  const from = x(Math.min(one.from_ms, end)), to = x(Math.min(one.to_ms, end)), tall = ROW - 2;
+  const found = element("g", { class: "window", "data-window": one.task });
+  found.append(element("title", {}, [`p${one.task} ${span(one)}`, ...one.texts].join("\n")));
+  found.append(element("rect", { x: from, y, height: tall, width: Math.max(to - from, 0.5) }));
+  for (const [ms, at] of [[one.from_ms, from], [one.to_ms, to]]) if (ms <= end) found.append(element("line", { x1: at, x2: at, y1: y, y2: y + tall }));
+  return found;
+}
+
+// windows: when tasks may be done, as bands behind their bars; asked: called with the task that is picked
+export function gantt(plan, windows, vehicles, ink, asked) {
   const height = ROW * (vehicles.length + 1) + 6, end = Math.max(plan.makespan_ms, 1);
   const x = ms => LEFT + (WIDE - LEFT - 10) * ms / end;
   const svg = element("svg", { viewBox: `0 0 ${WIDE} ${height}`, role: "img", "aria-label": "Tasks of each vehicle over time" });
@@ -33,14 +48,17 @@ export function gantt(plan, vehicles, ink, asked) {
     svg.append(element("text", { x: at, y: height - 8, "text-anchor": k === 4 ? "end" : "middle" }, `${(end * k / 4000).toFixed(0)} s`));
   }
   vehicles.forEach((vehicle, row) => {
-    const y = ROW * row + 4, tall = ROW - 8;
-    svg.append(element("text", { x: 2, y: y + tall - 4 }, `${vehicle.label || ""} ${vehicle.id}`.trim()));
-    for (const item of plan.items.filter(one => one.vehicle_id === vehicle.id)) {
+    const y = ROW * row + 6, tall = ROW - 12;
+    svg.append(element("text", { x: 2, y: y + tall - 4 }, named(vehicle)));
+    const items = plan.items.filter(one => one.vehicle_id === vehicle.id);
+    for (const { task_id } of items) for (const one of windows) if (one.task === task_id) svg.append(window_(one, x, end, ROW * row + 1));
+    for (const item of items) {
       const bar = (name, from, to, more = {}) => element("rect", { class: name, x: x(from), y, height: tall, width: Math.max(x(to) - x(from), 0.5), ...more });
       svg.append(bar("transit", item.depart_ms, item.arrive_ms));
       if (item.start_ms > item.arrive_ms) svg.append(bar("wait", item.arrive_ms, item.start_ms));
       const work = bar("bar", item.start_ms, item.end_ms, { fill: ink(vehicle.id), tabindex: 0, role: "button", "data-task": item.task_id });
-      const said = `p${item.task_id}: ${(item.start_ms / 1000).toFixed(1)} to ${(item.end_ms / 1000).toFixed(1)} s. Why this vehicle?`;
+      const within = windows.filter(one => one.task === item.task_id).map(one => `; ${span(one)}`).join("");
+      const said = `p${item.task_id}: ${seconds(item.start_ms)} to ${seconds(item.end_ms)} s${within}. Why this vehicle?`;
       work.append(element("title", {}, said));
       work.setAttribute("aria-label", said);
       work.addEventListener("click", () => asked(item.task_id));

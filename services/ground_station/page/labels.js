@@ -32,3 +32,9 @@ export class Labels {
     }
   }
 }
+
+// a vehicle's label and id; one whose label is made from its id is called by that alone
+export function named(vehicle) {
+  const label = vehicle.label || "";
+  return label.endsWith(` ${vehicle.id}`) ? label : `${label} ${vehicle.id}`.trim();
+}

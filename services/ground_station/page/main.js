@@ -33,7 +33,7 @@ class Station extends Playback {
     this.charted = -CHARTS_MS;
     this.later = null;
     if (recording.live) this.fly();
-    this.map.lay(recording.frame, () => this.draw(true));
+    this.map.lay(recording.located === false ? null : recording.frame, () => this.draw(true));
   }
 
   get end_ms() { return this.recording.end_ms; }

@@ -6,6 +6,7 @@ import { UNSEEN_MS, alertsAt, authorityAt, bandsAt, lastAt, positionAt } from ".
 import { Layer, color, colorOf, sized } from "./canvas.js";
 import { Labels } from "./labels.js";
 import * as overlays from "./overlays.js";
+import { Tiles } from "./tiles.js";
 import { words } from "./units.js";
 
 const EDGE = 50;
@@ -20,6 +21,7 @@ export class FlightMap {
     this.trails = new Layer();
     this.labels = new Labels();
     this.beneath = [];
+    this.tiles = null;
     this.drawn = { time: 0, to: {} }; // until when, and of each track to which row, the trails stand on their layer
     this.measured = {};
     this.grown();
@@ -42,14 +44,17 @@ export class FlightMap {
     this.xy = (north, east) => [width / 2 + (east - this.view.east) * this.view.scale, height / 2 - (north - this.view.north) * this.view.scale];
     this.pen = pen;
     this.width = width;
+    this.tiles?.draw(this, height);
     overlays.draw(this, this.beneath);
     this.grid(width, height, said);
   }
 
   // what lies beneath, once it is known in which frame; drawn: draws the map anew
   async lay(frame, drawn) {
-    this.beneath = await overlays.overlays(frame);
-    if (this.beneath.length) drawn();
+    const { shapes, tiles } = await overlays.overlays(frame);
+    this.beneath = shapes;
+    this.tiles = tiles === null ? null : new Tiles(frame, tiles, drawn);
+    if (shapes.length || this.tiles) drawn();
   }
 
   // whether all aircraft are where they were drawn

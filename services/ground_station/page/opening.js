@@ -20,8 +20,17 @@ async function load() {
   throw new Error([`This log cannot be shown: ${data.error}`, ...rest].join("\n"));
 }
 
+// the token that let this page in is kept by a cookie: an address that is given to somebody else is without it
+function forgetAccess() {
+  const asked = new URLSearchParams(location.search);
+  if (!asked.has("access")) return;
+  asked.delete("access");
+  history.replaceState(null, "", `${location.pathname}${asked.size ? `?${asked}` : ""}${location.hash}`);
+}
+
 // show: takes what the server gives, and draws it
 export async function open(show) {
+  forgetAccess();
   theme(new URLSearchParams(location.hash.slice(1)).get("theme"));
   try {
     const found = await load();

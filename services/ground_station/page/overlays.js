@@ -2,13 +2,14 @@
 
 import { color } from "./canvas.js";
 
-// the shapes in a frame of a recording; none where the server has none or does not answer
+// shapes in a frame of a recording, and what is said of tiles, null without; none where the server does not answer
 export async function overlays(frame) {
-  if (!frame) return [];
+  const none = { shapes: [], tiles: null };
+  if (!frame) return none;
   try {
     const response = await fetch(`/overlays.json?latitude=${frame.latitude_deg}&longitude=${frame.longitude_deg}`);
-    return response.ok ? (await response.json()).shapes : [];
-  } catch { return []; }
+    return response.ok ? await response.json() : none;
+  } catch { return none; }
 }
 
 // names only of what is near enough to be seen as more than a dot

@@ -1,0 +1,69 @@
+"""What a thing that is drawn on the map needs besides its places: an id, and what the first vehicle has."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+from cratous.services.mission_editor.text_edits import PLACE, MissionText
+from cratous.spec.mission import TaskKind
+
+VEHICLES, TASKS, ZONES = LISTS = ("vehicles", "tasks", "zones")
+"""To which items are added on the map."""
+ABOVE_TERRAIN_M, SPEED_M_S, HEADING_DEG = 300, 20, 0
+"""Of a vehicle of a mission that has none to go by."""
+AT_AN_ALTITUDE = (TaskKind.MUST_FLY, TaskKind.LOITER)
+"""Kinds whose point is where the aircraft flies."""
+
+
+def completed(mission: MissionText, name: str, item: dict[str, Any]) -> dict[str, Any]:
+    """The item as it is added to a list: with the next free id.
+
+    A vehicle that comes as `position` {north_m, east_m} gets all else of the first vehicle, but for its label.
+    A point to fly through or to circle, without `alt_m`, gets the altitude at which the first vehicle does its tasks.
+    """
+    number = _next_id(mission, name)
+    if name == VEHICLES:
+        like = _first(mission)
+        like["position"] = {**item["position"], "alt_m": like["position"]["alt_m"]}
+        like.pop("label", None)
+        return {**like, "id": number}
+    if item.get("kind") in AT_AN_ALTITUDE and isinstance(item.get("points"), list):
+        first = _first(mission)
+        alt_m = first.get("cruise_m", first["position"]["alt_m"])
+        item = {**item, "points": [_at(point, alt_m) for point in item["points"]]}
+    return {"id": number, **item}
+
+
+def _at(point: Any, alt_m: Any) -> Any:
+    return {**point, "alt_m": alt_m} if isinstance(point, dict) and "alt_m" not in point else point
+
+
+def _first(mission: MissionText) -> dict[str, Any]:
+    """The first vehicle that says where it is and how high, or what stands for it."""
+    for one in _items(mission, VEHICLES):
+        place = one.get("position")
+        if isinstance(place, dict) and type(place.get("alt_m")) in (int, float):
+            return copy.deepcopy(one)
+    frame = mission.data.get("frame")
+    terrain_m: Any = frame.get("terrain_m", 0) if isinstance(frame, dict) else 0
+    above_m = (terrain_m if type(terrain_m) in (int, float) else 0) + ABOVE_TERRAIN_M
+    position = {**dict.fromkeys(PLACE, 0), "alt_m": above_m}
+    return {"id": 0, "position": position, "heading_deg": HEADING_DEG, "speed_m_s": SPEED_M_S}
+
+
+def _items(mission: MissionText, name: str) -> list[dict[str, Any]]:
+    """What is a mapping in a list of the file."""
+    found = mission.data.get(name)
+    return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
+
+
+def _next_id(mission: MissionText, name: str) -> int:
+    """One that no item of the list has, nor a zone that comes later, nor other traffic."""
+    items = _items(mission, name)
+    if name == ZONES:
+        later = [change.get("zone") for change in _items(mission, "changes")]
+        items += [zone for zone in later if isinstance(zone, dict)]
+    if name == VEHICLES:
+        items += _items(mission, "traffic")
+    return max([0, *(one["id"] for one in items if isinstance(one.get("id"), int))]) + 1

@@ -1,0 +1,68 @@
+"""Which footprints that a vehicle reports count for a search, whoever reports them.
+
+Of a camera that sees the task's wavelength; no corner near the horizon; the middle of the image where a view that
+the task asks for looks, and as near as the ground sample distance asks for. All of it by the kernel `in_ring`, from
+where the vehicle says that it is and where the corners lie: what a gimbal says of its angles is not asked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import radians
+from typing import Any, NamedTuple
+
+from cratous.core.kernel import Vec2
+from cratous.core.tasks.stations import in_ring
+from cratous.services.mission.asked_views import middle, reach_m, rings, sharp_within_m
+from cratous.services.mission.frames import Projection
+from cratous.spec.mission import Camera, Task
+
+
+class Look(NamedTuple):
+    """A footprint (north, east) [m] of a camera from a place at a height above it; hfov_rad: as it was told."""
+
+    camera: Camera
+    here: Vec2
+    height_m: float
+    hfov_rad: float
+    corners: tuple[tuple[float, float], ...]
+
+
+def looks_of(body: Any, cameras: Sequence[Camera], projection: Projection) -> Iterator[Look]:
+    """The footprints in the state of a vehicle with these cameras; none of a camera that it has not."""
+    for payload in body.PayloadStateList:
+        told = getattr(payload, "Footprint", None)
+        camera = _camera(cameras, payload.PayloadID) if told and len(told) >= 3 else None
+        if camera is None or not told:
+            continue
+        corners = tuple(projection.to_local(c.Latitude, c.Longitude) for c in told)
+        height_m = body.Location.Altitude - sum(c.Altitude for c in told) / len(told)
+        here = Vec2(*projection.to_local(body.Location.Latitude, body.Location.Longitude))
+        hfov_rad = radians(payload.HorizontalFieldOfView)
+        yield Look(camera, here, height_m, hfov_rad, corners)
+
+
+def _camera(cameras: Sequence[Camera], number: int) -> Camera | None:
+    """The camera that a payload is: by its gimbal, as our own logs have it, or by its own id."""
+    by_id = (c for c in cameras if c.camera_id and c.camera_id == number)
+    return next((c for c in cameras if c.payload_id == number), next(by_id, None))
+
+
+def counts(one: Look, task: Task) -> bool:
+    """Whether a look counts for a task."""
+    centre = middle(one.corners)
+    if not suits(one.camera, task) or centre is None:
+        return False
+    height_m = max(one.height_m, 0.0)  # from below the ground, and on it, nothing is within reach
+    reach = reach_m(height_m)
+    if not all(in_ring(one.here, Vec2(*corner), 0.0, reach) for corner in one.corners):
+        return False
+    sharp_m = sharp_within_m(task, one.camera, one.hfov_rad, height_m)
+    allowed = ((r.least_m, min(r.most_m, sharp_m)) for r in rings(task, height_m))
+    at = Vec2(*centre)
+    return any(least <= most and in_ring(one.here, at, least, most) for least, most in allowed)
+
+
+def suits(camera: Camera, task: Task) -> bool:
+    """Whether a camera sees the wavelength of a task."""
+    return "AllAny" in (task.wavelength, camera.wavelength) or task.wavelength == camera.wavelength
