@@ -248,6 +248,8 @@ def ways_out_of_reach(pieces: Sequence[Piece], other: Intruder, volume: WellClea
     if until_s == math.inf:
         return False
     legs = [leg for leg in legs_of(other) if leg.start_s < until_s]
+    if not legs:  # the pieces are over as the intruder's flight begins
+        return True
     last = legs[-1]
     legs[-1] = last._replace(duration_s=min(last.duration_s, until_s - last.start_s))
     own, its = _extent(pieces), _extent(legs)

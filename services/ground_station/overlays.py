@@ -81,6 +81,7 @@ def _is_near(place: Vec2) -> bool:
 def _shapes(data: Any, name: str, place: tuple[str, str]) -> Iterator[Shape]:
     """Those of an object of GeoJSON; place: file, and where in it."""
     kind = data.get("type") if isinstance(data, dict) else None
+    kind = kind if isinstance(kind, str) else None
     file, item = place
     if kind in (FEATURES, SEVERAL):
         key = "features" if kind == FEATURES else "geometries"

@@ -226,6 +226,8 @@ class IcarousCommunicationService:
 
     def _came(self, came: Came, now_s: float) -> None:
         key = came.key
+        if key in self._refused and not isinstance(came.what, LinkEvent):
+            return  # it came together with what it is refused for
         match came.what:
             case Opened():
                 self._redial.opened(key, now_s)

@@ -48,3 +48,7 @@ class Unserved(NamedTuple):
         left = {other: k for other, k in self.waiting.items() if other != task}
         named = dict(list({**self.named, task[0]: kind}.items())[-MOST:])
         return Unserved(left, named)
+
+    def wakes(self) -> tuple[Wake, ...]:
+        """When to look for those that others have time to speak for, which begins anew."""
+        return tuple(Wake(OTHERS_MS, task) for task in self.waiting)

@@ -99,7 +99,7 @@ class AutomationRequestValidatorService:
         """What the validator before it was still to be woken for."""
         line = state.line
         wakes = (Wake(0, line.answered), Wake(self._limit_ms, line.answered)) if state.asked else ()
-        return state, wakes
+        return state, (*wakes, *state.unserved.wakes())
 
     def handle(self, state: Requests, envelope: Envelope, now_ms: int) -> Step:
         return self._kept(self._handled(state, envelope, now_ms))

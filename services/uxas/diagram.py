@@ -20,6 +20,7 @@ from cratous.services.bus import Envelope, Wake
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.world import World
 from cratous.services.uxas.diagram_picture import picture
+from cratous.spec.errors import BadInput
 
 SERVICE_TYPE = "AutomationDiagramDataService"
 REQUEST = "uxas.messages.task.UniqueAutomationRequest"
@@ -78,6 +79,8 @@ class AutomationDiagramDataService:
             except OSError as error:
                 what = f"{error.filename or self._folder}: {error.strerror or error}"
                 said.append(status(response.ResponseID, "Error", [(SERVICE_TYPE, what)]))
+            except BadInput as error:  # XML cannot hold each text that a message may have
+                said.append(status(response.ResponseID, "Error", [(SERVICE_TYPE, str(error))]))
         return state._replace(answered=()), said
 
     def stop(self, state: Pairs) -> None:

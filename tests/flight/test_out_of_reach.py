@@ -59,6 +59,14 @@ def test_no_loss_is_left_out(
         assert found is None
 
 
+def test_pieces_that_are_over_as_the_intruder_begins_meet_nobody() -> None:
+    over = (Piece(0.0, 0.0, Position(0.0, 0.0, 300.0), Velocity(25.0, 0.0, 0.0)),)
+    begun = (Piece(0.0, 10.0, Position(5.0, 0.0, 300.0), Velocity(25.0, 0.0, 0.0)),)
+    for way, spread in ((begun, EXACT), ((), Spread(50.0, 1.0, 10.0, 0.2, 20.0))):
+        other = Intruder(2, Position(5.0, 0.0, 300.0), begun[0].velocity, True, way, 0.0, spread)
+        assert first_violation_s(over, other, VOLUME) is None
+
+
 def test_ways_far_apart_are_out_of_reach_as_wholes() -> None:
     """So that the test above is one of something."""
     own = flown([Position(0.0, 0.0, 300.0), Position(5000.0, 0.0, 300.0)], 25.0, 180.0)

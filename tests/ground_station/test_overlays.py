@@ -67,6 +67,7 @@ def test_what_is_too_far_for_a_plane_is_left_out() -> None:
     [
         ([1], "$", "no object of GeoJSON"),
         ({"type": "Topology"}, "$", "no object of GeoJSON"),
+        ({"type": ["Point"], "coordinates": [1, 2]}, "$", "no object of GeoJSON"),
         ({"type": "FeatureCollection"}, "$", "a FeatureCollection without features"),
         ({"type": "Point", "coordinates": [1]}, "$.coordinates", "not a position"),
         ({"type": "Point", "coordinates": [1, 91]}, "$.coordinates", "not a position"),

@@ -101,6 +101,16 @@ def test_a_kind_that_nobody_does_is_named_when_others_had_their_time_to_speak(ri
     assert KIND in told(rig, 3)
 
 
+def test_it_is_named_too_where_the_validator_is_made_again_meanwhile(rig: Rig) -> None:
+    name = "AutomationRequestValidatorService"
+    rig.tell(relay(9), request(5, 9))
+    service = rig.bus._services[name]
+    rig.bus.remove(name)
+    rig.bus.add(service)
+    rig.wait(OTHERS_MS)
+    assert f"task 9 is a {KIND}: no service here does this kind" in told(rig, 0)
+
+
 def test_where_tasks_are_made_elsewhere_a_request_waits_for_them(tmp_path: Path) -> None:
     rig = Rig(tmp_path, "AutomationRequestValidatorService")
     rig.tell(*vehicle(1), relay(9), request(9))

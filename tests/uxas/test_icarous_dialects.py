@@ -147,6 +147,52 @@ def test_a_peer_speaks_for_nobody_who_comes_in_elsewhere(tmp_path: Path, opened:
     assert not first.ended
 
 
+def lines(*said: tp.Message) -> bytes:
+    return b"".join(tp.encode(line, dialect=OURS, limits=tp.WIDE_LIMITS) for line in said)
+
+
+def test_nothing_that_comes_with_a_refused_line_counts(tmp_path: Path, opened: list[Any]) -> None:
+    """A peer of a door without keys may not speak for the vehicle of another one, by a second HELLO in one packet."""
+    others = "2=cratous@tcp://127.0.0.2:0"
+    rig = Rig(tmp_path, THREE.replace(OTHERS, others), opened)
+    rig.tell(state(1, 400.0), way((0.0, 0.0), (5000.0, 0.0)).copy(VehicleID=1))
+    stranger = peer(rig, 1)
+    stranger.sock.sendall(lines(tp.Hello(9), tp.Hello(1), tp.SetMode("ACTIVE", 1)))
+    rig.until(lambda: stranger.read() is not None and stranger.ended)
+    assert rig.said.has("HELLO of vehicle 9, expected one of 2")
+    assert not rig.said.has("is the ICAROUS of vehicle 1")
+    assert not rig.got("AuthorityChange")
+    own = peer(rig, 0, hello=1)
+    rig.until(lambda: rig.said.has("is the ICAROUS of vehicle 1"))
+    assert own.read() is not None
+    assert not own.ended
+
+
+def test_one_too_many_speaks_for_nobody_and_the_next_is_dealt_with(
+    tmp_path: Path, opened: list[Any]
+) -> None:
+    others = "2=cratous@tcp://127.0.0.2:0"
+    rig = Rig(tmp_path, THREE.replace(OTHERS, others), opened)
+    first = peer(rig, 1, hello=2)
+    rig.until(lambda: rig.said.has("is the ICAROUS of vehicle 2"))
+    host, port = rig.service.port.ports[1].bound
+    second = Fake(port, None, OURS, host)
+    opened.append(second)
+    answer = second.handshake.feed
+
+    def at_once(data: bytes) -> bytes:
+        said = answer(data)
+        return said + lines(tp.Hello(1)) if said else said
+
+    second.handshake.feed = at_once
+    rig.until(lambda: second.read() is not None and second.handshake.done)
+    third = peer(rig, 1)  # while the second one is still told why
+    rig.until(lambda: second.read() is not None and second.ended)
+    rig.until(lambda: third.read() is not None and third.ended)
+    assert not rig.said.has("is the ICAROUS of vehicle 1")
+    assert not first.ended
+
+
 def test_one_of_another_dialect_than_its_door_s_is_refused_with_the_reason(
     tmp_path: Path, opened: list[Any]
 ) -> None:

@@ -141,3 +141,16 @@ def test_a_folder_that_cannot_be_written_is_said_and_nothing_is_half_done(
     assert said.StatusType.name == "Error"
     assert "No space left on device" in said.Info[-1].Value
     assert os.listdir(tmp_path / "AutomationDiagramDataService") == []
+
+
+def test_what_xml_cannot_hold_is_said_and_what_comes_after_is_written(tmp_path: Path) -> None:
+    """A text of a client's keeps no other request from its files."""
+    wrong = lmcp.new("WatchTask", TaskID=78, WatchedEntityID=500, Label="a\x01b")
+    other = REQUEST.copy(RequestID=13, OriginalRequest=ORIGINAL.copy(TaskList=[78]))
+    (said,) = run(tmp_path, wrong, other, RESPONSE.copy(ResponseID=13), REQUEST, RESPONSE)
+    assert said.StatusType.name == "Error"
+    assert "WatchTask.Label: text that XML cannot hold" in said.Info[-1].Value
+    assert os.listdir(tmp_path / "AutomationDiagramDataService") == [
+        "0001_AutomationDiagram_ID0100"
+    ]
+    assert set(os.listdir(next(tmp_path.rglob("0001_*")))) == NAMES
