@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import math
 import re
 import sys
 from collections.abc import Iterator
@@ -229,8 +230,8 @@ class Kept(NamedTuple):
 
 def calls_with_written_numbers(value: float, times: int, turned: bool) -> float:
     """As the callee's types, in every way in which a number can be written."""
-    kept = Kept(0, True)
-    found = scaled(0, 2, False, (0, times)) + scaled(value, times, turned, (times, -1))
+    kept = Kept(4, True)
+    found = scaled(4, 2, False, (0, times)) + scaled(value, times, turned, (times, -1))
     found += scaled(LIMIT, turned=True, times=3, pair=(1, 2))
     return found + scaled(kept.value, 3, kept.turned, (LIMIT, 1))
 
@@ -247,3 +248,19 @@ def test_what_is_called_with_written_numbers_is_compiled_once() -> None:
     for one in (scaled, Kept):
         (made,) = [n for n in vars(module) if n.endswith(f"__{one.__name__}")]
         assert len(getattr(module, made).signatures) == 1
+
+
+def side(value: float) -> float:
+    """Of the negative of a number."""
+    return math.copysign(1.0, -value)
+
+
+def side_of_nothing() -> float:
+    """A whole 0 has no sign, also where it is given for a real number."""
+    return side(0)
+
+
+def test_a_written_zero_stays_whole() -> None:
+    text = SourceText("njit")
+    name = text.add(side_of_nothing)
+    assert getattr(load(text.text), name)() == side_of_nothing() == 1.0

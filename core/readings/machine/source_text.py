@@ -185,7 +185,7 @@ class _Renaming(ast.NodeTransformer):
         called = self.function.__globals__.get(getattr(node.func, "id", ""))
         local = getattr(node.func, "id", "") not in self.renamed
         kinds = {} if local or called is None else _parameters(called)
-        if kinds:
+        if kinds and not any(isinstance(one, ast.Starred) for one in node.args):
             each = zip_longest(node.args, [*kinds.values()][: len(node.args)])
             node.args = [self._typed(one, kind) for one, kind in each]
             for word in node.keywords:
@@ -211,7 +211,9 @@ class _Renaming(ast.NodeTransformer):
                 return given
         elif isinstance(given, ast.Name) and given.id in self.renamed:
             value = self.function.__globals__[given.id]
-        if kind is float and type(value) is int and float(value) == value:
+        if type(value) is int and abs(value) > EXACT:
+            return given
+        if kind is float and type(value) is int and value:  # a 0 has no sign, which a 0.0 has
             return ast.Constant(float(value))
         if kind not in _TYPED or type(value) is not kind:
             return given
@@ -238,6 +240,8 @@ class _Renaming(ast.NodeTransformer):
         return self.generic_visit(ast.Assign([node.target], node.value))  # type: ignore[return-value]
 
 
+EXACT = 2**53
+"""Every whole number up to this is a double."""
 _TYPED = {int: "int64", bool: "bool_"}
 """What makes a value out of a written number, whose type alone says its value."""
 
