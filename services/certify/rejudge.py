@@ -39,6 +39,7 @@ from cratous.services.results.names import (
     CERTIFICATE_NAME,
     COMMANDED_NAME,
     FORMER,
+    HEARD,
     LOG_NAME,
     REPORT_NAME,
 )
@@ -86,8 +87,7 @@ def watch(log: Path) -> Watched:
     meta = read_meta(log)
     command = meta.get("command")
     original = isinstance(command, str) and with_original_clients(command)
-    on_board = "processes" not in meta
-    monitor = Monitor(*subject(log), says_beats=not original, on_board=on_board)
+    monitor = Monitor(*subject(log), says_beats=not original, on_board=meta.get(HEARD) is True)
     for envelope in read_envelopes(log):
         monitor.tap(envelope)
     return Watched(monitor.verdicts(), monitor.assumptions(), monitor.commands(), monitor.end_ms)

@@ -209,13 +209,15 @@ def fly_mission(
     return build_report(mission, plan, Judged(rows, assumptions, monitor.commands()), log, flown)
 
 
-def log_meta(mission: Mission, flown: Flown) -> dict[str, Any]:
-    """What a log says of its flight before anything is flown."""
+def log_meta(mission: Mission, flown: Flown, on_board: bool = True) -> dict[str, Any]:
+    """What a log says of its flight before anything is flown. on_board: as of `Monitor`."""
     from cratous import __version__
     from cratous.services.certify.report import mission_hash
     from cratous.services.logs.records import to_data
+    from cratous.services.results.names import HEARD
 
     return {
+        HEARD: on_board,
         "mission": to_data(mission),
         "version": __version__,
         "seed": mission.seed,

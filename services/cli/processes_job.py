@@ -98,7 +98,7 @@ def _run(mission: Mission, told: Told, settings: Settings, flying: Flying) -> di
     proofs = inventory(standing, None)
     flown = Flown(settings.command, settings.daa, proofs, environment(), settings.own)
     log = folder / LOG_NAME
-    with LogWriter(log, **log_meta(mission, flown)) as writer:
+    with LogWriter(log, **log_meta(mission, flown, on_board=False)) as writer:
         with counted() as calls:
             planning, bus = new_bus(), new_bus()
             plan, checks = plan_and_check(mission, planning)
@@ -111,7 +111,7 @@ def _run(mission: Mission, told: Told, settings: Settings, flying: Flying) -> di
             writer.note("processes", {"pids": ended.pids, "ports": ended.ports})
             if flying.amase is not None and flying.amase.met_again:
                 mission = _met_again(mission, flying.amase)
-                for key, value in log_meta(mission, flown).items():
+                for key, value in log_meta(mission, flown, on_board=False).items():
                     writer.note(key, value)
             if ended.why:
                 tell(f"NOT FLOWN TO ITS END: {ended.why}")

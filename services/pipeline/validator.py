@@ -26,7 +26,7 @@ from cratous.services.pipeline.contexts import Context, Contexts
 from cratous.services.pipeline.followed import FOLLOWED
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import TASKS
-from cratous.services.pipeline.unserved import Unserved
+from cratous.services.pipeline.unserved import OTHERS_MS, Unserved
 from cratous.services.pipeline.validity import things_of, verdict
 
 NAME = "AutomationRequestValidatorService"

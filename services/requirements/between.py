@@ -3,16 +3,21 @@ so only if it is with as much to spare as the signal may change until half way t
 
 A comparison that is not so at a sample is not so there, whatever is between. In a formula this is `x >= c and (x >= c + d
 or unknown)` where the requirement needs x >= c to be so, and `x >= c or (x >= c - d and unknown)` where it needs it not to be.
+Of an instant near a sample the bounds of time are others too: so `until` has to be false with a gap more on either side where it
+must not be so, and where it begins later its left side has to be so with the right one, until which there is half a gap.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from fractions import Fraction
 
 from cratous.services.requirements.arithmetic import ABSOLUTE, NEGATED, QUANTITY, Side, Term
 from cratous.services.requirements.formula import (
+    MAX_TIME,
+    TRUE,
     Always,
     Bounded,
     Formula,
@@ -48,8 +53,12 @@ def between(formula: Formula, signals: dict[str, Signal], gap_ns: int) -> Formul
         elif isinstance(part, Always):
             needed[mine] = not_needed[mine] = part
         else:
-            for found in (needed, not_needed):
-                found[mine] = _of_two(part, found[id(part.phi)], found[id(part.psi)])
+            sides = id(part.phi), id(part.psi)
+            needed[mine] = _of_two(part, *(needed[side] for side in sides))
+            not_needed[mine] = _of_two(part, *(not_needed[side] for side in sides))
+            if isinstance(part, Bounded):
+                needed[mine] = _begun(part, needed[mine])
+                not_needed[mine] = _widened(part, not_needed[mine], gap_ns)
     whole = needed[id(formula)]
     return None if whole is formula else whole
 
@@ -64,6 +73,23 @@ def _of_two(part: Join | Bounded, phi: Formula, psi: Formula) -> Formula:
     if isinstance(part, Join):
         return Join(phi, psi, part.is_and)
     return Bounded(phi, psi, part.low, part.high, part.past)
+
+
+def _begun(part: Bounded, found: Formula) -> Formula:
+    """Where it begins later: it is so of the instants near the sample only if phi is still so with psi."""
+    if found is part or not isinstance(found, Bounded) or not part.low or found.phi == TRUE:
+        return found
+    both = replace(found, psi=Join(found.phi, found.psi, True))
+    return Join(found, Join(both, UNKNOWN, False), True)
+
+
+def _widened(part: Bounded, found: Formula, gap_ns: int) -> Formula:
+    """An instant within half a gap of the sample sees what is near samples up to a gap outside of the sample's bounds."""
+    if found is part or not isinstance(found, Bounded):
+        return found
+    low, high = max(0, part.low - gap_ns), min(MAX_TIME, part.high + gap_ns)
+    wider = replace(found, low=low, high=high)
+    return Join(found, Join(wider, UNKNOWN, True), False)
 
 
 class _Made:

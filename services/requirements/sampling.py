@@ -36,7 +36,7 @@ SAYS = {
 SECOND = 10**9
 UNAUTHENTICATED = "not authenticated"
 """So ends the source of a message that whoever reaches the bridge may have said, as a tap keeps it."""
-NOT_WHOLE = ("order", *DOUBTS, "cut", "silent", "refused", "left out", "faster")
+NOT_WHOLE = ("gap", "order", *DOUBTS, "cut", "silent", "refused", "left out", "faster")
 """Where one of these was found nothing holds, since more could be known."""
 
 
@@ -64,6 +64,8 @@ class Sampling:
         self.gap_ns = spec.gap_ns
         self.signals: dict[str, Signal] = {name: spec.signals[name] for name in sorted(names)}
         self.held: dict[str, tuple[int, float | None]] = {}
+        self._known: dict[str, tuple[int, float]] = {}
+        """Of each signal with a rate the last value that is a number."""
         self.seen: set[str] = set()
         self.last = -1
         self.has_begun, self._before = not spec.begins_with_all, -1
@@ -81,7 +83,7 @@ class Sampling:
 
     @property
     def is_whole(self) -> bool:
-        """No sample was left out, and no message of the trace is known to be missing."""
+        """No sample was left out or comes too late, and no message of the trace is known to be missing."""
         return not any(kind in NOT_WHOLE for kind, _ in self._found)
 
     @property
@@ -136,9 +138,10 @@ class Sampling:
     def _faster(self, name: str, time: int, known: float | None) -> None:
         """Find a signal that has changed faster than its rate since its last value."""
         rate = self.signals[name].rate
-        since, last = self.held.get(name, (time, None))
-        if not rate or known is None or last is None:
+        if not rate or known is None:
             return
+        since, last = self._known.get(name, (time, known))
+        self._known[name] = time, known
         if abs(Fraction(known) - Fraction(last)) * SECOND > rate * (time - since):
             self.find("faster", name, time)
 

@@ -17,6 +17,8 @@ BESIDE_LOG = tuple(LOG_NAME + end for end in ("-journal", "-wal", "-shm"))
 """SQLite would take these for part of a new log."""
 ASSUMPTIONS = "assumptions"
 """Where a log's meta has the assumptions of the system theorems that broke while it was flown."""
+HEARD = "uxas_heard"
+"""Whether a log's meta says that each ICAROUS tells if it hears UxAS; where it does not, a silence is not told."""
 BLAME = "blame"
 """Where a report says who was in command where something does not hold."""
 OWN = "own"

@@ -133,3 +133,19 @@ def test_another_log_is_not_written_over(log: Path, tmp_path: Path, capsys) -> N
     assert main(["certify", str(log), "-o", str(made)]) == 2
     assert "there is another log already" in capsys.readouterr().err
     assert (made / "log.sqlite").read_bytes() == b"of another flight"
+
+
+def test_of_a_log_that_does_not_say_that_silences_are_told_none_is_said_to_be_missing(
+    log: Path,
+) -> None:
+    """As logs of before: no `UxasHeard` in them says nothing of what ICAROUS heard."""
+    from cratous.services.certify.rejudge import watch
+
+    names = ("delivery to ICAROUS", "way back free")
+    assert {r["state"] for r in watch(log).assumptions if r["name"] in names} == {"held"}
+    with sqlite3.connect(log) as database:
+        database.execute("DELETE FROM meta WHERE key = 'uxas_heard'")
+    rows = {row["name"]: row for row in watch(log).assumptions}
+    for name in names:
+        assert rows[name]["state"] == "not observed"
+        assert rows[name]["note"] == "this ICAROUS does not say whether it hears UxAS"

@@ -101,12 +101,13 @@ def test_a_kind_that_nobody_does_is_named_when_others_had_their_time_to_speak(ri
     assert KIND in told(rig, 3)
 
 
-def test_it_is_named_too_where_the_validator_is_made_again_meanwhile(rig: Rig) -> None:
+def test_a_validator_that_is_started_anew_still_names_a_kind_that_nobody_does(rig: Rig) -> None:
     name = "AutomationRequestValidatorService"
     rig.tell(relay(9), request(5, 9))
-    service = rig.bus._services[name]
-    rig.bus.remove(name)
-    rig.bus.add(service)
+    number = next(n for n, one in rig.one.manager.services.items() if one == name)
+    rig.tell(lmcp.new("KillService", ServiceID=number))
+    text = f'<Service Type="{name}" MaxResponseTime_ms="60000"/>'
+    rig.tell(lmcp.new("CreateNewService", XmlConfiguration=text))
     rig.wait(OTHERS_MS)
     assert f"task 9 is a {KIND}: no service here does this kind" in told(rig, 0)
 

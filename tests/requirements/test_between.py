@@ -4,6 +4,7 @@ is never called held."""
 from __future__ import annotations
 
 import itertools
+import random
 from fractions import Fraction
 from pathlib import Path
 
@@ -110,6 +111,91 @@ def test_what_holds_at_samples_holds_at_every_instant_between(
             assert at_samples[k] == 0
         if at_samples[k] == 0:
             assert verdict == 0, "what is violated at a sample is violated"
+
+
+STEP = 10**8
+OFTEN = "trace every 100 ms gap 400 ms\nsignal x: m rate 10 m/s\nsignal y: m rate 10 m/s\nsignal b: bool\n"
+
+
+def _way(rng: random.Random, count: int) -> list[int]:
+    """Of a signal that keeps the rate: a metre in a step at most."""
+    found = [rng.randint(-5, 5)]
+    often = rng.random()
+    while len(found) < count:
+        step = rng.choice((-1, 0, 1)) if rng.random() < often else found[-1] - (found + found)[-2]
+        found.append(max(-7, min(7, found[-1] + max(-1, min(1, step)))))
+    return found
+
+
+def _verdicts(spec, formula, rows):  # type: ignore[no-untyped-def]
+    calculated, evaluation = Calculated(set(signals(formula)), spec.signals), Evaluation(formula)
+    return {
+        time: verdict
+        for now, row in rows
+        for time, verdict in evaluation.sample(now, calculated.row(row))
+    }
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "always within 300 ms x >= 0 m",
+        "not (eventually within 200 ms x > 2 m)",
+        "eventually within 500 ms x >= 0 m",
+        "always from 300 ms to 600 ms x < y",
+        "historically within 300 ms x >= 0 m",
+        "historically from 300 ms to 500 ms x >= y",
+        "(y >= 1 m) implies (always within 300 ms x >= 0 m)",
+        "(x >= 0 m) until within 600 ms (y >= 0 m)",
+        "(x >= 0 m) until from 300 ms to 900 ms (y >= 0 m)",
+        "(x >= 0 m) since from 200 ms to 700 ms (y < 1 m)",
+        "not ((x >= 0 m) since from 200 ms to 700 ms (y >= 0 m))",
+        "not ((x >= 0 m) until from 300 ms to 300 ms (y >= 0 m))",
+        "always within 200 ms (eventually within 300 ms x >= y)",
+    ],
+)
+def test_bounds_of_time_are_those_of_every_instant_between(text: str) -> None:
+    """Any way that keeps the rate, of which a few samples are seen, at any distances up to the gap."""
+    (one,) = (spec := read(f"{OFTEN}requirement R: {text}\n")).requirements
+    rng, so = random.Random(text), 0
+    for _ in range(120):
+        x, y = _way(rng, 70), _way(rng, 70)
+        fine = [
+            (k * STEP, {"x": float(a), "y": float(b)})
+            for k, (a, b) in enumerate(zip(x, y, strict=True))
+        ]
+        seen = [0]
+        while seen[-1] < 69:
+            seen.append(min(69, seen[-1] + rng.choice((1, 2, 3, 4, 4, 4))))
+        at = [fine[k] for k in seen]
+        exact = _verdicts(spec, one.formula, fine)
+        judged, sampled = _verdicts(spec, one.judged, at), _verdicts(spec, one.formula, at)
+        for before, here, after in zip(seen, seen[1:], seen[2:], strict=False):
+            if sampled.get(here * STEP) == 0:
+                assert judged.get(here * STEP, 0) == 0
+            if judged.get(here * STEP) == 0:
+                assert sampled.get(here * STEP) == 0, "violated, though it is not at any sample"
+            # before the trace nothing was: what looks back from its first instants is not compared
+            if judged.get(here * STEP) == 2 and here > 15:
+                near = range((before + here + 1) // 2, (here + after) // 2 + 1)
+                assert {exact.get(k * STEP, 2) for k in near} == {2}, (text, here, seen, x, y)
+                so += 1
+    assert so > 20, "enough holds to say something"
+
+
+def test_a_bound_that_ends_between_samples_is_looked_at_beyond_it(tmp_path: Path) -> None:
+    """At 1 s x is 5 m and at 2 s 3.4 m: at 1.9 s, nearer to the second, it may have been below 3 m."""
+    rows = ["0,9,0,0,0", "1,5,0,0,1", "2,3.4,0,0,0", "3,3.4,0,0,0", "4,9,0,0,0"]
+    found = verdicts("b implies (always within 0.9 s x >= 3 m)", rows, tmp_path)
+    assert found[1] == "?"
+
+
+def test_a_rate_is_kept_over_samples_without_a_value(tmp_path: Path) -> None:
+    trace = tmp_path / "t.csv"
+    trace.write_text("time_s,x,y,z,b\n0,5,0,1,1\n1,,0,1,0\n2,9.1,0,1,1\n")
+    found = watch(read(f"{HEAD}requirement R: b implies x >= 0 m\n"), trace)
+    assert [one.verdict for one in found.outcomes] == ["unknown"]
+    assert ("faster", "x") in [(one.kind, one.signal) for one in found.findings]
 
 
 def test_a_signal_that_changes_faster_than_its_rate_lets_nothing_hold(tmp_path: Path) -> None:

@@ -159,6 +159,18 @@ def test_a_gap_leaves_unknown_what_lies_in_it(tmp_path: Path) -> None:
     assert "further apart" in finding.text
 
 
+def test_after_a_gap_nothing_holds_also_what_looks_past_its_edges(tmp_path: Path) -> None:
+    """28 s are unseen; what was just before and just after them says nothing of the middle."""
+    text = """trace every 500 ms gap 600 ms
+signal x: m
+requirement P: once within 1 s x >= 3 m
+requirement F: (once within 1 s x >= 3 m) or (eventually within 1 s x >= 3 m)"""
+    rows = "".join(f"{t},5\n" for t in (0, 0.5, 29, 29.5, 30, 30.5))
+    found = _watched(tmp_path, text, f"time_s,x\n{rows}")
+    assert [one.verdict for one in found.outcomes] == ["unknown", "unknown"]
+    assert all(one.violated == 0 for one in found.outcomes)
+
+
 def test_a_sample_out_of_order_never_lets_it_hold(tmp_path: Path) -> None:
     text = "signal margin: m\nrequirement B: margin >= 0 m"
     found = _watched(tmp_path, text, "time_s,margin\n0,1\n1,1\n1,-5\n0.5,1\n2,1\n")
@@ -236,7 +248,8 @@ def test_samples_rise_and_every_gap_has_an_unknown_one(rows, gap, data):
     assert got == sorted(set(got))
     kept = [t for n, t in enumerate(rows) if all(t > other for other in rows[:n])]
     assert set(kept) <= set(got)
-    assert sampling.is_whole == (len(kept) == len(rows))
+    near = all(after - before <= gap for before, after in itertools.pairwise(kept))
+    assert sampling.is_whole == (len(kept) == len(rows) and near)
     for before, after in itertools.pairwise(kept):
         if after - before > gap:
             assert found[got.index(before) + 1] == (before + gap, {"x": None})
