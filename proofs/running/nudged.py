@@ -42,6 +42,8 @@ TRIES = 40
 PLACE_BITS, HAIR_BITS = 128, 64
 COARSE, FINE = 140, 400
 """A place is on a grid of 2**-COARSE; the hair is less than 2**(HAIR_BITS - FINE)."""
+OUTSIDE = -(10**9)
+"""So many premises are met where an assumption is not."""
 STOPS = (Outside, Undecided, False_, NotRun, TypeError, AttributeError, *ERRORS)
 """What ends the run of a statement; what was asked of before counts if its premises were."""
 
@@ -62,8 +64,8 @@ def _found(
     values: dict[Place, set[Any]] = {place: set() for place in asked}
     many: set[Place] = set()
     for number in range(TRIES):
-        here = _arguments(statement, premises, _Nudged(f"{seed} {number}", 0))
-        beside = _arguments(statement, premises, _Nudged(f"{seed} {number}", 1)) if here else {}
+        here = _arguments(statement, premises, Nudged(f"{seed} {number}", 0))
+        beside = _arguments(statement, premises, Nudged(f"{seed} {number}", 1)) if here else {}
         for place in asked.keys() & here.keys() - many:
             values[place].add(here[place])
             moved = place in beside and here[place] != beside[place]
@@ -76,17 +78,17 @@ def _found(
 
 def _arguments(statement: Callable[[Any], None], premises: int, values: Values) -> dict[Place, Any]:
     """The arguments of the uses of kernels, where all premises hold; nothing where they do not."""
-    on = _Observed(values, _no_lemma)
+    on = Observed(values, no_lemma)
     with contextlib.suppress(*STOPS):
         statement(on)
     return on.arguments if on.premises == premises else {}
 
 
-def _no_lemma(name: str) -> Callable[[Any], None]:
+def no_lemma(name: str) -> Callable[[Any], None]:
     raise NotRun(name)
 
 
-class _Nudged(Values):
+class Nudged(Values):
     """Numbers that nobody can foresee who does not know the seed: at one place, and a hair beside it."""
 
     def __init__(self, seed: str, hairs: int) -> None:
@@ -101,7 +103,7 @@ class _Nudged(Values):
 
 
 @dataclass
-class _Observed(OnNumbers):
+class Observed(OnNumbers):
     """A run of a statement for its premises and the arguments of its kernels; what it shows is not looked at."""
 
     arguments: dict[Place, Any] = field(default_factory=dict)
@@ -114,6 +116,7 @@ class _Observed(OnNumbers):
 
     def assume(self, condition: Any, *, owner: str, reason: str) -> None:
         if not (made_true(condition) if isinstance(condition, Open) else truth(condition)):
+            self.premises = OUTSIDE
             raise Outside
 
     def use(self, kernel: Callable[..., Any], *args: Any, when: Any = True) -> Any:

@@ -18,7 +18,7 @@ from cratous.core.kernel import REGISTRY, Entry, Fold, supported
 from cratous.core.kernel.sources import position, reached
 from cratous.core.ledger.package_home import Home
 from cratous.proofs.engine.argument_values import FEW
-from cratous.proofs.engine.reachable_paths import of_more_than_one, values_left
+from cratous.proofs.engine.reachable_paths import BY_GOALS, of_more_than_one, values_left
 from cratous.proofs.statements.closed_definitions import full_name
 from cratous.proofs.statements.relations import Relations
 from cratous.proofs.statements.restated import restates
@@ -46,6 +46,10 @@ class Proofs:
     def left(self, theorem: str, pair: tuple[str, str]) -> int:
         """How many values it leaves an argument of which it leaves a few; 0 where it leaves none or one."""
         return values_left(self._how(theorem, pair))
+
+    def by_goals(self, theorem: str, pair: tuple[str, str]) -> bool:
+        """Of a use by which it relates the two, its goals say nothing but at a few values."""
+        return BY_GOALS in self._how(theorem, pair)
 
     def _how(self, theorem: str, pair: tuple[str, str]) -> list[str]:
         uses = self.relations[theorem].uses
@@ -155,7 +159,13 @@ def _of_points(
     """What is wrong with the points at which its theorems hold it against its definition."""
     several = [theorem for theorem in theorems if proofs.holds_of_any(theorem, pair)]
     named = f"implements {entry.implements!r}, which none of its theorems"
-    if not several:
+    if not several and any(proofs.by_goals(theorem, pair) for theorem in theorems):
+        yield (
+            f"{named} holds it against for more than a few values: their goals are false of other "
+            "results at a few values alone, or it was not found where: show it without a condition "
+            "(c.implies, c.any_of, c.when), or for all of its cases"
+        )
+    elif not several:
         left = max((proofs.left(theorem, pair) for theorem in theorems), default=0)
         points = f"more than {FEW} points, all apart" if left > FEW else f"{left} points"
         what = f"a few values: its premises leave an argument {points}"
