@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import Any
 
 import z3
 
@@ -27,21 +27,6 @@ Place = tuple[int, int]
 Taken = Callable[[str, Mapping[Place, z3.ExprRef]], set[Place]]
 """Those arguments of some that are found to take many values by running the statement (`proofs.running.nudged`)
 at numbers that are made of a hash of what it says."""
-Uses = Mapping[int, Mapping[Place, z3.ExprRef]]
-"""Uses of kernels by number, each with those of its arguments that are not written down."""
-Held = Callable[[str, Uses, Possible], set[int]]
-"""Those uses of some whose results the theorem's goals decide at many values of their arguments
-(`proofs.running.other_results`)."""
-
-
-class Runs(NamedTuple):
-    """What runs of a statement tell of it, if it can be run."""
-
-    taken: Taken | None = None
-    held: Held | None = None
-
-
-NO_RUNS = Runs()
 
 FEW = 8
 """An argument with no more values than these is told their number."""
@@ -57,27 +42,17 @@ class Given:
 
     def many(self, terms: list[z3.ExprRef]) -> set[int]:
         """Those terms that have two values as near as can be; all are asked at once first. Masks are counted."""
-        twice, apart = self._twice([term for term in terms if not z3.is_bv(term)])
+        terms = [term for term in terms if not z3.is_bv(term)]
+        values = free_values([*self.premises, *terms])
+        others = [(v, z3.Const(f"{v}!other", v.sort())) for v in values]
+        twice = [*self.premises, *[z3.substitute(one, *others) for one in self.premises]]
+        width = self._width(terms)
+        apart = {t.get_id(): _near(t, z3.substitute(t, *others), width) for t in terms}
         if self.possible([*twice, *apart.values()]) == "sat":
             return set(apart)
         if len(apart) == 1:
             return set()
         return {key for key, near in apart.items() if self.possible([*twice, near]) == "sat"}
-
-    def apart(self, terms: list[z3.ExprRef]) -> str:
-        """Each term has two such values: sat, unsat or unknown. No term is a mask."""
-        twice, apart = self._twice(terms)
-        first = self.possible([*twice, *apart.values()])
-        if first != "unsat" or len(apart) == 1:
-            return first
-        return worst(self.possible([*twice, near]) for near in apart.values())
-
-    def _twice(self, terms: list[z3.ExprRef]) -> tuple[list[z3.BoolRef], dict[int, z3.BoolRef]]:
-        values = free_values([*self.premises, *terms])
-        others = [(v, z3.Const(f"{v}!other", v.sort())) for v in values]
-        twice = [*self.premises, *[z3.substitute(one, *others) for one in self.premises]]
-        width = self._width(terms)
-        return twice, {t.get_id(): _near(t, z3.substitute(t, *others), width) for t in terms}
 
     def _width(self, terms: list[z3.ExprRef]) -> Fraction:
         """Which number it is, nobody chooses who states the premises: it is made of their hash.
@@ -99,11 +74,6 @@ class Given:
                 break
             found.append(value)
         return len(found)
-
-
-def worst(answers: Iterable[str]) -> str:
-    """The first of several answers that is not sat; it asks for no more then."""
-    return next((answer for answer in answers if answer != "sat"), "sat")
 
 
 def enough(term: z3.ExprRef, values: set[Any]) -> bool:

@@ -54,11 +54,6 @@ class Watched(Claim):
 
     runs: list[Run] = field(default_factory=list)
     folds: list[Fold[Any]] = field(default_factory=list)
-    assumed: list[z3.BoolRef] = field(default_factory=list)
-
-    def assume(self, condition: Any, **who: str) -> None:
-        super().assume(condition, **who)
-        self.assumed.append(self.facts[-1])
 
     def use(self, kernel: Callable[..., Any], *args: Any, when: Any = True) -> Any:
         value = super().use(kernel, *args, when=when)

@@ -22,7 +22,7 @@ import z3
 from cratous.core.kernel import entry_of, qualified
 from cratous.core.kernel.sources import altered, ours, place, position
 from cratous.proofs.engine import definition_subset, plain_numbers, reachable_paths
-from cratous.proofs.engine.argument_values import NO_RUNS, Runs
+from cratous.proofs.engine.argument_values import Taken
 from cratous.proofs.engine.cache import Answer, Cache
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.counterexample import Model, Watched, story, telling
@@ -234,11 +234,11 @@ def prove(
     rlimit: int = RLIMIT,
     cache: Cache = _NO_CACHE,
     tell: Callable[[int, int], None] | None = None,
-    runs: Runs = NO_RUNS,
+    taken: Taken | None = None,
 ) -> Theorem:
     """Decide a stated claim; the returned theorem says what was proved and what was not.
 
-    tell: called with (done, all) after each obligation; runs: of its statement. Raises ValueError for a claim that names
+    tell: called with (done, all) after each obligation; taken: see `argument_values`. Raises ValueError for a claim that names
     no kernel or shows nothing.
     """
     claim.settle()
@@ -276,7 +276,7 @@ def prove(
         tuple(claim.assumptions),
         _KEY,
         reachable_paths.paths(claim, possible),
-        reachable_paths.varied(claim, reachable_paths.Asked(near, another, *runs)),
+        reachable_paths.varied(claim, reachable_paths.Asked(near, another, taken)),
     )
     return replace(theorem, ended=tuple(memory.ended), _key=_KEY)
 

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple, get_type_hints
 import z3
 
 from cratous.core.kernel import entry_of, qualified
-from cratous.proofs.engine.argument_values import FEW, Another, Given, Held, Place, Possible, Taken
+from cratous.proofs.engine.argument_values import FEW, Another, Given, Possible, Taken
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.obligation_hash import Hasher
 from cratous.proofs.engine.terms import free_names, known, leaves
@@ -45,10 +45,6 @@ def paths(claim: Claim, possible: Possible) -> tuple[tuple[str, tuple[bool, ...]
 
 ALL = "all"
 NOT = "not"
-GOALS = ("goal", "base", "step", "use")
-"""The kinds of obligations that say something of kernels."""
-BY_GOALS = "not: by goals"
-"""They vary, but the theorem's goals say something of the kernel at a few values alone, or nothing."""
 
 
 class Asked(NamedTuple):
@@ -57,14 +53,13 @@ class Asked(NamedTuple):
     possible: Possible
     another: Another
     taken: Taken | None = None
-    held: Held | None = None
 
 
 def varied(claim: Claim, ask: Asked) -> tuple[tuple[str, str], ...]:
     """Of every use of a kernel, in order: how its arguments vary.
 
     ALL; or the integers and truth values that are written down, where all others vary (a row of a
-    table); or BY_GOALS; or NOT, with how many values it is told of an argument that has a few (NOT 2). Of kernels whose
+    table); or NOT, with how many values it is told of an argument that has a few (NOT 2). Of kernels whose
     definition is not in the theorem it is not asked: NOT, since it vouches for none of them.
     """
     given = Given(_restricting(claim), ask.possible)
@@ -89,28 +84,8 @@ def varied(claim: Claim, ask: Asked) -> tuple[tuple[str, str], ...]:
     rest = [term for term in asked if term.get_id() not in varying]
     few = given.counts(rest, ask.another) if rest else {}
     varying |= {key for key, n in few.items() if n > FEW and not z3.is_real(terms[key])}
-    hows = {
-        number: _how(run, varying, few)
-        for number, run in enumerate(uses)
-        if qualified(run.function) in may_vouch
-    }
-    for number in _not_held(
-        claim, places, [n for n, how in hows.items() if not how.startswith(NOT)], ask
-    ):
-        hows[number] = BY_GOALS
-    return tuple((qualified(run.function), hows.get(n, NOT)) for n, run in enumerate(uses))
-
-
-def _not_held(
-    claim: Claim, places: Mapping[Place, z3.ExprRef], uses: list[int], ask: Asked
-) -> set[int]:
-    """Those uses of kernels whose results the goals do not decide at many values."""
-    if ask.held is None or not uses:
-        return set()
-    goals = [owed.goal for owed in claim.obligations if owed.kind in GOALS]
-    seed = Hasher().key("goals", [*claim.premises, *goals, *places.values()])
-    asked = {n: {place: term for place, term in places.items() if place[0] == n} for n in uses}
-    return set(uses) - ask.held(seed, asked, ask.possible)
+    found = [(qualified(run.function), run) for run in uses]
+    return tuple((n, _how(run, varying, few) if n in may_vouch else NOT) for n, run in found)
 
 
 def _beside_their_definitions(claim: Claim) -> set[str]:
@@ -131,8 +106,8 @@ def _beside_their_definitions(claim: Claim) -> set[str]:
 
 
 def _restricting(claim: Claim) -> list[z3.BoolRef]:
-    """Premises and assumptions; with what is known of the results that they speak of, roots and closed functions."""
-    premises = [*claim.premises, *getattr(claim, "assumed", ())]
+    """The premises; with what is known of the results that they speak of, roots and closed functions."""
+    premises = list(claim.premises)
     own = {claim.prefix + name for name in claim.names}
     results = set().union(*[free_names(premise) for premise in premises]) - own
     return [*premises, *claim.facts] if results else premises

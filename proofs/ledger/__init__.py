@@ -36,7 +36,7 @@ from cratous.proofs.engine.subset import Finding, lint_all
 from cratous.proofs.engine.theorem_files import home_folder
 from cratous.proofs.ledger.proof_recall import Recall
 from cratous.proofs.running.all import compare_all, told
-from cratous.proofs.running.other_results import runs
+from cratous.proofs.running.nudged import taken
 from cratous.proofs.running.theorem import Functions, run
 from cratous.spec.errors import BadInput
 
@@ -101,7 +101,7 @@ def _work(
         claim, sentence = prover.state(name, folder)
         tell = partial(_tell, name, out)
         theorem = prover.prove(
-            name, claim, sentence, cache=cache, tell=tell, runs=runs(name, claim, folder)
+            name, claim, sentence, cache=cache, tell=tell, taken=taken(name, claim, folder)
         )
         functions = None
         if theorem.proved:

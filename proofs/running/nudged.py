@@ -42,8 +42,6 @@ TRIES = 40
 PLACE_BITS, HAIR_BITS = 128, 64
 COARSE, FINE = 140, 400
 """A place is on a grid of 2**-COARSE; the hair is less than 2**(HAIR_BITS - FINE)."""
-OUTSIDE = -(10**9)
-"""So many premises are met where an assumption is not."""
 STOPS = (Outside, Undecided, False_, NotRun, TypeError, AttributeError, *ERRORS)
 """What ends the run of a statement; what was asked of before counts if its premises were."""
 
@@ -116,7 +114,6 @@ class Observed(OnNumbers):
 
     def assume(self, condition: Any, *, owner: str, reason: str) -> None:
         if not (made_true(condition) if isinstance(condition, Open) else truth(condition)):
-            self.premises = OUTSIDE
             raise Outside
 
     def use(self, kernel: Callable[..., Any], *args: Any, when: Any = True) -> Any:

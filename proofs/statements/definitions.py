@@ -11,17 +11,18 @@ from __future__ import annotations
 import importlib
 import inspect
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from cratous.core.kernel import REGISTRY, Entry, Fold, supported
 from cratous.core.kernel.sources import position, reached
 from cratous.core.ledger.package_home import Home
 from cratous.proofs.engine.argument_values import FEW
-from cratous.proofs.engine.reachable_paths import BY_GOALS, of_more_than_one, values_left
+from cratous.proofs.engine.reachable_paths import NOT, of_more_than_one, values_left
 from cratous.proofs.statements.closed_definitions import full_name
 from cratous.proofs.statements.relations import Relations
 from cratous.proofs.statements.restated import restates
+from cratous.proofs.statements.unconditional import Use
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,8 @@ class Proofs:
 
     kernels: those that each theorem is about; proved: the theorems that are; varied: how the
     arguments of their uses of kernels vary, by name and number; run: all but those that are proved and
-    were run at no point of doubles; None where that was not looked at.
+    were run at no point of doubles; None where that was not looked at. decided: uses whose result goals
+    with conditions decide at many values; assuming: theorems that take something for granted.
     """
 
     kernels: Mapping[str, tuple[str, ...]]
@@ -38,23 +40,42 @@ class Proofs:
     relations: Mapping[str, Relations]
     varied: Mapping[str, Mapping[tuple[str, int], str]]
     run: frozenset[str] | None = None
+    decided: Mapping[str, frozenset[Use]] = field(default_factory=dict)
+    assuming: frozenset[str] = frozenset()
 
     def holds_of_any(self, theorem: str, pair: tuple[str, str]) -> bool:
-        """The theorem relates the two by a use whose arguments are not fixed to a few values."""
-        return of_more_than_one(self._how(theorem, pair))
+        """The theorem relates the two by a use that is not fixed to a few values, nor its goals true beside them.
+
+        None does that assumes something, or rests on what does.
+        """
+        if not self.assuming.isdisjoint(self.resting([theorem])):
+            return False
+        plain = self.relations[theorem].plain
+        decided = self.decided.get(theorem, frozenset())
+        uses = self.related_uses(theorem, pair)
+        return of_more_than_one(
+            [how for use, how in uses.items() if (*pair, *use) in plain or use in decided]
+        )
+
+    def undecided(self, theorem: str, pair: tuple[str, str]) -> dict[Use, str]:
+        """The uses by which it relates the two, if it is only to be found whether goals with conditions decide them."""
+        known = self.holds_of_any(theorem, pair) or not self.assuming.isdisjoint(self.resting([theorem]))
+        uses = {u: how for u, how in self.related_uses(theorem, pair).items() if not how.startswith(NOT)}
+        return {} if known or not of_more_than_one(uses.values()) else uses
+
+    def by_goals(self, theorem: str, pair: tuple[str, str]) -> bool:
+        """Its premises leave many values, but not its goals, or it was not found that they do."""
+        return bool(self.undecided(theorem, pair))
 
     def left(self, theorem: str, pair: tuple[str, str]) -> int:
         """How many values it leaves an argument of which it leaves a few; 0 where it leaves none or one."""
-        return values_left(self._how(theorem, pair))
+        return values_left(self.related_uses(theorem, pair).values())
 
-    def by_goals(self, theorem: str, pair: tuple[str, str]) -> bool:
-        """Of a use by which it relates the two, its goals say nothing but at a few values."""
-        return BY_GOALS in self._how(theorem, pair)
-
-    def _how(self, theorem: str, pair: tuple[str, str]) -> list[str]:
+    def related_uses(self, theorem: str, pair: tuple[str, str]) -> dict[Use, str]:
+        """The uses by which it relates the two, and how their arguments vary."""
         uses = self.relations[theorem].uses
         varied = self.varied.get(theorem, {})
-        return [how for use, how in varied.items() if (*pair, *use) in uses]
+        return {use: how for use, how in varied.items() if (*pair, *use) in uses}
 
     def was_run(self, theorem: str) -> bool:
         """If it is proved, it was run at a point of doubles where its premises hold."""
@@ -111,6 +132,23 @@ def relating(entry: Entry, home: Home, proofs: Proofs) -> list[str]:
     return [theorem for theorem in theorems if pair in proofs.relations[theorem].pairs]
 
 
+def to_decide(
+    entries: Mapping[str, Entry], home: Home, proofs: Proofs
+) -> dict[str, list[dict[Use, str]]]:
+    """By theorem, the uses of each kernel that no theorem holds against its definition without a condition."""
+    found: dict[str, list[dict[Use, str]]] = {}
+    for entry in entries.values():
+        if entry.kind == "driver" or not entry.implements:
+            continue
+        pair = (full_name(entry.function), definition_name(entry, home))
+        theorems = relating(entry, home, proofs)
+        if not any(proofs.holds_of_any(theorem, pair) for theorem in theorems):
+            for theorem in theorems:
+                if uses := proofs.undecided(theorem, pair):
+                    found.setdefault(theorem, []).append(uses)
+    return found
+
+
 def problems(entries: Mapping[str, Entry], home: Home, proofs: Proofs) -> list[str]:
     """What is wrong with the definitions that kernels and folds name, each with its place.
 
@@ -159,10 +197,12 @@ def _of_points(
     """What is wrong with the points at which its theorems hold it against its definition."""
     several = [theorem for theorem in theorems if proofs.holds_of_any(theorem, pair)]
     named = f"implements {entry.implements!r}, which none of its theorems"
-    if not several and any(proofs.by_goals(theorem, pair) for theorem in theorems):
+    if not several and not proofs.assuming.isdisjoint(proofs.resting(theorems)):
+        yield f"{named} holds it against without an assumption (c.assume): state it as a premise"
+    elif not several and any(proofs.by_goals(theorem, pair) for theorem in theorems):
         yield (
-            f"{named} holds it against for more than a few values: their goals are false of other "
-            "results at a few values alone, or it was not found where: show it without a condition "
+            f"{named} holds it against for more than a few values: their goals have conditions, and it was "
+            "not found that they are false of other results elsewhere: show it without a condition "
             "(c.implies, c.any_of, c.when), or for all of its cases"
         )
     elif not several:

@@ -8,14 +8,14 @@ which an argument differs by next to nothing, as `argument_values` asks of premi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, get_args, get_origin, get_type_hints
 
 import z3
 
 from cratous.core.kernel import Fold
-from cratous.proofs.engine.argument_values import Given, Possible, Uses
+from cratous.proofs.engine.argument_values import Given, Possible
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.lift import join
 from cratous.proofs.engine.terms import free_names, fresh, known, leaves, statement
@@ -29,7 +29,7 @@ class FreeResults(Claim):
     """A claim whose uses of kernels, and of definitions, may each be switched to any result."""
 
     switches: dict[int, z3.BoolRef] = field(default_factory=dict)
-    of_folds: set[int] = field(default_factory=set)
+    given: dict[int, tuple[Any, ...]] = field(default_factory=dict)
     said: list[tuple[list[z3.BoolRef], list[z3.BoolRef], z3.BoolRef]] = field(default_factory=list)
     free: dict[Any, tuple[z3.BoolRef, Any]] = field(default_factory=dict)
     kept: list[Any] = field(default_factory=list)
@@ -53,6 +53,7 @@ class FreeResults(Claim):
         key = ("kernel", kernel, tuple(known(leaf).get_id() for leaf in leaves(args)))
         if key in self.free:
             self.switches[self.number] = self.free[key][0]
+        self.given[self.number] = args
         self.number += 1
         return value
 
@@ -61,9 +62,7 @@ class FreeResults(Claim):
 
     def fold(self, kernel_fold: Fold[Any], **how: Any) -> None:
         """It has no condition but its premises."""
-        uses = 1 if kernel_fold.finish is None else 2
-        self.of_folds |= set(range(self.number, self.number + uses))
-        self.number += uses
+        self.number += 1 if kernel_fold.finish is None else 2
 
     def step(self, goal: Any, text: str) -> None:
         """It helps to prove the goals."""
@@ -81,6 +80,12 @@ class FreeResults(Claim):
 
     def _closed(self, *_: Any) -> None:
         """As for what is owed."""
+
+    def arguments(self, use: int) -> list[z3.ExprRef]:
+        """What the use is given, as it is stated, without what is written down."""
+        off = [(switch, z3.BoolVal(False)) for switch, _ in self.free.values()]
+        terms = [known(leaf) for leaf in leaves(self.given.get(use, ()))]
+        return [z3.simplify(z3.substitute(term, *off)) for term in terms if free_names(term)]
 
     def excluded(self, use: int, *, by_definition: bool) -> z3.BoolRef:
         """Some goal excludes a result of this use; by_definition: because of what a definition says."""
@@ -118,36 +123,28 @@ def _any(name: str, kind: Any) -> Any:
     return fresh(name, kind)
 
 
-def settled(
-    claim: FreeResults | None, asked: Uses, rows: Container[int], possible: Possible
-) -> dict[int, str]:
-    """For each of these uses: sat, unsat or unknown.
+def decides(claim: FreeResults, use: int, row: bool, possible: Possible) -> bool:
+    """Some goal decides this use's result at more than a few arguments, as far as the solver can tell.
 
-    claim: None where it cannot be stated so; rows: uses whose definitions are evaluated at known numbers.
+    row: its definition was evaluated at known numbers, which stand in the goals. Of masks nothing is told.
     """
-    if claim is None:
-        return dict.fromkeys(asked, "unknown")
-    found = {}
-    for use, terms in asked.items():
-        if use in claim.of_folds:
-            found[use] = "sat"
-        elif use in claim.switches:
-            found[use] = _of(claim, use, list(terms.values()), (use not in rows, possible))
-        else:
-            found[use] = "unknown"
-    return found
-
-
-def _of(claim: FreeResults, use: int, terms: list[z3.ExprRef], how: tuple[bool, Possible]) -> str:
-    by_definition, possible = how
-    terms = [term for term in terms if not z3.is_bv(term)]
+    terms = claim.arguments(use)
+    if use not in claim.switches or any(map(z3.is_bv, terms)):
+        return False
+    excluded = claim.excluded(use, by_definition=not row)
     numbers = [term for term in terms if not z3.is_bool(term)]
-    excluded = claim.excluded(use, by_definition=by_definition)
-    if _is_large(excluded):
-        return "unknown"
-    answer = Given([excluded], possible).apart(numbers) if numbers else possible([excluded])
-    if answer == "sat" and len(numbers) < len(terms):
-        # of a truth value both count, though a definition may decide nothing at one of them
-        plain = Given([claim.excluded(use, by_definition=False)], possible)
-        return plain.apart([term for term in terms if z3.is_bool(term)])
-    return answer
+    if _is_large(z3.And(excluded, *[term == term for term in terms])):
+        return False
+    if numbers and len(Given([excluded], possible).many(numbers)) < len(_different(numbers)):
+        return False
+    if len(numbers) == len(terms):
+        return bool(numbers) or possible([excluded]) == "sat"
+    # of a truth value both count, though a definition may decide nothing at one of them
+    truths = [term for term in terms if z3.is_bool(term)]
+    plain = Given([claim.excluded(use, by_definition=False)], possible)
+    decided = bool(numbers) or possible([excluded]) == "sat"
+    return decided and len(plain.many(truths)) == len(_different(truths))
+
+
+def _different(terms: list[z3.ExprRef]) -> set[int]:
+    return {term.get_id() for term in terms}

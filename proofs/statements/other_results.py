@@ -14,97 +14,49 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from hashlib import sha256
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import z3
 
-from cratous.core.kernel import Fold
-from cratous.proofs.engine.argument_values import Held, Place, Possible, Runs, Uses, enough
-from cratous.proofs.engine.claim import Claim
-from cratous.proofs.engine.free_results import FreeResults, settled
-from cratous.proofs.engine.lift import LiftError
-from cratous.proofs.engine.terms import free_names, known, leaves
-from cratous.proofs.engine.theorem_files import load_claim, load_lemma
+from cratous.core.kernel import qualified
+from cratous.proofs.engine.argument_values import Place, enough
 from cratous.proofs.running.late_values import now
-from cratous.proofs.running.nudged import STOPS, Nudged, Observed, no_lemma, taken
+from cratous.proofs.running.nudged import STOPS, Nudged, Observed, no_lemma
 from cratous.proofs.running.statement import truth
 
 NO, GOAL, BY_DEFINITION = 0, 1, 2
 """No goal excludes another result; one does; it does because of what a definition says."""
 
-CALLS = 4_000
-"""So many calls of functions are made for a theorem at most."""
+CALLS, PLACES = 10_000, 400
+"""So many calls of functions are made for a theorem at most, and so many places looked at."""
 
 Call = tuple[Callable[..., Any], tuple[Any, ...]]
 """A function, and numbers it is given."""
 
 
-def runs(name: str, claim: Claim, folder: Path) -> Runs:
-    """What runs of a theorem tell of it; claim: the same, stated."""
-    return Runs(taken(name, claim, folder), held(name, claim, folder))
+class Statement(NamedTuple):
+    """A statement; uses: those of kernels that are asked about, by number, each with its kernel's name and
+    its arguments that are not written down.
 
-
-def held(name: str, claim: Claim, folder: Path) -> Held:
-    """Finds the uses of kernels that a theorem's goals hold against a definition; claim: the same, stated."""
-    statement = load_claim(name, folder)[0]
-    rows = _rows(claim)
-
-    def found(seed: str, asked: Uses, possible: Possible) -> set[int]:
-        # no run sees the calls of a function
-        held = set() if claim.asked else _found(_Statement(statement, rows), seed, asked)
-        rest = {use: terms for use, terms in asked.items() if use not in held}
-        if rest:
-            answers = settled(_freed(statement, folder), rest, rows, possible)
-            held |= {use for use, answer in answers.items() if answer != "unsat"}
-        return held
-
-    return found
-
-
-class _Statement(NamedTuple):
-    """A statement; rows: its uses of kernels for which a definition is evaluated at numbers written down in them.
-
-    These are the definition's results, and stand in the goals: no other ones are tried.
+    rows: those for which a definition is evaluated at numbers that are written down in them: these are its
+    results, and stand in the goals, so that no other ones are tried.
     """
 
     run: Callable[[Any], None]
+    uses: Mapping[int, tuple[str, Mapping[Place, z3.ExprRef]]]
     rows: frozenset[int]
 
 
-def _rows(claim: Claim) -> frozenset[int]:
-    runs = getattr(claim, "runs", ())
-    points = [_written(run.args) for run in runs if run.role == "definition"]
-    points = [point for point in points if point and None not in point]
-    uses = [_written(run.args) for run in runs if run.role == "kernel"]
-    return frozenset(n for n, use in enumerate(uses) if any(point <= use for point in points))
-
-
-def _written(args: tuple[Any, ...]) -> set[str | None]:
-    """The numbers among arguments that are written down; None stands for all others."""
-    terms = [known(leaf) for leaf in leaves(args)]
-    return {None if free_names(term) else str(term) for term in terms}
-
-
-def _freed(statement: Callable[[Any], None], folder: Path) -> FreeResults | None:
-    """The claim with free results; None where it cannot be stated so."""
-    claim = FreeResults(load=functools.cache(lambda other: load_lemma(other, folder)))
-    try:
-        statement(claim)
-    except (LiftError, TypeError, ValueError, RuntimeError, AttributeError, KeyError, IndexError):
-        return None
-    return claim
-
-
-def _found(statement: _Statement, seed: str, asked: Uses) -> set[int]:
-    """Those of some uses, each with its arguments that are no numbers which are written down."""
+def decided(statement: Statement, seed: str, enough_of: Callable[[set[int]], bool]) -> set[int]:
+    """Uses whose results the goals are found to decide at many values; enough_of: no more are looked for."""
+    asked = {use: terms for use, (_, terms) in statement.uses.items()}
     values: dict[Place, set[Any]] = {place: set() for use in asked.values() for place in use}
     many: set[Place] = set()
     meant: set[int] = set()
     found: set[int] = set()
     left = [CALLS]
     hairs = (0, 1) if any(z3.is_real(t) for use in asked.values() for t in use.values()) else (0,)
-    for number in range(CALLS):
+    for number in range(PLACES):
         places = [_Place(statement, f"{seed} {number}", some, left) for some in hairs]
         for use in sorted(asked.keys() - found):
             how = _least(place.holds(use) for place in places)
@@ -122,6 +74,8 @@ def _found(statement: _Statement, seed: str, asked: Uses) -> set[int]:
                         many.add(at)
             if use in meant and asked[use].keys() <= many:
                 found.add(use)
+                if enough_of(found):
+                    return found
         if len(found) == len(asked) or left[0] <= 0:
             break
     return found
@@ -139,8 +93,8 @@ def _least(found: Iterator[int]) -> int:
 class _Place:
     """A statement at one place."""
 
-    def __init__(self, of: _Statement, seed: str, hairs: int, left: list[int]) -> None:
-        self.statement, self.rows = of.run, of.rows
+    def __init__(self, of: Statement, seed: str, hairs: int, left: list[int]) -> None:
+        self.statement, self.uses, self.rows = of.run, of.uses, of.rows
         self.seed, self.hairs, self.left = seed, hairs, left
 
     @functools.cached_property
@@ -158,10 +112,8 @@ class _Place:
 
     def holds(self, use: int) -> int:
         """Whether some goal excludes another result of this use."""
-        if use in self.base.of_folds:
-            return BY_DEFINITION  # an induction has no condition but its premises
         call = self.base.kernels.get(use)
-        if call not in self.base.found:
+        if call not in self.base.found or qualified(call[0]) != self.uses[use][0]:
             return NO
         found = NO
         for other in _others(self.base.found[call], self.seed):
@@ -193,7 +145,6 @@ class _Replaced(Observed):
     strict: bool = True
     kernels: dict[int, Call] = field(default_factory=dict)
     definitions: list[Call] = field(default_factory=list)
-    of_folds: set[int] = field(default_factory=set)
     false: set[int] = field(default_factory=set)
     asked: int = 0
     outside: bool = False
@@ -224,11 +175,6 @@ class _Replaced(Observed):
                 self.given[call] if call in self.given else super()._run(function, args)
             )
         return self.found[call]
-
-    def fold(self, kernel_fold: Fold[Any], **how: Any) -> None:
-        first = self.uses
-        super().fold(kernel_fold, **how)
-        self.of_folds |= set(range(first, self.uses))
 
     def show(self, goal: Any, text: str = "the claim") -> None:
         self.asked += 1
