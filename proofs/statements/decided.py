@@ -7,9 +7,9 @@ neither finds within its bounds is not decided, and the use vouches for nothing.
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
+from itertools import islice
 from pathlib import Path
-from typing import Any
 
 import z3
 
@@ -22,64 +22,102 @@ from cratous.proofs.engine.terms import free_names, known, leaves
 from cratous.proofs.engine.theorem_files import load_claim, load_lemma
 from cratous.proofs.statements import free_results, other_results
 from cratous.proofs.statements.relations import Outline, outline
-from cratous.proofs.statements.unconditional import Use
+from cratous.proofs.statements.unconditional import Use, by_way_of
 
 Hows = dict[Use, str]
 """How the arguments of uses vary that relate a kernel to its definition (`engine.reachable_paths`)."""
-RLIMIT = 100_000
-"""The effort of one question."""
-QUESTIONS = 24
+Group = tuple[str, Hows]
+"""A definition, and the uses by which a theorem relates a kernel to it."""
+Decided = tuple[str, str, int]
+"""A definition, and a use whose result it decides."""
+RLIMIT, WAYS = 20_000, 1
+"""The effort of one question, and how many ways of the solver's are tried."""
+CALLS = (500, 6_000)
+"""So many calls of functions are made for a theorem before the solver is asked, and after."""
+QUESTIONS = 8
 """So many questions are put to the solver for a theorem at most."""
 
 
-def decided(name: str, folder: Path, seed: str, wanted: Iterable[Hows]) -> frozenset[Use]:
-    """Of these uses enough for each group, as far as they are found; seed: of all that the theorem rests on."""
-    groups = list(wanted)
-
-    def enough(found: set[Use]) -> bool:
-        return all(of_more_than_one([group[use] for use in found & group.keys()]) for group in groups)
-
+def decided(name: str, folder: Path, seed: str, wanted: Iterable[Group]) -> frozenset[Decided]:
+    """Of each group of uses enough, as far as they are found; seed: of all that the theorem rests on."""
     claim, whole = outline(name, folder)
-    number = {use: n for n, (use, _) in enumerate(claim.stated_uses)}
-    uses = sorted(number[use] for use in set().union(*groups) if use in number)
-    if not whole or not uses:
+    if not whole:
         return frozenset()
-    names = [use for use, _ in claim.stated_uses]
-    rows = frozenset(n for n in uses if claim.rows([names[n]]))
-    found: set[int] = set()
-    if not claim.asked:  # no run sees the calls of a function
-        places = {n: (names[n][0], _places(claim, n)) for n in uses}
-        statement = other_results.Statement(load_claim(name, folder)[0], places, rows)
-        found = other_results.decided(
-            statement, seed, lambda some: enough({names[n] for n in some})
+    stated = _Stated(name, folder, claim)
+    return frozenset(
+        (meant, *use) for meant, hows in wanted for use in stated.decided(meant, hows, seed)
+    )
+
+
+class _Stated:
+    """A theorem, as it was read."""
+
+    def __init__(self, name: str, folder: Path, claim: Outline) -> None:
+        self.folder, self.claim, self.run = folder, claim, load_claim(name, folder)[0]
+        self.names = [use for use, _ in claim.stated_uses]
+        self.may_run = not claim.asked or _same_premises(
+            claim, outline(name, folder, hidden=True)[0]
         )
-    if not enough({names[n] for n in found}):
-        found |= _by_solver(name, folder, [n for n in uses if n not in found], rows)
-    return frozenset(names[n] for n in found)
+
+    @functools.cached_property
+    def freed(self) -> free_results.FreeResults | None:
+        """The claim with free results; None where it cannot be stated so."""
+        lemma = functools.cache(lambda other: load_lemma(other, self.folder))
+        claim = free_results.FreeResults(load=lemma)
+        try:
+            self.run(claim)
+        except (
+            LiftError,
+            TypeError,
+            ValueError,
+            RuntimeError,
+            AttributeError,
+            KeyError,
+            IndexError,
+        ):
+            return None
+        return claim
+
+    def decided(self, meant: str, hows: Hows, seed: str) -> set[Use]:
+        """Those uses whose results this definition decides: so many that they vouch, if they do."""
+        claim = self.claim
+        uses = [n for n, use in enumerate(self.names) if use in hows]
+        told = by_way_of(claim, meant)
+        rows = {n for n in uses if self.names[n] in told or meant in claim.rows([self.names[n]])}
+        places = {n: (self.names[n][0], self._places(n)) for n in uses}
+        statement = other_results.Statement(self.run, places, meant, frozenset(rows))
+        found: set[int] = set()
+
+        def enough(some: set[int]) -> bool:
+            return of_more_than_one([hows[self.names[n]] for n in some])
+
+        for calls in CALLS:
+            if self.may_run and not enough(found):
+                found |= other_results.decided(statement, seed, calls, enough)
+            if calls == CALLS[0] and not enough(found):
+                found |= self._by_solver(meant, [n for n in uses if n not in found])
+        return {self.names[n] for n in found}
+
+    def _places(self, number: int) -> dict[Place, z3.ExprRef]:
+        terms = map(known, leaves(self.claim.stated_uses[number][1]))
+        return {(number, k): term for k, term in enumerate(terms) if free_names(term)}
+
+    def _by_solver(self, meant: str, uses: list[int]) -> set[int]:
+        claim, possible = self.freed, _Asking()
+        if claim is None:
+            return set()
+        found = set()
+        for n in uses:
+            row = meant in self.claim.rows([self.names[n]])
+            if free_results.decides(claim, n, "" if row else meant, possible):
+                found.add(n)
+        return found
 
 
-def _places(claim: Outline, number: int) -> dict[Place, z3.ExprRef]:
-    terms = map(known, leaves(claim.stated_uses[number][1]))
-    return {(number, k): term for k, term in enumerate(terms) if free_names(term)}
-
-
-def _by_solver(name: str, folder: Path, uses: list[int], rows: frozenset[int]) -> set[int]:
-    claim = _freed(load_claim(name, folder)[0], folder)
-    possible = _Asking()
-    if claim is None:
-        return set()
-    return {n for n in uses if free_results.decides(claim, n, n in rows, possible)}
-
-
-def _freed(statement: Callable[[Any], None], folder: Path) -> free_results.FreeResults | None:
-    """The claim with free results; None where it cannot be stated so."""
-    lemma = functools.cache(lambda other: load_lemma(other, folder))
-    claim = free_results.FreeResults(load=lemma)
-    try:
-        statement(claim)
-    except (LiftError, TypeError, ValueError, RuntimeError, AttributeError, KeyError, IndexError):
-        return None
-    return claim
+def _same_premises(one: Outline, other: Outline) -> bool:
+    """No run sees the calls of a function, so they may restrict nothing."""
+    both = zip(one.premises, other.premises, strict=False)
+    return len(one.premises) == len(other.premises) and all(a.eq(b) for a, b in both)
 
 
 class _Asking:
@@ -94,7 +132,8 @@ class _Asking:
         self.left -= 1
         context = z3.Context()
         asked = [term.translate(context) for term in terms]
-        for _, solver, effort in solvers(context, RLIMIT, polynomials=sorts(terms) <= {"Real"}):
+        ways = solvers(context, RLIMIT, polynomials=sorts(terms) <= {"Real"}, shares=(2,))
+        for _, solver, effort in islice(ways, WAYS):
             solver.add(*asked)
             said = check(solver, context, effort).result
             if said != "unknown":

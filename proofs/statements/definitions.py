@@ -31,8 +31,8 @@ class Proofs:
 
     kernels: those that each theorem is about; proved: the theorems that are; varied: how the
     arguments of their uses of kernels vary, by name and number; run: all but those that are proved and
-    were run at no point of doubles; None where that was not looked at. decided: uses whose result goals
-    with conditions decide at many values; assuming: theorems that take something for granted.
+    were run at no point of doubles; None where that was not looked at. decided: by theorem, a definition
+    and a use whose result it decides at many values, by goals with conditions; assuming: theorems that take something for granted.
     """
 
     kernels: Mapping[str, tuple[str, ...]]
@@ -40,7 +40,7 @@ class Proofs:
     relations: Mapping[str, Relations]
     varied: Mapping[str, Mapping[tuple[str, int], str]]
     run: frozenset[str] | None = None
-    decided: Mapping[str, frozenset[Use]] = field(default_factory=dict)
+    decided: Mapping[str, frozenset[tuple[str, str, int]]] = field(default_factory=dict)
     assuming: frozenset[str] = frozenset()
 
     def holds_of_any(self, theorem: str, pair: tuple[str, str]) -> bool:
@@ -54,13 +54,21 @@ class Proofs:
         decided = self.decided.get(theorem, frozenset())
         uses = self.related_uses(theorem, pair)
         return of_more_than_one(
-            [how for use, how in uses.items() if (*pair, *use) in plain or use in decided]
+            [
+                how
+                for use, how in uses.items()
+                if (*pair, *use) in plain or (pair[1], *use) in decided
+            ]
         )
 
     def undecided(self, theorem: str, pair: tuple[str, str]) -> dict[Use, str]:
         """The uses by which it relates the two, if it is only to be found whether goals with conditions decide them."""
-        known = self.holds_of_any(theorem, pair) or not self.assuming.isdisjoint(self.resting([theorem]))
-        uses = {u: how for u, how in self.related_uses(theorem, pair).items() if not how.startswith(NOT)}
+        known = self.holds_of_any(theorem, pair) or not self.assuming.isdisjoint(
+            self.resting([theorem])
+        )
+        uses = {
+            u: how for u, how in self.related_uses(theorem, pair).items() if not how.startswith(NOT)
+        }
         return {} if known or not of_more_than_one(uses.values()) else uses
 
     def by_goals(self, theorem: str, pair: tuple[str, str]) -> bool:
@@ -134,9 +142,9 @@ def relating(entry: Entry, home: Home, proofs: Proofs) -> list[str]:
 
 def to_decide(
     entries: Mapping[str, Entry], home: Home, proofs: Proofs
-) -> dict[str, list[dict[Use, str]]]:
+) -> dict[str, list[tuple[str, dict[Use, str]]]]:
     """By theorem, the uses of each kernel that no theorem holds against its definition without a condition."""
-    found: dict[str, list[dict[Use, str]]] = {}
+    found: dict[str, list[tuple[str, dict[Use, str]]]] = {}
     for entry in entries.values():
         if entry.kind == "driver" or not entry.implements:
             continue
@@ -145,7 +153,7 @@ def to_decide(
         if not any(proofs.holds_of_any(theorem, pair) for theorem in theorems):
             for theorem in theorems:
                 if uses := proofs.undecided(theorem, pair):
-                    found.setdefault(theorem, []).append(uses)
+                    found.setdefault(theorem, []).append((pair[1], uses))
     return found
 
 

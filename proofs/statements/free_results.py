@@ -19,6 +19,7 @@ from cratous.proofs.engine.argument_values import Given, Possible
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.lift import join
 from cratous.proofs.engine.terms import free_names, fresh, known, leaves, statement
+from cratous.proofs.statements.closed_definitions import full_name
 
 PARTS = 3000
 """A question with more parts than these is not asked."""
@@ -42,7 +43,7 @@ class FreeResults(Claim):
         self.kept += terms
         key = (what, function, tuple(term.get_id() for term in terms))
         if key not in self.free:
-            name = f"{what}!{len(self.free)}"
+            name = f"{what}!{full_name(function)}!{len(self.free)}"
             any_value = _any(name, get_type_hints(function)["return"])
             self.free[key] = z3.Bool(f"{name}!switch"), any_value
         switch, any_value = self.free[key]
@@ -87,12 +88,15 @@ class FreeResults(Claim):
         terms = [known(leaf) for leaf in leaves(self.given.get(use, ()))]
         return [z3.simplify(z3.substitute(term, *off)) for term in terms if free_names(term)]
 
-    def excluded(self, use: int, *, by_definition: bool) -> z3.BoolRef:
-        """Some goal excludes a result of this use; by_definition: because of what a definition says."""
+    def excluded(self, use: int, by_definition: str = "") -> z3.BoolRef:
+        """Some goal excludes a result of this use; by_definition: because of what this one says."""
         switches = [switch for switch, _ in self.free.values()]
         ours = self.switches[use]
         off = [(s, z3.BoolVal(s.eq(ours))) for s in switches]
-        meant = [(s, z3.BoolVal(s.eq(ours) or str(s).startswith("definition"))) for s in switches]
+        meant = [
+            (s, z3.BoolVal(s.eq(ours) or str(s).startswith(f"definition!{by_definition}!")))
+            for s in switches
+        ]
         found = []
         name = ours.decl().name()
         for premises, facts, goal in self.said:
@@ -123,15 +127,16 @@ def _any(name: str, kind: Any) -> Any:
     return fresh(name, kind)
 
 
-def decides(claim: FreeResults, use: int, row: bool, possible: Possible) -> bool:
+def decides(claim: FreeResults, use: int, meant: str, possible: Possible) -> bool:
     """Some goal decides this use's result at more than a few arguments, as far as the solver can tell.
 
-    row: its definition was evaluated at known numbers, which stand in the goals. Of masks nothing is told.
+    meant: the definition that it does so by; empty where it was evaluated at known numbers, which stand in the
+    goals. Of masks nothing is told.
     """
     terms = claim.arguments(use)
     if use not in claim.switches or any(map(z3.is_bv, terms)):
         return False
-    excluded = claim.excluded(use, by_definition=not row)
+    excluded = claim.excluded(use, meant)
     numbers = [term for term in terms if not z3.is_bool(term)]
     if _is_large(z3.And(excluded, *[term == term for term in terms])):
         return False
@@ -141,7 +146,7 @@ def decides(claim: FreeResults, use: int, row: bool, possible: Possible) -> bool
         return bool(numbers) or possible([excluded]) == "sat"
     # of a truth value both count, though a definition may decide nothing at one of them
     truths = [term for term in terms if z3.is_bool(term)]
-    plain = Given([claim.excluded(use, by_definition=False)], possible)
+    plain = Given([claim.excluded(use)], possible)
     decided = bool(numbers) or possible([excluded]) == "sat"
     return decided and len(plain.many(truths)) == len(_different(truths))
 

@@ -20,15 +20,17 @@ import z3
 
 from cratous.core.kernel import qualified
 from cratous.proofs.engine.argument_values import Place, enough
+from cratous.proofs.engine.terms import leaves
 from cratous.proofs.running.late_values import now
 from cratous.proofs.running.nudged import STOPS, Nudged, Observed, no_lemma
 from cratous.proofs.running.statement import truth
+from cratous.proofs.statements.closed_definitions import full_name
 
 NO, GOAL, BY_DEFINITION = 0, 1, 2
 """No goal excludes another result; one does; it does because of what a definition says."""
 
-CALLS, PLACES = 10_000, 400
-"""So many calls of functions are made for a theorem at most, and so many places looked at."""
+PLACES = 400
+"""So many places are looked at at most."""
 
 Call = tuple[Callable[..., Any], tuple[Any, ...]]
 """A function, and numbers it is given."""
@@ -38,23 +40,29 @@ class Statement(NamedTuple):
     """A statement; uses: those of kernels that are asked about, by number, each with its kernel's name and
     its arguments that are not written down.
 
-    rows: those for which a definition is evaluated at numbers that are written down in them: these are its
-    results, and stand in the goals, so that no other ones are tried.
+    meant: the definition's full name; rows: uses whose goals speak of it without a condition, but of no result
+    of its own that others could be tried for (it is evaluated at numbers written down).
     """
 
     run: Callable[[Any], None]
     uses: Mapping[int, tuple[str, Mapping[Place, z3.ExprRef]]]
+    meant: str
     rows: frozenset[int]
 
 
-def decided(statement: Statement, seed: str, enough_of: Callable[[set[int]], bool]) -> set[int]:
-    """Uses whose results the goals are found to decide at many values; enough_of: no more are looked for."""
+def decided(
+    statement: Statement, seed: str, calls: int, enough_of: Callable[[set[int]], bool]
+) -> set[int]:
+    """Uses whose results the goals are found to decide at many values; enough_of: no more are looked for.
+
+    calls: so many of functions are made at most.
+    """
     asked = {use: terms for use, (_, terms) in statement.uses.items()}
     values: dict[Place, set[Any]] = {place: set() for use in asked.values() for place in use}
     many: set[Place] = set()
     meant: set[int] = set()
     found: set[int] = set()
-    left = [CALLS]
+    left = [calls]
     hairs = (0, 1) if any(z3.is_real(t) for use in asked.values() for t in use.values()) else (0,)
     for number in range(PLACES):
         places = [_Place(statement, f"{seed} {number}", some, left) for some in hairs]
@@ -90,12 +98,22 @@ def _least(found: Iterator[int]) -> int:
     return least
 
 
+class _InUnit(Nudged):
+    """Reals from 0 to 1."""
+
+    def real(self, name: str) -> Fraction:
+        said = int(sha256(f"{self.seed} in unit {name}".encode()).hexdigest(), 16)
+        return Fraction(said >> 128, 2**128) + super().real(name) % Fraction(1, 2**130)
+
+
 class _Place:
     """A statement at one place."""
 
     def __init__(self, of: Statement, seed: str, hairs: int, left: list[int]) -> None:
-        self.statement, self.uses, self.rows = of.run, of.uses, of.rows
+        self.statement, self.uses, self.rows, self.meant = of.run, of.uses, of.rows, of.meant
         self.seed, self.hairs, self.left = seed, hairs, left
+        # what is said of a part of a way is seldom met elsewhere
+        self.values = _InUnit if int(sha256(seed.encode()).hexdigest(), 16) % 2 else Nudged
 
     @functools.cached_property
     def base(self) -> _Replaced:
@@ -103,7 +121,8 @@ class _Place:
         return self._run({}, strict=False)
 
     def _run(self, results: Mapping[Call, Any], *, strict: bool = True) -> _Replaced:
-        on = _Replaced(Nudged(self.seed, self.hairs), no_lemma, results=results, strict=strict)
+        values = self.values(self.seed, self.hairs)
+        on = _Replaced(values, no_lemma, results=results, strict=strict)
         with contextlib.suppress(*STOPS):
             if self.left[0] > 0:
                 self.statement(on)
@@ -124,9 +143,9 @@ class _Place:
                 return BY_DEFINITION
             found = GOAL
             for meant in wrong.definitions:
-                if meant not in wrong.found:
+                if meant not in wrong.found or full_name(meant[0]) != self.meant:
                     continue
-                for result in (other, *_others(wrong.found[meant], self.seed)):
+                for result in (other, *leaves(other), *_others(wrong.found[meant], self.seed)):
                     if _shape(result) != _shape(wrong.found[meant]):
                         continue
                     right = self._run({call: other, meant: result})

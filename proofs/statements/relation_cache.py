@@ -15,8 +15,8 @@ from cratous.proofs.engine import worker_processes
 from cratous.proofs.ledger.proof_recall import Recall
 from cratous.proofs.ledger.text_cache import named
 from cratous.proofs.statements import decided, relations
+from cratous.proofs.statements.decided import Decided, Group
 from cratous.proofs.statements.relations import Relations
-from cratous.proofs.statements.unconditional import Use
 
 One = TypeVar("One")
 
@@ -41,16 +41,16 @@ class Kept:
         return {name: found.get(name) or read[name] for name in files}
 
     def decided(
-        self, wanted: Mapping[str, list[decided.Hows]], jobs: int = 1
-    ) -> dict[str, frozenset[Use]]:
+        self, wanted: Mapping[str, list[Group]], jobs: int = 1
+    ) -> dict[str, frozenset[Decided]]:
         """Of uses that are asked of each theorem, those that its goals decide (`decided`)."""
         asked = {
-            name: [sorted((*use, how) for use, how in group.items()) for group in groups]
+            name: [(meant, sorted((*u, how) for u, how in hows.items())) for meant, hows in groups]
             for name, groups in wanted.items()
         }
         files = {name: self._file(name, json.dumps(groups)) for name, groups in asked.items()}
         found = {
-            name: frozenset((str(a), int(b)) for a, b in data["decided"])
+            name: frozenset((str(a), str(b), int(c)) for a, b, c in data["decided"])
             for name, file in files.items()
             if (data := _kept(file))
         }
@@ -64,7 +64,7 @@ class Kept:
     def _read(self, name: str) -> Relations:
         return relations.relations(name, self.home.theorems)
 
-    def _decide(self, wanted: Mapping[str, list[decided.Hows]], name: str) -> frozenset[Use]:
+    def _decide(self, wanted: Mapping[str, list[Group]], name: str) -> frozenset[Decided]:
         seed = self._recall.key(name)
         if seed is None:
             return frozenset()

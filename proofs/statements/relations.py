@@ -53,7 +53,7 @@ class Relations:
     result; follows: the kernel from the definition; leads: the definition from the kernel. lemmas:
     what the theorem rests on. uses: the pairs, each with a use of a kernel by which they are related
     (of a fold, its step): qualified name, and number among the theorem's uses of it. plain: those of
-    uses that some goal relates without a condition. statement: what the theorem says, as a sentence
+    uses that some goal, or an induction, relates without a condition. statement: what the theorem says, as a sentence
     made from it.
     """
 
@@ -103,6 +103,7 @@ class Outline(Claim):
     stated_uses: list[tuple[Use, tuple[Any, ...]]] = field(default_factory=list)
     results: dict[str, set[tuple[str, Use]]] = field(default_factory=dict)
     meant: dict[str, str] = field(default_factory=dict)
+    given_to: dict[str, tuple[Any, ...]] = field(default_factory=dict)
     stepped: dict[str, Use] = field(default_factory=dict)
     of_folds: set[Use] = field(default_factory=set)
     given_then: dict[int, tuple[z3.BoolRef, ...]] = field(default_factory=dict)
@@ -166,6 +167,7 @@ class Outline(Claim):
             self.used_in |= {str(known(leaf)): uses for leaf in leaves(value)}
             if in_spec(function):
                 self.meant |= {str(known(leaf)): full_name(function) for leaf in leaves(value)}
+            self.given_to |= {str(known(leaf)): args for leaf in leaves(value)}
         return self.met[key]
 
     def use(self, kernel: Function, *args: Any, when: Any = True) -> Any:
@@ -248,7 +250,7 @@ class Outline(Claim):
     def calls(self, function: Function) -> list[tuple[Any, ...]]:
         """The arguments with which it was used."""
         self.asked = True
-        return list(self.arguments.get(plain(function), []))
+        return [] if self.hidden else list(self.arguments.get(plain(function), []))
 
     def congruence(self, function: Function, one: tuple[Any, ...], other: tuple[Any, ...]) -> None:
         """Equal arguments give the same value already."""
@@ -262,9 +264,12 @@ class Outline(Claim):
         self.lemmas.append(name)
 
 
-def outline(name: str, folder: Path = FOLDER) -> tuple[Outline, bool]:
-    """The statement of a theorem, read with all functions closed; and whether it could be read to its end."""
-    claim = Outline(load=lambda other: load_claim(other, folder)[0])
+def outline(name: str, folder: Path = FOLDER, *, hidden: bool = False) -> tuple[Outline, bool]:
+    """The statement of a theorem, read with all functions closed; and whether it could be read to its end.
+
+    hidden: it is told of no calls of functions (`c.calls`).
+    """
+    claim = Outline(load=lambda other: load_claim(other, folder)[0], hidden=hidden)
     try:
         reopened(load_claim(name, folder)[0], claim)(claim)
     except (LiftError, TypeError, ValueError, RuntimeError, IndexError, KeyError, AttributeError):
@@ -287,14 +292,15 @@ def relations(name: str, folder: Path = FOLDER) -> Relations:
                 both = pair not in found[how] and owed.kind == "goal"
                 if not both or all(_says(claim, number, function) for function in pair):
                     found[how].add(pair)
-                    uses |= {(*pair, *use) for use in claim.uses_of(pair[0], said)}
+                    held = {(*pair, *use) for use in claim.uses_of(pair[0], said)}
+                    uses |= held
     used = frozenset(full_name(f) for f in claim.arguments if in_spec(f))
     pairs = {how: frozenset(some) for how, some in found.items()}
     lemmas = tuple(sorted(set(claim.lemmas)))
     says = sentences.sentence(claim.as_stated())
-    plain_uses = unconditional(claim, uses)
+    plain = unconditional(claim, uses)
     return Relations(
-        used, lemmas=lemmas, uses=frozenset(uses), plain=plain_uses, statement=says, **pairs
+        used, lemmas=lemmas, uses=frozenset(uses), plain=plain, statement=says, **pairs
     )
 
 
