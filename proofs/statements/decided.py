@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Iterable
-from itertools import islice
 from pathlib import Path
 
 import z3
@@ -16,8 +15,7 @@ import z3
 from cratous.proofs.engine.argument_values import Place
 from cratous.proofs.engine.lift import LiftError
 from cratous.proofs.engine.reachable_paths import of_more_than_one
-from cratous.proofs.engine.smtlib import sorts
-from cratous.proofs.engine.solver_order import check, solvers
+from cratous.proofs.engine.solver_order import check
 from cratous.proofs.engine.terms import free_names, known, leaves
 from cratous.proofs.engine.theorem_files import load_claim, load_lemma
 from cratous.proofs.statements import free_results, other_results
@@ -30,9 +28,9 @@ Group = tuple[str, Hows]
 """A definition, and the uses by which a theorem relates a kernel to it."""
 Decided = tuple[str, str, int]
 """A definition, and a use whose result it decides."""
-RLIMIT, WAYS = 20_000, 1
-"""The effort of one question, and how many ways of the solver's are tried."""
-CALLS = (500, 6_000)
+RLIMIT = 100_000
+"""The effort of one question."""
+CALLS = (500, 10_000)
 """So many calls of functions are made for a theorem before the solver is asked, and after."""
 QUESTIONS = 8
 """So many questions are put to the solver for a theorem at most."""
@@ -131,11 +129,6 @@ class _Asking:
             return "unknown"
         self.left -= 1
         context = z3.Context()
-        asked = [term.translate(context) for term in terms]
-        ways = solvers(context, RLIMIT, polynomials=sorts(terms) <= {"Real"}, shares=(2,))
-        for _, solver, effort in islice(ways, WAYS):
-            solver.add(*asked)
-            said = check(solver, context, effort).result
-            if said != "unknown":
-                return said
-        return "unknown"
+        solver = z3.Solver(ctx=context)
+        solver.add(*[term.translate(context) for term in terms])
+        return check(solver, context, RLIMIT).result

@@ -29,7 +29,7 @@ from cratous.proofs.statements.closed_definitions import full_name
 NO, GOAL, BY_DEFINITION = 0, 1, 2
 """No goal excludes another result; one does; it does because of what a definition says."""
 
-PLACES = 400
+PLACES = 600
 """So many places are looked at at most."""
 
 Call = tuple[Callable[..., Any], tuple[Any, ...]]
