@@ -94,6 +94,7 @@ class Outline(Claim):
 
     met: dict[Any, Any] = field(default_factory=dict)
     kept: list[z3.ExprRef] = field(default_factory=list)
+    looked_at: dict[int, tuple[z3.ExprRef, frozenset[str]]] = field(default_factory=dict)
     arguments: dict[Function, list[tuple[Any, ...]]] = field(default_factory=dict)
     made_of: dict[str, frozenset[Function]] = field(default_factory=dict)
     evaluated: dict[Function, list[tuple[str, ...]]] = field(default_factory=dict)
@@ -183,10 +184,17 @@ class Outline(Claim):
                 self.results.setdefault(str(leaf), set()).add((full_name(kernel), (name, number)))
         return value
 
+    def names_in(self, term: z3.ExprRef) -> frozenset[str]:
+        """The names in a term; each term is looked through once."""
+        seen = self.looked_at.get(term.get_id())
+        if seen is None:  # the term is kept, or its number would be another's
+            seen = self.looked_at[term.get_id()] = (term, frozenset(free_names(term)))
+        return seen[1]
+
     def uses_in(self, term: z3.ExprRef) -> frozenset[Use]:
         """The uses of kernels that a term is made of."""
         none: frozenset[Use] = frozenset()
-        return none.union(*[self.used_in.get(name, none) for name in free_names(term)])
+        return none.union(*[self.used_in.get(name, none) for name in self.names_in(term)])
 
     def uses_of(self, kernel: str, terms: Iterable[z3.BoolRef]) -> frozenset[Use]:
         """Those of a kernel, or the fold's step, by their full name, in these terms."""
@@ -215,7 +223,7 @@ class Outline(Claim):
     def functions_in(self, value: Any) -> frozenset[Function]:
         """All functions that a value is made of."""
         term = value if z3.is_expr(value) else _raw(value)
-        names = free_names(term) if term is not None else ()
+        names = self.names_in(term) if term is not None else ()
         return frozenset().union(*[self.made_of.get(name, frozenset()) for name in names])
 
     def names_of(self, kernel: str) -> frozenset[str]:
@@ -327,7 +335,7 @@ def _pairs(claim: Outline, number: int) -> Iterator[tuple[str, tuple[str, str]]]
         kernels = _kernels(spoken)
         if owed.kind != "goal":
             kernels |= _folds(claim, spoken)
-        if free_names(conclusion) & accumulator:
+        if claim.names_in(conclusion) & accumulator:
             kernels.add(ended)
         meant = _definitions(spoken)
         yield from (("together", (kernel, other)) for kernel in kernels for other in meant)
@@ -337,11 +345,13 @@ def _pairs(claim: Outline, number: int) -> Iterator[tuple[str, tuple[str, str]]]
         for condition in (*claim.premises, *given):
             before = claim.functions_in(condition)
             for kernel in _kernels(before) - kernels:
-                for sign in signs(condition, claim.names_of(kernel)):
+                for sign in signs(condition, claim.names_of(kernel), within=claim.names_in):
                     how = "leads" if sign else "follows"
                     yield from ((how, (kernel, other)) for other in meant)
             for kernel in kernels:
-                for sign in signs(conclusion, claim.names_of(kernel)) or {True}:
+                for sign in signs(conclusion, claim.names_of(kernel), within=claim.names_in) or {
+                    True
+                }:
                     how = "follows" if sign else "leads"
                     yield from ((how, (kernel, other)) for other in _definitions(before) - meant)
 
