@@ -32,7 +32,7 @@ RLIMIT = 100_000
 """The effort of one question."""
 CALLS = (500, 10_000)
 """So many calls of functions are made for a theorem before the solver is asked, and after."""
-QUESTIONS = 8
+QUESTIONS = 16
 """So many questions are put to the solver for a theorem at most."""
 
 
