@@ -62,8 +62,8 @@ def _found(
     values: dict[Place, set[Any]] = {place: set() for place in asked}
     many: set[Place] = set()
     for number in range(TRIES):
-        here = _arguments(statement, premises, Nudged(f"{seed} {number}", 0))
-        beside = _arguments(statement, premises, Nudged(f"{seed} {number}", 1)) if here else {}
+        here = _arguments(statement, premises, _Nudged(f"{seed} {number}", 0))
+        beside = _arguments(statement, premises, _Nudged(f"{seed} {number}", 1)) if here else {}
         for place in asked.keys() & here.keys() - many:
             values[place].add(here[place])
             moved = place in beside and here[place] != beside[place]
@@ -76,17 +76,17 @@ def _found(
 
 def _arguments(statement: Callable[[Any], None], premises: int, values: Values) -> dict[Place, Any]:
     """The arguments of the uses of kernels, where all premises hold; nothing where they do not."""
-    on = Observed(values, no_lemma)
+    on = _Observed(values, _no_lemma)
     with contextlib.suppress(*STOPS):
         statement(on)
     return on.arguments if on.premises == premises else {}
 
 
-def no_lemma(name: str) -> Callable[[Any], None]:
+def _no_lemma(name: str) -> Callable[[Any], None]:
     raise NotRun(name)
 
 
-class Nudged(Values):
+class _Nudged(Values):
     """Numbers that nobody can foresee who does not know the seed: at one place, and a hair beside it."""
 
     def __init__(self, seed: str, hairs: int) -> None:
@@ -101,7 +101,7 @@ class Nudged(Values):
 
 
 @dataclass
-class Observed(OnNumbers):
+class _Observed(OnNumbers):
     """A run of a statement for its premises and the arguments of its kernels; what it shows is not looked at."""
 
     arguments: dict[Place, Any] = field(default_factory=dict)
@@ -148,3 +148,7 @@ class Observed(OnNumbers):
 
     def lemma(self, name: str, *, when: Any = True, **values: Any) -> None:
         """It restricts nothing."""
+
+
+Nudged, Observed, no_lemma = _Nudged, _Observed, _no_lemma
+"""What `proofs.statements.other_results` runs statements with too."""

@@ -59,9 +59,9 @@ def test_a_premise_that_comes_after_the_use_restricts_it_too():
 
 
 def test_places_are_made_of_the_seed():
-    at = [nudged.Nudged(seed, 0).real("x") for seed in ("one", "other", "one")]
+    at = [nudged._Nudged(seed, 0).real("x") for seed in ("one", "other", "one")]
     assert at[0] == at[2] != at[1]
-    beside = nudged.Nudged("one", 1).real("x")
+    beside = nudged._Nudged("one", 1).real("x")
     assert 0 < beside - at[0] < 2**-300
 
 
