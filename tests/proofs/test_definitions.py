@@ -24,6 +24,7 @@ from cratous.proofs.statements.definitions import (
     definition_name,
     is_restated,
     problems,
+    to_decide,
 )
 from cratous.proofs.statements.relation_cache import Kept, readers
 from cratous.proofs.statements.relations import Relations, relations
@@ -57,6 +58,7 @@ def test_each_definition_is_used_and_related_by_a_theorem() -> None:
         related,
         varied,
     )
+    proofs = replace(proofs, decided=kept.decided(to_decide(ENTRIES, PRODUCT, proofs), jobs=2))
     assert problems(ENTRIES, PRODUCT, proofs) == []
 
 
@@ -92,6 +94,7 @@ def _proofs(
         definitions=frozenset([uses]),
         together=frozenset([(full, uses)]),
         uses=frozenset([(full, uses, full, 0)]),
+        plain=frozenset([(full, uses, full, 0)]),
     )
     said = {"one": using} if not lemma else {"one": replace(NOTHING, lemmas=(lemma,)), lemma: using}
     varied = {theorem: {(full, 0): how} for theorem in said}
@@ -123,6 +126,34 @@ def test_a_definition_that_no_theorem_uses() -> None:
     for few, points in (("not 2", "2 points"), ("not 9", "more than 8 points, all apart")):
         said = _said(later, _proofs("later", used, how=few))
         assert f"its premises leave an argument {points}" in said
+
+
+def test_goals_with_conditions_are_looked_at_further() -> None:
+    later = named("later")
+    used, full = definition_name(later, PRODUCT), later.name
+    found = _proofs("later", used)
+    assert to_decide({"later": later}, PRODUCT, found) == {}
+    (using,) = found.relations.values()
+    conditional = replace(found, relations={"one": replace(using, plain=frozenset())})
+    wanted = {"one": [(used, {(full, 0): ALL})]}
+    assert to_decide({"later": later}, PRODUCT, conditional) == wanted
+    assert "goals have conditions" in _said(later, conditional)
+    decided = {"one": frozenset([(used, full, 0)])}
+    assert problems({"later": later}, PRODUCT, replace(conditional, decided=decided)) == []
+    other = {"one": frozenset([("cratous.spec.schedule.earlier_of", full, 0)])}
+    assert "goals have conditions" in _said(later, replace(conditional, decided=other))
+
+
+def test_what_assumes_something_vouches_for_nothing() -> None:
+    later = named("later")
+    used = definition_name(later, PRODUCT)
+    for proofs, assuming in (
+        (_proofs("later", used), "one"),
+        (_proofs("later", used, lemma="two"), "two"),
+    ):
+        found = replace(proofs, assuming=frozenset([assuming]))
+        assert "without an assumption" in _said(later, found)
+        assert to_decide({"later": later}, PRODUCT, found) == {}
 
 
 def test_a_theorem_that_was_run_at_no_point_of_doubles() -> None:
