@@ -146,8 +146,8 @@ def judge(
         frozenset(t.name for t in theorems if not t.proved or (t.ran and t.ran.doubles)),
         assuming=frozenset(t.name for t in theorems if t.assumptions),
     )
-    wanted = definitions.to_decide(entries, home, proofs)
-    proofs = replace(proofs, decided=kept.decided(wanted, jobs or ledger.jobs_default()))
+    open_ = definitions.to_decide(entries, home, proofs)
+    proofs = replace(proofs, decided=kept.decided(open_, jobs or ledger.jobs_default()))
     parts.ended(GOALS)
     unmeant = tuple(definitions.problems(entries, home, proofs))
     return Judgement(inventory, structural, unmeant, grounds(entries, home, proofs), statements)

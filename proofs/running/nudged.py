@@ -150,5 +150,7 @@ class _Observed(OnNumbers):
         """It restricts nothing."""
 
 
-Nudged, Observed, no_lemma = _Nudged, _Observed, _no_lemma
-"""What `proofs.statements.other_results` runs statements with too."""
+# what `proofs.statements.other_results` runs statements with too
+Nudged = _Nudged
+Observed = _Observed
+no_lemma = _no_lemma

@@ -66,14 +66,12 @@ def _of_induction(claim: Outline, use: Use) -> bool:
     last = [owed.goal for owed in claim.obligations if owed.kind == "use"]
     if use in claim.of_folds or not last:
         return use in claim.of_folds
-    _, *others = dict(claim.stated_uses)[use]
+    others = dict(claim.stated_uses)[use][1:]
     names = set().union(*[_within(claim, goal) for goal in last])
     stepped = any(
         use in claim.uses_in(owed.goal) for owed in claim.obligations if owed.kind == "step"
     )
-    return stepped and not any(
-        names & _within(claim, known(leaf)) for leaf in leaves(tuple(others))
-    )
+    return stepped and not any(names & _within(claim, known(leaf)) for leaf in leaves(others))
 
 
 def _within(claim: Outline, term: z3.ExprRef) -> set[str]:
@@ -85,10 +83,8 @@ def _within(claim: Outline, term: z3.ExprRef) -> set[str]:
         if name in found:
             continue
         found.add(name)
-        call = claim.values_of.get(name)
-        todo |= (
-            set().union(*[free_names(known(leaf)) for leaf in leaves(call.args)]) if call else set()
-        )
+        given = leaves(claim.given_to.get(name, ()))
+        todo |= set().union(*[free_names(known(leaf)) for leaf in given])
     return found
 
 
@@ -105,10 +101,11 @@ def _said(claim: Outline, conclusion: z3.BoolRef) -> Iterator[Held]:
         meant = {claim.meant.get(name, "") for name in names}
         # what another definition, or an argument, has a part in may be a condition
         if z3.is_const(one) and len(meant) == 1 and "" not in meant:
+            (only,) = meant
             for kernel, use in claim.results.get(str(one), ()):
                 # a definition of the kernel's own result may say the same of every result
                 if use not in claim.uses_in(other):
-                    yield kernel, *meant, *use
+                    yield kernel, only, *use
 
 
 def _of_definition(claim: Outline, term: z3.BoolRef) -> Iterator[Held]:
