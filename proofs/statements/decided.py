@@ -15,7 +15,8 @@ import z3
 from cratous.proofs.engine.argument_values import Place
 from cratous.proofs.engine.lift import LiftError
 from cratous.proofs.engine.reachable_paths import of_more_than_one
-from cratous.proofs.engine.solver_order import check
+from cratous.proofs.engine.smtlib import sorts
+from cratous.proofs.engine.solver_order import check, solvers
 from cratous.proofs.engine.terms import free_names, known, leaves
 from cratous.proofs.engine.theorem_files import load_claim, load_lemma
 from cratous.proofs.statements import free_results, other_results
@@ -28,9 +29,9 @@ Group = tuple[str, Hows]
 """A definition, and the uses by which a theorem relates a kernel to it."""
 Decided = tuple[str, str, int]
 """A definition, and a use whose result it decides."""
-RLIMIT = 100_000
-"""The effort of one question."""
-CALLS = (500, 10_000)
+RLIMIT, SHARE = 100_000, 10
+"""The effort of one question, and the part of it that a solver of polynomials has first."""
+CALLS = (3_000, 10_000)
 """So many calls of functions are made for a theorem before the solver is asked, and after."""
 QUESTIONS = 16
 """So many questions are put to the solver for a theorem at most."""
@@ -129,6 +130,14 @@ class _Asking:
             return "unknown"
         self.left -= 1
         context = z3.Context()
-        solver = z3.Solver(ctx=context)
-        solver.add(*[term.translate(context) for term in terms])
-        return check(solver, context, RLIMIT).result
+        asked = [term.translate(context) for term in terms]
+        real = sorts(terms) & {"Real", "Int", "BitVec", "quantifier", "function"} == {"Real"}
+        first = [next(solvers(context, RLIMIT, polynomials=True, shares=(SHARE,)))] if real else []
+        for _, solver, effort in (*first, next(solvers(context, RLIMIT, polynomials=False))):
+            solver.add(*asked)
+            said = check(solver, context, effort)
+            if said.ended:
+                self.left = 0  # its effort does not bound its time: nothing more is asked
+            if said.result != "unknown" or said.ended:
+                return said.result
+        return "unknown"
