@@ -5,8 +5,9 @@ The command and its self-test judge by the same functions, so what the one refus
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
@@ -146,8 +147,8 @@ def judge(
         frozenset(t.name for t in theorems if not t.proved or (t.ran and t.ran.doubles)),
         assuming=frozenset(t.name for t in theorems if t.assumptions),
     )
-    open_ = definitions.to_decide(entries, home, proofs)
-    proofs = replace(proofs, decided=kept.decided(open_, jobs or ledger.jobs_default()))
+    ask = functools.partial(kept.decided, jobs=jobs or ledger.jobs_default())
+    proofs = definitions.with_decided(entries, home, proofs, ask)
     parts.ended(GOALS)
     unmeant = tuple(definitions.problems(entries, home, proofs))
     return Judgement(inventory, structural, unmeant, grounds(entries, home, proofs), statements)

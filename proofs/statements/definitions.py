@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import importlib
 import inspect
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from cratous.core.kernel import REGISTRY, Entry, Fold, supported
@@ -20,6 +20,7 @@ from cratous.core.ledger.package_home import Home
 from cratous.proofs.engine.argument_values import FEW
 from cratous.proofs.engine.reachable_paths import NOT, of_more_than_one, values_left
 from cratous.proofs.statements.closed_definitions import full_name
+from cratous.proofs.statements.decided import Decided, Group
 from cratous.proofs.statements.relations import Relations
 from cratous.proofs.statements.restated import restates
 from cratous.proofs.statements.unconditional import Use
@@ -40,7 +41,7 @@ class Proofs:
     relations: Mapping[str, Relations]
     varied: Mapping[str, Mapping[tuple[str, int], str]]
     run: frozenset[str] | None = None
-    decided: Mapping[str, frozenset[tuple[str, str, int]]] = field(default_factory=dict)
+    decided: Mapping[str, frozenset[Decided]] = field(default_factory=dict)
     assuming: frozenset[str] = frozenset()
 
     def holds_of_any(self, theorem: str, pair: tuple[str, str]) -> bool:
@@ -88,6 +89,11 @@ class Proofs:
     def was_run(self, theorem: str) -> bool:
         """If it is proved, it was run at a point of doubles where its premises hold."""
         return self.run is None or theorem in self.run
+
+    def size(self, theorem: str) -> tuple[bool, int, int, str]:
+        """Orders theorems: those that were run first, then by how much they use; no two are the same."""
+        related = self.relations[theorem]
+        return not self.was_run(theorem), len(related.uses), len(related.lemmas), theorem
 
     def about(self, name: str) -> list[str]:
         """The theorems about a kernel, in order."""
@@ -141,20 +147,49 @@ def relating(entry: Entry, home: Home, proofs: Proofs) -> list[str]:
 
 
 def to_decide(
-    entries: Mapping[str, Entry], home: Home, proofs: Proofs
-) -> dict[str, list[tuple[str, dict[Use, str]]]]:
-    """By theorem, the uses of each kernel that no theorem holds against its definition without a condition."""
-    found: dict[str, list[tuple[str, dict[Use, str]]]] = {}
+    entries: Mapping[str, Entry],
+    home: Home,
+    proofs: Proofs,
+    asked: Collection[tuple[str, tuple[str, str]]] = (),
+) -> dict[str, list[tuple[tuple[str, str], dict[Use, str]]]]:
+    """By theorem, kernels that no theorem holds against their definitions yet, each with its uses there.
+
+    Each kernel stands at one theorem: of those not asked about it yet the one that uses least.
+    """
+    found: dict[str, list[tuple[tuple[str, str], dict[Use, str]]]] = {}
     for entry in entries.values():
         if entry.kind == "driver" or not entry.implements:
             continue
         pair = (full_name(entry.function), definition_name(entry, home))
         theorems = relating(entry, home, proofs)
-        if not any(proofs.holds_of_any(theorem, pair) for theorem in theorems):
-            for theorem in theorems:
-                if uses := proofs.undecided(theorem, pair):
-                    found.setdefault(theorem, []).append((pair[1], uses))
-    return found
+        if any(proofs.holds_of_any(name, pair) and proofs.was_run(name) for name in theorems):
+            continue
+        for theorem in sorted(theorems, key=proofs.size):
+            if (theorem, pair) not in asked and (uses := proofs.undecided(theorem, pair)):
+                found.setdefault(theorem, []).append((pair, uses))
+                break
+    return {theorem: sorted(some, key=lambda of: of[0]) for theorem, some in sorted(found.items())}
+
+
+def with_decided(
+    entries: Mapping[str, Entry],
+    home: Home,
+    proofs: Proofs,
+    ask: Callable[[Mapping[str, list[Group]]], Mapping[str, frozenset[Decided]]],
+) -> Proofs:
+    """The proofs with what is decided by goals with conditions, as far as a kernel needs it.
+
+    In rounds: one theorem is asked for each kernel, until one holds it or all were asked. So what is
+    asked depends on nothing but the answers before.
+    """
+    asked: set[tuple[str, tuple[str, str]]] = set()
+    while wanted := to_decide(entries, home, proofs, asked):
+        asked |= {(name, pair) for name, some in wanted.items() for pair, _ in some}
+        said = ask({n: [(pair[1], uses) for pair, uses in some] for n, some in wanted.items()})
+        known = proofs.decided
+        more = {name: known.get(name, frozenset()) | some for name, some in said.items()}
+        proofs = replace(proofs, decided={**known, **more})
+    return proofs
 
 
 def problems(entries: Mapping[str, Entry], home: Home, proofs: Proofs) -> list[str]:

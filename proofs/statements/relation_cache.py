@@ -54,12 +54,13 @@ class Kept:
             for name, file in files.items()
             if (data := _kept(file))
         }
-        read = _anew(
-            functools.partial(self._decide, wanted), [n for n in files if n not in found], jobs
-        )
-        for name, one in read.items():
-            _keep(files[name], {"decided": sorted(one)})
-        return {**found, **read}
+        names = [name for name in files if name not in found]
+        # each in a process of its own: what the solver finds may depend on what was stated before
+        tasks = [functools.partial(self._decide, wanted, name) for name in names]
+        for number, one in worker_processes.each(tasks, jobs):
+            found[names[number]] = one
+            _keep(files[names[number]], {"decided": sorted(one)})
+        return found
 
     def _read(self, name: str) -> Relations:
         return relations.relations(name, self.home.theorems)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -18,6 +20,7 @@ from cratous.proofs.engine import prover
 from cratous.proofs.engine.reachable_paths import ALL, NOT
 from cratous.proofs.statements import relation_cache
 from cratous.proofs.statements.closed_definitions import full_name
+from cratous.proofs.statements.decided import Decided, Group
 from cratous.proofs.statements.definitions import (
     Proofs,
     definition,
@@ -25,6 +28,7 @@ from cratous.proofs.statements.definitions import (
     is_restated,
     problems,
     to_decide,
+    with_decided,
 )
 from cratous.proofs.statements.relation_cache import Kept, readers
 from cratous.proofs.statements.relations import Relations, relations
@@ -58,7 +62,8 @@ def test_each_definition_is_used_and_related_by_a_theorem() -> None:
         related,
         varied,
     )
-    proofs = replace(proofs, decided=kept.decided(to_decide(ENTRIES, PRODUCT, proofs), jobs=2))
+    ask = functools.partial(kept.decided, jobs=2)
+    proofs = with_decided(ENTRIES, PRODUCT, proofs, ask)
     assert problems(ENTRIES, PRODUCT, proofs) == []
 
 
@@ -135,13 +140,51 @@ def test_goals_with_conditions_are_looked_at_further() -> None:
     assert to_decide({"later": later}, PRODUCT, found) == {}
     (using,) = found.relations.values()
     conditional = replace(found, relations={"one": replace(using, plain=frozenset())})
-    wanted = {"one": [(used, {(full, 0): ALL})]}
+    wanted = {"one": [((full, used), {(full, 0): ALL})]}
     assert to_decide({"later": later}, PRODUCT, conditional) == wanted
     assert "goals have conditions" in _said(later, conditional)
     decided = {"one": frozenset([(used, full, 0)])}
     assert problems({"later": later}, PRODUCT, replace(conditional, decided=decided)) == []
     other = {"one": frozenset([("cratous.spec.schedule.earlier_of", full, 0)])}
     assert "goals have conditions" in _said(later, replace(conditional, decided=other))
+
+
+def test_one_theorem_is_asked_for_each_kernel_in_a_round() -> None:
+    later = named("later")
+    used, full = definition_name(later, PRODUCT), later.name
+    found = _proofs("later", used)
+    using = replace(found.relations["one"], plain=frozenset())
+    more = replace(using, uses=using.uses | {(full, used, full, 1)})
+    lasting = replace(using, lemmas=("lemma",))
+    relations = {"a": more, "b": using, "c": using, "d": lasting, "lemma": NOTHING}
+    several = replace(
+        found,
+        kernels=dict.fromkeys("abcd", (full,)),
+        relations=relations,
+        varied=dict.fromkeys("abcd", {(full, 0): ALL}),
+    )
+    decides = frozenset([(used, full, 0)])
+
+    def rounds(proofs: Proofs, deciding: str) -> tuple[list[list[str]], Proofs]:
+        asked: list[list[str]] = []
+
+        def ask(wanted: Mapping[str, list[Group]]) -> dict[str, frozenset[Decided]]:
+            asked.append(list(wanted))
+            return {name: decides if name in deciding else frozenset() for name in wanted}
+
+        known = with_decided({"later": later}, PRODUCT, proofs, ask)
+        return asked, known
+
+    # those that use least come first, then by name
+    for deciding, wanted in (("b", "b"), ("c", "bc"), ("ad", "bcd"), ("", "bcda")):
+        asked, known = rounds(several, deciding)
+        assert asked == [[name] for name in wanted]
+        assert (problems({"later": later}, PRODUCT, known) == []) == bool(deciding)
+    # one that was not run holds nothing alone, so it is asked last, and does not end the rounds
+    for deciding, wanted in (("ab", "cda"), ("b", "cdab")):
+        asked, known = rounds(replace(several, run=frozenset("acd")), deciding)
+        assert asked == [[name] for name in wanted]
+        assert (problems({"later": later}, PRODUCT, known) == []) == ("a" in deciding)
 
 
 def test_what_assumes_something_vouches_for_nothing() -> None:
