@@ -37,8 +37,15 @@ QUESTIONS = 16
 """So many questions are put to the solver for a theorem at most."""
 
 
-def decided(name: str, folder: Path, seed: str, wanted: Iterable[Group]) -> frozenset[Decided]:
-    """Of each group of uses enough, as far as they are found; seed: of all that the theorem rests on."""
+def decided(
+    name: str, folder: Path, seed: str | None, wanted: Iterable[Group]
+) -> frozenset[Decided]:
+    """Of each group of uses enough, as far as they are found; seed: of all that the theorem rests on.
+
+    None where there is no seed.
+    """
+    if seed is None:
+        return frozenset()
     claim, whole = outline(name, folder)
     if not whole:
         return frozenset()

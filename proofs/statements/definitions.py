@@ -91,9 +91,9 @@ class Proofs:
         return self.run is None or theorem in self.run
 
     def size(self, theorem: str) -> tuple[bool, int, int, str]:
-        """Orders theorems: those that were run first, then by how much they use; no two are the same."""
+        """Orders theorems: those that were run first, then the shortest; no two are the same."""
         related = self.relations[theorem]
-        return not self.was_run(theorem), len(related.uses), len(related.lemmas), theorem
+        return not self.was_run(theorem), len(related.statement), len(related.uses), theorem
 
     def about(self, name: str) -> list[str]:
         """The theorems about a kernel, in order."""
@@ -154,7 +154,7 @@ def to_decide(
 ) -> dict[str, list[tuple[tuple[str, str], dict[Use, str]]]]:
     """By theorem, kernels that no theorem holds against their definitions yet, each with its uses there.
 
-    Each kernel stands at one theorem: of those not asked about it yet the one that uses least.
+    Each kernel stands at one theorem: of those not asked about it yet the shortest.
     """
     found: dict[str, list[tuple[tuple[str, str], dict[Use, str]]]] = {}
     for entry in entries.values():

@@ -43,7 +43,7 @@ class Kept:
     def decided(
         self, wanted: Mapping[str, list[Group]], jobs: int = 1
     ) -> dict[str, frozenset[Decided]]:
-        """Of uses that are asked of each theorem, those that its goals decide (`decided`)."""
+        """Of uses that are asked of each theorem, those that its goals decide; none of one that has no key."""
         asked = {
             name: [(meant, sorted((*u, how) for u, how in hows.items())) for meant, hows in groups]
             for name, groups in wanted.items()
@@ -56,7 +56,13 @@ class Kept:
         }
         names = [name for name in files if name not in found]
         # each in a process of its own: what the solver finds may depend on what was stated before
-        tasks = [functools.partial(self._decide, wanted, name) for name in names]
+        keys = [
+            self._recall.key(name) for name in names
+        ]  # made here: all of them read the same files
+        tasks = [
+            functools.partial(decided.decided, name, self.home.theorems, key, wanted[name])
+            for name, key in zip(names, keys, strict=True)
+        ]
         for number, one in worker_processes.each(tasks, jobs):
             found[names[number]] = one
             _keep(files[names[number]], {"decided": sorted(one)})
@@ -64,12 +70,6 @@ class Kept:
 
     def _read(self, name: str) -> Relations:
         return relations.relations(name, self.home.theorems)
-
-    def _decide(self, wanted: Mapping[str, list[Group]], name: str) -> frozenset[Decided]:
-        seed = self._recall.key(name)
-        if seed is None:
-            return frozenset()
-        return decided.decided(name, self.home.theorems, seed, wanted[name])
 
     def _file(self, name: str, asked: str = "") -> Path | None:
         """Where the relations of a theorem are kept, or what else was asked of it; None where nothing is."""

@@ -153,15 +153,15 @@ def test_one_theorem_is_asked_for_each_kernel_in_a_round() -> None:
     later = named("later")
     used, full = definition_name(later, PRODUCT), later.name
     found = _proofs("later", used)
-    using = replace(found.relations["one"], plain=frozenset())
+    using = replace(found.relations["one"], plain=frozenset(), statement="later is x")
+    long = replace(using, statement="for all x, later(x) is x")
     more = replace(using, uses=using.uses | {(full, used, full, 1)})
-    lasting = replace(using, lemmas=("lemma",))
-    relations = {"a": more, "b": using, "c": using, "d": lasting, "lemma": NOTHING}
+    relations = {"a": long, "b": using, "c": using, "d": more}
     several = replace(
         found,
         kernels=dict.fromkeys("abcd", (full,)),
         relations=relations,
-        varied=dict.fromkeys("abcd", {(full, 0): ALL}),
+        varied={name: {(full, 0): ALL} for name in "abcd"},
     )
     decides = frozenset([(used, full, 0)])
 
@@ -175,7 +175,7 @@ def test_one_theorem_is_asked_for_each_kernel_in_a_round() -> None:
         known = with_decided({"later": later}, PRODUCT, proofs, ask)
         return asked, known
 
-    # those that use least come first, then by name
+    # the shortest comes first, then what uses least, then by name
     for deciding, wanted in (("b", "b"), ("c", "bc"), ("ad", "bcd"), ("", "bcda")):
         asked, known = rounds(several, deciding)
         assert asked == [[name] for name in wanted]
