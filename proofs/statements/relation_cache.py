@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import json
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -63,9 +63,10 @@ class Kept:
             functools.partial(decided.decided, name, self.home.theorems, key, wanted[name])
             for name, key in zip(names, keys, strict=True)
         ]
-        for number, one in worker_processes.each(tasks, jobs):
-            found[names[number]] = one
-            _keep(files[names[number]], {"decided": sorted(one)})
+        for number, one in _each_that_ends(tasks, jobs):
+            found[names[number]] = frozenset() if one is None else one
+            if one is not None:
+                _keep(files[names[number]], {"decided": sorted(one)})
         return found
 
     def _read(self, name: str) -> Relations:
@@ -90,6 +91,23 @@ def _anew(make: Callable[[str], One], names: list[str], jobs: int) -> dict[str, 
     count = min(8 * jobs, len(names)) if jobs > 1 else min(1, len(names))
     tasks = [functools.partial(_each, make, names[k::count]) for k in range(count)]
     return {n: one for _, some in worker_processes.each(tasks, jobs) for n, one in some.items()}
+
+
+def _each_that_ends(tasks: list[Callable[[], One]], jobs: int) -> Iterator[tuple[int, One | None]]:
+    """Number and result of each; None of one whose process was ended by its limit of CPU time."""
+    left = set(range(len(tasks)))
+    try:
+        for number, one in worker_processes.each(tasks, jobs):
+            left.remove(number)
+            yield number, one
+    except worker_processes.Ended:
+        for number in sorted(left):  # which one it was is not told
+            try:
+                yield number, worker_processes.call(tasks[number])
+            except worker_processes.Ended as error:
+                if not error.out_of_time:
+                    raise
+                yield number, None
 
 
 def _each(make: Callable[[str], One], names: list[str]) -> dict[str, One]:

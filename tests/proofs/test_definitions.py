@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import functools
 import math
+import os
+import signal
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -80,6 +82,28 @@ def test_what_is_kept_of_a_statement_depends_on_all_that_reads_it(
         files = [changed if file.name == name else file for file in there.values()]
         monkeypatch.setattr(relation_cache, "readers", lambda files=files: files)
         assert kept._file("authority_exactly_one_gives_way") != before, name
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_theorem_whose_process_is_ended_decides_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, jobs: int
+) -> None:
+    names = sorted(prover.theorem_files())[:4]
+    said = frozenset([("spec.meant", "core.kernel", 0)])
+
+    def decide(name: str, folder: Path, seed: str, wanted: object) -> frozenset[Decided]:
+        if name == names[1]:
+            os.kill(os.getpid(), signal.SIGXCPU)
+        return said
+
+    monkeypatch.setattr(relation_cache.decided, "decided", decide)
+    kept = Kept(tmp_path, PRODUCT)
+    wanted: dict[str, list[Group]] = {name: [("spec.meant", {})] for name in names}
+    found = kept.decided(wanted, jobs)
+    assert found == {name: frozenset() if name == names[1] else said for name in names}
+    # an answer is kept, its lack is not
+    assert len([file for file in tmp_path.rglob("*") if file.is_file()]) == 3
+    assert kept.decided(wanted, jobs) == found
 
 
 # -- what is wrong is said -------------------------------------------------------------------
