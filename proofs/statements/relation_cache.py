@@ -93,7 +93,9 @@ def _anew(make: Callable[[str], One], names: list[str], jobs: int) -> dict[str, 
     return {n: one for _, some in worker_processes.each(tasks, jobs) for n, one in some.items()}
 
 
-def _each_that_ends(tasks: list[Callable[[], One]], jobs: int) -> Iterator[tuple[int, One | None]]:
+def _each_that_ends(
+    tasks: Sequence[Callable[[], One]], jobs: int
+) -> Iterator[tuple[int, One | None]]:
     """Number and result of each; None of one whose process was ended by its limit of CPU time."""
     left = set(range(len(tasks)))
     try:
