@@ -10,7 +10,8 @@ from ground_station_tools import serving
 
 pytestmark = pytest.mark.slow
 VIEWS = ("1e20,0,1", "-1e300,1e308,100", "0,0,1e-300", "0,0,1e300", "-1e9,1e9,100")
-TILES = ("--tiles", "http://127.0.0.1:9/{z}/{x}/{y}.png")
+NOBODY = "http://127.0.0.1:9/"
+TILES = ("--tiles", NOBODY + "{z}/{x}/{y}.png")
 
 
 @pytest.mark.parametrize("words", [(), TILES], ids=["alone", "tiles"])
@@ -23,4 +24,5 @@ def test_a_view_of_nowhere_near_is_shown_as_any_other(
             page.until(READY)
             page.click("#whole")
             page.until("!location.hash.includes('map=')")
-        assert page.logged == []
+        # pictures of the map are not to be had here, which the browser tells
+        assert [one for one in page.logged if NOBODY not in str(one)] == []

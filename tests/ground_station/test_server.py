@@ -273,7 +273,7 @@ def test_a_damaged_log_is_told_in_the_page_s_answer_and_on_stderr(
         got = ask(port, "/recording.json")
         assert got.status == 422
         told = got.data()
-        assert told["error"] == "a message lacks what its type has"
+        assert told["error"] == "a field is missing"
         assert told["where"] == f"{log}, message {seq} (cratous.TaskProgress)"
         assert ask(port, "/").status == 200
         running.send_signal(signal.SIGTERM)
