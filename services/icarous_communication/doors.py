@@ -34,7 +34,7 @@ class Dialects:
 
     @property
     def all(self) -> tuple[Dialect, ...]:
-        """Each that some peer may speak."""
+        """Every dialect that some peer may speak."""
         return (self.usual, *self.others.values())
 
     def of(self, vehicle_id: int) -> Dialect:
