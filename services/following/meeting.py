@@ -157,9 +157,10 @@ def at_speed(made: Any, speed_m_s: float) -> Any:
 def options_of(
     context: Context, task: Task, met: Met, world: Known
 ) -> tuple[list[tuple[Option, int]], list[Dropped], list[str]]:
-    """The options with the numbers of their states; what is not offered, with the reason; what is not done.
+    """The options with the indices of their states; what is not offered, with the reason; and notes on
+    deviations.
 
-    A direct way comes after the straight run-in of its vehicle and state.
+    A direct route follows the run-in of its vehicle and state.
     """
     made, dropped, notes = list[tuple[Option, int]](), list[Dropped](), list[str]()
     able = flying(context.inputs.mission.vehicles, task, dropped)
