@@ -307,7 +307,7 @@ class Communication:
     def _suspend(self, state: State, vid: int, now_ms: int) -> Step:
         craft, peer = state.craft(vid), state.link.peer(vid)
         assert peer is not None
-        tasks = being_done(craft.plan, craft.listed)  # those it is still on its way to need no pause
+        tasks = being_done(craft.plan, craft.listed)  # tasks not yet reached need no pause
         left = Position(0.0, 0.0, 0.0) if craft.air is None else craft.air.position
         # a reconnected instance has had the vehicle all the time
         state = state.put(vid, replace(craft, away=craft.away or Away(left, tasks)))
