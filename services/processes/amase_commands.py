@@ -1,13 +1,12 @@
 """Deviations of AMASE from the standard, and commands to repeat after its restart.
 
-- GoToWaypointAction in a VehicleActionCommand: it flies straight on forever. The mission command is sent
-again, from that waypoint on.
-
+- GoToWaypointAction in a VehicleActionCommand: it flies straight on forever. The mission command is
+  sent again, from that waypoint on.
 - An aircraft that leaves its waypoints keeps its vertical speed in a loiter, forever. A flight director
-command that levels it is sent first, separately: of two actions in one command AMASE executes only the first.
-
-- A camera without a resolution gets footprints that are not numbers. It is given a resolution of its aspect
-ratio.
+  command that levels it is sent first, separately: of two actions in one command AMASE executes only the
+  first.
+- A camera without a resolution gets footprints that are not numbers. It is given a resolution of its
+  aspect ratio.
 """
 
 from __future__ import annotations
