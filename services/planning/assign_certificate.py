@@ -59,7 +59,7 @@ def certified(
 ) -> tuple[Solution, dict[str, Any]]:
     """The solution with the status that its certificate supports, and the certificate.
 
-    solvers: whether z3 and cvc5 may be asked where nothing else proves the optimum.
+    solvers: whether z3 and cvc5 may be used where nothing else proves the optimum.
     """
     proofs = list(found.proof) if isinstance(found.proof, list) else []
     written = [_proof(proof) for proof in proofs]

@@ -23,7 +23,7 @@ from cratous.spec.assignment.search import TIME, AssignmentProblem
 
 @dataclass(frozen=True)
 class Named:
-    """A constraint of the user's: its words, and what it says in each branch (by number)."""
+    """A constraint of the user: its words, and its formulas as (branch number, formula)."""
 
     text: str
     formulas: tuple[tuple[int, Any], ...]
@@ -51,9 +51,10 @@ Said = list[tuple[str, Any, int]]
 def meaning(
     logic: Logic, term: algebra.Term, semantics: str = TIME, done: Iterable[int] = ()
 ) -> list[tuple[str, Any]]:
-    """The constraints of a term without `+`, as pairs (words, formula); each timing constrains its own tasks alone.
+    """The constraints of a term without `+`, as pairs (words, formula); each timing constrains its own tasks
+    only.
 
-    done: tasks that are flown; what was said of them is past.
+    done: tasks already flown, whose constraints are omitted.
     """
     found: Said = []
     _say(logic, term, semantics == TIME, found)

@@ -231,9 +231,9 @@ def untimed(term: algebra.Term) -> algebra.Term:
 def _without(
     row: constraint_rows.Row, times: Mapping[int, tuple[int, int]], binds: bool
 ) -> tuple[constraint_rows.Row, ...]:
-    """What a row says once some of its group are flown; no task to come starts before those did.
+    """A row once some tasks of its group are flown; no remaining task starts before those did.
 
-    binds: a row of order binds times too; else it is met by what is flown.
+    binds: an order row binds times too; otherwise flown tasks satisfy it.
     """
     gone = [times[task] for task in row.group if task in times]
     left = tuple(task for task in row.group if task not in times)

@@ -33,11 +33,11 @@ Offers = tuple[tuple[Option, ...], tuple[Dropped, ...]]
 
 @dataclass
 class Inputs:
-    """A mission from given poses at an instant [ms], with what has been flown of it.
+    """A mission from given poses at an instant [ms], with the tasks already flown.
 
-    flying: the poses are where the vehicles are, not where a user has put them; absent: the vehicles
-    that take no part, with the reasons; undone: tasks that have ended undone, with the reasons; begun:
-    tasks that have been begun and are not ended.
+    flying: the poses are actual positions in flight, not the user's input; absent: vehicles that take no
+    part, with the reasons; undone: tasks that ended undone, with the reasons; begun: tasks that have begun
+    but not ended.
     """
 
     mission: Mission

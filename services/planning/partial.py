@@ -37,8 +37,9 @@ Rank = tuple[tuple[int, ...], int]
 
 @dataclass(frozen=True)
 class Chosen:
-    """What to do. parts: alike in what they leave out; sure: nothing leaves out less, as far as the
-    questions were decided."""
+    """The choice. parts: equal in what they leave out; sure: no part leaves out less, as far as the queries
+    were decided.
+    """
 
     parts: tuple[Part, ...]
     sure: bool

@@ -30,7 +30,7 @@ class Ending(Protocol):
 
     @property
     def start(self) -> Pose:
-        """Where a way to it ends."""
+        """End pose of a route to it."""
 
     @property
     def end(self) -> Pose:
