@@ -20,7 +20,7 @@ from cratous.core.kernel import qualified
 from cratous.spec.mission import Position, Zone, ZoneKind
 
 PARTS = 1 << 60
-"""Unit fraction of a metre in which nearly all doubles of at least 0.01 are whole numbers."""
+"""Parts per metre in which nearly all doubles of at least 0.01 are whole numbers."""
 
 
 @lru_cache(maxsize=512)
@@ -38,7 +38,7 @@ def _whole(zone: Zone, parts: int) -> Zone:
 
 @lru_cache(maxsize=512)
 def _parts_of(zone: Zone) -> int:
-    """Fraction of a metre in which all numbers of a zone are whole."""
+    """Parts per metre in which all numbers of a zone are whole."""
     numbers = (zone.floor_m, zone.ceiling_m, *(x for vertex in zone.vertices for x in vertex))
     return lcm(PARTS, *(Fraction(x).denominator for x in numbers))
 
