@@ -54,7 +54,7 @@ AWAY = (3.0, 6.0, 12.0, 24.0)
 BEARINGS = 12
 """Number of directions in which it is searched for."""
 ROOM_M = 10.0
-"""Sufficient distance from zones for a way of tightest turns [m]."""
+"""Sufficient distance from zones for a path of tightest turns [m]."""
 
 
 class Ways:
@@ -168,10 +168,10 @@ class Ways:
         return Last(chains.final_loiter(pose, _radius_m(chain), 0.0, 0.0, ()), False)
 
     def _tight(self, chain: Chain, state: AirState) -> tuple[float, Last] | None:
-        """A way of tightest turns and straights into a circle that keeps the zones, with the length that
+        """A path of tightest turns and straights into a circle that keeps the zones, with the length that
         violates zones [m].
 
-        Of ways that violate none, the first with ROOM_M of clearance, else the one with the most; if all
+        Of paths that violate none, the first with ROOM_M of clearance, else the one with the most; if all
         violate some, the one that does so least. None where no such circle was found.
         """
         tried = escapes(state.pose, state.speed_m_s, chain.vehicle, self.zones, self.dt_s)
