@@ -1,7 +1,7 @@
 """The flight in processes: starts them in order, starts the clock, monitors them, and ends them all.
 
-The clock of the simulator stands from its first states until UxAS has made the checked plan and the simulator has its
-commands."""
+The clock of the simulator is stopped from its first states until UxAS has made the checked plan and the simulator has
+its commands."""
 
 from __future__ import annotations
 
