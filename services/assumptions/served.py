@@ -1,4 +1,4 @@
-"""The assumptions under which each item is served: short stays of ICAROUS, chains flown in time, no other failure."""
+"""The assumptions under which each item is served: short ICAROUS stays, chains flown in time, no other failure."""
 
 from __future__ import annotations
 
@@ -15,14 +15,16 @@ from cratous.spec.mission import GroundedVehicle, Mission
 from cratous.spec.mission.changes import VEHICLE_HOLDS
 
 GIVEN_UP = "blocked: "
-"""So the note of a task begins whose item was given up for what ICAROUS flew on it."""
+"""Prefix of a task's note if its item was given up because of the time under ICAROUS."""
 
 
 @dataclass
 class _Chain:
-    """Of one vehicle. since_ms: since when ICAROUS commands alone, None if it does not; takeovers, stay_ms: so many on the
-    present item, and the longest stay on it; most, longest_ms: the same of any item; under_ms: all stays; items: those
-    that it was on its way to; done_ms: when it left the last."""
+    """One vehicle. since_ms: start of ICAROUS's sole command, None outside; takeovers, stay_ms:
+    their number and the longest stay on the current item; most, longest_ms: maxima over all items;
+    under_ms: total of all stays; items: those it was on its way to; done_ms: time at which it left
+    the last.
+    """
 
     since_ms: int | None = None
     takeovers: int = 0
@@ -37,11 +39,12 @@ class _Chain:
 
 
 class ServedWatch:
-    """A stay is the time in which ICAROUS commands alone: from a takeover, or a withdrawn offer, to the next offer.
+    """Checks stays: times of sole command by ICAROUS, from a takeover or withdrawn offer to the
+    next offer.
 
-    UxAS counts takeovers and stays by what it hears, each up to two heartbeats late. Where an item is not held to
-    its time (the vehicle stood on the ground, flew without its link, or held by command) a stay that is too long is not
-    observed.
+    UxAS counts takeovers and stays as it hears of them, each up to two heartbeats late. If an item
+    is not subject to its time limit (vehicle on the ground, without link, or holding by command), a
+    stay that is too long is not observed.
     """
 
     kinds = ("GateState", "TaskProgress", UNHEARD)
@@ -61,7 +64,7 @@ class ServedWatch:
         self._failures = 0
 
     def message(self, message: Message) -> None:
-        """Who commands a vehicle, to which item it flies, and how that ends."""
+        """Process one message: commander of a vehicle, its current item, or the item's outcome."""
         if message.kind not in self.kinds:
             return
         body, now_ms = message.body, message.time_ms
@@ -103,7 +106,7 @@ class ServedWatch:
             chain.items.add(body.TaskID)
 
     def _stayed(self, vid: int, chain: _Chain, now_ms: int) -> None:
-        """A stay has lasted until now: what was counted of the present item up to now is within what is allowed."""
+        """Check the current item's counts up to now_ms, an open stay included, against the limits."""
         if chain.since_ms is not None:
             late_ms = self._late_ms
             chain.stay_ms = max(chain.stay_ms, now_ms - chain.since_ms + late_ms)
@@ -123,7 +126,7 @@ class ServedWatch:
             self._stays.check(not given_up, now_ms, vid, text)
 
     def _left(self, vid: int, chain: _Chain, now_ms: int) -> None:
-        """An item is left."""
+        """The vehicle leaves its current item."""
         self._stayed(vid, chain, now_ms)
         open_ms = 0 if chain.since_ms is None else now_ms - chain.since_ms
         chain.most = max(chain.most, chain.takeovers)
@@ -132,7 +135,7 @@ class ServedWatch:
         chain.takeovers = chain.stay_ms = chain.task_id = 0
 
     def end(self, at_ms: int) -> None:
-        """The mission is over: what is still open counts up to now, and each chain is held to the limit."""
+        """End of the messages at at_ms [ms]: open stays count up to here, and each chain is checked."""
         for vid, chain in self._chains.items():
             if chain.task_id:
                 self._left(vid, chain, at_ms)
@@ -149,7 +152,7 @@ class ServedWatch:
             self._time.check(in_time(0, all_ms, self._limit_ms), at_ms, vid, text)
 
     def records(self) -> dict[str, Record]:
-        """See `Watch`."""
+        """The observations so far, by name of the assumption (see `Watch`)."""
         return {
             "stays bounded": self._stays,
             "flown in time": self._time,
