@@ -5,6 +5,7 @@ The command and its self-test judge by the same functions, so what the one refus
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,7 +17,7 @@ from cratous.core.ledger.status import Grounds
 from cratous.proofs import ledger
 from cratous.proofs.engine.cache import Cache
 from cratous.proofs.ledger.proof_recall import Recall
-from cratous.proofs.phases import COMPARING, COMPILING, STATEMENTS, THEOREMS, Phases
+from cratous.proofs.phases import COMPARING, COMPILING, GOALS, STATEMENTS, THEOREMS, Phases
 from cratous.proofs.running.compiling import compile_ahead
 from cratous.proofs.running.theorem import Function
 from cratous.proofs.statements import definitions
@@ -144,6 +145,10 @@ def judge(
         read,
         {theorem.name: theorem.uses for theorem in theorems},
         frozenset(t.name for t in theorems if not t.proved or (t.ran and t.ran.doubles)),
+        assuming=frozenset(t.name for t in theorems if t.assumptions),
     )
+    ask = functools.partial(kept.decided, jobs=jobs or ledger.jobs_default())
+    proofs = definitions.with_decided(entries, home, proofs, ask)
+    parts.ended(GOALS)
     unmeant = tuple(definitions.problems(entries, home, proofs))
     return Judgement(inventory, structural, unmeant, grounds(entries, home, proofs), statements)

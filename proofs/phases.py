@@ -13,6 +13,7 @@ THEOREMS = "stating theorems, solving and running them"
 COMPILING = "compiling the readings"
 COMPARING = "comparing the readings"
 STATEMENTS = "reading what they relate"
+GOALS = "what their goals decide"
 SECOND = "cvc5"
 REST = "the rest"
 

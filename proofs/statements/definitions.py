@@ -10,18 +10,20 @@ from __future__ import annotations
 
 import importlib
 import inspect
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from cratous.core.kernel import REGISTRY, Entry, Fold, supported
 from cratous.core.kernel.sources import position, reached
 from cratous.core.ledger.package_home import Home
 from cratous.proofs.engine.argument_values import FEW
-from cratous.proofs.engine.reachable_paths import of_more_than_one, values_left
+from cratous.proofs.engine.reachable_paths import NOT, of_more_than_one, values_left
 from cratous.proofs.statements.closed_definitions import full_name
+from cratous.proofs.statements.decided import Decided, Group
 from cratous.proofs.statements.relations import Relations
 from cratous.proofs.statements.restated import restates
+from cratous.proofs.statements.unconditional import Use
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,8 @@ class Proofs:
 
     kernels: those that each theorem is about; proved: the theorems that are; varied: how the
     arguments of their uses of kernels vary, by name and number; run: all but those that are proved and
-    were run at no point of doubles; None where that was not looked at.
+    were run at no point of doubles; None where that was not looked at. decided: by theorem, a definition
+    and a use whose result it decides at many values, by goals with conditions; assuming: theorems that take something for granted.
     """
 
     kernels: Mapping[str, tuple[str, ...]]
@@ -38,23 +41,59 @@ class Proofs:
     relations: Mapping[str, Relations]
     varied: Mapping[str, Mapping[tuple[str, int], str]]
     run: frozenset[str] | None = None
+    decided: Mapping[str, frozenset[Decided]] = field(default_factory=dict)
+    assuming: frozenset[str] = frozenset()
 
     def holds_of_any(self, theorem: str, pair: tuple[str, str]) -> bool:
-        """The theorem relates the two by a use whose arguments are not fixed to a few values."""
-        return of_more_than_one(self._how(theorem, pair))
+        """The theorem relates the two by a use that is not fixed to a few values, nor its goals true beside them.
+
+        None does that assumes something, or rests on what does.
+        """
+        if not self.assuming.isdisjoint(self.resting([theorem])):
+            return False
+        plain = self.relations[theorem].plain
+        decided = self.decided.get(theorem, frozenset())
+        uses = self.related_uses(theorem, pair)
+        return of_more_than_one(
+            [
+                how
+                for use, how in uses.items()
+                if (*pair, *use) in plain or (pair[1], *use) in decided
+            ]
+        )
+
+    def undecided(self, theorem: str, pair: tuple[str, str]) -> dict[Use, str]:
+        """The uses by which it relates the two, if it is only to be found whether goals with conditions decide them."""
+        known = self.holds_of_any(theorem, pair) or not self.assuming.isdisjoint(
+            self.resting([theorem])
+        )
+        uses = {
+            u: how for u, how in self.related_uses(theorem, pair).items() if not how.startswith(NOT)
+        }
+        return {} if known or not of_more_than_one(uses.values()) else uses
+
+    def by_goals(self, theorem: str, pair: tuple[str, str]) -> bool:
+        """Its premises leave many values, but not its goals, or it was not found that they do."""
+        return bool(self.undecided(theorem, pair))
 
     def left(self, theorem: str, pair: tuple[str, str]) -> int:
         """How many values it leaves an argument of which it leaves a few; 0 where it leaves none or one."""
-        return values_left(self._how(theorem, pair))
+        return values_left(self.related_uses(theorem, pair).values())
 
-    def _how(self, theorem: str, pair: tuple[str, str]) -> list[str]:
+    def related_uses(self, theorem: str, pair: tuple[str, str]) -> dict[Use, str]:
+        """The uses by which it relates the two, and how their arguments vary."""
         uses = self.relations[theorem].uses
         varied = self.varied.get(theorem, {})
-        return [how for use, how in varied.items() if (*pair, *use) in uses]
+        return {use: how for use, how in varied.items() if (*pair, *use) in uses}
 
     def was_run(self, theorem: str) -> bool:
         """If it is proved, it was run at a point of doubles where its premises hold."""
         return self.run is None or theorem in self.run
+
+    def size(self, theorem: str) -> tuple[bool, int, int, str]:
+        """Orders theorems: those that were run first, then the shortest; no two are the same."""
+        related = self.relations[theorem]
+        return not self.was_run(theorem), len(related.statement), len(related.uses), theorem
 
     def about(self, name: str) -> list[str]:
         """The theorems about a kernel, in order."""
@@ -107,6 +146,52 @@ def relating(entry: Entry, home: Home, proofs: Proofs) -> list[str]:
     return [theorem for theorem in theorems if pair in proofs.relations[theorem].pairs]
 
 
+def to_decide(
+    entries: Mapping[str, Entry],
+    home: Home,
+    proofs: Proofs,
+    asked: Collection[tuple[str, tuple[str, str]]] = (),
+) -> dict[str, list[tuple[tuple[str, str], dict[Use, str]]]]:
+    """By theorem, kernels that no theorem holds against their definitions yet, each with its uses there.
+
+    Each kernel stands at one theorem: of those not asked about it yet the shortest.
+    """
+    found: dict[str, list[tuple[tuple[str, str], dict[Use, str]]]] = {}
+    for entry in entries.values():
+        if entry.kind == "driver" or not entry.implements:
+            continue
+        pair = (full_name(entry.function), definition_name(entry, home))
+        theorems = relating(entry, home, proofs)
+        if any(proofs.holds_of_any(name, pair) and proofs.was_run(name) for name in theorems):
+            continue
+        for theorem in sorted(theorems, key=proofs.size):
+            if (theorem, pair) not in asked and (uses := proofs.undecided(theorem, pair)):
+                found.setdefault(theorem, []).append((pair, uses))
+                break
+    return {theorem: sorted(some, key=lambda of: of[0]) for theorem, some in sorted(found.items())}
+
+
+def with_decided(
+    entries: Mapping[str, Entry],
+    home: Home,
+    proofs: Proofs,
+    ask: Callable[[Mapping[str, list[Group]]], Mapping[str, frozenset[Decided]]],
+) -> Proofs:
+    """The proofs with what is decided by goals with conditions, as far as a kernel needs it.
+
+    In rounds: one theorem is asked for each kernel, until one holds it or all were asked. So what is
+    asked depends on nothing but the answers before.
+    """
+    asked: set[tuple[str, tuple[str, str]]] = set()
+    while wanted := to_decide(entries, home, proofs, asked):
+        asked |= {(name, pair) for name, some in wanted.items() for pair, _ in some}
+        said = ask({n: [(pair[1], uses) for pair, uses in some] for n, some in wanted.items()})
+        known = proofs.decided
+        more = {name: known.get(name, frozenset()) | some for name, some in said.items()}
+        proofs = replace(proofs, decided={**known, **more})
+    return proofs
+
+
 def problems(entries: Mapping[str, Entry], home: Home, proofs: Proofs) -> list[str]:
     """What is wrong with the definitions that kernels and folds name, each with its place.
 
@@ -155,7 +240,15 @@ def _of_points(
     """What is wrong with the points at which its theorems hold it against its definition."""
     several = [theorem for theorem in theorems if proofs.holds_of_any(theorem, pair)]
     named = f"implements {entry.implements!r}, which none of its theorems"
-    if not several:
+    if not several and not proofs.assuming.isdisjoint(proofs.resting(theorems)):
+        yield f"{named} holds it against without an assumption (c.assume): state it as a premise"
+    elif not several and any(proofs.by_goals(theorem, pair) for theorem in theorems):
+        yield (
+            f"{named} holds it against for more than a few values: their goals have conditions, and it was "
+            "not found that they are false of other results elsewhere: show it without a condition "
+            "(c.implies, c.any_of, c.when), or for all of its cases"
+        )
+    elif not several:
         left = max((proofs.left(theorem, pair) for theorem in theorems), default=0)
         points = f"more than {FEW} points, all apart" if left > FEW else f"{left} points"
         what = f"a few values: its premises leave an argument {points}"

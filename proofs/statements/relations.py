@@ -36,6 +36,7 @@ from cratous.proofs.statements.closed_definitions import (
 )
 from cratous.proofs.statements.premise_and_goal import sides, signs
 from cratous.proofs.statements.sentences import UNREAD, Call, Stated
+from cratous.proofs.statements.unconditional import unconditional
 
 SAYS_RLIMIT = 200_000
 KINDS = {SymReal: "real number", SymInt: "integer", SymBool: "truth value", SymMask: "64-bit mask"}
@@ -51,8 +52,9 @@ class Relations:
     together: both in what is concluded, as in an equality, or the definition asked of the kernel's
     result; follows: the kernel from the definition; leads: the definition from the kernel. lemmas:
     what the theorem rests on. uses: the pairs, each with a use of a kernel by which they are related
-    (of a fold, its step): qualified name, and number among the theorem's uses of it. statement: what the
-    theorem says, as a sentence made from it.
+    (of a fold, its step): qualified name, and number among the theorem's uses of it. plain: those of
+    uses that some goal, or an induction, relates without a condition. statement: what the theorem says, as a sentence
+    made from it.
     """
 
     definitions: frozenset[str]
@@ -61,6 +63,7 @@ class Relations:
     leads: frozenset[tuple[str, str]]
     lemmas: tuple[str, ...]
     uses: frozenset[tuple[str, str, str, int]] = frozenset()
+    plain: frozenset[tuple[str, str, str, int]] = frozenset()
     statement: str = UNREAD
 
     @property
@@ -83,18 +86,27 @@ def _is_number(value: Any) -> bool:
 
 
 @dataclass
-class _Outline(Claim):
-    """A claim in which nothing is looked into but the statement itself."""
+class Outline(Claim):
+    """A claim in which nothing is looked into but the statement itself.
+
+    stated_uses: every use of a kernel in order, with its arguments.
+    """
 
     met: dict[Any, Any] = field(default_factory=dict)
     kept: list[z3.ExprRef] = field(default_factory=list)
+    looked_at: dict[int, tuple[z3.ExprRef, frozenset[str]]] = field(default_factory=dict)
     arguments: dict[Function, list[tuple[Any, ...]]] = field(default_factory=dict)
     made_of: dict[str, frozenset[Function]] = field(default_factory=dict)
     evaluated: dict[Function, list[tuple[str, ...]]] = field(default_factory=dict)
     written: dict[Use, tuple[str, ...]] = field(default_factory=dict)
     used_in: dict[str, frozenset[Use]] = field(default_factory=dict)
     counted: dict[str, int] = field(default_factory=dict)
+    stated_uses: list[tuple[Use, tuple[Any, ...]]] = field(default_factory=list)
+    results: dict[str, set[tuple[str, Use]]] = field(default_factory=dict)
+    meant: dict[str, str] = field(default_factory=dict)
+    given_to: dict[str, tuple[Any, ...]] = field(default_factory=dict)
     stepped: dict[str, Use] = field(default_factory=dict)
+    of_folds: set[Use] = field(default_factory=set)
     given_then: dict[int, tuple[z3.BoolRef, ...]] = field(default_factory=dict)
     kinds: dict[str, str] = field(default_factory=dict)
     values_of: dict[str, Call] = field(default_factory=dict)
@@ -113,8 +125,9 @@ class _Outline(Claim):
         self.folded = (kernel_fold, items)
         step = qualified(kernel_fold.step)
         self.stepped[full_name(kernel_fold)] = (step, self.counted.get(step, -1) + 1)
-        first = len(self.obligations)
+        first, before = len(self.obligations), len(self.stated_uses)
         super().fold(kernel_fold, **how)
+        self.of_folds |= {use for use, _ in self.stated_uses[before:]}
         if kernel_fold.finish is None:
             # its accumulator is its result, where the results are held against each other
             result = full_name(kernel_fold), frozenset(str(known(v)) for v in leaves(how["acc"]))
@@ -153,23 +166,35 @@ class _Outline(Claim):
             self.made_of |= {str(known(leaf)): inner for leaf in leaves(value)}
             uses = frozenset[Use]().union(*[self.uses_in(term) for term in terms])
             self.used_in |= {str(known(leaf)): uses for leaf in leaves(value)}
+            if in_spec(function):
+                self.meant |= {str(known(leaf)): full_name(function) for leaf in leaves(value)}
+            self.given_to |= {str(known(leaf)): args for leaf in leaves(value)}
         return self.met[key]
 
     def use(self, kernel: Function, *args: Any, when: Any = True) -> Any:
         value = super().use(kernel, *args, when=when)
         name = qualified(kernel)
         number = self.counted[name] = self.counted.get(name, -1) + 1
+        self.stated_uses.append(((name, number), args))
         written = [leaf for leaf in leaves(args) if isinstance(leaf, int)]
         self.written[name, number] = tuple(str(known(leaf)) for leaf in written)
         for leaf in map(known, leaves(value)):
             if str(leaf) in self.used_in:
                 self.used_in[str(leaf)] |= {(name, number)}
+                self.results.setdefault(str(leaf), set()).add((full_name(kernel), (name, number)))
         return value
+
+    def names_in(self, term: z3.ExprRef) -> frozenset[str]:
+        """The names in a term; each term is looked through once."""
+        seen = self.looked_at.get(term.get_id())
+        if seen is None:  # the term is kept, or its number would be another's
+            seen = self.looked_at[term.get_id()] = (term, frozenset(free_names(term)))
+        return seen[1]
 
     def uses_in(self, term: z3.ExprRef) -> frozenset[Use]:
         """The uses of kernels that a term is made of."""
         none: frozenset[Use] = frozenset()
-        return none.union(*[self.used_in.get(name, none) for name in free_names(term)])
+        return none.union(*[self.used_in.get(name, none) for name in self.names_in(term)])
 
     def uses_of(self, kernel: str, terms: Iterable[z3.BoolRef]) -> frozenset[Use]:
         """Those of a kernel, or the fold's step, by their full name, in these terms."""
@@ -198,7 +223,7 @@ class _Outline(Claim):
     def functions_in(self, value: Any) -> frozenset[Function]:
         """All functions that a value is made of."""
         term = value if z3.is_expr(value) else _raw(value)
-        names = free_names(term) if term is not None else ()
+        names = self.names_in(term) if term is not None else ()
         return frozenset().union(*[self.made_of.get(name, frozenset()) for name in names])
 
     def names_of(self, kernel: str) -> frozenset[str]:
@@ -232,7 +257,8 @@ class _Outline(Claim):
 
     def calls(self, function: Function) -> list[tuple[Any, ...]]:
         """The arguments with which it was used."""
-        return list(self.arguments.get(plain(function), []))
+        self.asked = True
+        return [] if self.hidden else list(self.arguments.get(plain(function), []))
 
     def congruence(self, function: Function, one: tuple[Any, ...], other: tuple[Any, ...]) -> None:
         """Equal arguments give the same value already."""
@@ -246,15 +272,25 @@ class _Outline(Claim):
         self.lemmas.append(name)
 
 
+def outline(name: str, folder: Path = FOLDER, *, hidden: bool = False) -> tuple[Outline, bool]:
+    """The statement of a theorem, read with all functions closed; and whether it could be read to its end.
+
+    hidden: it is told of no calls of functions (`c.calls`).
+    """
+    claim = Outline(load=lambda other: load_claim(other, folder)[0], hidden=hidden)
+    try:
+        reopened(load_claim(name, folder)[0], claim)(claim)
+    except (LiftError, TypeError, ValueError, RuntimeError, IndexError, KeyError, AttributeError):
+        return claim, False  # it asks for more than what a closed function tells
+    return claim, True
+
+
 def relations(name: str, folder: Path = FOLDER) -> Relations:
     """What the statement of a theorem relates; its kernels must be registered."""
-    statement = load_claim(name, folder)[0]
-    claim = _Outline(load=lambda other: load_claim(other, folder)[0])
-    try:
-        reopened(statement, claim)(claim)
-    except (LiftError, TypeError, ValueError, RuntimeError, IndexError, KeyError, AttributeError):
-        # it asks for more than what a closed function tells: only that it names them is known
-        return Relations(_named_in(statement), NONE, NONE, NONE, tuple(sorted(set(claim.lemmas))))
+    claim, whole = outline(name, folder)
+    if not whole:  # only that it names them is known
+        named = _named_in(load_claim(name, folder)[0])
+        return Relations(named, NONE, NONE, NONE, tuple(sorted(set(claim.lemmas))))
     found: dict[str, set[tuple[str, str]]] = {"together": set(), "follows": set(), "leads": set()}
     uses: set[tuple[str, str, str, int]] = set()
     for number, owed in enumerate(claim.obligations):
@@ -264,15 +300,19 @@ def relations(name: str, folder: Path = FOLDER) -> Relations:
                 both = pair not in found[how] and owed.kind == "goal"
                 if not both or all(_says(claim, number, function) for function in pair):
                     found[how].add(pair)
-                    uses |= {(*pair, *use) for use in claim.uses_of(pair[0], said)}
+                    held = {(*pair, *use) for use in claim.uses_of(pair[0], said)}
+                    uses |= held
     used = frozenset(full_name(f) for f in claim.arguments if in_spec(f))
     pairs = {how: frozenset(some) for how, some in found.items()}
     lemmas = tuple(sorted(set(claim.lemmas)))
     says = sentences.sentence(claim.as_stated())
-    return Relations(used, lemmas=lemmas, uses=frozenset(uses), statement=says, **pairs)
+    plain = unconditional(claim, uses)
+    return Relations(
+        used, lemmas=lemmas, uses=frozenset(uses), plain=plain, statement=says, **pairs
+    )
 
 
-def _says(claim: _Outline, number: int, function: str) -> bool:
+def _says(claim: Outline, number: int, function: str) -> bool:
     """Does it say anything of the function? Not if it would say the same of any other one."""
     goal, premises = claim.obligations[number].goal, claim.given_then.get(number, ())
     names = claim.names_of(function)
@@ -286,7 +326,7 @@ def _says(claim: _Outline, number: int, function: str) -> bool:
     return check(solver, solver.ctx, SAYS_RLIMIT).result != "unsat"
 
 
-def _pairs(claim: _Outline, number: int) -> Iterator[tuple[str, tuple[str, str]]]:
+def _pairs(claim: Outline, number: int) -> Iterator[tuple[str, tuple[str, str]]]:
     """The pairs of kernel and definition that an obligation's goal relates, and how."""
     owed = claim.obligations[number]
     ended, accumulator = claim.ended.get(number, ("", frozenset()))
@@ -295,7 +335,7 @@ def _pairs(claim: _Outline, number: int) -> Iterator[tuple[str, tuple[str, str]]
         kernels = _kernels(spoken)
         if owed.kind != "goal":
             kernels |= _folds(claim, spoken)
-        if free_names(conclusion) & accumulator:
+        if claim.names_in(conclusion) & accumulator:
             kernels.add(ended)
         meant = _definitions(spoken)
         yield from (("together", (kernel, other)) for kernel in kernels for other in meant)
@@ -305,11 +345,13 @@ def _pairs(claim: _Outline, number: int) -> Iterator[tuple[str, tuple[str, str]]
         for condition in (*claim.premises, *given):
             before = claim.functions_in(condition)
             for kernel in _kernels(before) - kernels:
-                for sign in signs(condition, claim.names_of(kernel)):
+                for sign in signs(condition, claim.names_of(kernel), within=claim.names_in):
                     how = "leads" if sign else "follows"
                     yield from ((how, (kernel, other)) for other in meant)
             for kernel in kernels:
-                for sign in signs(conclusion, claim.names_of(kernel)) or {True}:
+                for sign in signs(conclusion, claim.names_of(kernel), within=claim.names_in) or {
+                    True
+                }:
                     how = "follows" if sign else "leads"
                     yield from ((how, (kernel, other)) for other in _definitions(before) - meant)
 
@@ -329,7 +371,7 @@ def _kernels(functions: Iterable[Function]) -> set[str]:
     return {full_name(f) for f in functions if not in_spec(f)}
 
 
-def _folds(claim: _Outline, spoken: Iterable[Function]) -> set[str]:
+def _folds(claim: Outline, spoken: Iterable[Function]) -> set[str]:
     """The folds that an induction runs over, of those that the theorem is about."""
     return {full_name(f) for f in claim.folds() if set(f.kernels) & set(spoken)}
 

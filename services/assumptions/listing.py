@@ -223,13 +223,13 @@ LISTING = (
     ),
     Assumption(
         "stays bounded",
-        "on each item takeovers are no more than are allowed, and it is allowed that ICAROUS stays as long as its longest stay "
-        "at each of them and once more",
+        "on each item of a chain takeovers are no more than are allowed, and it is allowed that ICAROUS stays as long as its "
+        "longest stay on any item, as often as takeovers come on the worst one, and once more",
         SERVED,
         ("G3",),
         "that no item is given up for what ICAROUS flies, so that each is served",
         "the mission ends, served or declared; G3 counts what was served",
-        "takeovers and withdrawn offers on the way to each item, and one more, times the longest stay on it",
+        "the most takeovers and withdrawn offers on the way to one item, and one more, times the longest stay on any",
     ),
     Assumption(
         "flown in time",
@@ -248,7 +248,7 @@ LISTING = (
         ("G3",),
         "that each item is served",
         "the mission ends, served or declared; G3 counts what was served",
-        "tasks that fail, and why",
+        "tasks that fail, and why; tasks that are not seen to their end",
     ),
     Assumption(
         "intruder in its tube",

@@ -14,7 +14,7 @@ import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from cratous.core.authority.gate import gate_accepts
+from cratous.core.authority.gate import epoch_given, gate_accepts
 from cratous.core.authority.timeliness import in_time
 from cratous.core.avoidance.way_ahead import near_line
 from cratous.core.kernel import Vec2
@@ -56,13 +56,15 @@ class InHand(NamedTuple):
 class PermittedWatch:
     """Checks each vehicle with an ICAROUS against each aircraft that it sees. others: the other motion watches."""
 
-    kinds = ("GateState", "HandState", "Heartbeat", "SensedState", "TruthState")
+    kinds = ("AuthorityChange", "GateState", "HandState", "Heartbeat", "SensedState", "TruthState")
 
     def __init__(self, mission: Mission, others: Sequence[Watch]) -> None:
         self._volume, self._others = mission.daa.well_clear, others
         self._senses = mission.sensing is not None
         self._gates = dict.fromkeys(mission.instances, UNTOUCHED)
         self._hands = dict.fromkeys(mission.instances, InHand())
+        self._taken, self._handed = set[int](), set[int]()
+        """Whom ICAROUS has had, and of whose hand something was said."""
         self._mission, self._ours = mission, frozenset(v.id for v in mission.vehicles)
         self._beat_ms = dict.fromkeys(mission.instances, -1)
         self._period_ms = mission.simulation.heartbeat_ms
@@ -104,7 +106,16 @@ class PermittedWatch:
         self._permits.pop(number, None)
         if kind == "GateState":
             self._gates[number] = reported(body)
-        elif kind == "HandState" and body.Change.name in IN_HAND:
+            if has_it(self._gates[number]):
+                self._taken.add(number)
+        elif kind == "AuthorityChange":
+            if not self._record.gaps and not epoch_given(self._gates[number], body.Epoch):
+                told = f"nothing reported its gate in epoch {body.Epoch}"
+                self._record.gaps.append(f"at {now_ms / 1000:.2f} s {told}, of vehicle {number}")
+        elif kind == "HandState":
+            self._handed.add(number)
+            if body.Change.name not in IN_HAND:
+                return
             since_ms = now_ms if body.Change.name == "Offered" else self._hands[number].since_ms
             self._hands[number] = InHand(since_ms, body.Expiry)
         elif kind == "Heartbeat" and body.Direction.name == "Up":
@@ -230,6 +241,10 @@ class PermittedWatch:
         """Adopt the gaps of the motion watch: unobserved aircraft were not compared here either."""
         self._record.gaps += [
             gap for name, one in self._of_others() if name == SEEN for gap in one.gaps
+        ]
+        self._record.gaps += [
+            f"vehicle {number} was under ICAROUS, and nothing was said of a certificate in its hand"
+            for number in sorted(self._taken - self._handed)
         ]
 
     def records(self) -> dict[str, Record]:

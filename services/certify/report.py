@@ -21,7 +21,7 @@ from cratous.services.certify.limits import LIMITS, of_states
 from cratous.services.certify.running_code import running_code
 from cratous.services.certify.timeline import Flight, FlightReader, bars, read_flight
 from cratous.services.certify.verdicts import requirement_rows, with_promised, without_ground
-from cratous.services.logs.log import Heard, Reading
+from cratous.services.logs.log import Heard, Reading, body_of
 from cratous.services.logs.records import fingerprint, to_data
 from cratous.services.monitor.required_rows import watched
 from cratous.services.results.names import (
@@ -97,16 +97,11 @@ class Telling:
 
     def heard(self) -> Iterator[Heard]:
         """The messages; each has been processed here when the next one is requested."""
-        from cratous.bridge.lmcp.jsonform import from_json
-        from cratous.bridge.lmcp.plain_text import plain_object
-
         for entry in self._reading:
-            text = str(entry.body)
-            plain = plain_object(text)
-            body = from_json(text) if plain is None else plain
+            body = body_of(entry)
             # as Heard(...), in a third of the time
             yield tuple.__new__(Heard, (entry.time_ms, entry.source, entry.topic, body))
-            self._reader.add(entry, plain)
+            self._reader.add(entry, body)
 
     def told(self) -> Told:
         """The flight data, once all messages have been read."""

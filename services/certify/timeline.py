@@ -15,6 +15,7 @@ from typing import Any
 from cratous.services.certify.alerted import TOPIC, AlertReader
 from cratous.services.logs.entry import Entry
 from cratous.services.logs.log import Row
+from cratous.spec.errors import BadInput
 
 TRACK_PERIOD_MS = 1000
 STATUS, REFUSED_PEER = "afrl.cmasi.ServiceStatus", "refused "
@@ -92,7 +93,14 @@ class FlightReader:
         self.flight.alerts = self._alerts.found
 
     def add(self, row: Row | Entry, plain: Any = None) -> None:
-        """Process the next message. plain: its decoded body, if the text is in the usual spelling."""
+        """Process the next message; BadInput if it lacks a field. plain: its decoded body, if it has been read."""
+        try:
+            self._add(row, plain)
+        except KeyError as error:
+            where = f"message {row.seq} ({row.topic})"
+            raise BadInput("a field is missing", where=where, expected=str(error)) from None
+
+    def _add(self, row: Row | Entry, plain: Any) -> None:
         flight = self.flight
         short = row.topic.rpartition(".")[2]
         flight.counts[row.topic] = flight.counts.get(row.topic, 0) + 1

@@ -22,6 +22,7 @@ from cratous.services.logs.records import canonical
 from cratous.services.logs.schema import INSERT, TABLES, Digest
 from cratous.services.logs.sqlite_log import SqliteLog
 from cratous.services.logs.store import cannot_write
+from cratous.spec.errors import BadInput
 
 BATCH = 500
 
@@ -167,11 +168,31 @@ class Reading:
 
 
 def read_heard(path: Path) -> Iterator[Heard]:
-    """The messages of a log with decoded bodies."""
+    """The messages of a log with decoded bodies; BadInput for a body that is invalid or not of its message's type."""
+    for row in read_log(path):
+        yield Heard(row.time_ms, row.source, row.topic, body_of(row))
+
+
+def body_of(row: Row | Entry) -> Any:
+    """The object of a JSON body; BadInput if it is invalid or not of the type that the message states."""
     from cratous.bridge.lmcp.jsonform import from_json
 
-    for row in read_log(path):
-        yield Heard(row.time_ms, row.source, row.topic, from_json(row.body))
+    try:
+        body = from_json(str(row.body))
+    except BadInput as error:
+        raise BadInput(
+            error.what, where=_place(row), item=error.item, expected=error.expected, got=error.got
+        ) from None
+    names = body.all_names
+    if row.topic not in names:
+        raise BadInput(
+            "a body of another type", where=_place(row), expected=row.topic, got=names[0]
+        )
+    return body
+
+
+def _place(row: Row | Entry) -> str:
+    return f"message {row.seq} ({row.topic})"
 
 
 def read_meta(path: Path) -> dict[str, Any]:
@@ -188,9 +209,11 @@ def read_digest(path: Path) -> str:
 
 def read_envelopes(path: Path, decode: Callable[[str], Any] | None = None) -> Iterator[Envelope]:
     """The messages as the bus delivered them; decode(text) restores the body."""
-    if decode is None:
-        from cratous.bridge.lmcp import jsonform
-
-        decode = jsonform.from_json
     for row in read_log(path):
-        yield Envelope(row.seq, row.time_ms, row.source, row.topic, decode(row.body))
+        yield Envelope(
+            row.seq,
+            row.time_ms,
+            row.source,
+            row.topic,
+            body_of(row) if decode is None else decode(row.body),
+        )

@@ -56,7 +56,8 @@ class MissionText:
 
     def with_number(self, key: Key, value: float) -> str:
         """The text with another heading [deg] or radius [m] in place of the one that stands there, to a tenth."""
-        if not key or key[-1] not in (HEADING, RADIUS) or self._node(key) is None:
+        node = self._node(key)
+        if not key or key[-1] not in (HEADING, RADIUS) or node is None or node.id != "scalar":
             self._refuse(
                 "this is no heading or radius", key, f"a {HEADING} or {RADIUS} of the file"
             )

@@ -224,6 +224,24 @@ def test_a_certificate_ends_in_the_log_where_it_says_so() -> None:
     assert row["state"] == "held"
 
 
+@pytest.mark.parametrize(
+    ("kind", "names"),
+    [
+        ("GateState", ("stays bounded", "flown in time", "permitted as offered")),
+        ("HandState", ("permitted as offered",)),
+        ("TaskProgress", ("stays bounded", "flown in time", "no other failure")),
+    ],
+)
+def test_nothing_holds_of_what_messages_that_are_missing_would_say(
+    kind: str, names: tuple[str, ...]
+) -> None:
+    def change(log: Log) -> None:
+        log[:] = [one for one in log if not one.topic.endswith(f".{kind}")]
+
+    rows = tampered(change)
+    assert {name: rows[name]["state"] for name in names} == dict.fromkeys(names, "not observed")
+
+
 def test_how_long_a_takeover_waits_is_told_from_one_that_was_too_short() -> None:
     log = [copy.copy(one) for one in flown(WHOLE)]
     never_offered(log)

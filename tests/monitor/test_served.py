@@ -13,7 +13,7 @@ from cratous.services.assumptions.observed import Message, Observed
 from cratous.services.assumptions.served import ServedWatch
 from cratous.services.mission.leg_bounds import LONGEST_LOOKAHEADS, MOST_TAKEOVERS
 from cratous.spec.mission import Change, Mission
-from cratous.spec.mission.changes import VEHICLE_HOLDS
+from cratous.spec.mission.changes import TASK_REMOVED, VEHICLE_HOLDS
 
 MISSION = meeting()
 END_MS = 3_000_000
@@ -22,8 +22,8 @@ LATE_MS = 4 * MISSION.simulation.heartbeat_ms
 Told = tuple[int, str, dict[str, Any]]
 
 
-def task(at_ms: int, phase: str = "Transit", task_id: int = 1, note: str = "") -> Told:
-    return at_ms, "TaskProgress", {"TaskID": task_id, "Phase": phase, "Note": note}
+def task(at_ms: int, phase: str = "Transit", task_id: int = 1, note: str = "", **more: Any) -> Told:
+    return at_ms, "TaskProgress", {"TaskID": task_id, "Phase": phase, "Note": note, **more}
 
 
 def gate(at_ms: int, owner: str, offered: bool = False, epoch: int = 1) -> Told:
@@ -37,7 +37,10 @@ def taken(at_ms: int, for_ms: int) -> list[Told]:
 def observed(name: str, *told: Told, mission: Mission = MISSION) -> Observed:
     watch = ServedWatch(mission)
     for at_ms, kind, fields in sorted(told, key=lambda one: one[0]):
-        body = lmcp.new(f"cratous.{kind}", VehicleID=1, Time=at_ms, **fields)
+        whose = {} if kind == "PlanAccepted" else {"VehicleID": 1}
+        if kind != "GatedCommand":
+            whose["Time"] = at_ms
+        body = lmcp.new(f"cratous.{kind}", **{**whose, **fields})
         watch.message(Message(kind, at_ms, "", body))
     watch.end(END_MS)
     return watch.records()[name].observed(END_MS, True)
@@ -99,3 +102,61 @@ def test_a_task_fails_for_what_icarous_flew_or_for_another_reason(note: str, sta
     assert found.state == state
     if found.broken:
         assert found.broken == (9000, 1, f"task 1 failed: {note}")
+
+
+def test_takeovers_and_stays_are_bounded_alike_on_all_items_of_a_chain() -> None:
+    """Each item alone is within what is allowed; the theorem takes one bound for all of them."""
+    often = [told for k in range(MOST_TAKEOVERS - 1) for told in taken(10_000 * (k + 1), 1000)]
+    long_ms = LONGEST_MS // 4 - LATE_MS
+    first = [task(0), *often, task(150_000, "Complete")]
+    second = [task(150_001, task_id=2), *taken(160_000, long_ms), task(END_MS, "Complete", 2)]
+    assert observed("stays bounded", *first).state == "held"
+    assert observed("stays bounded", *second).state == "held"
+    found = observed("stays bounded", *first, *second)
+    assert found.state == "broken"
+    assert found.note.startswith(f"vehicle 1 was taken over {MOST_TAKEOVERS - 1} times on its way to an earlier task")  # fmt: skip
+
+
+def test_a_stay_under_which_an_item_begins_counts_on_it() -> None:
+    told = [task(0), gate(1000, "ICAROUS"), task(2000, "Complete"), task(2001, task_id=2)]
+    done = task(END_MS, "Complete", 2)
+    brief = observed("stays bounded", *told, gate(3000, "ICAROUS", True), done)
+    long = observed("stays bounded", *told, gate(2001 + LONGEST_MS, "ICAROUS", True), done)
+    assert (brief.state, long.state) == ("held", "broken")
+
+
+@pytest.mark.parametrize(
+    "left", [task(65_000, "Waiting", VehicleID=0), task(65_000, task_id=2)], ids=["waits", "other"]
+)
+def test_takeovers_count_on_the_item_to_which_the_vehicle_flies(left: Told) -> None:
+    often = [told for k in range(MOST_TAKEOVERS + 1) for told in taken(10_000 * (k + 1), 1000)]
+    found = observed("stays bounded", task(0), *often, left, task(65_001, task_id=2))
+    assert found.state == "held"
+
+
+COMMAND = (5000, "GatedCommand", {"Sender": "ICAROUS", "Epoch": 1})
+CHANGE = (5000, "AuthorityChange", {"Owner": "ICAROUS", "Epoch": 1})
+
+
+@pytest.mark.parametrize("told", [COMMAND, CHANGE, gate(5000, "UxAS", epoch=2)], ids=lambda t: t[1])  # fmt: skip
+def test_a_takeover_of_which_there_is_no_report_is_not_observed(told: Told) -> None:
+    flown = [task(0), *taken(1000, 1000), task(9000, "Complete")]
+    later = (*told[:2], {**told[2], "Epoch": told[2]["Epoch"] + 1})
+    for name in ("stays bounded", "flown in time"):
+        assert observed(name, *flown).state == "held"
+        found = observed(name, *flown, later)
+        assert found.state == "not observed"
+        assert found.note.startswith("at 5.00 s vehicle 1 is in epoch")
+    # nor where none came at all
+    assert observed("flown in time", task(0), told, task(9000, "Complete")).state == "not observed"
+
+
+def test_a_task_that_is_not_seen_to_its_end_may_have_failed() -> None:
+    accepted = (0, "PlanAccepted", {"Tasks": [1, 2]})
+    one = [task(0), task(9000, "Complete")]
+    assert observed("no other failure", accepted, *one).note == "task 2 was not seen to its end"
+    assert observed("no other failure", *one, task(9001, task_id=2)).state == "not observed"
+    removed = replace(MISSION, changes=(Change(5000, TASK_REMOVED, task=2),))
+    assert observed("no other failure", accepted, *one, mission=removed).state == "held"
+    both = [*one, task(9001, "Complete", 2, VehicleID=0)]
+    assert observed("no other failure", accepted, *both).state == "held"
