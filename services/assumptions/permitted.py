@@ -64,7 +64,7 @@ class PermittedWatch:
         self._gates = dict.fromkeys(mission.instances, UNTOUCHED)
         self._hands = dict.fromkeys(mission.instances, InHand())
         self._taken, self._handed = set[int](), set[int]()
-        """Whom ICAROUS has had, and of whose hand something was said."""
+        """Vehicles that ICAROUS has commanded, and those with reported certificate changes."""
         self._mission, self._ours = mission, frozenset(v.id for v in mission.vehicles)
         self._beat_ms = dict.fromkeys(mission.instances, -1)
         self._period_ms = mission.simulation.heartbeat_ms

@@ -95,7 +95,7 @@ class ServedWatch:
             self._unreported(chain, chain.gate, message)
 
     def _gate(self, chain: _Chain, message: Message) -> None:
-        """A stay of ICAROUS begins, or ends."""
+        """Process a gate report: a stay of ICAROUS may begin or end."""
         gate, now_ms = reported(message.body), message.time_ms
         self._unreported(chain, chain.gate._replace(epoch=chain.gate.epoch + 1), message)
         chain.gate = gate
@@ -109,7 +109,7 @@ class ServedWatch:
             chain.since_ms = None
 
     def _unreported(self, chain: _Chain, known: Gate, message: Message) -> None:
-        """Note, the first time, that a message names an epoch of which there was no report."""
+        """Note the first message with an epoch that was never reported."""
         body = message.body
         if self._time.gaps or epoch_given(known, body.Epoch):
             return
