@@ -41,7 +41,7 @@ class _Point(NamedTuple):
 
 
 def read_eutl(text: str, file: str, how: parts.Reading) -> parts.Parts:
-    """The routes of all plans in a file, by start time. Raises BadInput with line and column."""
+    """The routes of all plans in a file, in order of first occurrence. Raises BadInput with line and column."""
     points, curved = list[_Point](), False
     for point, turns in _points(text, file, how):
         points.append(point)
