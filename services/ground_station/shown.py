@@ -29,7 +29,7 @@ class Recorded:
         """read: returns the recording or raises BadInput; failed: called with the reason if there is none."""
         self._read, self._failed = read, failed
         self._told = Future[tuple[bytes, int]]()
-        self._told.set_running_or_notify_cancel()  # a waiting client that disconnects cancels nothing
+        self._told.set_running_or_notify_cancel()  # a disconnecting client cancels nothing
         threading.Thread(target=self._run, daemon=True).start()
 
     def _run(self) -> None:
