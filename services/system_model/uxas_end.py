@@ -126,7 +126,7 @@ class UxasEnd:
         self.downs += 1
 
     def hears_beat(self, now_ms: int) -> None:
-        """A heartbeat of ICAROUS has arrived; Misfit if the link had been reported silent and not alive again."""
+        """A heartbeat of ICAROUS has arrived; Misfit unless the connection is up and was reported alive."""
         if not self.open or not all(b.end.alive for b in self.possible):
             expected = "that the link is said to be heard before"
             raise Misfit("a heartbeat from ICAROUS", expected, "none said so")
