@@ -131,7 +131,7 @@ class ServedWatch:
             self._failed.see(self._failures)
             text = f"task {body.TaskID} failed: {body.Note}"
             self._failed.check(not other, now_ms, body.VehicleID, text)
-        if not body.VehicleID:  # it is settled, or waits, and is nobody's
+        if not body.VehicleID:  # it is settled, or waits unassigned
             for vid, one in self._chains.items():
                 if one.task_id and one.task_id == body.TaskID:
                     self._left(vid, one, now_ms)

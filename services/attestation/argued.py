@@ -26,7 +26,7 @@ SHOWN = 16
 
 class Argued(NamedTuple):
     """Findings in words. refused: tampering; undecided: what cannot be rebuilt here; not_judged:
-    what was not examined although it is unchanged.
+    files equal except for the name of the ledger.
     """
 
     refused: list[str]

@@ -70,7 +70,7 @@ def _levels(body: dict[str, Any], time_ms: int) -> dict[int, tuple[int, float]]:
         }
         if all(isfinite(first) for _, first in found.values()):
             return found
-    except ValueError:  # lists of different lengths, or a level that is no number
+    except ValueError:  # lists of different lengths, or a level that is not a number
         pass
     raise BadInput(
         "the alerts of a message cannot be told",

@@ -209,7 +209,7 @@ class ConstraintWatch:
         note = f"tasks {names} are asked for"
         if beside:
             note += f", and tasks {', '.join(map(str, beside))} were begun besides"
-        # each task at most once, and only if it is asked for
+        # each task at most once, and only if requested
         begun = [(0, int(t in seen.tasks), int(t in self._starts)) for t in sorted(wanted)]
         outcome = Outcome.HOLDS if ending.over else Outcome.UNKNOWN
         outcome = outcome if as_asked(begun) else Outcome.VIOLATED

@@ -143,7 +143,7 @@ def _by_rows(choices: Iterator[tuple[Row, ...]], times: Times) -> Kept:
     return Kept(best, (), f"only {count} of the branches were looked at" if more else "")
 
 
-# ---- branches, to be gone through --------------------------------------------------------------
+# ---- iteration over branches --------------------------------------------------------------
 
 
 def row_choices(mission: Mission, chosen: frozenset[int]) -> Iterator[tuple[Row, ...]]:

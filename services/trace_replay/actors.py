@@ -187,7 +187,7 @@ class Actors(Flight):
         if gate != state.gate:
             self._link(GateIs(VEHICLE, gate))
 
-    # how things stand --------------------------------------------------------------------------
+    # resulting state --------------------------------------------------------------------------
 
     @property
     def gate(self) -> Gate:

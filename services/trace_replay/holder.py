@@ -136,11 +136,11 @@ class Holder:
         self._look()
 
     def _known(self, event: Event) -> None:
-        """A track becomes known to the trace; the vehicle sees it when it is told of it."""
+        """A track becomes known in the trace; the vehicle sees it at the answer (`_answer`)."""
         self._asked.append(event.trajectory)
 
     def _answer(self, event: Event) -> None:
-        """The vehicle sees the track: far away if what is in hand is permitted against it, else within the volume."""
+        """The vehicle sees the track: far away if it permits the trajectory in hand, otherwise in the volume."""
         if event.trajectory not in self._asked:
             raise NeverSent("nobody has asked whether that trajectory is permitted")
         self._asked.remove(event.trajectory)

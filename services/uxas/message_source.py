@@ -165,7 +165,7 @@ class MessageSource:
         try:
             mission = mission_of(cfg, str(self._host.config), self._spoken, self._frame)
             inputs = self._led(Inputs(mission, stages.start_poses(mission)), ())
-        except CratousError:  # whoever sends such a request gets the error
+        except CratousError:  # the sender of such a request gets the error
             return None
         self._frame = mission.frame
         return inputs
