@@ -20,8 +20,9 @@ TURN_RAD = math.radians(45.0)
 def scenario_text(
     mission: Mission, told: Told, duration_s: float, sets_out_s: float = 0.0, *, tasks: bool = False
 ) -> str:
-    """The XML. duration_s: duration [s]; sets_out_s: time at which all aircraft are present [s];
-    tasks: include zones and tasks, which the simulator forwards to its clients.
+    """The XML. duration_s: duration [s]; sets_out_s: scenario time at which the aircraft appear and
+    the mission starts [s]; tasks: include zones and tasks, which the simulator forwards to its
+    clients.
     """
     plane = Projection(mission.frame)
     events = [_event(body, 0.0) for body in told.configurations]

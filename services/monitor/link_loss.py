@@ -3,9 +3,10 @@
 What each ICAROUS reported (`LinkLossState`) is checked against the kernel `loss_step`: each mode
 must follow from the one before. A mode has to begin within a heartbeat after the silence exceeds
 its limit; a connection down for longer without a report is a violation. With injected faults that
-lose or delay lines of UxAS, the log does not show whether UxAS was heard in between, so whether enough was reported is unknown. A vehicle that reports a landing has to be on a landing site, to stay
-and be at rest there; a vehicle that is there has to report it. For a vehicle that may land and was
-not observed throughout this is unknown.
+lose or delay lines of UxAS, the log does not show whether UxAS was heard in between, so whether
+enough was reported is unknown. A vehicle that reports a landing has to be on a landing site, to
+stay and be at rest there; a vehicle that is there has to report it. For a vehicle that may land and
+was not observed throughout this is unknown.
 """
 
 from __future__ import annotations
