@@ -1,6 +1,7 @@
 """Reads a raw message log: SQLite and the JSON in it. Documented in docs/reference/logs.md.
 
-Missing parts (gaps, holes, no end) are doubts that turn `holds` into unknown."""
+Missing parts (gaps, holes, no end) are doubts that turn `holds` into unknown.
+"""
 
 from __future__ import annotations
 

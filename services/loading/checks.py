@@ -2,7 +2,8 @@
 
 Each check reports findings in the user's terms; `where(item)` gives the file (and line) of an item such as
 `zones[0].vertices`. Kernels decide on geometry with exact rationals, so a zone that merely touches itself is found
-too."""
+too.
+"""
 
 from __future__ import annotations
 

@@ -2,7 +2,8 @@
 
 A mission consists of an automation request and of each entity's configuration and state, the tasks and the zones at
 the time it is sent: only what the request names takes part, and only the zones of its operating region apply. What
-has no counterpart here is refused or noted, never dropped."""
+has no counterpart here is refused or noted, never dropped.
+"""
 
 from __future__ import annotations
 
@@ -48,7 +49,8 @@ LIMIT_MS = 86_400_000
 def load_uxas(path: Path, number: int = 1) -> Mission:
     """The mission of a request of a UxAS folder (its only cfg*.xml) or cfg XML file, by number from 1.
 
-    Raises BadInput for errors, missing data, and unsupported content (named)."""
+    Raises BadInput for errors, missing data, and unsupported content (named).
+    """
     asked, count = request_of(read_all(Path(path)), number, str(path))
     mission = mission_of(asked, str(path))
     if count > 1:
@@ -69,7 +71,8 @@ def mission_of(
 
     spoken_for: tasks that may be of an unsupported kind, since their own services tell how they are flown; None: the
     mission alone is planned, so that ground vehicles are refused. earlier: frame of an earlier mission, kept if it is
-    still suitable."""
+    still suitable.
+    """
     cast = _Cast(cfg, spoken_for or (), spoken_for is not None)
     request = cast.request()
     cast.keep_conditions(request)

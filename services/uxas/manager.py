@@ -3,7 +3,8 @@
 Ids increase in file order from FirstServiceID (50, the manager's own), services first. All errors of a configuration
 are found before anything is opened, and reported together. CreateNewService creates a service (a task's, or any of
 the registry); KillService ends one and releases its resources; KillService with the manager's own id ends all
-services, with -1 the process."""
+services, with -1 the process.
+"""
 
 from __future__ import annotations
 
@@ -88,7 +89,8 @@ class ServiceManager:
     def build(self, without: frozenset[str] = frozenset()) -> None:
         """Create all services and bridges of the configuration; BadInput lists its errors.
 
-        without: types that the user has excluded."""
+        without: types that the user has excluded.
+        """
         notes: list[str] = []
         entries = check(self._config, without, notes)
         for note in notes:
@@ -270,7 +272,8 @@ def check(
     """The entries to create; BadInput with all errors in types, attributes and elements.
 
     without: types that the user has excluded. notes: receives what was read leniently, and the services that are not
-    available here; a strict configuration is refused for them."""
+    available here; a strict configuration is refused for them.
+    """
     entries = [e for e in config.entries if e.type not in without]
     problems: list[BadInput] = []
     user_services.load(config, problems)
@@ -328,7 +331,8 @@ def _check(item: Entry, entries: list[Entry], problems: list[BadInput]) -> None:
 def _parsed(text: str, where: str) -> tuple[Entry, Any]:
     """The Service element of a CreateNewService, and the task inside, if any.
 
-    UxAS escapes the angle brackets and leaves the closing tag to the receiver."""
+    UxAS escapes the angle brackets and leaves the closing tag to the receiver.
+    """
     text = text.strip()
     if text.startswith("&lt;"):
         text = html.unescape(text)

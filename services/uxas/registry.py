@@ -1,6 +1,7 @@
 """The services that a configuration may name: their attributes, and constructors.
 
-Services of UxAS that are not implemented here are known by name too, so that they are refused with a reason."""
+Services of UxAS that are not implemented here are known by name too, so that they are refused with a reason.
+"""
 
 from __future__ import annotations
 
@@ -50,7 +51,8 @@ Make = Callable[["Host", Entry, dict[str, Any], str, int], Any]
 class Kind:
     """A service type: attributes, names of child elements, constructor, whether only one instance is allowed.
 
-    plans: it takes part in planning, so the kernels that it uses have to be proved."""
+    plans: it takes part in planning, so the kernels that it uses have to be proved.
+    """
 
     attributes: Mapping[str, Attr]
     make: Make

@@ -6,7 +6,8 @@ with the reason). The states are those of `spec.contracts.responses`; `response_
 that kernels decide. A manoeuvre is renewed when it is no longer valid, or when another commander has intervened.
 
 Right of way: the lower id has it, but only before a vehicle known to resolve conflicts itself, because its intervals
-are received; and not once the loss is nearer than `RightOfWayLimit`."""
+are received; and not once the loss is nearer than `RightOfWayLimit`.
+"""
 
 from __future__ import annotations
 
