@@ -89,7 +89,7 @@ def _flown(flight: Flight, task: Task) -> tuple[str, str]:
 
 
 def reach_m(mission: Mission, task: Task, vehicle: int) -> float:
-    """Radius of a loiter about its centre [m]."""
+    """How far a loiter reaches from its centre [m]."""
     radius = task.radius_m
     flyer = mission.vehicles.get(vehicle)
     if radius == 0 and flyer is not None and flyer.bank_rad > 0:

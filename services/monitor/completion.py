@@ -127,7 +127,7 @@ class CompletionWatch:
                     doing.near_ms += after[who].time_ms - before[who].time_ms
 
     def _size_m(self, task: Task, vehicle: int) -> float:
-        """Radius of a loiter about its centre [m]; 0 for the point of a must-fly task."""
+        """How far a loiter reaches from its centre [m]; 0 for the point of a must-fly task."""
         if task.kind is not TaskKind.LOITER:
             return 0.0
         who = self._vehicles[vehicle]

@@ -78,7 +78,7 @@ class MessageSource:
             self.world.add(body, f"message {envelope.seq} from {envelope.source}", now_ms)
 
     def asks(self, service: str) -> bool:
-        """True: any service on the same bus can be asked."""
+        """Whether a service of this name runs on the same bus, so that it can be asked."""
         return service in self._host.bus.names()
 
     def inputs(self, request: Any, where: str) -> Inputs:
