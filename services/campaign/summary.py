@@ -91,8 +91,8 @@ def _disagreements(rows: list[Row]) -> int:
 
 
 def _model(rows: list[Row]) -> dict[str, int]:
-    """Number of logs that fit the proved steps, that do not, and that contain none; and the events
-    in those that fit.
+    """Number of logs that fit the proved steps, that do not, and without ICAROUS; and the events in
+    those that fit.
     """
     found = [r.result["model"] for r in rows if r.flown and r.result and r.result["model"]]
     fits = [one for one in found if one["fits"]]

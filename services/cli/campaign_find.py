@@ -66,7 +66,7 @@ def searched(
 
 
 def _case(mission: dict[str, Any], requirement: str, decides: dict[str, Any]) -> str:
-    """The mission file with its expected result; none for an encounter flown as a whole mission."""
+    """The mission file with its expected result; none for an encounter, as it is flown whole there."""
     import yaml
 
     from cratous.services.campaign.definition import ALL, ENCOUNTERS

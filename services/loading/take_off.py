@@ -39,8 +39,8 @@ def on_their_ground(mission: Mission) -> Mission:
 
 @as_errors
 def take_off_problems(mission: Mission) -> Iterator[Finding]:
-    """Vehicles on the ground that have no take-off, are airborne already, would roll beyond level
-    ground or climb for too long; and vehicles on the ground in missions with sensors.
+    """Vehicles on the ground without an ICAROUS instance, with a position not above the ground, a
+    roll beyond level ground or too long a climb; and those in missions with sensors.
     """
     for vehicle in grounded(mission):
         item = f"vehicles[{mission.vehicles.index(vehicle)}].start"

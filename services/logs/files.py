@@ -210,7 +210,7 @@ def read_lmcp(path: Path) -> Iterator[Entry]:
 
 
 def text_form(entry: Entry) -> str:
-    """One line of text: number, time, sender, type, body without fields at their defaults."""
+    """One line of text: number, time [s], sender, address if any, type, body as JSON."""
     data, error = any_data(entry)
     body = canonical(data) if error is None else f"({error})"
     to = f" to {entry.address}" if entry.address else ""

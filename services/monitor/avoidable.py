@@ -38,7 +38,7 @@ class Appeared(NamedTuple):
 def avoidable(
     seen: Appeared, vehicle: Vehicle, zone: Zone, zones: Sequence[Zone], dt_s: float
 ) -> tuple[str, dict[str, Any]]:
-    """Which of the zones then active could have been kept, in words and as data.
+    """Whether an escape path kept the zones then active, in words and as data.
 
     vehicle: with its performance in the wind; zone: the violated one, among zones; dt_s: time step
     of the flight [s].

@@ -113,7 +113,7 @@ class _Made:
         return Join(one, surely, True), Join(one, surely_not, False)
 
     def _shifted(self, one: Reaches, by: Fraction) -> Reaches:
-        """The comparison with its margin increased by `by`, rounded away from zero."""
+        """The comparison with its margin increased by `by`, rounded so that it is not too small."""
         left, right = one.left, one.right
         if not isinstance(right, str):
             return Reaches(left, _rounded(Fraction(right) + by, by))
@@ -128,7 +128,7 @@ class _Made:
 
 
 def _rounded(value: Fraction, towards: Fraction) -> float:
-    """The value rounded to a double, away from zero."""
+    """The value rounded to a double, up if `towards` is positive, otherwise down."""
     found = float(value)
     if Fraction(found) == value:
         return found
