@@ -1,6 +1,7 @@
-"""The assumptions of the system theorems: which theorems rest on each, and what is lost when it breaks.
+"""The assumptions of the system theorems: which theorems depend on each, and what is lost when it
+breaks.
 
-`docs/proofs/assumptions.md` has the same rows; a test holds them together.
+`docs/proofs/assumptions.md` has the same rows; a test compares them.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ BY_EPOCH = "one commander at any time: it needs no clock and no delivery"
 
 
 class State(StrEnum):
-    """The three answers. What was not watched to the end of the mission did not hold: it is not observed."""
+    """The three results. What was not observed to the end of the mission is not observed, never held."""
 
     HELD = "held"
     BROKEN = "broken"
@@ -43,9 +44,10 @@ class State(StrEnum):
 
 
 class Assumption(NamedTuple):
-    """text: what is assumed; theorems: files of `proofs/theorems` (system or permit); guarantees: G1 to G5;
-    lost: what of them has no ground any more when it is broken; stands: what still holds then; watch: what is
-    looked at in a flight."""
+    """text: what is assumed; theorems: files of `proofs/theorems` (system or permit); guarantees:
+    G1 to G5; lost: what is no longer guaranteed when it breaks; stands: what still holds then;
+    watch: what is observed in a flight.
+    """
 
     name: str
     text: str
@@ -311,4 +313,4 @@ LISTING = (
         "while all others fly as was predicted (what was looked at is not in the log)",
     ),
 )
-"""All of them, in the order in which they are shown."""
+"""All assumptions, in display order."""

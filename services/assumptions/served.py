@@ -1,4 +1,4 @@
-"""The assumptions under which each item is served: short stays of ICAROUS, chains flown in time, no other failure."""
+"""The assumptions under which each item is served: short ICAROUS stays, chains flown in time, no other failure."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from cratous.spec.mission import GroundedVehicle, Mission
 from cratous.spec.mission.changes import TASK_REMOVED, VEHICLE_HOLDS
 
 GIVEN_UP = "blocked: "
-"""So the note of a task begins whose item was given up for what ICAROUS flew on it."""
+"""Prefix of a task's note if its item was given up because of the time under ICAROUS."""
 
 
 @dataclass
 class _Chain:
-    """Of one vehicle. gate: as last reported; since_ms: since when ICAROUS commands alone, None if it does not; takeovers,
-    stay_ms: so many on the present item, and the longest stay on it; most, longest_ms: the same of any item before;
-    under_ms: all stays; items: those that it was on its way to; done_ms: when it left the last."""
+    """One vehicle. gate: as last reported; since_ms: start of ICAROUS's sole command, None outside; takeovers, stay_ms:
+    their number and the longest stay on the current item; most, longest_ms: maxima over earlier items; under_ms: total
+    of all stays; items: those it was on its way to; done_ms: time at which it left the last."""
 
     gate: Gate = UNTOUCHED
     since_ms: int | None = None
@@ -38,12 +38,12 @@ class _Chain:
 
 
 class ServedWatch:
-    """A stay is the time in which ICAROUS commands alone: from a takeover, or a withdrawn offer, to the next offer.
+    """Checks stays: times of sole command by ICAROUS, from a takeover or withdrawn offer to the
+    next offer.
 
-    UxAS counts takeovers and stays by what it hears, each up to two heartbeats late. Where an item is not held to
-    its time (the vehicle stood on the ground, flew without its link, or held by command) a stay that is too long is not
-    observed. Nothing of stays and times is where a report of the gate is missing, nor of failures where a task is not
-    seen to its end.
+    UxAS counts takeovers and stays as it hears of them, each up to two heartbeats late. If an item is not subject to its
+    time limit (vehicle on the ground, without link, or holding by command), a stay that is too long is not observed.
+    Neither are stays and times where a gate report is missing, nor failures where a task is not seen to its end.
     """
 
     kinds = (
@@ -74,7 +74,7 @@ class ServedWatch:
         self._settled: set[int] = set()
 
     def message(self, message: Message) -> None:
-        """Who commands a vehicle, to which item it flies, and how that ends."""
+        """Process one message: commander of a vehicle, its current item, or the item's outcome."""
         if message.kind not in self.kinds:
             return
         body = message.body
@@ -95,7 +95,7 @@ class ServedWatch:
             self._unreported(chain, chain.gate, message)
 
     def _gate(self, chain: _Chain, message: Message) -> None:
-        """A stay of ICAROUS begins, or ends."""
+        """Process a gate report: a stay of ICAROUS may begin or end."""
         gate, now_ms = reported(message.body), message.time_ms
         self._unreported(chain, chain.gate._replace(epoch=chain.gate.epoch + 1), message)
         chain.gate = gate
@@ -109,7 +109,7 @@ class ServedWatch:
             chain.since_ms = None
 
     def _unreported(self, chain: _Chain, known: Gate, message: Message) -> None:
-        """Note, the first time, that a message names an epoch of which there was no report."""
+        """Note the first message with an epoch that was never reported."""
         body = message.body
         if self._time.gaps or epoch_given(known, body.Epoch):
             return
@@ -131,7 +131,7 @@ class ServedWatch:
             self._failed.see(self._failures)
             text = f"task {body.TaskID} failed: {body.Note}"
             self._failed.check(not other, now_ms, body.VehicleID, text)
-        if not body.VehicleID:  # it is settled, or waits, and is nobody's
+        if not body.VehicleID:  # it is settled, or waits unassigned
             for vid, one in self._chains.items():
                 if one.task_id and one.task_id == body.TaskID:
                     self._left(vid, one, now_ms)
@@ -147,8 +147,8 @@ class ServedWatch:
             chain.items.add(body.TaskID)
 
     def _stayed(self, vid: int, chain: _Chain, now_ms: int) -> None:
-        """A stay has lasted until now: what was counted up to now is within what is allowed, of all items together, since
-        `spec.system.serving.Bounds` are the same on each."""
+        """Check the counts of all items up to now_ms together, an open stay included, against the limits, since
+        `spec.system.serving.Bounds` are the same for each."""
         if chain.since_ms is not None:
             late_ms = self._late_ms
             chain.stay_ms = max(chain.stay_ms, now_ms - chain.since_ms + late_ms)
@@ -170,7 +170,7 @@ class ServedWatch:
             self._stays.check(not given_up, now_ms, vid, text)
 
     def _left(self, vid: int, chain: _Chain, now_ms: int) -> None:
-        """An item is left."""
+        """The vehicle leaves its current item."""
         self._stayed(vid, chain, now_ms)
         open_ms = 0 if chain.since_ms is None else now_ms - chain.since_ms
         chain.most = max(chain.most, chain.takeovers)
@@ -179,7 +179,7 @@ class ServedWatch:
         chain.takeovers = chain.stay_ms = chain.task_id = 0
 
     def end(self, at_ms: int) -> None:
-        """The mission is over: what is still open counts up to now, and each chain is held to the limit."""
+        """End of the messages at at_ms [ms]: open stays count up to here, and each chain is checked."""
         open_still = sorted((self._open | {*self._accepted}) - self._settled - self._removed)
         self._failed.gaps += [f"task {one} was not seen to its end" for one in open_still[:1]]
         for vid, chain in self._chains.items():

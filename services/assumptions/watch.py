@@ -1,4 +1,4 @@
-"""The watch of all assumptions in the messages of one flight."""
+"""Watches all assumptions in the messages of one flight."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from cratous.spec.mission import Mission
 class AssumptionWatch:
     """All assumptions of one flight. Feed it messages with `tap`, ask for `rows` at the end.
 
-    on_board: each ICAROUS says what it hears, as those of `cratous run` in one process do.
+    on_board: each ICAROUS reports what it hears, as in `cratous run` in one process.
     """
 
     def __init__(self, mission: Mission, on_board: bool = True) -> None:
@@ -73,7 +73,7 @@ class AssumptionWatch:
         self._ended = False
 
     def tap(self, kind: str, envelope: Any) -> list[dict[str, Any]]:
-        """The next message, of this type; returns the rows of the assumptions that it breaks."""
+        """Process the next message, of type kind; returns the rows of the assumptions that it breaks."""
         if self._ended:
             return []
         source = getattr(envelope, "source", "")
@@ -99,7 +99,7 @@ class AssumptionWatch:
     def rows(self, at_ms: int, over: bool) -> list[dict[str, Any]]:
         """One row for each assumption, as plain data, in the order of the listing.
 
-        at_ms: when the messages end; over: the mission has ended by then.
+        at_ms: end of the messages [ms]; over: the mission has ended by then.
         """
         return [_row(one, self._records[one.name].observed(at_ms, over)) for one in LISTING]
 

@@ -1,4 +1,4 @@
-"""The report on a flight of which the log alone is left, whole or not: of one that is not, nothing in flight holds."""
+"""Builds the report of a flight from its log alone; if the log is incomplete, nothing in flight holds."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ from cratous.spec.mission.guarantees import Outcome
 
 
 class FromLog(NamedTuple):
-    """The report, and what of it the log does not tell, with the reason."""
+    """The report, and the entries that the log does not determine, with the reason."""
 
     report: dict[str, Any]
     unchecked: list[str]
 
 
 def report_of(log: Path, own: Sequence[OwnFile] = ()) -> FromLog:
-    """The report as the log gives it. BadInput where the log is none of a flight, or not what its writer left."""
+    """The report derived from the log. BadInput if it is not a flight log or was altered after writing."""
     from cratous.services.monitor.plan_check import check_plan
 
-    # that the flight was not seen to its end its rows say themselves
+    # the rows themselves say if the flight was not observed to its end
     doubted = [DOUBTS[one] for one in doubts(log) if one not in NO_END]
     wrong = not_as_flown(log)
     if wrong:
@@ -69,14 +69,14 @@ def report_of(log: Path, own: Sequence[OwnFile] = ()) -> FromLog:
 
 
 def _doubted(row: dict[str, Any], doubted: Sequence[str]) -> dict[str, Any]:
-    """A row of a log that is not whole: what seemed to hold is unknown."""
+    """A row of an incomplete log: `holds` becomes `unknown`."""
     if not doubted or row["verdict"] != Outcome.HOLDS:
         return row
     return {**row, "verdict": str(Outcome.UNKNOWN), "note": f"{doubted[0]}; else: {row['note']}"}
 
 
 def _not_held(row: dict[str, Any], doubted: Sequence[str]) -> dict[str, Any]:
-    """An assumption over a log that is not whole: what seemed to be held was not observed to its end."""
+    """An assumption row of an incomplete log: `held` becomes `not observed`."""
     if not doubted or row["state"] != State.HELD:
         return row
     note = f"{doubted[0]}; else: {row['note'] or 'held'}"
@@ -84,7 +84,7 @@ def _not_held(row: dict[str, Any], doubted: Sequence[str]) -> dict[str, Any]:
 
 
 def write_from_log(log: Path, folder: Path, own: Sequence[OwnFile] = ()) -> FromLog:
-    """Make the folder of results of a log: the log, the report, and its pages; BadInput where one is there already."""
+    """Create a results folder from a log: the log, the report and its pages; BadInput if one exists already."""
     kept = folder / LOG_NAME
     if kept.exists() and log.resolve() != kept.resolve():
         raise BadInput(

@@ -1,4 +1,4 @@
-"""Judge a finished flight again: from its log alone, then against all that is written of it."""
+"""Judges a finished flight again: first from its log alone, then against the files of its results."""
 
 from __future__ import annotations
 
@@ -73,8 +73,9 @@ def subject(log: Path) -> tuple[Mission, Plan]:
 
 
 class Watched(NamedTuple):
-    """What a monitor has seen: its verdicts, a row for each assumption of the system theorems, and who commanded
-    when (`Monitor.commands`)."""
+    """What a monitor has found: its verdicts, a row for each assumption of the system theorems, and
+    the commanders over time (`Monitor.commands`).
+    """
 
     verdicts: list[Verdict]
     assumptions: list[dict[str, Any]]
@@ -83,7 +84,7 @@ class Watched(NamedTuple):
 
 
 def watch(log: Path, messages: Iterable[Heard] | None = None) -> Watched:
-    """What a fresh monitor says that sees the messages of a log. messages: these, from whoever reads them."""
+    """The findings of a fresh monitor on the messages of a log. messages: the log's, if already being read."""
     from cratous.services.monitor import Monitor
 
     meta = read_meta(log)
@@ -96,17 +97,17 @@ def watch(log: Path, messages: Iterable[Heard] | None = None) -> Watched:
 
 
 def watched_and_told(log: Path, mission: Mission) -> tuple[Watched, Told]:
-    """What a monitor and what the reader of the flight make of a log, by one pass over it."""
+    """Monitor findings and flight data from a single pass over a log."""
     telling = Telling(log, mission)
     return watch(log, telling.heard()), telling.told()
 
 
 @dataclass(frozen=True)
 class Judgement:
-    """What certifying found. report: as the log gives it; found: what is not so (nothing: confirmed).
+    """Result of certifying. report: derived from the log; found: discrepancies (empty: confirmed).
 
-    unchecked: what neither the log nor this program can vouch for, with the reason; rewritten: files
-    made anew because the user asked for it.
+    unchecked: what neither the log nor this program can vouch for, with the reason; rewritten:
+    files regenerated because the user asked for it.
     """
 
     report: dict[str, Any]
@@ -116,11 +117,11 @@ class Judgement:
 
 
 def certify_again(folder: Path, *, rewrite: bool = False, own: Sequence[OwnFile] = ()) -> Judgement:
-    """Judge the flight in a folder again and hold every file of it against what was found.
+    """Judge the flight in a folder again and compare every file with the result.
 
-    rewrite: files that are made from report.json are made anew where they differ, if all else is
-    confirmed; own: files of requirements that a confirmed report is made anew with. Without these two nothing
-    is written.
+    rewrite: regenerate differing files that derive from report.json, if all else is confirmed; own:
+    requirement files with which a confirmed report is rebuilt. Without these two nothing is
+    written.
     """
     written = read_report(folder)
     log = folder / LOG_NAME
@@ -131,7 +132,7 @@ def certify_again(folder: Path, *, rewrite: bool = False, own: Sequence[OwnFile]
     left = {key: value for key, value in silent.items() if "." not in key}
     former = written["format"] == FORMER
     found += differences(_compared(written, left, former), _compared(report, left, former))
-    if not former:  # the schema is of this format alone
+    if not former:  # the schema covers the current format only
         whole = {**written, **{key: report[key] for key in left if key not in written}}
         found += [f"{REPORT_NAME}, by its schema: {line}" for line in departures(whole)]
     mission, plan = subject(log)
@@ -153,14 +154,14 @@ def certify_again(folder: Path, *, rewrite: bool = False, own: Sequence[OwnFile]
 
 
 def _commanded(mission: Mission, file: Path) -> list[str]:
-    """What shows that the mission with the commands of an operator is another than the one in the log."""
+    """Evidence that the mission with the operator's commands differs from the one in the log."""
     from cratous.services.loading import load
 
     try:
         stated = load(file, mission.seed)
     except CratousError as error:
         return [f"{COMMANDED_NAME}: {error}"]
-    if not mission.instances:  # flown without avoidance, as the command of the report says
+    if not mission.instances:  # flown without avoidance, as the report's command says
         stated = replace(stated, instances=())
     if mission_hash(replace(stated, notes=())) == mission_hash(replace(mission, notes=())):
         return []
@@ -168,7 +169,7 @@ def _commanded(mission: Mission, file: Path) -> list[str]:
 
 
 def _compared(report: dict[str, Any], left: Container[str], former: bool) -> dict[str, Any]:
-    """What is compared of a report: without some entries, in the former format without kernels."""
+    """The entries of a report that are compared: without those left out, in the former format without kernels."""
     found = {key: value for key, value in report.items() if key not in left}
     rows = found.get("constraints")
     if former and isinstance(rows, list):
@@ -182,7 +183,7 @@ def _compared(report: dict[str, Any], left: Container[str], former: bool) -> dic
 
 
 def log_faults(log: Path, written: dict[str, Any]) -> list[str]:
-    """Evidence that the log was altered, or is not the one that the report is about."""
+    """Evidence that the log was altered, or belongs to another report."""
     subject(log)
     with SqliteLog(log) as source:
         digest, closing = source.digest(), source.closing()
@@ -195,12 +196,12 @@ def log_faults(log: Path, written: dict[str, Any]) -> list[str]:
     of_report = written.get("log")
     stated = of_report.get("digest") if isinstance(of_report, dict) else None
     found += differences(stated, digest, "log.digest")
-    # where something is found nothing can be relied on any more
+    # once an alteration is found, further checks mean nothing
     return found or not_as_flown(log)
 
 
 def not_as_flown(log: Path) -> list[str]:
-    """What shows that the mission or the plan in the log's meta is not the one of its messages."""
+    """Evidence that the mission or plan in the log's meta is not the one of its messages."""
     meta = read_meta(log)
     mission, plan = subject(log)
     found = []
@@ -213,7 +214,7 @@ def not_as_flown(log: Path) -> list[str]:
 
 
 def _plan_hash(body: str) -> Any:
-    """Of which plan a message says that it was accepted; None where it says nothing that can be read."""
+    """Hash of the plan that a message reports as accepted; None if it cannot be read."""
     try:
         return json.loads(body)["PlanHash"]
     except (ValueError, TypeError, LookupError, RecursionError):
@@ -221,10 +222,10 @@ def _plan_hash(body: str) -> Any:
 
 
 def rebuilt(log: Path, written: dict[str, Any]) -> tuple[dict[str, Any], dict[str, str], list[str]]:
-    """The report as the log gives it, what of it could not be checked, and what is wrong.
+    """The report derived from the log, the entries that could not be checked, and the faults.
 
-    The proof inventory is made anew if the ledger is still the one of the flight, else held against
-    the digest in the log.
+    The proof inventory is rebuilt if the ledger is still that of the flight, otherwise compared
+    with the digest in the log.
     """
     from cratous.services.monitor.plan_check import check_plan
 
@@ -235,7 +236,7 @@ def rebuilt(log: Path, written: dict[str, Any]) -> tuple[dict[str, Any], dict[st
     rows += constraint_rows(watched.verdicts, "flight")
     judged = Judged(rows, watched.assumptions, watched.commands, told)
     report = json.loads(report_text(build_report(mission, plan, judged, log, flown)))
-    if wrong:  # one sentence says it; what differs in detail says no more
+    if wrong:  # one sentence states it; detailed differences add nothing
         report["proofs"] = written.get("proofs")
     wrong += lacking
     recorded = read_meta(log).get(ASSUMPTIONS)
@@ -250,7 +251,7 @@ def rebuilt(log: Path, written: dict[str, Any]) -> tuple[dict[str, Any], dict[st
 
 
 def _certificate(plan: Plan, folder: Path) -> list[str]:
-    """What is wrong with the certificate that the plan names."""
+    """Faults of the certificate that the plan names."""
     from cratous.services.planning.assign_certificate import read, verify
 
     if not plan.certificate:

@@ -1,4 +1,4 @@
-"""`cratous replay-trace`: play a trace of a broken design on the actors that fly."""
+"""`cratous replay-trace`: replays a trace of a broken design on the real actors."""
 
 from __future__ import annotations
 

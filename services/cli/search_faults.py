@@ -1,4 +1,4 @@
-"""`cratous search-faults`: break the design of authority on purpose, and find how it goes wrong."""
+"""`cratous search-faults`: finds faults in deliberately broken designs of authority."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cratous.spec.files.printable import json_text
 
 SAFE, SAFE_HAND = "safe", "safe-certificate"
 HAND_STEPS = 6
-"""Traces of a certificate are no longer: each step has more possibilities."""
+"""Maximum length of certificate traces: each step has more possibilities."""
 
 
 @click.command()

@@ -1,4 +1,4 @@
-"""Traces in files: what `cratous search-faults --traces` writes, and `cratous replay-trace` reads."""
+"""Trace files, written by `cratous search-faults --traces`, and read by `cratous replay-trace`."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ HAND_FORMAT = "cratous certificate trace 1"
 MOST_BYTES = 1_000_000
 MOST_ENTRIES = 100
 MOST = 1000
-"""Epochs and counts of changes go so far."""
+"""Maximum of epochs and of change counts."""
 WORDS = 500
-"""A text of a trace has at most so many characters."""
+"""Maximum length of a text in a trace."""
 
 
 Entries = tuple[trace.Entry, ...] | tuple[hand_trace.Entry, ...]
@@ -28,11 +28,11 @@ KINDS: dict[str, tuple[Any, Any, Any, tuple[str, ...]]] = {
     FORMAT: (trace.Entry, trace.Event, trace.Standing, trace.KINDS),
     HAND_FORMAT: (hand_trace.Entry, hand_trace.Event, hand_trace.InHand, hand_trace.KINDS),
 }
-"""By format: an entry, its event, how things stand then, and the kinds of events."""
+"""By format: types of an entry, its event and state, and the kinds of events."""
 
 
 class Trace(NamedTuple):
-    """design: by name; says: what is wrong in it; wrong: what is wrong at the end, empty if nothing is."""
+    """design: its name; says: what is wrong in it; wrong: the fault at the end, empty if none."""
 
     design: str
     says: str
@@ -41,12 +41,12 @@ class Trace(NamedTuple):
 
     @property
     def texts(self) -> tuple[str, ...]:
-        """Its events, as a user reads them."""
+        """Its events as text."""
         return tuple(one.text for one in self.entries)
 
     @property
     def of_hand(self) -> bool:
-        """It is of the certificate in hand, else of authority."""
+        """Whether it is a trace of the certificate in hand; otherwise of authority."""
         return any(isinstance(one, hand_trace.Entry) for one in self.entries)
 
 
@@ -75,7 +75,7 @@ def write(file: Path, told: Trace) -> None:
 
 
 def read(file: Path) -> Trace:
-    """A trace; BadInput with the place where the file is none."""
+    """A trace; BadInput with the position if the file is invalid."""
     text = text_of(file, MOST_BYTES, "a trace of `cratous search-faults --traces`")
     try:
         data = json.loads(text)
@@ -108,7 +108,7 @@ def _entries(reader: _Reader, rows: list[Any], form: str) -> Iterable[Any]:
 
 
 class _Reader:
-    """Holds each part of the data against what it has to be."""
+    """Validates each part of the data."""
 
     def __init__(self, where: str) -> None:
         self._where = where
@@ -130,7 +130,7 @@ class _Reader:
         return data
 
     def fields(self, data: object, of: type[Any], item: str) -> dict[str, Any]:
-        """The fields of a named tuple of texts, truth values and whole numbers."""
+        """The fields of a named tuple of strings, booleans and integers."""
         row = self.table(data, of._fields, item)
         for name, kind in get_type_hints(of).items():
             value, place = row[name], f"{item}.{name}"

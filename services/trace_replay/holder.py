@@ -1,8 +1,10 @@
-"""The vehicle of a flight that holds a certificate: its gate, surveillance and autopilot are those of `cratous run`.
+"""The vehicle that holds a certificate: its gate, surveillance and autopilot are those of `cratous
+run`.
 
-It flies straight on, and so does each trajectory of a trace that is offered. A heartbeat of the trace is as long as
-half of the reserve that is to be certain after an offer. A track is an aircraft far away, or one within the volume. What the
-vehicle is told of tracks it finds itself, at once and of what is in hand.
+It flies straight, and so does each offered trajectory of a trace. A heartbeat of the trace is half
+as long as the reserve required after an offer. A track is an aircraft far away, or one within the
+volume. The vehicle detects by itself what the trace says of tracks, immediately and for the
+certificate in hand.
 """
 
 from __future__ import annotations
@@ -47,13 +49,13 @@ from cratous.spec.system.hand_trace import (
 )
 
 FAR_M, NEAR_M = 50_000.0, 50.0
-"""So far beside the vehicle flies a track that is clear of it, or one that is within the volume [m]."""
+"""Lateral distance of a track that is clear of the vehicle, and of one within the volume [m]."""
 ROOM_M = 5.0
-"""A certificate of the scene allows for so much beside and above [m]."""
+"""Lateral and vertical allowance of the scene's certificates [m]."""
 
 
 class Holder:
-    """The vehicle, ICAROUS's offers that are on their way to it, and who is around."""
+    """The vehicle, ICAROUS's offers in transit to it, and the traffic."""
 
     def __init__(self) -> None:
         mission = scene.mission()
@@ -72,7 +74,7 @@ class Holder:
         self._flies = 0
 
     def happen(self, event: Event) -> InHand:
-        """Let it happen; what is in hand then. NeverSent if it cannot."""
+        """Execute an event; returns the resulting certificate in hand. NeverSent if it is impossible."""
         {
             OFFER: self._offer,
             ARRIVES: self._arrives,
@@ -96,13 +98,13 @@ class Holder:
         self._send(Wished(self._now_ms, Wish(VEHICLE, act, "", 0)))
 
     def _command(self, sender: int) -> None:
-        """Whoever has the vehicle commands what it flies."""
+        """The present commander commands the vehicle."""
         body = velocity_command(VEHICLE, 1, self._state.air.velocity)
         told: Any = gated(VEHICLE, self._state.gate.epoch, sender, body)
         self._send(Commanded(self._now_ms, told))
 
     def _offer(self, event: Event) -> None:
-        """ICAROUS takes the vehicle, if it has not got it, and makes an offer on what is in hand."""
+        """ICAROUS takes the vehicle, unless it has it, and makes an offer based on the certificate in hand."""
         begun = not in_time(self._now_ms // self._unit_ms, event.begins, ANY_LATER)
         if begun or in_time(event.until, event.begins, ANY_LATER):
             raise NeverSent("ICAROUS offers nothing that has begun, or is permitted for no time")
@@ -134,11 +136,11 @@ class Holder:
         self._look()
 
     def _known(self, event: Event) -> None:
-        """A track becomes known to the trace; the vehicle sees it when it is told of it."""
+        """A track becomes known in the trace; the vehicle sees it at the answer (`_answer`)."""
         self._asked.append(event.trajectory)
 
     def _answer(self, event: Event) -> None:
-        """The vehicle sees the track: far away if what is in hand is permitted against it, else within the volume."""
+        """The vehicle sees the track: far away if it permits the trajectory in hand, otherwise in the volume."""
         if event.trajectory not in self._asked:
             raise NeverSent("nobody has asked whether that trajectory is permitted")
         self._asked.remove(event.trajectory)
@@ -153,14 +155,14 @@ class Holder:
         return Intruder(number, p._replace(east_m=p.east_m + off_m), own.velocity, False)
 
     def _left(self, event: Event) -> None:
-        """ICAROUS hands the vehicle back, and UxAS flies another trajectory with it."""
+        """ICAROUS hands the vehicle back, and UxAS flies it on another trajectory."""
         if self._by_icarous:
             self._wish(OFFERS_CONTROL)
         self._command(UXAS)
         self._flies = event.trajectory
 
     def _time(self, _event: Event) -> None:
-        """Fly until the next heartbeat of the trace, at which whoever has the vehicle commands."""
+        """Fly until the trace's next heartbeat, at which the present commander commands."""
         for begins_ms in range(self._now_ms, self._now_ms + self._unit_ms, self._step_ms):
             self._send(Choose(begins_ms))
             self._send(Move())

@@ -1,4 +1,4 @@
-"""What no actor can be given."""
+"""The error for impossible deliveries."""
 
 
 class NeverSent(Exception):

@@ -1,4 +1,4 @@
-"""Play a trace on the actors that fly, until they do otherwise than it says."""
+"""Replays a trace on the real actors, until they deviate from it."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ MODES = ("watching", "avoiding", "offering control")
 
 
 class Played(NamedTuple):
-    """followed: so many entries went as the trace says; why: how the next one did not, empty at the end."""
+    """followed: number of entries that matched the trace; why: how the next one differed, empty at the end."""
 
     followed: int
     why: str
 
 
 def play_trace(told: Trace) -> Played:
-    """Play a trace of either kind from the start of a flight."""
+    """Replay a trace of either kind from the start of a flight."""
     if told.of_hand:
         return play_hand([one for one in told.entries if isinstance(one, hand_trace.Entry)])
     return play([one for one in told.entries if isinstance(one, Entry)])
 
 
 def play(entries: Sequence[Entry]) -> Played:
-    """Play a trace from the start of a flight."""
+    """Replay a trace of authority from the start of a flight."""
     with Actors() as actors:
         for number, entry in enumerate(entries):
             try:
@@ -44,7 +44,7 @@ def play(entries: Sequence[Entry]) -> Played:
 
 
 def play_hand(entries: Sequence[hand_trace.Entry]) -> Played:
-    """Play a trace of the certificate in hand from the start of a flight."""
+    """Replay a trace of the certificate in hand from the start of a flight."""
     holder = Holder()
     for number, entry in enumerate(entries):
         try:
@@ -63,7 +63,7 @@ def _holds(stands: hand_trace.InHand) -> str:
 
 
 def differs(told: Standing, flown: Standing) -> str:
-    """In what a trace and the flight differ, in words; empty if in nothing."""
+    """Differences between trace and flight, in words; empty if none."""
     rows = [
         ("the gate", _gate(told), _gate(flown)),
         ("ICAROUS is", _of(MODES, told.mode), _of(MODES, flown.mode)),
