@@ -7,6 +7,7 @@ much sooner. Who counts calls is given each loop with what runs it (`entered_by`
 """
 
 import contextlib
+import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -14,8 +15,9 @@ from typing import Any
 from cratous.core.kernel import qualified
 
 Loop = Callable[..., Any]
-SOON, WORTH = 300, 60_000
-"""After so much work the compiled loop is used: if it is kept, and if it is not."""
+SOON, LOADED, WORTH = 300, 3_000, 60_000
+"""Work after which the compiled loop is used: if it is kept and the compiler is loaded, if it is kept alone (loading
+the compiler takes half a second), and if it is not kept."""
 _at_once: list[bool] = [False]
 _entered: list[Callable[[Loop, Loop], Loop] | None] = [None]
 _done: Counter[str] = Counter()
@@ -63,7 +65,8 @@ def _is_time(function: Loop, before: int, done: int) -> bool:
     if _at_once[-1] or done > WORTH:
         return True
     # it is looked for now and then: a process beside may have made it since
-    return (done - 1) // SOON > max(before - 1, 0) // SOON and _is_kept(function)
+    step = SOON if "numba" in sys.modules else LOADED
+    return (done - 1) // step > max(before - 1, 0) // step and _is_kept(function)
 
 
 def _is_kept(function: Loop) -> bool:
