@@ -23,8 +23,8 @@ def lost_at(violated: bool, t: float, piece: float) -> bool:
 
 
 def flown_step(flown: Flown, known: bool, lost: bool, surely: bool) -> Flown:
-    """Add a segment. known: the other aircraft's state is known; lost: the volume is lost; surely: by more than the
-    tolerance.
+    """Add a segment. known: the other aircraft's state is known; lost: the volume is lost; surely: it is lost by a
+    margin.
     """
     return Flown(flown.refused or (known and lost and surely), flown.open or not known or lost)
 

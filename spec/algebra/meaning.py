@@ -157,8 +157,7 @@ def _collect(
     timing: dict[int, tuple[Row, ...]],
     owners: dict[int, Term] | None = None,
 ) -> None:
-    """Add the order rows to `order` and set the timing rows of each task; inner terms are visited later and override.
-    """
+    """Add the order rows to `order` and set the timing rows of each task; inner terms come later and override."""
     said = quote(term) if isinstance(term, Op) or term.suffix else ""
     if isinstance(term, Op):
         if term.op == ALTERNATIVE:

@@ -68,8 +68,7 @@ def permits(term: Term, times: Times) -> bool:
 
 
 def _ways(term: Term, times: Times) -> set[frozenset[int]]:
-    """The ways in which a part of the term has been done; each is the set of its tasks that no timing constrains yet.
-    """
+    """The ways in which a part of the term has been done; each is the set of its tasks not yet constrained."""
     began = set(tasks(term)) & set(times)
     if isinstance(term, Atom):
         parts = [{frozenset(began)}]
