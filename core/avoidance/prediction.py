@@ -204,7 +204,7 @@ def _overlap(piece: Piece, leg: Piece) -> bool:
 
 
 def _within(piece: Piece, leg: Piece) -> Piece:
-    """The part of a piece in the time of a leg."""
+    """The part of a segment that overlaps a leg in time."""
     begins, end = piece.start_s, piece.start_s + piece.duration_s
     start, end = max(begins, leg.start_s), min(end, leg.start_s + leg.duration_s)
     return Piece(start, end - start, after(piece, start - begins), piece.velocity)

@@ -70,7 +70,7 @@ def out_of_reach(
     beside_m = 1.0 + regaining.radius_m + closing_m_s * piece_s
     if (
         regaining.begin_s > horizon_s
-    ):  # only the cylinder is asked, and no longer than to the horizon
+    ):  # only the cylinder is checked, up to the horizon at most
         wide_m = 0.0
     if regaining.recovering:
         wide_m = max(wide_m, regaining.radius_m)

@@ -150,7 +150,7 @@ def _to_level(
     """
     rest = target - z
     side = np.where(rest >= 0, 1.0, -1.0)
-    # after a tick at the mean of the rates, braking must bring it to the target: v^2 / 2a = what is left
+    # after a tick at the mean of the rates, braking must bring it to the target: v^2 / 2a = the remaining distance
     room = np.maximum(np.abs(rest) - side * up * h / 2, 0.0)
     most = -accel * h / 2 + np.sqrt((accel * h / 2) ** 2 + 2 * accel * room)
     fastest = np.maximum(reach, side * up)

@@ -17,7 +17,7 @@ NEARER, AT, FARTHER = -1, 0, 1
 
 
 class Ratio(NamedTuple):
-    """num / den with den >= 0; den = 0 with num = 1 stands for infinity."""
+    """num / den with den >= 0; den = 0 with num = 1 represents infinity."""
 
     num: float
     den: float

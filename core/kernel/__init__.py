@@ -1,9 +1,9 @@
 """Marking and registering kernels, folds and drivers.
 
-A *kernel* is a plain typed function in the subset of `core.subset`. A *fold* runs a kernel step
-over data of run-time length. A *driver* is a map, a fold or a search that proved
-kernels decide in; how far they vouch for its output is read from its text (`proofs.statements`). All three are registered here under their qualified names, `package.module.function`, so
-that the ledger can be held against them and two of one bare name stand side by side. The
+A *kernel* is a plain typed function in the subset of `core.subset`. A *fold* runs a kernel step over data of run-time
+length. A *driver* is a map, a fold or a search in which proved kernels decide; how far they check its output is
+determined from its text (`proofs.statements`). All three are registered here under their qualified names,
+`package.module.function`, so that the ledger can be compared with them and two of one bare name can coexist. The
 decorators return the function itself: CPython runs exactly what is written.
 """
 
@@ -35,13 +35,12 @@ class Refusal:
 
 @dataclass(frozen=True)
 class Entry:
-    """One registered function: its qualified name, what it is, what it implements, the function.
+    """One registered function: its qualified name, its kind, what it implements, the function.
 
-    uses: kernels that a fold is made of, or that decide for a driver as its author names them (see
-    `checkers`); nonnegative: arguments for which a number below 0 means nothing, of a record
-    all its numbers; supports: the kernel
-    or fold of which it is a part, which has the definition (see `supported`); restates: what a formula
-    is for that its definition only repeats.
+    uses: kernels that a fold consists of, or that decide in a driver, as named by its author (see `checkers`);
+    nonnegative: arguments for which a number below 0 is meaningless, of a record all its numbers; supports: the
+    kernel or fold of which it is a part, which has the definition (see `supported`); restates: the purpose of a
+    formula that its definition only repeats.
     """
 
     name: str
@@ -148,12 +147,11 @@ def kernel(
 ) -> Callable[[F], F]:
     """Register a kernel under its qualified name.
 
-    implements: its definition in `spec`, as `module.function`; or supports: the kernel or fold that
-    it is a step of, which calls it and has a definition. restates: what the formula is for, where
-    the definition can only repeat it. nonnegative: arguments (a record for all its numbers) that the theorems take to be at least
-    0 and that come from outside, as thresholds do; the exact and the enclosed reading refuse a
-    number below 0 there. Raises ValueError for a name that is no argument, and unless exactly one
-    of implements and supports is given.
+    implements: its definition in `spec`, as `module.function`; or supports: the kernel or fold that it is a step of,
+    which calls it and has a definition. restates: the purpose of the formula, if the definition can only repeat it.
+    nonnegative: arguments (a record for all its numbers) that the theorems assume to be at least 0 and that come from
+    outside, such as thresholds; the exact and the enclosed reading refuse a number below 0 there. Raises ValueError
+    for a name that is not an argument, and unless exactly one of implements and supports is given.
     """
 
     def mark(function: F) -> F:

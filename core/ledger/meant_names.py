@@ -122,7 +122,7 @@ def _is_called(value: Any, name: str) -> bool:
 
 
 def _within(module: ModuleType, names: tuple[str, ...]) -> Iterator[str]:
-    """Check the attributes that are looked up in one of our modules against its file."""
+    """The attributes, of those looked up in one of our modules, that differ from its file."""
     meant, scope = _file_says(module.__name__).meant, vars(module)
     for used in names:
         if used in meant and used in scope and not _is_one(scope[used], meant[used]):

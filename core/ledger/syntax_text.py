@@ -40,13 +40,12 @@ MARKS = frozenset({"kernel", "fold"})
 
 @dataclass
 class Reading:
-    """What was read of one piece of code.
+    """The result of reading one piece of code.
 
-    names: what it looks up outside of itself, with the attributes that follow, as `module.name`;
-    attributes: every attribute that it names; imports: (name, module, name there) of imports inside of
-    functions; strings: texts that could be names, in order, with `*` for what is only known when the
-    code runs; rebinds: names of its module that it binds
-    when it runs; asks: the words of ANY_ATTRIBUTE and ANYTHING by which it looks something up.
+    names: what it looks up outside itself, with the attributes that follow, as `module.name`; attributes: every
+    attribute that it names; imports: (name, module, name there) of imports inside functions; strings: texts that
+    could be names, in order, with `*` for parts known only at run time; rebinds: names of its module that it binds at
+    run time; asks: the words of ANY_ATTRIBUTE and ANYTHING by which it looks something up.
     """
 
     parts: list[str] = field(default_factory=list)
@@ -282,9 +281,9 @@ def imported(
 
 
 def _bindings(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, str]]:
-    """What the code of one scope binds, as ("bound", name), and what it says is bound outside.
+    """What the code of one scope binds, as ("bound", name), and what it declares as bound outside.
 
-    The loop variables of comprehensions are none of them: outside of these the name is another.
+    The loop variables of comprehensions are not included: outside these the name is another.
     """
     for node in nodes:
         kind = type(node)
@@ -300,7 +299,7 @@ def _bindings(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, str]]:
                 yield "bound", alias.asname or alias.name.partition(".")[0]
         elif kind in (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef):
             yield "bound", node.name  # type: ignore[attr-defined]
-            # what stands before the body is evaluated here, and may bind with :=
+            # what comes before the body is evaluated here, and may bind with :=
             yield from _bindings(node.decorator_list)  # type: ignore[attr-defined]
             continue
         elif kind is ast.Lambda:

@@ -43,7 +43,7 @@ class Unit:
     """One statement at the top of a module, or one method of a class.
 
     kind: function, class, value, import, loose or method; name: what it binds, after its class;
-    digest: of what it says; the other fields are those of `syntax_text.Reading`; methods: the units
+    digest: of its contents; the other fields are those of `syntax_text.Reading`; methods: the units
     of a class's methods, by name.
     """
 

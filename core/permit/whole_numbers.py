@@ -47,7 +47,7 @@ def in_whole_numbers(pieces: Sequence[Moving], met: Meeting) -> tuple[list[Movin
 
 
 def _ratio(value: float) -> tuple[int, int]:
-    """A double as an integer and the power of two that divides it."""
+    """A double as numerator and denominator, the latter a power of two."""
     return value.as_integer_ratio()
 
 

@@ -1,7 +1,7 @@
 """How much of an area footprints have covered: the area is divided into small squares.
 
 A square counts as seen only if ONE convex footprint contains all of it, so the reported share is never more than what
-was seen; squares that straddle the outline count in full as unseen unless seen. A convex polygon in counter-clockwise
+was seen; an unseen square that straddles the outline counts in full as unseen. A convex polygon in counter-clockwise
 order (x to y) is what lies left of all its edges: `square_within` tests that for every point of a square. The loops:
 `core.tasks.coverage_arrays`.
 """

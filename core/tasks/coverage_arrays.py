@@ -1,7 +1,7 @@
 """The squares of an area, and which of them footprints contain: loops over arrays.
 
 The kernels are those of `core.geofence.planar` and `core.tasks.coverage_steps`, step by step as their folds run
-them. CPython runs these functions as they stand; `core.readings.machine.compiled.machine` compiles the same text.
+them. CPython runs these functions directly; `core.readings.machine.compiled.machine` compiles the same text.
 """
 
 import numpy as np

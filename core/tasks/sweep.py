@@ -198,7 +198,7 @@ def sweep(
 
 
 def _middles(row: Sequence[Strip]) -> tuple[Corner, Corner]:
-    """The centres of the first and the last strip, to measure the distance across the strips."""
+    """The positions of the first and the last strip, measured across the strips, as points (across, 0) [m]."""
     (n1, e1), (n2, e2) = row[0]
     length = math.dist(*row[0]) or 1.0
     c, s = (n2 - n1) / length, (e2 - e1) / length
@@ -246,7 +246,7 @@ def square_spiral(
 ) -> list[Strip]:
     """Strips from the centre outwards that cover a square of side 2 extent_m, each a quarter turn on.
 
-    The square stands along the heading; empty if there would be more than LANES_MOST strips.
+    The sides of the square are along the heading and across it; empty if there would be more than LANES_MOST strips.
     """
     count = max(2, math.ceil(2 * extent_m / width_m - 1e-9))
     if 2 * count > LANES_MOST:

@@ -3,7 +3,7 @@
     .(p1 |(p2 p3)_[1000-1500] +(p4 p5))-[0-60000]
 
 A term is an operator with one or more operands, or a task `p<id>`; any term may carry one timing
-suffix in milliseconds. What terms mean stands in `algebra_meaning`. A text that is not exactly one
+suffix in milliseconds. The meaning of terms: `spec.algebra.meaning`. A text that is not exactly one
 term is refused with its place and what was expected: nothing is skipped, guessed or repaired.
 """
 

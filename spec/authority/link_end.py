@@ -38,7 +38,7 @@ def is_true(gate: State, active: bool, epoch: int) -> bool:
 
 
 def is_past(before: End, gate: State, epoch: int) -> bool:
-    """The epoch has begun in the past, and a newer one is known to have begun."""
+    """The epoch has begun, and a newer one is known to have begun."""
     return was_given(gate, epoch) and (epoch < before.epoch or epoch != gate.epoch)
 
 

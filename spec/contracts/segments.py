@@ -1,7 +1,7 @@
 """Serving a long mission path to a vehicle in segments.
 
-The path's waypoints have positions from 0; a segment is a range of positions. The next segment begins so many
-positions before the last one's end that the two overlap, and continues from there; together the segments are the
+The path's waypoints have positions from 0; a segment is a range of positions. The next segment begins
+before the last one's end, so that the two overlap, and continues from there; together the segments are the
 path: every position is served, in order, without gaps. A path that leads back into itself (its last waypoint leads to
 an earlier one) has no last position; the waypoint at a position is found by following the path from waypoint to
 waypoint.

@@ -178,7 +178,7 @@ def is_arc(v: Plane, d: Plane, c: float, s: float) -> bool:
 
 
 def in_area(east: float, north: float, alt: float, radius: float, height: float) -> bool:
-    """In a cylinder that stands on the ground: at most radius from its axis, and not above its height."""
+    """In a cylinder on the ground: at most radius from its axis, and not above its height."""
     return well_within(Plane(east, north), radius) and not alt > height
 
 

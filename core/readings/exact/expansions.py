@@ -5,8 +5,8 @@ which asks the filter first, pairs of doubles next (`pairs`) and residues then (
 table of steps on expansions (`expansion_steps`), which one compiled function carries out for all
 kernels (`expansion_arithmetic`). Verdicts are short-circuited, so only what matters is computed: a
 verdict is evaluated with the signs known so far, and again with each that turns out to be missing.
-The known signs stand in the work array beside the numbers (2: not known), and so does which one is
-missing first (-1: none), so that one array alone is handed from function to function.
+The known signs are in the work array beside the numbers (2: not known), and so is the number of the
+first one missing (-1: none), so that one array alone is handed from function to function.
 
 Range: every real input is 0 or has a magnitude in [2^-E, 2^E]. E is the greatest number up to 100
 for which every value of the graph is a multiple of 2^-960 (so that not even a share of one part
