@@ -68,9 +68,7 @@ def out_of_reach(
     closing_m_s = fastest_m_s + math.sqrt(other[3] * other[3] + other[4] * other[4])
     wide_m, looked_s = w[0] + closing_m_s * w[2], max(piece_s, horizon_s)
     beside_m = 1.0 + regaining.radius_m + closing_m_s * piece_s
-    if (
-        regaining.begin_s > horizon_s
-    ):  # only the cylinder is checked, up to the horizon at most
+    if regaining.begin_s > horizon_s:  # only the cylinder is checked, up to the horizon at most
         wide_m = 0.0
     if regaining.recovering:
         wide_m = max(wide_m, regaining.radius_m)
