@@ -1,7 +1,7 @@
-"""How far straight flights lead, and how fast at most: bounds by which `core.avoidance.prediction` leaves work out.
+"""Bounds on where straight flights lead and how fast, by which `core.avoidance.prediction` skips work.
 
-One trajectory is asked of against many intruders, and one intruder's way against many trajectories, so what was said of
-either is kept, by its identity, for as long as it is the latest.
+One trajectory is checked against many intruders, and one intruder's path against many trajectories, so the latest
+result of either is cached by identity.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def fastest(legs: Sequence[Leg]) -> float:
 
 
 def reached(pieces: Sequence[Leg]) -> tuple[float, Bounds | None]:
-    """Until when pieces last [s], and their bounds; None where one does not end."""
+    """The end time of segments [s], and their bounds; None if one does not end."""
     known, said = _latest[0]
     if known is pieces and pieces:
         return said
@@ -41,8 +41,9 @@ def reached(pieces: Sequence[Leg]) -> tuple[float, Bounds | None]:
 
 
 def reached_until(way: Sequence[Leg], until_s: float) -> Bounds | None:
-    """The bounds of a way until an instant [s]; None: it begins no sooner. That an intruder stands where its way ends
-    adds no place to these."""
+    """The bounds of a path up to an instant [s]; None if it begins no sooner. An intruder that stays where its path
+    ends adds no position to these.
+    """
     known = _ways.get(id(way))
     if known is not None and known[0] is way and known[1] == until_s:
         return known[2]
@@ -54,7 +55,7 @@ def reached_until(way: Sequence[Leg], until_s: float) -> Bounds | None:
 
 
 def bounds(legs: Sequence[Leg], until_s: float) -> Bounds | None:
-    """The bounds of legs, those of a way one after the other, until an instant [s]; None: none begins before it."""
+    """The bounds of consecutive legs up to an instant [s]; None if none begins before it."""
     low_n = low_e = math.inf
     high_n = high_e = speed = -math.inf
     for start_s, duration_s, (north, east, _), (north_s, east_s, _) in legs:

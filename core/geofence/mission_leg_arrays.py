@@ -1,7 +1,7 @@
 """Legs against all zones at once: the zone kernels in loops over arrays, for thousands of paths.
 
-The kernels are those of `core.geofence.planar`, step by step as their folds run them; only edges that change
-nothing in the folds are passed over (`core.geofence.mission_legs`). CPython runs these functions as they stand;
+The kernels are those of `core.geofence.planar`, step by step as their folds run them; only edges that change nothing
+in the folds are skipped (`core.geofence.mission_legs`). CPython runs these functions directly;
 `core.readings.machine.compiled.machine` compiles the same text.
 """
 
@@ -57,14 +57,14 @@ def leg_zone(
 ) -> int:
     """The first zone that the straight leg from p to q breaks, or -1. North, east, altitude [m]."""
     keep_out, floor, ceiling, boxes, first, edges = zones
-    # CPython reckons with its own numbers in half the time that those of arrays take it
+    # CPython computes with its own numbers twice as fast as with those of arrays
     pn, pe, pa, qn, qe, qa = float(pn), float(pe), float(pa), float(qn), float(qe), float(qa)
     low, high = min(pa, qa), max(pa, qa)
     south, north = min(pn, qn), max(pn, qn)
     west, east = min(pe, qe), max(pe, qe)
     p, q, unseen = Vec2(pn, pe), Vec2(qn, qe), Seen(False, False)
     for z in range(len(keep_out)):
-        # no literal: for one the compiler makes `contact_step`, with all that it calls, once more
+        # not a literal: the compiler would compile `contact_step`, with all that it calls, again
         seen, met = unseen, bool(0)
         apart = north < float(boxes[z, 0]) or south > float(boxes[z, 1])
         if not (apart or east < float(boxes[z, 2]) or west > float(boxes[z, 3])):

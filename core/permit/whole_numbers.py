@@ -1,9 +1,9 @@
-"""What a permit is asked of, in units in which every number is whole: the same verdict, without rationals.
+"""The inputs of a permit in units in which every number is an integer: the same verdict, without rationals.
 
-A double is a whole number of some power of two. So there are units of time and of length, each a power of two of a
-second or a metre, in which all times, velocities and lengths of a way and a meeting are whole. The kernels of
-`core.permit.pieces` have no constant with a unit and compare only what has one unit, so that no verdict depends on the
-units (`tests/permit/test_whole_numbers.py`); whole numbers are as exact as rationals, and much quicker.
+A double is an integer multiple of some power of two. So there are units of time and of length, each a power of two of
+a second or a metre, in which all times, velocities and lengths of a path and a meeting are integers. The kernels of
+`core.permit.pieces` have no constant with a unit and compare only quantities of one unit, so that no verdict depends
+on the units (`tests/permit/test_whole_numbers.py`); integers are as exact as rationals, and much faster.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Moving = tuple[Vec2, float, float, float]
 
 
 def in_whole_numbers(pieces: Sequence[Moving], met: Meeting) -> tuple[list[Moving], Meeting]:
-    """The same pieces and meeting in such units. ValueError or OverflowError for a number that is not finite."""
+    """The same segments and meeting in such units. ValueError or OverflowError for a number that is not finite."""
     s, sz, w, wz, wide, high, radius_m, half_m = met
     times = [_ratio(piece[2]) for piece in pieces]
     speeds = [_ratio(v) for one in pieces for v in (*one[0], one[1])]
@@ -26,7 +26,7 @@ def in_whole_numbers(pieces: Sequence[Moving], met: Meeting) -> tuple[list[Movin
     lengths = [_ratio(piece[3]) for piece in pieces]
     lengths += [_ratio(x) for x in (*s, sz, wide.start_m, high.start_m, radius_m, half_m)]
     gains = [_ratio(wide.gain_m_s2), _ratio(high.gain_m_s2)]
-    # so many bits behind the point: of a length as many as of time and velocity together
+    # binary places: of a length as many as of time and velocity together
     time = max((d.bit_length() for _, d in times), default=1) - 1
     speed = max(d.bit_length() for _, d in speeds) - 1
     length = max(d.bit_length() for _, d in lengths) - 1
@@ -47,7 +47,7 @@ def in_whole_numbers(pieces: Sequence[Moving], met: Meeting) -> tuple[list[Movin
 
 
 def _ratio(value: float) -> tuple[int, int]:
-    """A double as a whole number of a power of two: both."""
+    """A double as numerator and denominator, the latter a power of two."""
     return value.as_integer_ratio()
 
 

@@ -1,9 +1,9 @@
 """Loops over arrays, in CPython until there is much to do, then in machine code: the same results.
 
-`core.readings.machine.compiled.machine` compiles the text that CPython runs, so which of the two ran cannot be seen
-in what comes out (`tests/routing/test_routing.py`); only the time differs. Short jobs start without the
-compiler. Compiling takes seconds, so machine code that is kept, by an earlier run or by a process beside, is used
-much sooner. Who counts calls is given each loop with what runs it (`entered_by`), as counts do not depend on which.
+`core.readings.machine.compiled.machine` compiles the text that CPython runs, so the results do not show which of the
+two ran (`tests/routing/test_routing.py`); only the time differs. Short jobs start without the compiler. Compiling
+takes seconds, so machine code that is cached, by an earlier run or by a parallel process, is used much sooner. Code
+that counts calls gets each loop together with what runs it (`entered_by`), so that counts are the same for both.
 """
 
 import contextlib
@@ -16,7 +16,7 @@ from cratous.core.kernel import qualified
 
 Loop = Callable[..., Any]
 SOON, LOADED, WORTH = 300, 3_000, 60_000
-"""Work after which the compiled loop is used: if it is kept and the compiler is loaded, if it is kept alone (loading
+"""Work after which the compiled loop is used: if it is cached and the compiler is loaded, if it is only cached (loading
 the compiler takes half a second), and if it is not kept."""
 _at_once: list[bool] = [False]
 _entered: list[Callable[[Loop, Loop], Loop] | None] = [None]
@@ -26,17 +26,17 @@ _coming: dict[str, Callable[[], None]] = {}
 
 
 def expect(function: Loop, wait: Callable[[], None]) -> None:
-    """Another process makes this function's machine code; `wait` returns when that has ended, well or not.
+    """Announce that another process compiles this function; `wait` returns when that has ended, successfully or not.
 
-    When work reaches the limit that is waited for, and nothing else depends on it.
+    It is called when the work reaches the limit; nothing else depends on it.
     """
     _coming[qualified(function)] = wait
 
 
 def swift(function: Loop, work: int = 1) -> Loop:
-    """The function as it stands, or compiled once enough has been done with it.
+    """The function as written, or compiled once enough work has been done with it.
 
-    work: how much this call does; a unit is about what CPython does in a tenth of a millisecond.
+    work: the work of this call; a unit is about what CPython does in a tenth of a millisecond.
     """
     run, enter = _chosen(function, work), _entered[-1]
     return run if enter is None else enter(function, run)
@@ -61,10 +61,10 @@ def _chosen(function: Loop, work: int) -> Loop:
 
 
 def _is_time(function: Loop, before: int, done: int) -> bool:
-    """Whether a function is compiled now, of which so much had been done before and is with this call."""
+    """Whether a function is to be compiled now, given the work done before and including this call."""
     if _at_once[-1] or done > WORTH:
         return True
-    # it is looked for now and then: a process beside may have made it since
+    # checked periodically: a parallel process may have compiled it since
     step = SOON if "numba" in sys.modules else LOADED
     return (done - 1) // step > max(before - 1, 0) // step and _is_kept(function)
 
@@ -77,7 +77,7 @@ def _is_kept(function: Loop) -> bool:
 
 @contextlib.contextmanager
 def entered_by(enter: Callable[[Loop, Loop], Loop]) -> Iterator[None]:
-    """Inside, what `swift` gives is what `enter` makes of a function and of what runs it."""
+    """Context in which `swift` returns what `enter` makes of a function and of what runs it."""
     _entered.append(enter)
     try:
         yield
@@ -87,7 +87,7 @@ def entered_by(enter: Callable[[Loop, Loop], Loop]) -> Iterator[None]:
 
 @contextlib.contextmanager
 def at_once() -> Iterator[None]:
-    """Inside, everything is compiled at its first call: for a cache that is to be complete."""
+    """Context in which everything is compiled at its first call: to fill a cache completely."""
     _at_once.append(True)
     try:
         yield
