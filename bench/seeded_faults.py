@@ -145,8 +145,7 @@ def searched(case: str, start: int, most: int) -> int:
 
 
 def _spared(row: Row, requirement: str) -> dict[str, Any] | None:
-    """The result for the search; where the run fails without the fault too, its requirement counts by its margin
-    only."""
+    """The result for the search; if the run fails without the fault too, its verdict is changed to `holds`."""
     if row.result is None or not fails(row, requirement):
         return row.result
     found = row.result["requirements"]
