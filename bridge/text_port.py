@@ -91,8 +91,8 @@ class TextPort:
         listen), otherwise it connects, see `dial`; as in the original, by default UxAS's end listens.
 
         dialect: of the peers. The original's: no HELLO and HBEAT, its number formats, no count above the size of its
-        arrays. The thesis's: the same messages in its form. secret: of the compatible handshake; keys: selects the
-        dialect v2.
+        arrays. The thesis's: the same messages in its form. secret: of the compatible handshake; a `Keys` object
+        selects the dialect v2.
         """
         self.where, self._server, self._dialect = where, server, dialect
         self._bounds, self._secret, self._report = bounds or Bounds(), secret, report
