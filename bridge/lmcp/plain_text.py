@@ -1,8 +1,8 @@
-"""Reads JSON texts of LMCP objects that are spelled as they are written, by one pattern of each type.
+"""Fast reading of JSON texts of LMCP objects in the form in which we write them, by one pattern per type.
 
-Nearly all messages of a log are: all fields in the order of the wire, numbers of usual size, texts without escapes, lists empty
-or of whole numbers. What fits the pattern is JSON, and what `jsonform` gives for it is given here in a third of the time; for
-anything else nothing is given. A type with a field that a pattern does not suit has none.
+Nearly all messages of a log have this form: all fields in the order of the wire, numbers of usual size, texts without
+escapes, lists empty or of integers. A text that matches is JSON, and the result is that of `jsonform` in a third of
+the time; for any other text there is no result. A type with a field that patterns do not support has no pattern.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _TEXT = r'"([^"\\\x00-\x1f\ud800-\udfff]{0,1000})"'
 
 
 class _Plain(NamedTuple):
-    """fullmatch: of the pattern; made: what makes the object of its groups."""
+    """fullmatch: of the pattern; made: builds the object from the pattern's groups."""
 
     fullmatch: Callable[[str], re.Match[str] | None]
     made: Read
@@ -35,7 +35,7 @@ when_removed(lambda _series: _known.clear())
 
 
 def plain_object(text: str) -> Any:
-    """The object; None where the text is not spelled so, which says nothing of it."""
+    """The object; None where the text does not have this form, which does not mean that it is invalid."""
     if not text.startswith(_HEAD):
         return None
     name = text[10 : text.find('"', 10)]
@@ -45,7 +45,7 @@ def plain_object(text: str) -> Any:
         try:
             plain = _plain(name)
         except (BadInput, KeyError):
-            return None  # there is no such type
+            return None  # unknown type
         _known[name] = plain
     if plain is None:
         return None
@@ -54,11 +54,11 @@ def plain_object(text: str) -> Any:
 
 
 class _NoPattern(Exception):
-    """A field is of a kind that patterns do not suit."""
+    """Patterns do not support a field's kind."""
 
 
 class _Maker:
-    """Writes the pattern of a type, and the text of the function that makes its object."""
+    """Generates the pattern of a type, and the source of the function that builds its object."""
 
     def __init__(self) -> None:
         self.groups = 0
@@ -66,7 +66,7 @@ class _Maker:
         self.lines: list[str] = []
 
     def object_(self, type_name: str, depth: int = 0) -> tuple[str, str]:
-        """The pattern, and the variable that has the object."""
+        """The pattern, and the name of the variable that holds the object."""
         if depth > NESTED_MAX:
             raise _NoPattern
         cls: Any = types[type_name]
@@ -83,7 +83,7 @@ class _Maker:
         return "".join([*parts, r"\}"]), f"o{number}"
 
     def field(self, field: Any, depth: int) -> tuple[str, str]:
-        """The pattern of a value, and the expression that gives it."""
+        """The pattern of a value, and the expression that evaluates to it."""
         kind = field.kind
         if field.array is not None:
             if field.array or kind == "any":  # of a fixed length
@@ -111,7 +111,7 @@ class _Maker:
         raise _NoPattern
 
     def group(self) -> str:
-        """The variable of the next group."""
+        """The name of the variable of the next group."""
         self.groups += 1
         if self.groups > GROUPS_MAX:
             raise _NoPattern
@@ -119,7 +119,7 @@ class _Maker:
 
 
 def _whole(kind: str) -> str:
-    """Whole numbers of so few digits that each is of this kind."""
+    """Pattern of integers with so few digits that each is within the range of this kind."""
     low, high = INTEGER_RANGES[kind]
     return f"{'-?' if low < 0 else ''}(?:0|[1-9][0-9]{{0,{len(str(high)) - 2}}})"
 

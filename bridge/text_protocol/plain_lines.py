@@ -1,7 +1,7 @@
-"""Lines as our writer and the originals write them, read at once: all fields, in order, numbers in full.
+"""Fast reading of lines in the form that our writer and the originals produce: all fields, in order, numbers in full.
 
-That is how nearly all lines come, those of each heartbeat among them. Any other line gives None here, one that is refused
-too, and is read by `parser`, which says what is wrong; what is read here it reads as the same message.
+Nearly all lines have this form, including those of each heartbeat. For any other line, including a malformed one, the
+result is None, and `parser` reads it and reports errors; both give the same message for a line read here.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from cratous.bridge.text_protocol.layouts import FieldLayout, Kind, Layout, Limi
 from cratous.bridge.text_protocol.messages import Message
 
 TAG_BYTES = 5
-"""So many bytes tell the tags apart."""
+"""The number of bytes that distinguish the tags."""
 _REAL, _COUNT = rb"(-?[0-9]{1,14}\.[0-9]{1,12})", rb"([0-9]{1,14})\.0"
 _KINDS = {
     Kind.REAL: (_REAL, float),
@@ -27,12 +27,12 @@ _KINDS = {
 
 
 MOST_KNOWN = 512
-"""So many lines are remembered with what they say: the same one goes to every vehicle at a heartbeat."""
+"""The most lines cached with their messages: the same line goes to every vehicle at a heartbeat."""
 
 
 class Plain(NamedTuple):
-    """How one message is read. read: the whole line; values: of each field; within: which value lies from where to
-    where, else the line is not plain; known: lines that were read last."""
+    """How one message is read. read: pattern of the whole line; values: conversion of each field; within: index and
+    bounds of values, outside of which the line is not plain; known: cache of recent lines."""
 
     read: re.Pattern[bytes]
     message: type[Message]
@@ -44,7 +44,7 @@ class Plain(NamedTuple):
 
 @functools.cache
 def plain_lines(layouts: tuple[Layout, ...], limits: Limits) -> Mapping[bytes, Plain]:
-    """By the first bytes of their tag: the messages of one form, each of whose fields is always there."""
+    """Messages with a single form and no optional fields, by the first bytes of their tag."""
     found = {}
     for layout in layouts:
         fields = layout.fields
@@ -85,7 +85,7 @@ def _bounds(field: FieldLayout, limits: Limits) -> tuple[float, float]:
 
 
 def message_of(plain: Plain, data: bytes, start: int, end: int) -> Message | None:
-    """The message of the line from start to end of data, without its newline; None if it is not plain."""
+    """The message of the line data[start:end], without its newline; None if it is not plain."""
     line = bytes(data[start:end])
     known = plain.known.get(line)
     if known is not None:

@@ -1,4 +1,5 @@
-"""Whatever may happen to authority over a vehicle that is met by any number of intruders, with what is counted of it."""
+"""All events that affect authority over a vehicle that meets any number of intruders, with the counters kept of
+them."""
 
 from __future__ import annotations
 
@@ -26,11 +27,11 @@ from cratous.spec.authority import cycle as instance
 from cratous.spec.system import counting
 
 LOOK, RESUME, BEAT, COMMAND, LINE, ITEM = range(6)
-"""What happens; anything else is nothing."""
+"""Kinds of events; any other number is no event."""
 
 
 class Counted(NamedTuple):
-    """Gate, instance and UxAS's end, whether UxAS's flying is suspended, and what is so: `spec.system.counting`."""
+    """Gate, instance and UxAS's end, whether UxAS's flying is suspended, and the counters of `spec.system.counting`."""
 
     gate: Gate
     cycle: Cycle
@@ -40,13 +41,14 @@ class Counted(NamedTuple):
 
 
 class Event(NamedTuple):
-    """kind: an intruder is looked at, or the way resumed is permitted against it or not; a heartbeat of ICAROUS, whose
-    takeover names the intruder; a command reaches the gate; a SETMOD line reaches UxAS, with a report of the gate that
-    was made when there had been so many epochs of ICAROUS alone; another item begins.
+    """kind: an intruder is looked at; the resumed course is permitted against it or not; a heartbeat of ICAROUS,
+    whose takeover names the intruder; a command reaches the gate; a SETMOD line reaches UxAS, with a report of the
+    gate from when there had been `made` epochs of ICAROUS alone; another item begins.
 
-    met: the intruder's encounter; allowed, until, foreseen: as of its kernels; zone: there is another reason; loss: the
-    mode without a link; free, heard, now, bound, least, soon: as of the cycle's; sender, epoch: of the command; says,
-    began: of the line."""
+    met: the intruder's encounter; allowed, until, foreseen: inputs of its kernels; zone: there is another reason to
+    take over; loss: the mode of link loss; free, heard, now, bound, least, soon: inputs of the cycle; sender, epoch:
+    of the command; says, began: of the line.
+    """
 
     kind: Any
     met: Encounter
@@ -70,7 +72,7 @@ class Event(NamedTuple):
 
 
 def any_counted(c: Claim) -> Counted:
-    """Any, its numbers of any size."""
+    """An arbitrary state, with numbers of any size."""
     gate = Gate(c.whole("owner"), c.whole("gate_epoch"), c.boolean("offered"))
     cycle = Cycle(
         c.whole("mode"), c.whole("relapses"), c.boolean("handed"), c.whole("handed_ms"),
@@ -83,7 +85,7 @@ def any_counted(c: Claim) -> Counted:
 
 
 def first_counted() -> Counted:
-    """UxAS flies to its first item, and nobody has been met."""
+    """The initial state: UxAS flies to its first item, and nobody has been met."""
     tally = counting.Tally(True, *[0] * (len(counting.Tally._fields) - 1))
     return Counted(
         Gate(0, 0, False), Cycle(0, 0, False, 0, False, 0), LinkEnd(False, 0, True), False, tally
@@ -91,7 +93,7 @@ def first_counted() -> Counted:
 
 
 def any_event(c: Claim) -> Event:
-    """Anything that may happen."""
+    """An arbitrary event."""
     met = Encounter(
         c.whole("met_takeovers"), c.whole("met_surprises"), c.whole("met_ended"),
         c.boolean("avoiding"), c.boolean("permitted"), c.whole("met_until"),
@@ -110,7 +112,8 @@ def any_event(c: Claim) -> Event:
 
 
 def each_event(c: Claim, one: Event) -> Any:
-    """What is given of each: numbers that a machine counts, and a report is as gates are."""
+    """Condition on every event: numbers are within counting range, and the report is consistent with how a gate
+    changes."""
     numbers = (
         one.until, *one.loss, one.heard, one.now, one.sender, one.epoch, one.report.owner,
         one.report.epoch, one.began, one.met.takeovers, one.met.surprises, one.met.ended, one.met.expiry_ms,
@@ -124,8 +127,8 @@ def each_event(c: Claim, one: Event) -> Any:
 
 
 def after_event(c: Claim, one: Counted, e: Event) -> Counted:
-    """Afterwards. Of a tally that has grown too large nothing is said; what cannot have been does not happen: a report of
-    an epoch that has not begun, and an intruder that is open while none is."""
+    """The state after an event. Once a number is out of counting range nothing more is claimed; impossible events
+    have no effect: a report of an epoch that has not begun, and an open intruder while none is open."""
     gate, cycle, end, suspended, tally = one
 
     def small(number: Any) -> Any:
@@ -179,7 +182,7 @@ def after_event(c: Claim, one: Counted, e: Event) -> Counted:
 def _tallied(
     c: Claim, tally: counting.Tally, e: Event, met: Encounter, fine: Any, what: tuple[Any, ...]
 ) -> counting.Tally:
-    """What is counted afterwards. met: the intruder's encounter; what: a takeover, one because of the intruder, a
+    """The counters after an event. met: the intruder's encounter; what: a takeover, one because of the intruder, a
     withdrawal, a takeover that UxAS counts, a line that it believes."""
     taken, because, withdrawn, hears, believed = what
 

@@ -1,4 +1,4 @@
-"""A vehicle on its chain, heartbeat by heartbeat, with what becomes of its items: of the kernels that decide it."""
+"""A vehicle on its task chain, heartbeat by heartbeat, with the outcome of its items, by the kernels that decide it."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from cratous.spec.system import ending, serving
 
 
 class OnChain(NamedTuple):
-    """What the executive keeps, and what is so: see `spec.system`."""
+    """The state of the executive, and the true course of the flight: see `spec.system`."""
 
     flown: ending.Flown
     course: serving.Course
 
 
 class Allowed(NamedTuple):
-    """most, longest: as of `leg_given_up`; bounds: of what comes."""
+    """most, longest: as in `leg_given_up`; bounds: assumed bounds on takeovers, suspensions and own flying time."""
 
     most: Any
     longest: Any
@@ -28,7 +28,7 @@ class Allowed(NamedTuple):
 
 
 def any_on_chain(c: Claim) -> OnChain:
-    """Any, its numbers of any size."""
+    """An arbitrary state, with numbers of any size."""
     items, phase = c.whole("items"), c.whole("phase")
     flown = ending.Flown(
         items, phase, c.boolean("suspended"), c.whole("takeovers"), c.whole("under")
@@ -41,18 +41,18 @@ def any_on_chain(c: Claim) -> OnChain:
 
 
 def first_on_chain(items: Any) -> OnChain:
-    """As the flight begins: UxAS is on the way to the first of the items."""
+    """The initial state: UxAS is on its way to the first of the items."""
     flown = ending.Flown(items, executive.TRANSIT, False, 0, 0)
     return OnChain(flown, serving.Course(0, 0, 0, 0, 0, executive.LEFT, False, True))
 
 
 def any_beat(c: Claim) -> Heartbeat:
-    """Any heartbeat."""
+    """An arbitrary heartbeat."""
     return Heartbeat(c.whole("act"), c.boolean("passed"), c.boolean("opens"), c.whole("dt"))
 
 
 def after_beat(c: Claim, one: OnChain, beat: Heartbeat, fails: Any, how: Allowed) -> OnChain:
-    """After a heartbeat. fails: the present task fails for another reason than ICAROUS."""
+    """The state after a heartbeat. fails: the present task fails for a reason other than ICAROUS."""
     flown, course = one
     counted = [counts(c, n) for n in (flown.takeovers, flown.under_ms, course.life)]
     flown = flown._replace(
@@ -69,7 +69,7 @@ def after_beat(c: Claim, one: OnChain, beat: Heartbeat, fails: Any, how: Allowed
     begun = c.when(begins, c.use(task_after, course.life, executive.BEGIN), course.life)
     life = c.when(ends, c.use(task_after, begun, executive.END), begun)
     served = c.all_of(ends, life == executive.ENDED)
-    # whatever is left and not served has failed
+    # an item that is left without being served has failed
     left = after.items < flown.items
     failed = c.all_of(left, c.negation(served))
     other = c.all_of(fails, flown.items > 0, c.negation(left))

@@ -1,7 +1,7 @@
-"""Which uses of kernels a theorem's goals decide at many values, where they have conditions.
+"""Which uses of kernels a theorem's goals decide at many values, where the goals have conditions.
 
-First by runs with other results (`other_results`), then by the solver with free ones (`free_results`). What
-neither finds within its bounds is not decided, and the use vouches for nothing.
+First by runs with other results (`other_results`), then by the solver with free results (`free_results`). A use for
+which neither finds this within its bounds is not decided, and vouches for nothing.
 """
 
 from __future__ import annotations
@@ -24,25 +24,26 @@ from cratous.proofs.statements.relations import Outline, outline
 from cratous.proofs.statements.unconditional import Use, by_way_of
 
 Hows = dict[Use, str]
-"""How the arguments of uses vary that relate a kernel to its definition (`engine.reachable_paths`)."""
+"""For uses that relate a kernel to its definition: how their arguments vary (`engine.reachable_paths`)."""
 Group = tuple[str, Hows]
 """A definition, and the uses by which a theorem relates a kernel to it."""
 Decided = tuple[str, str, int]
 """A definition, and a use whose result it decides."""
 RLIMIT, SHARE = 100_000, 10
-"""The effort of one question, and the part of it that a solver of polynomials has first."""
+"""The effort of one question, and the divisor for the part that a solver for polynomials gets first."""
 CALLS = (3_000, 10_000)
-"""So many calls of functions are made for a theorem before the solver is asked, and after."""
+"""The most calls of functions for a theorem: before the solver is asked, and after."""
 QUESTIONS = 16
-"""So many questions are put to the solver for a theorem at most."""
+"""The most questions to the solver for a theorem."""
 
 
 def decided(
     name: str, folder: Path, seed: str | None, wanted: Iterable[Group]
 ) -> frozenset[Decided]:
-    """Of each group of uses enough, as far as they are found; seed: of all that the theorem rests on.
+    """For each group of uses, enough decided ones to vouch, as far as found; seed: hash of all the theorem depends
+    on.
 
-    None where there is no seed.
+    Empty without a seed.
     """
     if seed is None:
         return frozenset()
@@ -56,7 +57,7 @@ def decided(
 
 
 class _Stated:
-    """A theorem, as it was read."""
+    """A theorem with its outline."""
 
     def __init__(self, name: str, folder: Path, claim: Outline) -> None:
         self.folder, self.claim, self.run = folder, claim, load_claim(name, folder)[0]
@@ -85,7 +86,7 @@ class _Stated:
         return claim
 
     def decided(self, meant: str, hows: Hows, seed: str) -> set[Use]:
-        """Those uses whose results this definition decides: so many that they vouch, if they do."""
+        """The uses whose results this definition decides; the search ends once they suffice to vouch."""
         claim = self.claim
         uses = [n for n, use in enumerate(self.names) if use in hows]
         told = by_way_of(claim, meant)
@@ -121,13 +122,13 @@ class _Stated:
 
 
 def _same_premises(one: Outline, other: Outline) -> bool:
-    """No run sees the calls of a function, so they may restrict nothing."""
+    """Whether the premises are the same without recorded calls, which a run does not have."""
     both = zip(one.premises, other.premises, strict=False)
     return len(one.premises) == len(other.premises) and all(a.eq(b) for a, b in both)
 
 
 class _Asking:
-    """Asks whether terms can be true together, so many times; then the answer is `unknown`."""
+    """Decides satisfiability up to QUESTIONS times; then the answer is `unknown`."""
 
     def __init__(self) -> None:
         self.left = QUESTIONS
@@ -144,7 +145,7 @@ class _Asking:
             solver.add(*asked)
             said = check(solver, context, effort)
             if said.ended:
-                self.left = 0  # its effort does not bound its time: nothing more is asked
+                self.left = 0  # the effort limit did not bound its time: no further questions
             if said.result != "unknown" or said.ended:
                 return said.result
         return "unknown"

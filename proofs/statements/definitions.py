@@ -1,9 +1,8 @@
-"""Whether what a kernel names as its definition is one: there, used by its theorems, and not itself.
+"""Checks the definition that a kernel names: it exists, its theorems use it, and it is not the kernel itself.
 
-A kernel or fold names a function of `spec` (implements), which one of its theorems, or a lemma of
-one, must use; where the definition has the kernel's own formula the kernel says so (restates). A
-step of another kernel or fold names that one instead (supports), which must call it, and must have
-a definition and be proved itself.
+A kernel or fold names a function of `spec` (implements), which one of its theorems, or a lemma of one, must use;
+where the definition has the kernel's own formula the kernel says so (restates). A step of another kernel or fold
+names that one instead (supports), which must call it, have a definition, and be proved itself.
 """
 
 from __future__ import annotations
@@ -28,12 +27,12 @@ from cratous.proofs.statements.unconditional import Use
 
 @dataclass(frozen=True)
 class Proofs:
-    """What was proved of a home: its theorems by name, and what their statements relate.
+    """The proved theorems of a home by name, and what their statements relate.
 
-    kernels: those that each theorem is about; proved: the theorems that are; varied: how the
-    arguments of their uses of kernels vary, by name and number; run: all but those that are proved and
-    were run at no point of doubles; None where that was not looked at. decided: by theorem, a definition
-    and a use whose result it decides at many values, by goals with conditions; assuming: theorems that take something for granted.
+    kernels: those that each theorem is about; proved: the proved theorems; varied: how the arguments of their uses of
+    kernels vary, by name and number; run: all theorems but those proved without a run at a point of doubles; None
+    where not determined. decided: by theorem, a definition and a use whose result it decides at many values, by goals
+    with conditions; assuming: theorems with an assumption (c.assume).
     """
 
     kernels: Mapping[str, tuple[str, ...]]
@@ -45,9 +44,9 @@ class Proofs:
     assuming: frozenset[str] = frozenset()
 
     def holds_of_any(self, theorem: str, pair: tuple[str, str]) -> bool:
-        """The theorem relates the two by a use that is not fixed to a few values, nor its goals true beside them.
+        """Whether the theorem relates the two for more than a few values, considering its premises and its goals.
 
-        None does that assumes something, or rests on what does.
+        False for a theorem that has an assumption, or depends on one that has.
         """
         if not self.assuming.isdisjoint(self.resting([theorem])):
             return False
@@ -63,7 +62,7 @@ class Proofs:
         )
 
     def undecided(self, theorem: str, pair: tuple[str, str]) -> dict[Use, str]:
-        """The uses by which it relates the two, if it is only to be found whether goals with conditions decide them."""
+        """The uses that relate the two, if only the conditions in its goals are left to be decided; otherwise empty."""
         known = self.holds_of_any(theorem, pair) or not self.assuming.isdisjoint(
             self.resting([theorem])
         )
@@ -73,11 +72,11 @@ class Proofs:
         return {} if known or not of_more_than_one(uses.values()) else uses
 
     def by_goals(self, theorem: str, pair: tuple[str, str]) -> bool:
-        """Its premises leave many values, but not its goals, or it was not found that they do."""
+        """Whether its premises leave many values, but its goals do not, or were not found to."""
         return bool(self.undecided(theorem, pair))
 
     def left(self, theorem: str, pair: tuple[str, str]) -> int:
-        """How many values it leaves an argument of which it leaves a few; 0 where it leaves none or one."""
+        """The greatest number of values it leaves an argument that takes a few; 0 if there is none."""
         return values_left(self.related_uses(theorem, pair).values())
 
     def related_uses(self, theorem: str, pair: tuple[str, str]) -> dict[Use, str]:
@@ -87,20 +86,20 @@ class Proofs:
         return {use: how for use, how in varied.items() if (*pair, *use) in uses}
 
     def was_run(self, theorem: str) -> bool:
-        """If it is proved, it was run at a point of doubles where its premises hold."""
+        """Whether it was run at a point of doubles where its premises hold; true where not determined."""
         return self.run is None or theorem in self.run
 
     def size(self, theorem: str) -> tuple[bool, int, int, str]:
-        """Orders theorems: those that were run first, then the shortest; no two are the same."""
+        """Sort key for theorems: those that were run first, then the shortest; no two are equal."""
         related = self.relations[theorem]
         return not self.was_run(theorem), len(related.statement), len(related.uses), theorem
 
     def about(self, name: str) -> list[str]:
-        """The theorems about a kernel, in order."""
+        """The theorems about a kernel, sorted by name."""
         return sorted(theorem for theorem, named in self.kernels.items() if name in named)
 
     def resting(self, theorems: list[str]) -> list[str]:
-        """These theorems and all lemmas that they rest on."""
+        """These theorems and all lemmas that they depend on."""
         found: list[str] = []
         todo = list(theorems)
         while todo:
@@ -111,7 +110,7 @@ class Proofs:
         return sorted(found)
 
     def holds(self, name: str) -> bool:
-        """A kernel is proved: theorems are about it, and all of them hold."""
+        """Whether a kernel is proved: there are theorems about it, and all of them are proved."""
         about = self.about(name)
         return bool(about) and all(theorem in self.proved for theorem in about)
 
@@ -131,7 +130,7 @@ def definition(entry: Entry, home: Home) -> Callable[..., Any] | None:
 
 
 def is_restated(entry: Entry, home: Home) -> bool | None:
-    """The definition has the formula of the kernel, or of the fold's step; None if that cannot be told."""
+    """Whether the definition has the formula of the kernel, or of the fold's step; None if undetermined."""
     meant = definition(entry, home)
     function = entry.function.step if isinstance(entry.function, Fold) else entry.function
     return None if meant is None else restates(function, meant)
@@ -152,9 +151,9 @@ def to_decide(
     proofs: Proofs,
     asked: Collection[tuple[str, tuple[str, str]]] = (),
 ) -> dict[str, list[tuple[tuple[str, str], dict[Use, str]]]]:
-    """By theorem, kernels that no theorem holds against their definitions yet, each with its uses there.
+    """By theorem, the kernels not yet proved against their definitions, each with its uses there.
 
-    Each kernel stands at one theorem: of those not asked about it yet the shortest.
+    Each kernel is listed under one theorem: the first by size of those not asked about it yet.
     """
     found: dict[str, list[tuple[tuple[str, str], dict[Use, str]]]] = {}
     for entry in entries.values():
@@ -177,10 +176,10 @@ def with_decided(
     proofs: Proofs,
     ask: Callable[[Mapping[str, list[Group]]], Mapping[str, frozenset[Decided]]],
 ) -> Proofs:
-    """The proofs with what is decided by goals with conditions, as far as a kernel needs it.
+    """The proofs, completed by what goals with conditions decide, as far as a kernel needs it.
 
-    In rounds: one theorem is asked for each kernel, until one holds it or all were asked. So what is
-    asked depends on nothing but the answers before.
+    In rounds: one theorem is asked for each kernel, until one relates it or all were asked. So which questions are
+    asked depends only on previous answers.
     """
     asked: set[tuple[str, tuple[str, str]]] = set()
     while wanted := to_decide(entries, home, proofs, asked):
@@ -193,7 +192,7 @@ def with_decided(
 
 
 def problems(entries: Mapping[str, Entry], home: Home, proofs: Proofs) -> list[str]:
-    """What is wrong with the definitions that kernels and folds name, each with its place.
+    """Problems with the definitions that kernels and folds name, each with its place.
 
     proofs: of all theorems of the home.
     """
@@ -206,7 +205,7 @@ def problems(entries: Mapping[str, Entry], home: Home, proofs: Proofs) -> list[s
 
 
 def _of_meaning(entry: Entry, home: Home, proofs: Proofs) -> Iterator[str]:
-    """What is wrong with `implements`."""
+    """Problems with `implements`."""
     named = repr(entry.implements)
     if not home.definition(entry.implements).is_file():
         yield f"implements {named}, but there is no spec/{home.definition(entry.implements).name}"
@@ -237,7 +236,7 @@ def _of_meaning(entry: Entry, home: Home, proofs: Proofs) -> Iterator[str]:
 def _of_points(
     pair: tuple[str, str], entry: Entry, theorems: list[str], proofs: Proofs
 ) -> Iterator[str]:
-    """What is wrong with the points at which its theorems hold it against its definition."""
+    """Problems with the points at which its theorems relate it to its definition."""
     several = [theorem for theorem in theorems if proofs.holds_of_any(theorem, pair)]
     named = f"implements {entry.implements!r}, which none of its theorems"
     if not several and not proofs.assuming.isdisjoint(proofs.resting(theorems)):
@@ -264,7 +263,7 @@ def _of_points(
 
 
 def _of_step(entry: Entry, proofs: Proofs) -> Iterator[str]:
-    """What is wrong with `supports`."""
+    """Problems with `supports`."""
     whole = REGISTRY.get(supported(entry))
     if whole is None or whole.kind == "driver":
         yield f"supports {entry.supports!r}, which is no kernel or fold"
@@ -277,5 +276,5 @@ def _of_step(entry: Entry, proofs: Proofs) -> Iterator[str]:
 
 
 def calls(whole: Entry, part: Entry) -> bool:
-    """The one calls the other, directly or not."""
+    """Whether `whole` calls `part`, directly or indirectly."""
     return full_name(part.function) in reached(whole.function)

@@ -1,9 +1,9 @@
-"""Whether a theorem's goals could be false, were a kernel's result free, at more than a few arguments.
+"""Whether a theorem's goals could be false, if a kernel's result were free, at more than a few arguments.
 
-A condition in a goal (`c.implies(x == 3, ...)`) restricts a theorem as a premise does, and no premise tells. So the
-claim is stated once more with results that may be any value of their type: where a goal is false then, and is not
-with other results of definitions too, it holds the kernel against the definition. Two such places are asked for at
-which an argument differs by next to nothing, as `argument_values` asks of premises.
+A condition in a goal (`c.implies(x == 3, ...)`) restricts a theorem like a premise, but is not among its premises. So
+the claim is stated once more with results that may have any value of their type: where a goal is then false, but not
+with other results of definitions too, it relates the kernel to the definition. Two such points with neighbouring
+arguments are required, as `argument_values` requires for premises.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from cratous.proofs.engine.terms import free_names, fresh, known, leaves, statem
 from cratous.proofs.statements.closed_definitions import full_name
 
 PARTS = 3000
-"""A question with more parts than these is not asked."""
+"""A question with more distinct subterms is not asked."""
 
 
 @dataclass(repr=False)
 class FreeResults(Claim):
-    """A claim whose uses of kernels, and of definitions, may each be switched to any result."""
+    """A claim whose uses of kernels and definitions can each be switched to an arbitrary result."""
 
     switches: dict[int, z3.BoolRef] = field(default_factory=dict)
     given: dict[int, tuple[Any, ...]] = field(default_factory=dict)
@@ -62,11 +62,11 @@ class FreeResults(Claim):
         return self._freed("definition", definition, args, super().define(definition, *args))
 
     def fold(self, kernel_fold: Fold[Any], **how: Any) -> None:
-        """It has no condition but its premises."""
+        """No goal is recorded here: only premises restrict it."""
         self.number += 1 if kernel_fold.finish is None else 2
 
     def step(self, goal: Any, text: str) -> None:
-        """It helps to prove the goals."""
+        """Ignored: an intermediate step is not a goal."""
 
     def show(self, goal: Any, text: str = "the claim") -> None:
         self.said.append((list(self.premises), list(self.facts), statement(goal)))
@@ -75,21 +75,21 @@ class FreeResults(Claim):
         self.show(goal, text)
 
     def _owe(self, kind: str, text: str, goal: z3.BoolRef) -> None:
-        """A part of an induction is a goal; what functions and lemmas owe is another reading's matter."""
+        """The parts of an induction are goals; other obligations are ignored here."""
         if kind in ("base", "step", "use"):
             self.said.append((list(self.premises), list(self.facts), goal))
 
     def _closed(self, *_: Any) -> None:
-        """As for what is owed."""
+        """Ignored, like other obligations."""
 
     def arguments(self, use: int) -> list[z3.ExprRef]:
-        """What the use is given, as it is stated, without what is written down."""
+        """The arguments of a use as stated, without literals."""
         off = [(switch, z3.BoolVal(False)) for switch, _ in self.free.values()]
         terms = [known(leaf) for leaf in leaves(self.given.get(use, ()))]
         return [z3.simplify(z3.substitute(term, *off)) for term in terms if free_names(term)]
 
     def excluded(self, use: int, by_definition: str = "") -> z3.BoolRef:
-        """Some goal excludes a result of this use; by_definition: because of what this one says."""
+        """Some goal excludes a result of this use; by_definition: because of the result of this definition."""
         switches = [switch for switch, _ in self.free.values()]
         ours = self.switches[use]
         off = [(s, z3.BoolVal(s.eq(ours))) for s in switches]
@@ -101,7 +101,7 @@ class FreeResults(Claim):
         name = ours.decl().name()
         for premises, facts, goal in self.said:
             if name not in free_names(z3.And(*premises, goal)):
-                continue  # it says nothing of this use
+                continue  # the goal does not depend on this use
             here = z3.And(*premises)
             wrong = z3.substitute(z3.And(here, *facts, z3.Not(goal)), *off)
             right = z3.substitute(z3.Implies(here, goal), *meant)
@@ -110,7 +110,7 @@ class FreeResults(Claim):
 
 
 def _is_large(term: z3.ExprRef) -> bool:
-    """It has more parts than the solver is asked about here: it counts none of its effort on reading them."""
+    """Whether it has more than PARTS subterms: the solver's effort does not count reading them."""
     seen: set[int] = set()
     todo = [term]
     while todo and len(seen) <= PARTS:
@@ -128,10 +128,10 @@ def _any(name: str, kind: Any) -> Any:
 
 
 def decides(claim: FreeResults, use: int, meant: str, possible: Possible) -> bool:
-    """Some goal decides this use's result at more than a few arguments, as far as the solver can tell.
+    """Whether some goal decides this use's result at more than a few arguments, as far as the solver finds.
 
-    meant: the definition that it does so by; empty where it was evaluated at known numbers, which stand in the
-    goals. Of masks nothing is told.
+    meant: the definition through which it does; empty where that was evaluated at known numbers, which are in the
+    goals. False for uses with masks.
     """
     terms = claim.arguments(use)
     if use not in claim.switches or any(map(z3.is_bv, terms)):
@@ -144,7 +144,7 @@ def decides(claim: FreeResults, use: int, meant: str, possible: Possible) -> boo
         return False
     if len(numbers) == len(terms):
         return bool(numbers) or possible([excluded]) == "sat"
-    # of a truth value both count, though a definition may decide nothing at one of them
+    # both values of a truth value count, though a definition may decide nothing at one of them
     truths = [term for term in terms if z3.is_bool(term)]
     plain = Given([claim.excluded(use)], possible)
     decided = bool(numbers) or possible([excluded]) == "sat"

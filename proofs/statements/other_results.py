@@ -1,9 +1,9 @@
-"""Whether what a theorem shows would be false if a kernel had another result there, at values that nobody chose.
+"""Whether a theorem's goals would be false if a kernel had another result, at pseudo-random values.
 
-A condition in a goal (`c.implies(x == 3, ...)`) restricts a theorem as a premise does. So the statement is run
-once more at the places of `nudged`, with the result of a use of a kernel replaced by another one: some goal must be
-false then, at a place and a hair away from it, and must not be false if the result of a definition is replaced too.
-For only then it is this goal that holds the one against the other, and does so for as many arguments as move.
+A condition in a goal (`c.implies(x == 3, ...)`) restricts a theorem like a premise. So the statement is run once more
+at the places of `nudged`, with the result of a use of a kernel replaced: some goal must then be false, at a place and
+at a minute offset from it, and must not be false if the result of a definition is replaced too. Only then does this
+goal relate the kernel to the definition, for as many arguments as change.
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ from cratous.proofs.running.statement import truth
 from cratous.proofs.statements.closed_definitions import full_name
 
 NO, GOAL, BY_DEFINITION = 0, 1, 2
-"""No goal excludes another result; one does; it does because of what a definition says."""
+"""No goal excludes another result; one does; one does because of the result of a definition."""
 
 PLACES = 600
-"""So many places are looked at at most."""
+"""The most places tried."""
 
 Call = tuple[Callable[..., Any], tuple[Any, ...]]
-"""A function, and numbers it is given."""
+"""A function, and the numbers passed to it."""
 
 
 class Statement(NamedTuple):
-    """A statement; uses: those of kernels that are asked about, by number, each with its kernel's name and
-    its arguments that are not written down.
+    """A statement; uses: the uses of kernels to decide, by number, each with its kernel's name and its arguments
+    other than literals.
 
-    meant: the definition's full name; rows: uses whose goals speak of it without a condition, but of no result
-    of its own that others could be tried for (it is evaluated at numbers written down).
+    meant: the definition's full name; rows: uses whose goals refer to it without a condition, but not by a result
+    that could be replaced (it is evaluated at literals).
     """
 
     run: Callable[[Any], None]
@@ -53,9 +53,9 @@ class Statement(NamedTuple):
 def decided(
     statement: Statement, seed: str, calls: int, enough_of: Callable[[set[int]], bool]
 ) -> set[int]:
-    """Uses whose results the goals are found to decide at many values; enough_of: no more are looked for.
+    """The uses whose results the goals are found to decide at many values; enough_of: ends the search.
 
-    calls: so many of functions are made at most.
+    calls: the most calls of functions.
     """
     asked = {use: terms for use, (_, terms) in statement.uses.items()}
     values: dict[Place, set[Any]] = {place: set() for use in asked.values() for place in use}
@@ -74,7 +74,7 @@ def decided(
                 meant.add(use)
             here, beside = places[0].base.arguments, places[-1].base.arguments
             for at, term in asked[use].items():
-                # of a truth value both count, though a definition may decide nothing at one of them
+                # both values of a truth value count, though a definition may decide nothing at one of them
                 if at in here and at in beside and (how == BY_DEFINITION or z3.is_bool(term)):
                     values[at].add(here[at])
                     moved = here[at] != beside[at]
@@ -99,7 +99,7 @@ def _least(found: Iterator[int]) -> int:
 
 
 class _InUnit(Nudged):
-    """Reals from 0 to 1."""
+    """Pseudo-random reals from 0 to 1."""
 
     def real(self, name: str) -> Fraction:
         said = int(sha256(f"{self.seed} in unit {name}".encode()).hexdigest(), 16)
@@ -107,17 +107,17 @@ class _InUnit(Nudged):
 
 
 class _Place:
-    """A statement at one place."""
+    """The runs of a statement at one place."""
 
     def __init__(self, of: Statement, seed: str, hairs: int, left: list[int]) -> None:
         self.statement, self.uses, self.rows, self.meant = of.run, of.uses, of.rows, of.meant
         self.seed, self.hairs, self.left = seed, hairs, left
-        # what is said of a part of a way is seldom met elsewhere
+        # some statements about a fraction (from 0 to 1) seldom apply elsewhere
         self.values = _InUnit if int(sha256(seed.encode()).hexdigest(), 16) % 2 else Nudged
 
     @functools.cached_property
     def base(self) -> _Replaced:
-        """As it is stated."""
+        """The run of the statement as it is."""
         return self._run({}, strict=False)
 
     def _run(self, results: Mapping[Call, Any], *, strict: bool = True) -> _Replaced:
@@ -130,7 +130,7 @@ class _Place:
         return on
 
     def holds(self, use: int) -> int:
-        """Whether some goal excludes another result of this use."""
+        """Whether some goal excludes another result of this use: NO, GOAL or BY_DEFINITION."""
         call = self.base.kernels.get(use)
         if call not in self.base.found or qualified(call[0]) != self.uses[use][0]:
             return NO
@@ -158,7 +158,7 @@ class _Place:
 
 @dataclass
 class _Replaced(Observed):
-    """A run of a statement with other results of some calls; notes which goals are false."""
+    """A run of a statement with some results replaced; records which goals are false."""
 
     results: Mapping[Call, Any] = field(default_factory=dict)
     strict: bool = True
@@ -205,7 +205,7 @@ class _Replaced(Observed):
 
 
 def _others(value: Any, seed: str) -> Iterator[Any]:
-    """Other values of the same type; of a record, one field at a time."""
+    """Other values of the same type; of a record, with one field changed at a time."""
     if isinstance(value, tuple):
         for k, part in enumerate(value):
             for other in _others(part, f"{seed}.{k}"):

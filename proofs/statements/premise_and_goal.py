@@ -1,4 +1,4 @@
-"""The two sides of what a theorem shows: what is given, and what follows."""
+"""Splits a goal into its conditions and its conclusions."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ def signs(
     *,
     within: Callable[[z3.ExprRef], AbstractSet[str]] = free_names,
 ) -> set[bool]:
-    """How the values of these names stand in a condition: as they are (True), denied (False).
+    """How values of these names occur in a condition: positively (True), negated (False).
 
-    within: gives the names in a term.
+    within: returns the names in a term.
     """
     if not names & within(term):
         return set()

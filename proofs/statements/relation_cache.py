@@ -1,4 +1,4 @@
-"""What theorems relate, kept from one run to the next."""
+"""The relations between kernels and definitions in theorems, cached between runs."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ One = TypeVar("One")
 
 
 class Kept:
-    """The relations of theorems, in a folder from one run to the next; without one they are read anew.
+    """The relations of theorems, cached in a folder; without a folder they are read anew.
 
-    They are kept as proved theorems are, under a hash of all that the statement depends on.
+    They are kept like proved theorems, under a hash of all that the statement depends on.
     """
 
     def __init__(self, folder: Path | None, home: Home) -> None:
         self.folder, self.home, self._recall = folder, home, Recall(None, home)
 
     def all(self, names: Iterable[str], jobs: int = 1) -> dict[str, Relations]:
-        """The relations of these theorems, whose statements can be read; jobs: processes."""
+        """The relations of those theorems whose statements can be read; jobs: processes."""
         files = {name: self._file(name) for name in names}
         found = {name: _restored(data) for name, file in files.items() if (data := _kept(file))}
         read = _anew(self._read, [name for name in files if name not in found], jobs)
@@ -43,7 +43,7 @@ class Kept:
     def decided(
         self, wanted: Mapping[str, list[Group]], jobs: int = 1
     ) -> dict[str, frozenset[Decided]]:
-        """Of uses that are asked of each theorem, those that its goals decide; none of one that has no key."""
+        """For each theorem, which of the wanted uses its goals decide; empty for one without a key."""
         asked = {
             name: [(meant, sorted((*u, how) for u, how in hows.items())) for meant, hows in groups]
             for name, groups in wanted.items()
@@ -55,10 +55,10 @@ class Kept:
             if (data := _kept(file))
         }
         names = [name for name in files if name not in found]
-        # each in a process of its own: what the solver finds may depend on what was stated before
+        # each in a process of its own: the solver's results may depend on what was stated before
         keys = [
             self._recall.key(name) for name in names
-        ]  # made here: all of them read the same files
+        ]  # computed here, since all keys read the same files
         tasks = [
             functools.partial(decided.decided, name, self.home.theorems, key, wanted[name])
             for name, key in zip(names, keys, strict=True)
@@ -73,7 +73,7 @@ class Kept:
         return relations.relations(name, self.home.theorems)
 
     def _file(self, name: str, asked: str = "") -> Path | None:
-        """Where the relations of a theorem are kept, or what else was asked of it; None where nothing is."""
+        """The cache file for a theorem's relations, or for another question (`asked`); None where nothing is cached."""
         known = self._recall.key(name) if self.folder is not None else None
         if self.folder is None or known is None:
             return None
@@ -82,12 +82,12 @@ class Kept:
 
 
 def readers() -> list[Path]:
-    """The files that read statements: what is kept holds for them as they are."""
+    """The files that read statements: cached entries are valid for their present content."""
     return sorted(Path(relations.__file__).resolve().parent.glob("*.py"))
 
 
 def _anew(make: Callable[[str], One], names: list[str], jobs: int) -> dict[str, One]:
-    """What is made of each theorem; with several at once a few in each process: some take far longer than others."""
+    """The result of `make` for each theorem; with several processes, in small batches: some take far longer."""
     count = min(8 * jobs, len(names)) if jobs > 1 else min(1, len(names))
     tasks = [functools.partial(_each, make, names[k::count]) for k in range(count)]
     return {n: one for _, some in worker_processes.each(tasks, jobs) for n, one in some.items()}
@@ -96,14 +96,14 @@ def _anew(make: Callable[[str], One], names: list[str], jobs: int) -> dict[str, 
 def _each_that_ends(
     tasks: Sequence[Callable[[], One]], jobs: int
 ) -> Iterator[tuple[int, One | None]]:
-    """Number and result of each; None of one whose process was ended by its limit of CPU time."""
+    """Number and result of each task; None for one whose process reached its CPU time limit."""
     left = set(range(len(tasks)))
     try:
         for number, one in worker_processes.each(tasks, jobs):
             left.remove(number)
             yield number, one
     except worker_processes.Ended:
-        for number in sorted(left):  # which one it was is not told
+        for number in sorted(left):  # which task it was is unknown
             try:
                 yield number, worker_processes.call(tasks[number])
             except worker_processes.Ended as error:

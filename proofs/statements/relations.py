@@ -1,9 +1,8 @@
-"""Which functions of `spec` a theorem speaks of, and which of them it holds a kernel against.
+"""Which functions of `spec` a theorem refers to, and against which of them it proves a kernel.
 
-The statement is read once more with every kernel and definition left closed: each use becomes an
-unknown value that remembers its function and those of its arguments. So a goal shows what it is
-made of, with whatever loops and helpers it was written. Nothing is proved here: a theorem that is
-not proved holds nothing against anything.
+The statement is read once more with every kernel and definition left closed: each use becomes an unknown value that
+records its function and those of its arguments. So a goal shows what it is made of, whatever loops and helpers were
+used to write it. Nothing is proved here: a theorem that is not proved vouches for nothing.
 """
 
 from __future__ import annotations
@@ -49,12 +48,11 @@ Use = tuple[str, int]
 class Relations:
     """Definitions that a statement uses, by `module.name`; the pairs (function of core, definition).
 
-    together: both in what is concluded, as in an equality, or the definition asked of the kernel's
-    result; follows: the kernel from the definition; leads: the definition from the kernel. lemmas:
-    what the theorem rests on. uses: the pairs, each with a use of a kernel by which they are related
-    (of a fold, its step): qualified name, and number among the theorem's uses of it. plain: those of
-    uses that some goal, or an induction, relates without a condition. statement: what the theorem says, as a sentence
-    made from it.
+    together: both in the conclusion, as in an equality, or the definition applied to the kernel's result; follows:
+    the kernel from the definition; leads: the definition from the kernel. lemmas: those the theorem depends on. uses:
+    the pairs, each with a use of a kernel by which they are related (of a fold, its step): qualified name, and number
+    among the theorem's uses of it. plain: those uses that some goal, or an induction, relates without a condition.
+    statement: the claim as a sentence.
     """
 
     definitions: frozenset[str]
@@ -87,7 +85,7 @@ def _is_number(value: Any) -> bool:
 
 @dataclass
 class Outline(Claim):
-    """A claim in which nothing is looked into but the statement itself.
+    """A claim in which only the statement itself is looked into.
 
     stated_uses: every use of a kernel in order, with its arguments.
     """
@@ -129,7 +127,7 @@ class Outline(Claim):
         super().fold(kernel_fold, **how)
         self.of_folds |= {use for use, _ in self.stated_uses[before:]}
         if kernel_fold.finish is None:
-            # its accumulator is its result, where the results are held against each other
+            # without a finish the accumulator is the result, where the results are compared
             result = full_name(kernel_fold), frozenset(str(known(v)) for v in leaves(how["acc"]))
             added = enumerate(self.obligations[first:], first)
             self.ended |= {number: result for number, owed in added if owed.kind == "use"}
@@ -139,17 +137,17 @@ class Outline(Claim):
         super()._grant(condition)
 
     def as_stated(self) -> Stated:
-        """The claim as it was read."""
+        """The claim's content, for writing it as a sentence."""
         fold, items = self.folded or (None, ())
         return Stated(
             self.kinds, self.values_of, self.obligations, self.given_then, fold, items, self.relation
         )  # fmt: skip
 
     def closed_value(self, function: Function, args: tuple[Any, ...]) -> Any:
-        """An unknown value of the function's type, which remembers what it is made of.
+        """An unknown value of the function's type that records what it is made of.
 
-        Equal arguments give the same value. Of known numbers it has a known value: what the
-        statement shows from there on is made of it. Raises TypeError for a type without values.
+        Equal arguments give the same value. For known numbers its value is computed, since later statements depend on
+        it. Raises TypeError for a type without values.
         """
         terms = [known(leaf) for leaf in leaves(args)]
         self.arguments.setdefault(function, []).append(args)
@@ -185,9 +183,9 @@ class Outline(Claim):
         return value
 
     def names_in(self, term: z3.ExprRef) -> frozenset[str]:
-        """The names in a term; each term is looked through once."""
+        """The names in a term; each term is traversed once."""
         seen = self.looked_at.get(term.get_id())
-        if seen is None:  # the term is kept, or its number would be another's
+        if seen is None:  # the term is kept alive so that its id stays unique
             seen = self.looked_at[term.get_id()] = (term, frozenset(free_names(term)))
         return seen[1]
 
@@ -197,7 +195,7 @@ class Outline(Claim):
         return none.union(*[self.used_in.get(name, none) for name in self.names_in(term)])
 
     def uses_of(self, kernel: str, terms: Iterable[z3.BoolRef]) -> frozenset[Use]:
-        """Those of a kernel, or the fold's step, by their full name, in these terms."""
+        """The uses in these terms of a kernel, or of a fold's step, given by its full name."""
         if kernel in self.stepped:
             return frozenset([self.stepped[kernel]])
         found = frozenset[Use]().union(*map(self.uses_in, terms))
@@ -206,7 +204,7 @@ class Outline(Claim):
         return frozenset(use for use in found if use[0] in names)
 
     def rows(self, uses: Iterable[Use]) -> set[str]:
-        """The definitions that were evaluated at numbers which are written down in these uses."""
+        """The definitions that were evaluated at literals of these uses."""
         written = [set(self.written.get(use, ())) for use in uses]
         return {
             full_name(function)
@@ -221,13 +219,13 @@ class Outline(Claim):
         return [entry.function for entry in entries if isinstance(entry.function, Fold)]
 
     def functions_in(self, value: Any) -> frozenset[Function]:
-        """All functions that a value is made of."""
+        """All functions from whose results a value is made."""
         term = value if z3.is_expr(value) else _raw(value)
         names = self.names_in(term) if term is not None else ()
         return frozenset().union(*[self.made_of.get(name, frozenset()) for name in names])
 
     def names_of(self, kernel: str) -> frozenset[str]:
-        """The unknown values that a kernel's result is part of."""
+        """The unknown values that contain a kernel's result."""
         return frozenset(
             name for name, made in self.made_of.items() if kernel in {full_name(f) for f in made}
         )
@@ -241,7 +239,7 @@ class Outline(Claim):
     ) -> Any:
         function = plain(function)
         if part_of(function) in ("proofs", "theorems"):
-            # the statement's own helper is looked into, what it calls is not
+            # the statement's own helper is looked into, but not the functions that it calls
             stubs: dict[Any, Any] = self.stubs
             for value in function.__globals__.values():
                 if isinstance(value, types.FunctionType) and part_of(value) == "core":
@@ -250,45 +248,45 @@ class Outline(Claim):
         return self.closed_value(function, args)
 
     def opaque(self, *functions: Function) -> None:
-        """Everything is closed already."""
+        """No effect: everything is closed already."""
 
     def _closed(self, *_: Any) -> None:
-        """What closed functions owe is not asked for."""
+        """No effect: side conditions of closed functions are not needed here."""
 
     def calls(self, function: Function) -> list[tuple[Any, ...]]:
-        """The arguments with which it was used."""
+        """The argument lists with which it was used."""
         self.asked = True
         return [] if self.hidden else list(self.arguments.get(plain(function), []))
 
     def congruence(self, function: Function, one: tuple[Any, ...], other: tuple[Any, ...]) -> None:
-        """Equal arguments give the same value already."""
+        """No effect: equal arguments give the same value already."""
 
     def _owe(self, kind: str, text: str, goal: z3.BoolRef) -> None:
         self.given_then[len(self.obligations)] = tuple(self.premises)
         super()._owe(kind, text, goal)
 
     def lemma(self, name: str, *, when: Any = True, **values: Any) -> None:
-        """What a lemma says is not asked for."""
+        """Only recorded: the content of a lemma is not needed."""
         self.lemmas.append(name)
 
 
 def outline(name: str, folder: Path = FOLDER, *, hidden: bool = False) -> tuple[Outline, bool]:
-    """The statement of a theorem, read with all functions closed; and whether it could be read to its end.
+    """The statement of a theorem, read with all functions closed; and whether it could be read completely.
 
-    hidden: it is told of no calls of functions (`c.calls`).
+    hidden: `c.calls` returns no calls.
     """
     claim = Outline(load=lambda other: load_claim(other, folder)[0], hidden=hidden)
     try:
         reopened(load_claim(name, folder)[0], claim)(claim)
     except (LiftError, TypeError, ValueError, RuntimeError, IndexError, KeyError, AttributeError):
-        return claim, False  # it asks for more than what a closed function tells
+        return claim, False  # it needs more than closed functions provide
     return claim, True
 
 
 def relations(name: str, folder: Path = FOLDER) -> Relations:
-    """What the statement of a theorem relates; its kernels must be registered."""
+    """The relations in the statement of a theorem; its kernels must be registered."""
     claim, whole = outline(name, folder)
-    if not whole:  # only that it names them is known
+    if not whole:  # only the names that it mentions are known
         named = _named_in(load_claim(name, folder)[0])
         return Relations(named, NONE, NONE, NONE, tuple(sorted(set(claim.lemmas))))
     found: dict[str, set[tuple[str, str]]] = {"together": set(), "follows": set(), "leads": set()}
@@ -313,13 +311,13 @@ def relations(name: str, folder: Path = FOLDER) -> Relations:
 
 
 def _says(claim: Outline, number: int, function: str) -> bool:
-    """Does it say anything of the function? Not if it would say the same of any other one."""
+    """Whether the goal depends on the function; not if it would also hold of any other result."""
     goal, premises = claim.obligations[number].goal, claim.given_then.get(number, ())
     names = claim.names_of(function)
     values = free_values([goal, *premises])
     others = [(v, z3.Const(f"{v}'", v.sort())) for v in values if str(v) in names]
     if not others:
-        return True  # computed of known numbers, which are in the goal
+        return True  # computed from known numbers, which are in the goal
     solver = z3.Solver()
     solver.add(*premises, goal, z3.substitute(z3.Not(goal), *others))
     solver.add(*[z3.substitute(premise, *others) for premise in premises])
@@ -357,7 +355,7 @@ def _pairs(claim: Outline, number: int) -> Iterator[tuple[str, tuple[str, str]]]
 
 
 def _named_in(statement: Function) -> frozenset[str]:
-    """The definitions whose names stand in a statement."""
+    """The definitions whose names occur in a statement."""
     assert isinstance(statement, types.FunctionType)
     scope, names = statement.__globals__, set(statement.__code__.co_names)
     places = [scope, *(vars(scope[n]) for n in names if isinstance(scope.get(n), types.ModuleType))]
@@ -372,7 +370,7 @@ def _kernels(functions: Iterable[Function]) -> set[str]:
 
 
 def _folds(claim: Outline, spoken: Iterable[Function]) -> set[str]:
-    """The folds that an induction runs over, of those that the theorem is about."""
+    """Of the folds that the theorem is about, those that an induction runs over."""
     return {full_name(f) for f in claim.folds() if set(f.kernels) & set(spoken)}
 
 

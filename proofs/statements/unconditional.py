@@ -1,7 +1,7 @@
-"""The uses of kernels whose result a theorem says without any condition.
+"""The uses of kernels whose results a theorem determines without any condition.
 
-`c.show(c.same(kernel, definition))` says it of every argument that the premises leave; a condition in the
-goal may leave less, so what has one is looked at further (`decided`).
+`c.show(c.same(kernel, definition))` holds for every argument that the premises leave; a condition in the goal may
+leave fewer, so such goals are analysed further (`decided`).
 """
 
 from __future__ import annotations
@@ -17,14 +17,15 @@ from cratous.proofs.statements.premise_and_goal import sides
 
 Use = tuple[str, int]
 Held = tuple[str, str, str, int]
-"""A kernel and a definition, and the use of the kernel that is held against it."""
+"""A kernel, a definition, and the use of the kernel that is related to it."""
 
 
 class Outline(Protocol):
-    """What is asked of a statement that was read with all functions closed (`relations.Outline`).
+    """The interface needed from a statement read with all functions closed (`relations.Outline`).
 
-    results: of each unknown value that is a kernel's result, or a field of it: the kernel and its uses;
-    meant: of each that is a definition's: which; given_to: of each, the arguments; of_folds: uses by `c.fold`. None of an argument of theirs counts.
+    results: for each unknown value that is a kernel's result, or a field of one: the kernel and its uses; meant: for
+    each that is a definition's result: the definition; given_to: for each, the arguments; of_folds: uses by `c.fold`.
+    Values within arguments do not count.
     """
 
     obligations: list[Obligation]
@@ -35,7 +36,7 @@ class Outline(Protocol):
     given_to: dict[str, tuple[Any, ...]]
 
     def rows(self, uses: Iterable[Use]) -> set[str]:
-        """Definitions evaluated at numbers that are written down in these uses."""
+        """The definitions that were evaluated at literals of these uses."""
         ...
 
     def uses_in(self, term: z3.ExprRef) -> frozenset[Use]:
@@ -44,10 +45,10 @@ class Outline(Protocol):
 
 
 def unconditional(claim: Outline, uses: Iterable[Held]) -> frozenset[Held]:
-    """Those uses of which a goal says: this result, or a field of it, is what is meant.
+    """The uses whose result, or a field of it, a goal equates with its definition unconditionally.
 
-    Only the plainest forms count: a result equals what is made of the definition's alone, or a number that
-    one was evaluated to; or the definition is true of it; or an induction (`_of_induction`).
+    Only the plainest forms count: a result equals a term of the definition's results alone, or a number that one was
+    evaluated to; or the definition is true of it; or an induction (`_of_induction`).
     """
     wanted = frozenset(uses)
     found = {held for held in wanted if _of_induction(claim, held[2:])}
@@ -59,9 +60,9 @@ def unconditional(claim: Outline, uses: Iterable[Held]) -> frozenset[Held]:
 
 
 def _of_induction(claim: Outline, use: Use) -> bool:
-    """A step's use in an induction whose last part has no condition on items and context.
+    """Whether it is a step's use in an induction whose last part has no condition on items and context.
 
-    What `c.fold` shows at last is an equality, wherever its premises hold.
+    The last goal of `c.fold` is an equality that holds under its premises.
     """
     last = [owed.goal for owed in claim.obligations if owed.kind == "use"]
     if use in claim.of_folds or not last:
@@ -75,7 +76,7 @@ def _of_induction(claim: Outline, use: Use) -> bool:
 
 
 def _within(claim: Outline, term: z3.ExprRef) -> set[str]:
-    """The names in a term, and in the arguments of what it is made of."""
+    """The names in a term, and in the arguments of the uses that it is made of."""
     found: set[str] = set()
     todo = free_names(term)
     while todo:
@@ -99,17 +100,17 @@ def _said(claim: Outline, conclusion: z3.BoolRef) -> Iterator[Held]:
         if not names:
             yield from _of_row(claim, one)
         meant = {claim.meant.get(name, "") for name in names}
-        # what another definition, or an argument, has a part in may be a condition
+        # if another definition, or an argument, takes part, it may be a condition
         if z3.is_const(one) and len(meant) == 1 and "" not in meant:
             (only,) = meant
             for kernel, use in claim.results.get(str(one), ()):
-                # a definition of the kernel's own result may say the same of every result
+                # a definition of the kernel's own result may hold for every result
                 if use not in claim.uses_in(other):
                     yield kernel, only, *use
 
 
 def _of_definition(claim: Outline, term: z3.BoolRef) -> Iterator[Held]:
-    """A definition that is true, or false, of results that it is given."""
+    """A definition that is true, or false, of results passed to it."""
     if z3.is_const(term) and str(term) in claim.meant:
         for name in {str(known(leaf)) for leaf in leaves(claim.given_to[str(term)])}:
             for kernel, use in claim.results.get(name, ()):
@@ -117,9 +118,9 @@ def _of_definition(claim: Outline, term: z3.BoolRef) -> Iterator[Held]:
 
 
 def by_way_of(claim: Outline, meant: str) -> frozenset[Use]:
-    """Uses of which a goal says without a condition: what some definition says of the result is what this one says.
+    """Uses for which a goal unconditionally equates another definition's value of the result with this one's.
 
-    Whether that depends on the result at all is told by runs alone.
+    Whether that depends on the result at all is determined by runs only.
     """
     found: set[Use] = set()
     for owed in claim.obligations:
@@ -139,7 +140,7 @@ def by_way_of(claim: Outline, meant: str) -> frozenset[Use]:
 
 
 def _of_row(claim: Outline, term: z3.ExprRef) -> Iterator[Held]:
-    """Of a result that is held against a number: by definitions that were evaluated for its use."""
+    """For a result that is compared with a number: the definitions evaluated for its use."""
     if z3.is_const(term):
         for kernel, use in claim.results.get(str(term), ()):
             yield from ((kernel, meant, *use) for meant in claim.rows([use]))
