@@ -14,8 +14,9 @@ from typing import Any
 from cratous.core.kernel import qualified
 
 Loop = Callable[..., Any]
-SOON, WORTH = 300, 60_000
-"""Amount of work after which the compiled loop is used: if it is cached, and if it is not."""
+SOON, LOADED, WORTH = 300, 3_000, 60_000
+"""Amount of work after which the compiled loop is used: if it is cached and another one is in use already, if it is
+cached (loading the compiler takes half a second), and if it is not."""
 _at_once: list[bool] = [False]
 _entered: list[Callable[[Loop, Loop], Loop] | None] = [None]
 _done: Counter[str] = Counter()
@@ -63,7 +64,8 @@ def _is_time(function: Loop, before: int, done: int) -> bool:
     if _at_once[-1] or done > WORTH:
         return True
     # checked periodically: a parallel process may have compiled it since
-    return (done - 1) // SOON > max(before - 1, 0) // SOON and _is_kept(function)
+    step = SOON if _compiled else LOADED
+    return (done - 1) // step > max(before - 1, 0) // step and _is_kept(function)
 
 
 def _is_kept(function: Loop) -> bool:
