@@ -371,16 +371,14 @@ def test_a_verdict_depends_on_function_theorems_judge_and_solver(monkeypatch):
     assert KEYS.target("cratous.core.authority.gate.gives_way", function) != key
 
 
-# every fortieth; stating all of them takes minutes
-@pytest.mark.parametrize("step", [40, pytest.param(1, marks=pytest.mark.long)])
+# every twentieth; stating all of them takes minutes
+@pytest.mark.parametrize("step", [20, pytest.param(1, marks=pytest.mark.long)])
 def test_what_a_theorem_meets_is_within_what_it_names(step: int):
     """A key must cover every theorem that can judge, also those that meet a function indirectly."""
     from cratous.core.kernel import qualified
 
-    chosen = KEYS.theorems[::step]
-    met = targets(chosen)
-    # more theorems have come and will: how many are met depends on which ones the step hits
-    assert len({name for _, users in met.values() for name in users}) > len(chosen) / 2
+    met = targets(KEYS.theorems[::step])
+    assert len(met) > 50
     for target, users in met.values():
         for name in users:
             assert qualified(target) in KEYS.reach(name), (name, target)
