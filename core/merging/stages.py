@@ -1,0 +1,45 @@
+"""What a vehicle does on its way over a merge fix, as transition kernels. Definitions: `spec.merging.stages`.
+
+AWAY (0): the fix is not on its way, or too far ahead. ASKING (1): it asks for a slot, and UxAS flies on. IN_SLOT (2): ICAROUS
+flies it so that it is there at its time. HOLDING (3): ICAROUS flies a circle until it may go on.
+"""
+
+from cratous.core.kernel import kernel
+
+AWAY, ASKING, IN_SLOT, HOLDING = 0, 1, 2, 3
+
+
+@kernel(implements="merging.stages.is_after_heartbeat")
+def merge_step(
+    stage: int, near: bool, inside: bool, slotted: bool, early: bool, entered: bool
+) -> int:
+    """The stage at a heartbeat.
+
+    near: the fix is ahead, in the coordination zone; inside: in the schedule zone; slotted: a majority has granted a slot for the
+    present request; early: it would be there before it at any speed; entered: in the entry zone, too near to wait.
+    """
+    if not near:
+        return 0
+    if slotted and (entered or not early):
+        return 2
+    if slotted or inside or stage == 3:
+        return 3
+    return 1
+
+
+@kernel(
+    implements="merging.stages.must_fly",
+    restates="why ICAROUS has a vehicle; that nobody goes on without a slot is proved of it",
+)
+def merging_takes(stage: int, foreseen: bool) -> bool:
+    """True iff ICAROUS has to have the vehicle. foreseen: there is another reason."""
+    return foreseen or stage == 2 or stage == 3
+
+
+@kernel(
+    implements="merging.stages.may_go_back",
+    restates="when a vehicle may go back; that it is kept until the fix is behind it is proved of it",
+)
+def merging_lets_go(stage: int, free: bool) -> bool:
+    """True iff the vehicle may go back to UxAS. free: nothing else is against it."""
+    return free and stage != 2 and stage != 3
