@@ -16,6 +16,7 @@ from cratous.core.avoidance.manoeuvre import Ability, Motion
 from cratous.core.avoidance.prediction import Intruder
 from cratous.core.permit.hand import Hand
 from cratous.services.icarous.certificate import Certificate
+from cratous.services.icarous.merger import Said
 from cratous.spec.mission import Velocity
 
 if TYPE_CHECKING:
@@ -52,6 +53,13 @@ class Sensed(NamedTuple):
     taken: frozenset[str] = frozenset()
     on_ground: bool = False
     rolling: tuple[int, ...] = ()
+
+
+class Talk(NamedTuple):
+    """Another vehicle that merges at the same fix has said something, over the direct link."""
+
+    now_ms: int
+    said: Said
 
 
 # from the instance ------------------------------------------------------------------------------
@@ -99,6 +107,27 @@ class TakesOff(NamedTuple):
     mode: int
     heard_ms: int
     reason: str
+
+
+class Merges(NamedTuple):
+    """To the record. stage: how the vehicle merges from now on, by the numbers of `core.merging.stages`; term, leader: of
+    the election, 0 for nobody; request, slot: its present request, 0 for none, and its slot [ms], -1 for none."""
+
+    vehicle_id: int
+    now_ms: int
+    stage: int
+    term: int
+    leader: int
+    request: int
+    slot: int
+    reason: str
+
+
+class Tells(NamedTuple):
+    """To the others that merge at the same fix, over the direct links."""
+
+    vehicle_id: int
+    said: Said
 
 
 class Hears(NamedTuple):
@@ -150,7 +179,18 @@ class Up(NamedTuple):
     line: Message
 
 
-ToInstance = Line | Sensed
+ToInstance = Line | Sensed | Talk
 FromInstance = (
-    Wish | Foresees | Hears | Guides | WithoutLink | TakesOff | Offers | Uncertified | Steer | Up
+    Wish
+    | Foresees
+    | Hears
+    | Guides
+    | WithoutLink
+    | TakesOff
+    | Merges
+    | Tells
+    | Offers
+    | Uncertified
+    | Steer
+    | Up
 )

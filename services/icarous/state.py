@@ -17,6 +17,7 @@ from cratous.services.icarous.course import Course
 from cratous.services.icarous.ending import Beside
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.lost import LostLink, NoLink
+from cratous.services.icarous.merge_state import Fix, Merging
 from cratous.services.icarous.others import Ways
 from cratous.services.icarous.traffic_monitor import Threat, Tracks
 from cratous.services.mission.frames import Projection
@@ -33,7 +34,8 @@ class Config(NamedTuple):
 
     original: UxAS's end is the original's, whose WAYPT lines carry a running count; certifies: what it commands is
     offered to the gate with a certificate; records: alerts and bands go to a record; lost_link: what it does while UxAS
-    is not heard, None where the mission does not say; take_off: what it takes off to, None where it starts in the air."""
+    is not heard, None where the mission does not say; take_off: what it takes off to, None where it starts in the air; merging: the fix
+    where it merges with others, None for none."""
 
     vehicle_id: int
     daa: Daa
@@ -44,6 +46,7 @@ class Config(NamedTuple):
     records: bool = False
     lost_link: LostLink | None = None
     take_off: TakeOff | None = None
+    merging: Fix | None = None
 
 
 class Rising(NamedTuple):
@@ -94,7 +97,7 @@ class State:
     manoeuvre that is over soonest; ways: of the other vehicles of ours; asking: UxAS for a way back; bands: what detect
     and avoid said last, while a loss is foreseen or ICAROUS flies; no_link: what it does while UxAS is not heard;
     beside: what was asked of zones for the hold at the end of the way; rising: how far it is off the ground, where it started there; pace_ms: until when UxAS, after a handback, may be bringing the vehicle to the speed that was told [ms];
-    unheard: UxAS was not heard at the last heartbeat."""
+    unheard: UxAS was not heard at the last heartbeat; merging: how it flies over a merge fix."""
 
     cycle: Cycle = START
     told: Told = field(default_factory=Told)
@@ -113,6 +116,7 @@ class State:
     unheard: bool = False
     rising: Rising = field(default_factory=Rising)
     beside: Beside | None = None
+    merging: Merging = Merging()
 
     def paces(self, now_ms: int) -> bool:
         """Whether UxAS, which has just taken it back, may still bring the vehicle to the speed that was told."""

@@ -13,6 +13,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from cratous.spec.mission.link_loss import LandingSite, WithoutLink
+from cratous.spec.mission.merging import Merging
 from cratous.spec.mission.sensing import Sensing
 from cratous.spec.mission.simulation import FaultySimulation as FaultySimulation
 from cratous.spec.mission.simulation import Simulation as Simulation
@@ -116,11 +117,8 @@ class TaskKind(StrEnum):
 
 
 SEARCHES = (
-    TaskKind.LINE_SEARCH,
-    TaskKind.POINT_SEARCH,
-    TaskKind.AREA_SEARCH,
-    TaskKind.PATTERN_SEARCH,
-)
+    TaskKind.LINE_SEARCH, TaskKind.POINT_SEARCH, TaskKind.AREA_SEARCH, TaskKind.PATTERN_SEARCH,
+)  # fmt: skip
 """The kinds that are served by what cameras see."""
 AREAS = (TaskKind.AREA_SEARCH, TaskKind.PATTERN_SEARCH)
 """The kinds of which a whole area has to be seen."""
@@ -320,6 +318,13 @@ class LinkLossDaa(OrderedDaa):
     """The same where the mission says what is flown while UxAS is not heard."""
 
     link_loss: LinkLoss = field(default_factory=lambda: LinkLoss(WithoutLink.LOITER))
+
+
+@dataclass(frozen=True)
+class MergingDaa(OrderedDaa):
+    """The same where vehicles merge at a fix."""
+
+    merging: Merging = Merging()
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,67 @@
+"""The direct links over which vehicles that merge at a fix talk, and what their ICAROUS is told of it before the flight.
+
+What one says at a heartbeat comes to the others at the next one, or never: which is asked for by the mission, the same for
+the same seed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Collection, Iterator
+
+from cratous.core.authority.timeliness import lasted
+from cratous.core.kernel import Vec2
+from cratous.services.icarous.merge_state import Fix
+from cratous.services.icarous.merger import Talks
+from cratous.services.icarous.merging import TOLERANCE_MS
+from cratous.services.icarous.messages import Talk, Tells
+from cratous.services.mission.merging import merges, merging_of
+from cratous.spec.mission import Mission
+
+
+def merge_fix(mission: Mission, vehicle_id: int) -> Fix | None:
+    """The fix where a vehicle merges with others; None where it does not."""
+    merging = merges(mission, vehicle_id)
+    if merging is None:
+        return None
+    members = tuple(sorted(merging.vehicles))
+    talks = Talks(members, vehicle_id, merging.separation_ms + 2 * TOLERANCE_MS)
+    place = Vec2(merging.north_m, merging.east_m)
+    return Fix(
+        merging.name, place, merging.coordination_m, merging.schedule_m, merging.entry_m, talks
+    )
+
+
+class DirectTalk:
+    """What was said at the last heartbeat and is on its way."""
+
+    def __init__(self, mission: Mission, instances: Collection[int]) -> None:
+        merging = merging_of(mission)
+        self._faults = None if merging is None else merging.faults
+        self._members = [] if merging is None else sorted({*merging.vehicles} & {*instances})
+        self._said: list[Tells] = []
+
+    def tell(self, said: Tells) -> None:
+        """A member says something to all others."""
+        self._said.append(said)
+
+    def come(self, now_ms: int) -> Iterator[tuple[int, Talk]]:
+        """What comes to whom now."""
+        said, self._said = self._said, []
+        for one in said:
+            for other in self._members:
+                if other != one.vehicle_id and self._comes(one, other, now_ms):
+                    yield other, Talk(now_ms, one.said)
+
+    def _comes(self, one: Tells, other: int, now_ms: int) -> bool:
+        faults = self._faults
+        if faults is None:
+            return True
+        for who, from_ms, until_ms in faults.silences:
+            if who not in (one.vehicle_id, other):
+                continue
+            if lasted(from_ms, now_ms, 0) and not lasted(until_ms, now_ms, 0):
+                return False
+        text = f"{faults.seed} {one.vehicle_id} {other} {now_ms}"
+        drawn = int.from_bytes(hashlib.sha256(text.encode()).digest()[:6], "big") / 2**48
+        return drawn >= faults.loss

@@ -1,0 +1,230 @@
+"""How the members of a merge fix agree upon slots: `handle(state, what has come) -> (state, what is said)`.
+
+At each heartbeat a member says all that it knows to the others: its term and vote, what it wants, what it has granted, and,
+as a leader, what it proposes. So a message that is lost is made good by the next one, and one that comes late or twice
+says nothing new. Who leads is voted for by terms; a leader proposes slots; a slot counts for its vehicle once a majority of
+the members has granted it for its present request. What a member grants is decided by kernels (`core.merging`), so
+slots that count are apart whoever leads, and however many believe that they do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from cratous.core.authority.timeliness import in_time, lasted
+from cratous.core.merging.grants import Grant, grant_asked, has_room
+from cratous.core.merging.slots import Wanted, slots_of
+from cratous.core.merging.votes import Seat, is_majority, seat_asked, seat_stands, tally
+from cratous.spec.errors import BadInput
+
+FOLLOWS, STANDS, LEADS = 0, 1, 2
+LOST_MS = 2000
+"""A leader counts as lost when nothing was heard of it for this long [ms],"""
+LATER_MS = 1000
+"""by each member so much later than by the one before it [ms], so that they do not all stand at once."""
+WAITS_MS = 6000
+"""A request without a slot is made anew after this long [ms]."""
+STALE_MS = 3000
+"""What a member wanted so long ago is not scheduled any more [ms]."""
+NOTHING = Grant(0, 0)
+
+
+class Slot(NamedTuple):
+    """A time at the fix [ms] for one request of a vehicle."""
+
+    vehicle_id: int
+    request: int
+    time: int
+
+
+class Wish(NamedTuple):
+    """When a vehicle can be at the fix [ms]. request: as which of its requests it asks, 0 for none."""
+
+    request: int = 0
+    earliest: int = 0
+    latest: int = 0
+
+
+class Said(NamedTuple):
+    """All that a member says at a heartbeat. term, voted, role: of the election; book: what it has granted last to each
+    vehicle; proposed: as a leader."""
+
+    member: int
+    at_ms: int
+    term: int
+    voted: int
+    role: int
+    wish: Wish
+    book: tuple[Slot, ...]
+    proposed: tuple[Slot, ...] = ()
+
+
+class Talks(NamedTuple):
+    """What does not change: the members in order of their ids, whose talk it is, and how far slots are apart [ms]."""
+
+    members: tuple[int, ...]
+    me: int
+    apart_ms: int
+
+
+class Merger(NamedTuple):
+    """seat, role: of the election; led_ms: when a leader was last heard, or it stood [ms]; book, proposed: as it says
+    them; heard: what each other member has said last; wish, asked_ms: its request, and since when [ms]."""
+
+    seat: Seat = Seat(0, 0)
+    role: int = FOLLOWS
+    led_ms: int = 0
+    book: tuple[Slot, ...] = ()
+    proposed: tuple[Slot, ...] = ()
+    heard: tuple[Said, ...] = ()
+    wish: Wish = Wish()
+    asked_ms: int = 0
+    requests: int = 0
+
+
+def hear(talks: Talks, merger: Merger, said: Said, now_ms: int) -> Merger:
+    """Another member has said something; BadInput if it is none."""
+    if said.member not in talks.members or said.member == talks.me:
+        members = ", ".join(map(str, talks.members))
+        raise BadInput(
+            "not of this fix", item="member", expected=f"another of {members}", got=str(said.member)
+        )
+    before = _last(merger, said.member)
+    if before is not None and said.at_ms <= before.at_ms:
+        return merger  # overtaken: what it said is in what was heard since
+    others = tuple(one for one in merger.heard if one.member != said.member)
+    merger = merger._replace(heard=(*others, said))
+    # whoever votes in a newer term tells that there is one
+    whom = said.member if said.role != FOLLOWS else said.voted
+    newer = said.term > merger.seat.latest
+    if whom and (newer or said.role != FOLLOWS):
+        vote = seat_asked(merger.seat, said.term, whom)
+        if newer or (vote.yes and whom != talks.me):
+            merger = merger._replace(role=FOLLOWS, proposed=())
+        merger = merger._replace(seat=vote.seat)
+        if vote.yes and said.role != FOLLOWS:
+            merger = merger._replace(led_ms=now_ms)
+        if vote.yes and said.role == LEADS:
+            merger = _granted(talks, merger, said.proposed)
+    return merger
+
+
+def beat(talks: Talks, merger: Merger, wish: Wish, now_ms: int) -> tuple[Merger, Said]:
+    """A heartbeat: stand or lead, and say all. wish: what its vehicle wants now, with a request of `asked`."""
+    merger = merger._replace(wish=wish)
+    if merger.role == STANDS and _elected(talks, merger):
+        merger = merger._replace(role=LEADS, proposed=())
+    if merger.role != LEADS:
+        waits_ms = LOST_MS + LATER_MS * talks.members.index(talks.me)
+        if not in_time(merger.led_ms, now_ms, waits_ms):
+            standing = seat_stands(merger.seat, talks.me)
+            role = STANDS if standing.stands else FOLLOWS
+            merger = merger._replace(seat=standing.seat, role=role, led_ms=now_ms, proposed=())
+            if role == STANDS and _elected(talks, merger):  # alone
+                merger = merger._replace(role=LEADS)
+    if merger.role == LEADS:
+        merger = merger._replace(proposed=_proposals(talks, merger, now_ms), led_ms=now_ms)
+        merger = _granted(talks, merger, merger.proposed)
+    seat = merger.seat
+    said = (talks.me, now_ms, seat.latest, seat.voted, merger.role)
+    return merger, Said(*said, wish, merger.book, merger.proposed)
+
+
+def asked(merger: Merger, wants: bool, anew: bool, now_ms: int) -> tuple[Merger, int]:
+    """The number of the vehicle's request, 0 where it wants nothing. anew: it does not use the slot that it had, or may
+    get; so does who has waited for one too long."""
+    request = merger.wish.request
+    if not wants or (request and not anew):
+        return merger, request if wants else 0
+    number = merger.requests + 1
+    return merger._replace(asked_ms=now_ms, requests=number), number
+
+
+def waited(merger: Merger, now_ms: int) -> bool:
+    """Whether the present request is so old that it is made anew, if there is no slot for it."""
+    return not in_time(merger.asked_ms, now_ms, WAITS_MS)
+
+
+def slot_of(talks: Talks, merger: Merger, vehicle_id: int, request: int) -> int | None:
+    """The time [ms] for which there is a majority; None where there is none."""
+    if not request:
+        return None
+    books = [merger.book, *(one.book for one in merger.heard)]
+    found = [s.time for b in books for s in b if (s.vehicle_id, s.request) == (vehicle_id, request)]
+    for time in sorted(set(found)):
+        count = tally((one == time,) for one in found)
+        if is_majority(count, len(talks.members)):
+            return time
+    return None
+
+
+def leader_of(merger: Merger, me: int) -> int:
+    """Who leads in its term, as far as the member knows, 0 for nobody."""
+    if merger.role == LEADS:
+        return me
+    term = merger.seat.latest
+    leads = (one.member for one in merger.heard if one.role == LEADS and one.term == term)
+    return next(leads, 0)
+
+
+def _last(merger: Merger, member: int) -> Said | None:
+    return next((one for one in merger.heard if one.member == member), None)
+
+
+def _elected(talks: Talks, merger: Merger) -> bool:
+    mine = (merger.seat.latest, talks.me)
+    votes = [(merger.seat.latest, merger.seat.voted), *((one.term, one.voted) for one in merger.heard)]
+    return is_majority(tally((vote == mine,) for vote in votes), len(talks.members))
+
+
+def _granted(talks: Talks, merger: Merger, proposed: tuple[Slot, ...]) -> Merger:
+    """With what this member grants of what is proposed."""
+    book = {one.vehicle_id: Grant(one.request, one.time) for one in merger.book}
+    for vehicle_id, request, time in proposed:
+        others = [grant for number, grant in book.items() if number != vehicle_id]
+        room = has_room(others, time, talks.apart_ms)
+        answer = grant_asked(book.get(vehicle_id, NOTHING), Grant(request, time), room)
+        book[vehicle_id] = answer.grant
+    kept = tuple(Slot(number, *grant) for number, grant in sorted(book.items()) if grant.request)
+    return merger._replace(book=kept)
+
+
+def _wishes(talks: Talks, merger: Merger, now_ms: int) -> Iterator[tuple[int, Wish]]:
+    """What each vehicle wants, as far as it is known."""
+    yield talks.me, merger.wish
+    for one in merger.heard:
+        if in_time(one.at_ms, now_ms, STALE_MS):
+            yield one.member, one.wish
+
+
+def _proposals(talks: Talks, merger: Merger, now_ms: int) -> tuple[Slot, ...]:
+    """What a leader proposes: slots that were proposed or granted stay, and everybody else who wants one gets one."""
+    wishes = {who: wish for who, wish in _wishes(talks, merger, now_ms) if wish.request}
+    books = [merger.proposed, merger.book, *(one.book for one in merger.heard)]
+    taken = dict[int, Slot]()
+    for who in talks.members:
+        slots = [slot for book in books for slot in book if slot.vehicle_id == who]
+        request = wishes[who].request if who in wishes else max((s.request for s in slots), default=0)
+        now = [slot for slot in slots if slot.request == request]
+        if now:
+            # one that it has proposed itself, else the one that most have granted
+            ours = [slot for slot in merger.proposed if slot in now]
+            taken[who] = ours[0] if ours else max(now, key=lambda slot: (now.count(slot), -slot.time))
+    new = {who: wish for who, wish in wishes.items() if who not in taken}
+    fixed = [Wanted(who, slot.time, slot.time) for who, slot in taken.items()]
+    fixed = [one for one in fixed if not lasted(one.latest, now_ms, talks.apart_ms)]
+    windows = [Wanted(who, wish.earliest, wish.latest) for who, wish in new.items()]
+    if (all_of := slots_of([*fixed, *windows], talks.apart_ms)) is not None:
+        times = dict(all_of)
+        taken |= {who: Slot(who, wish.request, times[who]) for who, wish in new.items()}
+        return tuple(taken[who] for who in sorted(taken))
+    # not all of them can have one: those have that come first
+    for who in sorted(new, key=lambda number: (new[number].earliest, number)):
+        window = Wanted(who, new[who].earliest, new[who].latest)
+        found = slots_of([*fixed, window], talks.apart_ms)
+        if found is not None:
+            time = dict(found)[who]
+            taken[who] = Slot(who, new[who].request, time)
+            fixed.append(Wanted(who, time, time))
+    return tuple(taken[who] for who in sorted(taken))

@@ -1,0 +1,237 @@
+"""How an instance flies over a merge fix: by a slot that a majority of the members has granted, or it holds outside.
+
+Which stage it is in is answered by the kernel `merge_step` at each heartbeat, at which speed it is there in time by the kernel
+`pace`. The way that UxAS has told is flown at that speed, or a circle, if they are permitted from where the vehicle is
+(`course_permits`); where not even a circle is, the manoeuvre that deviates least is flown, as in any takeover.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from cratous.core.avoidance.manoeuvre import Pace
+from cratous.core.avoidance.resolution import Choice
+from cratous.core.avoidance.way_ahead import near_line
+from cratous.core.merging.stages import HOLDING, IN_SLOT, merge_step
+from cratous.core.routing.polylines import Track
+from cratous.core.tasks.rendezvous import Pace as Arrival
+from cratous.core.tasks.rendezvous import pace
+from cratous.services.icarous import course as courses
+from cratous.services.icarous import merger as talk
+from cratous.services.icarous.course import Course
+from cratous.services.icarous.course_permits import refused
+from cratous.services.icarous.foresight import ON_PATH_M, scene_of
+from cratous.services.icarous.merge_state import Fix, Followed, Merging
+from cratous.services.icarous.merger import Merger, Wish
+from cratous.services.icarous.messages import Merges, Sensed, Talk, Tells
+from cratous.services.icarous.proposal import manoeuvre
+from cratous.services.icarous.return_to_path import flat, onto, rejoin
+from cratous.services.icarous.state import IDLE, Config, State
+from cratous.spec.mission import Position
+from cratous.spec.mission.plan import Pose
+from cratous.spec.records import replace
+
+TOLERANCE_MS = 1000
+"""A vehicle may be so much before or after its slot [ms]; slots are farther apart by twice as much."""
+WAITS_MS = 3_600_000
+"""Who can wait has a slot within this [ms]."""
+STEADY_S = 3.0
+"""In the last seconds before the fix the speed is kept."""
+BEATS = 4
+"""Where a vehicle is on its way is looked for as far ahead of where it was as it flies in so many heartbeats."""
+BEFORE = "the slot at the fix is later: a circle is flown"
+WITHOUT = "no slot at the fix: a circle is flown"
+
+
+class Ahead(NamedTuple):
+    """What lies ahead of a vehicle. left_m: how far it is along its way to the fix, None where it does not pass it; the
+    rest: as the kernel `merge_step` asks."""
+
+    left_m: float | None
+    near: bool
+    inside: bool
+    entered: bool
+
+
+def heard(config: Config, state: State, message: Talk) -> State:
+    """Another member has said something."""
+    fix, before = config.merging, state.merging
+    if fix is None:
+        return state
+    after = talk.hear(fix.talks, before.merger, message.said, message.now_ms)
+    return replace(state, merging=before._replace(merger=after))
+
+
+def heartbeat(
+    config: Config, state: State, sensed: Sensed
+) -> tuple[State, tuple[Merges | Tells, ...]]:
+    """The stage at this heartbeat, with the course that is flown in it, what is new, and what it says to the others."""
+    fix, before, now_ms = config.merging, state.merging, sensed.now_ms
+    if fix is None:
+        return state, ()
+    beat_s = config.heartbeat_ms / 1000
+    course = None if before.course is None else before.course.flown(sensed.motion, beat_s)
+    way = _followed(before.way, state, sensed, beat_s)
+    ahead = _ahead(fix, course, way, sensed)
+    merger, slot, arrival = _agreed(fix, before, state, sensed, ahead)
+    early = arrival is not None and arrival.act == 1
+    stage = merge_step(
+        before.stage, ahead.near, ahead.inside, slot is not None, early, ahead.entered
+    )
+    merger, said = talk.beat(fix.talks, merger, merger.wish, now_ms)
+    course = _flown(config, replace(state, merging=before._replace(way=way)), sensed, stage, course, arrival)
+    after = Merging(stage, merger, way, course, slot)
+    state = replace(state, merging=after)
+    if stage not in (IN_SLOT, HOLDING) and before.stage in (IN_SLOT, HOLDING):
+        state = replace(state, held=None, search=IDLE)
+    tells = Tells(config.vehicle_id, said)
+    told = _told(fix, before, after)
+    if told == _told(fix, before, before):
+        return state, (tells,)
+    return state, (Merges(config.vehicle_id, now_ms, stage, *told[1:], reason(after)), tells)
+
+
+def reason(merging: Merging) -> str:
+    """Why ICAROUS has a vehicle that merges."""
+    if merging.stage == IN_SLOT:
+        return f"merging: it is flown to be at the fix at {(merging.slot or 0) / 1000:g} s"
+    if merging.stage == HOLDING:
+        return f"merging: {WITHOUT if merging.slot is None else BEFORE}"
+    return ""
+
+
+def flown(
+    config: Config, state: State, sensed: Sensed, in_turn: frozenset[int]
+) -> tuple[State, Choice]:
+    """The manoeuvre to fly now: along the course, or around what is in the way of all of them."""
+    course = state.merging.course
+    if course is not None:
+        choice = courses.steered(course, sensed, config.heartbeat_ms / 1000)
+        return replace(state, held=None, search=IDLE), choice
+    return manoeuvre(config, state, sensed, in_turn, False)
+
+
+def _told(fix: Fix, before: Merging, after: Merging) -> tuple[int, int, int, int, int]:
+    """What is said when it changes: stage, term, leader, request and slot."""
+    merger = after.merger
+    leader = talk.leader_of(merger, fix.talks.me)
+    slot = -1 if after.slot is None else after.slot
+    return after.stage, merger.seat.latest, leader, merger.wish.request, slot
+
+
+def _followed(
+    before: Followed | None, state: State, sensed: Sensed, beat_s: float
+) -> Followed | None:
+    points, motion = state.told.waypoints, sensed.motion
+    if not points:
+        return None
+    window_m = BEATS * beat_s * motion.speed_m_s
+    if before is None or before.points is not points:
+        # a way that is told anew begins about here
+        before, window_m = Followed(points, Track(points, motion.heading_rad), 0.0), ON_PATH_M
+        window_m += 2 * BEATS * beat_s * motion.speed_m_s
+    near = before.track.nearest(motion.position, before.at_m, window_m)
+    return before._replace(at_m=near.s_m)
+
+
+def _ahead(fix: Fix, course: Course | None, way: Followed | None, sensed: Sensed) -> Ahead:
+    track, at_m = (None, 0.0) if way is None else (way.track, way.at_m)
+    if course is not None and course.track is not None:
+        track, at_m = course.track, course.s_m
+    if track is None or sensed.on_ground or sensed.landed:
+        return Ahead(None, False, False, False)
+    there = Position(*fix.place, 0.0)
+    rest_m = max(track.length_m - at_m, 0.0)
+    s_m = track.nearest(there, at_m, rest_m).s_m
+    passes = near_line(flat(track.at(s_m)), fix.place, fix.place, fix.entry_m)
+    left_m = s_m - at_m if passes and s_m > at_m and s_m < track.length_m else None
+    here = flat(sensed.motion.position)
+    near, inside, entered = (
+        left_m is not None and near_line(here, fix.place, fix.place, radius_m)
+        for radius_m in (fix.coordination_m, fix.schedule_m, fix.entry_m)
+    )
+    return Ahead(left_m, near, inside, entered)
+
+
+def _agreed(
+    fix: Fix, before: Merging, state: State, sensed: Sensed, ahead: Ahead
+) -> tuple[Merger, int | None, Arrival | None]:
+    """The request with its window, the slot that it has, and at which speed it would be there in time."""
+    merger, now_ms = before.merger, sensed.now_ms
+    slot = talk.slot_of(fix.talks, merger, fix.talks.me, merger.wish.request) if ahead.near else None
+    arrival = _arrival(before, sensed, state, ahead, slot)
+    late = arrival is not None and arrival.act == 2 and not ahead.entered
+    again = late or (slot is None and talk.waited(merger, now_ms))
+    merger, request = talk.asked(merger, ahead.near, again, now_ms)
+    if request != before.merger.wish.request:
+        slot, arrival = None, None
+    if ahead.left_m is None or not request:
+        return merger._replace(wish=Wish()), slot, arrival
+    speed = state.told.speed_m_s or sensed.motion.speed_m_s
+    soonest = now_ms + math.ceil(1000 * ahead.left_m / speed)
+    latest = now_ms + WAITS_MS
+    if ahead.entered:
+        latest = now_ms + math.floor(1000 * ahead.left_m / sensed.ability.min_speed_m_s)
+    return merger._replace(wish=Wish(request, soonest, max(soonest, latest))), slot, arrival
+
+
+def _arrival(
+    before: Merging, sensed: Sensed, state: State, ahead: Ahead, slot: int | None
+) -> Arrival | None:
+    """At which speed the vehicle is at the fix at its slot. Who holds goes on only where it need not be flown slowest."""
+    if slot is None or ahead.left_m is None:
+        return None
+    ability, left_s = sensed.ability, (slot - sensed.now_ms) / 1000
+    slowest, fastest = ability.min_speed_m_s, ability.max_speed_m_s
+    if before.stage == HOLDING:
+        usual = state.told.speed_m_s or sensed.motion.speed_m_s
+        slowest = (slowest + min(max(usual, slowest), fastest)) / 2
+    return pace(ahead.left_m, left_s, slowest, fastest, TOLERANCE_MS / 1000)
+
+
+def _flown(
+    config: Config,
+    state: State,
+    sensed: Sensed,
+    stage: int,
+    going: Course | None,
+    arrival: Arrival | None,
+) -> Course | None:
+    """The course of a stage that is permitted: what is flown, if it is still, else one from here."""
+    if stage not in (IN_SLOT, HOLDING):
+        return None
+    scene, beat_s = scene_of(config, state, sensed), config.heartbeat_ms / 1000
+    found = _onward(config, state, sensed, going, arrival) if stage == IN_SLOT else ()
+    if stage == HOLDING:
+        here, wide_m = Pose(*sensed.motion.position, sensed.motion.heading_rad), courses.radius_m(sensed)
+        circles = courses.courses(here, sensed.motion, wide_m, None)
+        found = circles if going is None or going.track is not None else (going, *circles)
+    return next((c for c in found if not refused(c, sensed, scene, config.daa, beat_s)), None)
+
+
+def _onward(
+    config: Config, state: State, sensed: Sensed, going: Course | None, arrival: Arrival | None
+) -> tuple[Course, ...]:
+    """The way that was told from here, at the speed of the slot."""
+    fix, way, motion, ability = config.merging, state.merging.way, sensed.motion, sensed.ability
+    if fix is None or way is None or arrival is None:
+        return ()
+    speed, slot = arrival.speed_m_s, state.merging.slot
+    flying = going if going is not None and going.track is not None else None
+    if flying is not None and slot is not None and slot - sensed.now_ms < 1000 * STEADY_S:
+        speed = flying.speed_m_s
+    own = Pace(speed, ability.acceleration_m_s2)
+    if flying is not None:
+        return (flying._replace(speed_m_s=speed, pace=own),)
+    wide_m = courses.radius_m(sensed)
+    rest = way.track.rest(way.at_m)
+    here, place = flat(motion.position), flat(rest[0])
+    points = (motion.position, *rest[1:])
+    if not near_line(here, place, place, ON_PATH_M) or state.merging.stage == HOLDING:
+        ahead = onto(rest, motion, wide_m)
+        points = (*rejoin(motion, wide_m, ahead[0], ahead[1] if ahead[1:] else None), *ahead[1:])
+    track = Track(points, motion.heading_rad)
+    end = Pose(*track.points[-1], track.heading_rad(track.length_m))
+    both = courses.courses(end, motion, wide_m, track)
+    return tuple(one._replace(speed_m_s=speed, pace=own) for one in both)
