@@ -13,9 +13,8 @@ from cratous.core.authority.timeliness import lasted
 from cratous.core.kernel import Vec2
 from cratous.services.icarous.merge_state import Fix
 from cratous.services.icarous.merger import Talks
-from cratous.services.icarous.merging import TOLERANCE_MS
 from cratous.services.icarous.messages import Talk, Tells
-from cratous.services.mission.merging import merges, merging_of
+from cratous.services.mission.merging import apart_ms, merges, merging_of
 from cratous.spec.mission import Mission
 
 
@@ -25,7 +24,7 @@ def merge_fix(mission: Mission, vehicle_id: int) -> Fix | None:
     if merging is None:
         return None
     members = tuple(sorted(merging.vehicles))
-    talks = Talks(members, vehicle_id, merging.separation_ms + 2 * TOLERANCE_MS)
+    talks = Talks(members, vehicle_id, apart_ms(merging))
     place = Vec2(merging.north_m, merging.east_m)
     return Fix(
         merging.name, place, merging.coordination_m, merging.schedule_m, merging.entry_m, talks

@@ -34,6 +34,37 @@ def refused(course: Course, sensed: Sensed, scene: Scene, daa: Daa, beat_s: floa
     return next(_refused(course, sensed, scene, daa, beat_s), "")
 
 
+def refused_soon(course: Course, sensed: Sensed, scene: Scene, daa: Daa, beat_s: float) -> str:
+    """The same of what is flown of it within the look-ahead, where it is longer than that."""
+    pieces = way_along(sensed.motion, course.left, scene.lookahead_s, pace=course.pace).pieces
+    flown_m = sum(piece.duration_s * _speed_m_s(piece) for piece in pieces)
+    left_m = 0.0 if course.track is None else course.track.length_m - course.s_m
+    if not course.left or flown_m >= left_m:
+        return refused(course, sensed, scene, daa, beat_s)
+    aside_m = sensed.motion.speed_m_s * beat_s / 2
+    found = (*_against_zones(pieces, scene, aside_m), *_against_others(pieces, sensed, scene, daa))
+    return next(iter(found), "")
+
+
+def _speed_m_s(piece: Piece) -> float:
+    return math.hypot(piece.velocity.north_m_s, piece.velocity.east_m_s)
+
+
+def _against_zones(pieces: tuple[Piece, ...], scene: Scene, aside_m: float) -> Iterator[str]:
+    for zone in scene.zones:
+        if not all(_keeps(piece, zone, aside_m) for piece in pieces):
+            yield f"zone {zone.id} is in the way"
+
+
+def _against_others(
+    pieces: tuple[Piece, ...], sensed: Sensed, scene: Scene, daa: Daa
+) -> Iterator[str]:
+    for other in sensed.intruders:
+        meets = first_violation_s(pieces, other, scene.volume) is not None
+        if meets or not way_is_clear(pieces, other, daa):
+            yield f"it is not permitted against {other.id}"
+
+
 def _refused(
     course: Course, sensed: Sensed, scene: Scene, daa: Daa, beat_s: float
 ) -> Iterator[str]:
@@ -43,18 +74,11 @@ def _refused(
         motion = motion._replace(speed_m_s=course.pace.speed_m_s)
     # between two commands the vehicle flies straight on where the way may turn
     aside_m = motion.speed_m_s * beat_s / 2
-    for zone in scene.zones:
-        if not all(_keeps(piece, zone, aside_m) for piece in pieces):
-            yield f"zone {zone.id} is in the way"
+    yield from _against_zones(pieces, scene, aside_m)
     if course.site is not None:
         if course.site.name in sensed.taken:
             yield TAKEN
-        yield from (
-            f"it is not permitted against {other.id}"
-            for other in sensed.intruders
-            if first_violation_s(pieces, other, scene.volume) is not None
-            or not way_is_clear(pieces, other, daa)
-        )
+        yield from _against_others(pieces, sensed, scene, daa)
         return
     disc_m = course.hold.radius_m + TRACKING_S * motion.speed_m_s
     if not zones_permit(course.middle, scene.zones, disc_m):

@@ -117,8 +117,9 @@ class Instance:
                 motion=sensed.motion._replace(speed_m_s=sensed.ability.min_speed_m_s)
             )
         until_s = self._needed_s(state, watches, sensed.now_ms)
+        told = merging.with_members(self.config, state, sensed.now_ms)
         ways, others = with_ways(
-            state.ways, state.told, able, self.config.daa, beat_s, state.courses, until_s
+            state.ways, told, able, self.config.daa, beat_s, state.courses, until_s
         )
         state, sensed = replace(state, told=beaten(state.told)), sensed._replace(intruders=others)
         # one whose way is known is where that leads, in a turn too

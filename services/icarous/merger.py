@@ -17,6 +17,7 @@ from cratous.core.merging.grants import Grant, grant_asked, has_room
 from cratous.core.merging.slots import Wanted, slots_of
 from cratous.core.merging.votes import Seat, is_majority, seat_asked, seat_stands, tally
 from cratous.spec.errors import BadInput
+from cratous.spec.mission import Position
 
 FOLLOWS, STANDS, LEADS = 0, 1, 2
 LOST_MS = 2000
@@ -48,7 +49,7 @@ class Wish(NamedTuple):
 
 class Said(NamedTuple):
     """All that a member says at a heartbeat. term, voted, role: of the election; book: what it has granted last to each
-    vehicle; proposed: as a leader."""
+    vehicle; proposed: as a leader; flies: the way by which ICAROUS flies it, () where UxAS does."""
 
     member: int
     at_ms: int
@@ -58,6 +59,7 @@ class Said(NamedTuple):
     wish: Wish
     book: tuple[Slot, ...]
     proposed: tuple[Slot, ...] = ()
+    flies: tuple[Position, ...] = ()
 
 
 class Talks(NamedTuple):
@@ -110,9 +112,10 @@ def hear(talks: Talks, merger: Merger, said: Said, now_ms: int) -> Merger:
     return merger
 
 
-def beat(talks: Talks, merger: Merger, wish: Wish, now_ms: int) -> tuple[Merger, Said]:
-    """A heartbeat: stand or lead, and say all. wish: what its vehicle wants now, with a request of `asked`."""
-    merger = merger._replace(wish=wish)
+def beat(
+    talks: Talks, merger: Merger, flies: tuple[Position, ...], now_ms: int
+) -> tuple[Merger, Said]:
+    """A heartbeat: stand or lead, and say all. merger: with what its vehicle wants now; flies: as in `Said`."""
     if merger.role == STANDS and _elected(talks, merger):
         merger = merger._replace(role=LEADS, proposed=())
     if merger.role != LEADS:
@@ -128,7 +131,7 @@ def beat(talks: Talks, merger: Merger, wish: Wish, now_ms: int) -> tuple[Merger,
         merger = _granted(talks, merger, merger.proposed)
     seat = merger.seat
     said = (talks.me, now_ms, seat.latest, seat.voted, merger.role)
-    return merger, Said(*said, wish, merger.book, merger.proposed)
+    return merger, Said(*said, merger.wish, merger.book, merger.proposed, flies)
 
 
 def asked(merger: Merger, wants: bool, anew: bool, now_ms: int) -> tuple[Merger, int]:

@@ -10,36 +10,43 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from cratous.core.authority.timeliness import in_time
 from cratous.core.avoidance.manoeuvre import Pace
 from cratous.core.avoidance.resolution import Choice
 from cratous.core.avoidance.way_ahead import near_line
 from cratous.core.merging.stages import HOLDING, IN_SLOT, merge_step
-from cratous.core.routing.polylines import Track
+from cratous.core.routing.polylines import Track, circle_points
 from cratous.core.tasks.rendezvous import Pace as Arrival
 from cratous.core.tasks.rendezvous import pace
 from cratous.services.icarous import course as courses
 from cratous.services.icarous import merger as talk
 from cratous.services.icarous.course import Course
-from cratous.services.icarous.course_permits import refused
+from cratous.services.icarous.course_permits import refused_soon
 from cratous.services.icarous.foresight import ON_PATH_M, scene_of
+from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.merge_state import Fix, Followed, Merging
 from cratous.services.icarous.merger import Merger, Wish
 from cratous.services.icarous.messages import Merges, Sensed, Talk, Tells
 from cratous.services.icarous.proposal import manoeuvre
 from cratous.services.icarous.return_to_path import flat, onto, rejoin
 from cratous.services.icarous.state import IDLE, Config, State
+from cratous.services.mission.merging import TOLERANCE_MS
 from cratous.spec.mission import Position
 from cratous.spec.mission.plan import Pose
 from cratous.spec.records import replace
 
-TOLERANCE_MS = 1000
-"""A vehicle may be so much before or after its slot [ms]; slots are farther apart by twice as much."""
 WAITS_MS = 3_600_000
 """Who can wait has a slot within this [ms]."""
 STEADY_S = 3.0
 """In the last seconds before the fix the speed is kept."""
+PASSED_M = 1.0
+"""The fix is behind a vehicle that is no farther before it on its way [m]."""
 BEATS = 4
 """Where a vehicle is on its way is looked for as far ahead of where it was as it flies in so many heartbeats."""
+LEGS = 24
+"""A lap is said as so many legs."""
+HEARD_MS = 2000
+"""The way that a member says is reckoned with for so long [ms]: four heartbeats."""
 BEFORE = "the slot at the fix is later: a circle is flown"
 WITHOUT = "no slot at the fix: a circle is flown"
 
@@ -79,8 +86,10 @@ def heartbeat(
     stage = merge_step(
         before.stage, ahead.near, ahead.inside, slot is not None, early, ahead.entered
     )
-    merger, said = talk.beat(fix.talks, merger, merger.wish, now_ms)
-    course = _flown(config, replace(state, merging=before._replace(way=way)), sensed, stage, course, arrival)
+    going = replace(state, merging=before._replace(way=way))
+    course = _flown(config, going, sensed, stage, course, arrival)
+    flies = _flies(course, sensed, config.daa.lookahead_s)
+    merger, said = talk.beat(fix.talks, merger, flies, now_ms)
     after = Merging(stage, merger, way, course, slot)
     state = replace(state, merging=after)
     if stage not in (IN_SLOT, HOLDING) and before.stage in (IN_SLOT, HOLDING):
@@ -90,6 +99,38 @@ def heartbeat(
     if told == _told(fix, before, before):
         return state, (tells,)
     return state, (Merges(config.vehicle_id, now_ms, stage, *told[1:], reason(after)), tells)
+
+
+def with_members(config: Config, state: State, now_ms: int) -> Told:
+    """What was told of the others, and by which way a member is flown by its ICAROUS, which it says itself."""
+    told = state.told
+    if config.merging is None:
+        return told
+    said = {
+        one.member: one.flies
+        for one in state.merging.merger.heard
+        if one.flies and in_time(one.at_ms, now_ms, HEARD_MS)
+    }
+    if not said:
+        return told
+    others = tuple(one for one in told.others if one[0] not in said)
+    steered = tuple(one for one in told.steered if one[0] not in said)
+    return replace(told, others=(*others, *said.items()), steered=steered)
+
+
+def _flies(course: Course | None, sensed: Sensed, for_s: float) -> tuple[Position, ...]:
+    """The points by which a course is flown, of a circle as many laps as are flown in this time [s]."""
+    here = sensed.motion.position
+    if course is None:
+        return ()
+    if course.track is not None:
+        return (here, *course.left)
+    hold = course.hold
+    lap = circle_points(
+        (hold.north_m, hold.east_m), hold.radius_m, hold.clockwise, here, LEGS
+    )
+    lap_s = 2 * math.pi * hold.radius_m / sensed.motion.speed_m_s
+    return lap[:-1] * (1 + math.ceil(for_s / lap_s))
 
 
 def reason(merging: Merging) -> str:
@@ -145,7 +186,8 @@ def _ahead(fix: Fix, course: Course | None, way: Followed | None, sensed: Sensed
     rest_m = max(track.length_m - at_m, 0.0)
     s_m = track.nearest(there, at_m, rest_m).s_m
     passes = near_line(flat(track.at(s_m)), fix.place, fix.place, fix.entry_m)
-    left_m = s_m - at_m if passes and s_m > at_m and s_m < track.length_m else None
+    ahead = at_m + PASSED_M < s_m < track.length_m
+    left_m = s_m - at_m if passes and ahead else None
     here = flat(sensed.motion.position)
     near, inside, entered = (
         left_m is not None and near_line(here, fix.place, fix.place, radius_m)
@@ -207,7 +249,7 @@ def _flown(
         here, wide_m = Pose(*sensed.motion.position, sensed.motion.heading_rad), courses.radius_m(sensed)
         circles = courses.courses(here, sensed.motion, wide_m, None)
         found = circles if going is None or going.track is not None else (going, *circles)
-    return next((c for c in found if not refused(c, sensed, scene, config.daa, beat_s)), None)
+    return next((c for c in found if not refused_soon(c, sensed, scene, config.daa, beat_s)), None)
 
 
 def _onward(
