@@ -28,6 +28,7 @@ from cratous.services.flight.executive import Executive
 from cratous.services.flight.executive_state import Config
 from cratous.services.flight.holding import Ground
 from cratous.services.flight.link_end import UxasEnd
+from cratous.services.flight.merging import DirectTalk, merge_fix
 from cratous.services.flight.messages import (
     AskPlan,
     Beat,
@@ -64,7 +65,6 @@ from cratous.services.flight.messages import (
     Watch,
     Wished,
 )
-from cratous.services.flight.merging import DirectTalk, merge_fix
 from cratous.services.flight.notices import guidance, of_instance, truth
 from cratous.services.flight.result import FlightResult
 from cratous.services.flight.take_off import take_off

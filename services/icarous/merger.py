@@ -177,7 +177,10 @@ def _last(merger: Merger, member: int) -> Said | None:
 
 def _elected(talks: Talks, merger: Merger) -> bool:
     mine = (merger.seat.latest, talks.me)
-    votes = [(merger.seat.latest, merger.seat.voted), *((one.term, one.voted) for one in merger.heard)]
+    votes = [
+        (merger.seat.latest, merger.seat.voted),
+        *((one.term, one.voted) for one in merger.heard),
+    ]
     return is_majority(tally((vote == mine,) for vote in votes), len(talks.members))
 
 
@@ -208,12 +211,16 @@ def _proposals(talks: Talks, merger: Merger, now_ms: int) -> tuple[Slot, ...]:
     taken = dict[int, Slot]()
     for who in talks.members:
         slots = [slot for book in books for slot in book if slot.vehicle_id == who]
-        request = wishes[who].request if who in wishes else max((s.request for s in slots), default=0)
+        request = (
+            wishes[who].request if who in wishes else max((s.request for s in slots), default=0)
+        )
         now = [slot for slot in slots if slot.request == request]
         if now:
             # one that it has proposed itself, else the one that most have granted
             ours = [slot for slot in merger.proposed if slot in now]
-            taken[who] = ours[0] if ours else max(now, key=lambda slot: (now.count(slot), -slot.time))
+            taken[who] = (
+                ours[0] if ours else max(now, key=lambda slot: (now.count(slot), -slot.time))
+            )
     new = {who: wish for who, wish in wishes.items() if who not in taken}
     fixed = [Wanted(who, slot.time, slot.time) for who, slot in taken.items()]
     fixed = [one for one in fixed if not lasted(one.latest, now_ms, talks.apart_ms)]

@@ -126,9 +126,7 @@ def _flies(course: Course | None, sensed: Sensed, for_s: float) -> tuple[Positio
     if course.track is not None:
         return (here, *course.left)
     hold = course.hold
-    lap = circle_points(
-        (hold.north_m, hold.east_m), hold.radius_m, hold.clockwise, here, LEGS
-    )
+    lap = circle_points((hold.north_m, hold.east_m), hold.radius_m, hold.clockwise, here, LEGS)
     lap_s = 2 * math.pi * hold.radius_m / sensed.motion.speed_m_s
     return lap[:-1] * (1 + math.ceil(for_s / lap_s))
 
@@ -201,7 +199,9 @@ def _agreed(
 ) -> tuple[Merger, int | None, Arrival | None]:
     """The request with its window, the slot that it has, and at which speed it would be there in time."""
     merger, now_ms = before.merger, sensed.now_ms
-    slot = talk.slot_of(fix.talks, merger, fix.talks.me, merger.wish.request) if ahead.near else None
+    slot = (
+        talk.slot_of(fix.talks, merger, fix.talks.me, merger.wish.request) if ahead.near else None
+    )
     arrival = _arrival(before, sensed, state, ahead, slot)
     late = arrival is not None and arrival.act == 2 and not ahead.entered
     again = late or (slot is None and talk.waited(merger, now_ms))
@@ -246,7 +246,10 @@ def _flown(
     scene, beat_s = scene_of(config, state, sensed), config.heartbeat_ms / 1000
     found = _onward(config, state, sensed, going, arrival) if stage == IN_SLOT else ()
     if stage == HOLDING:
-        here, wide_m = Pose(*sensed.motion.position, sensed.motion.heading_rad), courses.radius_m(sensed)
+        here, wide_m = (
+            Pose(*sensed.motion.position, sensed.motion.heading_rad),
+            courses.radius_m(sensed),
+        )
         circles = courses.courses(here, sensed.motion, wide_m, None)
         found = circles if going is None or going.track is not None else (going, *circles)
     return next((c for c in found if not refused_soon(c, sensed, scene, config.daa, beat_s)), None)

@@ -116,7 +116,7 @@ class State:
     unheard: bool = False
     rising: Rising = field(default_factory=Rising)
     beside: Beside | None = None
-    merging: Merging = Merging()
+    merging: Merging = field(default_factory=Merging)
 
     def paces(self, now_ms: int) -> bool:
         """Whether UxAS, which has just taken it back, may still bring the vehicle to the speed that was told."""

@@ -84,9 +84,13 @@ def merging_problems(mission: Mission) -> Iterator[Finding]:
         if number not in ours:
             yield Finding(item, "no such vehicle", "the id of a vehicle", str(number))
         elif number not in mission.instances:
-            yield Finding(item, "nobody merges it", "a vehicle with an ICAROUS instance", str(number))
+            yield Finding(
+                item, "nobody merges it", "a vehicle with an ICAROUS instance", str(number)
+            )
         elif isinstance(ours[number], GroundedVehicle):
-            yield Finding(item, "it starts on the ground", "a vehicle that starts in the air", str(number))
+            yield Finding(
+                item, "it starts on the ground", "a vehicle that starts in the air", str(number)
+            )
         else:
             yield from _no_room(merging, ours[number], mission, item)
     for k, one in enumerate(merging.faults.silences):
@@ -100,14 +104,14 @@ def merging_problems(mission: Mission) -> Iterator[Finding]:
         yield Finding("merging", "zones that do not lie in each other", expected, got)
 
 
-def _no_room(
-    merging: Merging, vehicle: Vehicle, mission: Mission, item: str
-) -> Iterator[Finding]:
+def _no_room(merging: Merging, vehicle: Vehicle, mission: Mission, item: str) -> Iterator[Finding]:
     slow, fast = vehicle.min_speed_m_s, vehicle.max_speed_m_s
     radius_m = TURN_MARGIN * turn_radius_m(vehicle.speed_m_s, vehicle.max_bank_rad)
     least_m = merging.entry_m + CIRCLES * radius_m
     if merging.schedule_m < least_m:
-        expected = f"at least {least_m:.0f} m: entry_m and {CIRCLES:g} radii of vehicle {vehicle.id}"
+        expected = (
+            f"at least {least_m:.0f} m: entry_m and {CIRCLES:g} radii of vehicle {vehicle.id}"
+        )
         got = f"{merging.schedule_m:g} m"
         yield Finding("merging.schedule_m", "nobody can hold before the entry zone", expected, got)
     lap_s = 2 * math.pi * radius_m / vehicle.speed_m_s

@@ -38,4 +38,4 @@ def must_fly(stage: int, foreseen: bool) -> bool:
 
 def may_go_back(stage: int, free: bool) -> bool:
     """UxAS may be offered the vehicle: the way back is free, and it neither flies by its slot nor holds."""
-    return not (not free or stage == IN_SLOT or stage == HOLDING)
+    return free and (stage < IN_SLOT or stage > HOLDING)

@@ -324,7 +324,7 @@ class LinkLossDaa(OrderedDaa):
 class MergingDaa(OrderedDaa):
     """The same where vehicles merge at a fix."""
 
-    merging: Merging = Merging()
+    merging: Merging = field(default_factory=Merging)
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 
@@ -37,7 +37,7 @@ class Merging:
     coordination_m: float = 0.0
     schedule_m: float = 0.0
     entry_m: float = 0.0
-    faults: DirectFaults = DirectFaults()
+    faults: DirectFaults = field(default_factory=DirectFaults)
 
 
 def words(merging: Merging) -> str:

@@ -53,7 +53,9 @@ def claim(c: Claim) -> None:
         text="earliest",
         beside=[
             Beside(
-                (0, True, True), (c.whole("theirs"), c.boolean("so"), c.boolean("none_later")), after
+                (0, True, True),
+                (c.whole("theirs"), c.boolean("so"), c.boolean("none_later")),
+                after,
             )
         ],
     )

@@ -24,7 +24,10 @@ def claim(c: Claim) -> None:
     c.premise(c.all_of(separation >= 0, separation <= MOST))
     for slot in (first, second):
         c.premise(c.all_of(slot.request > 0, slot.time >= 0, slot.time <= MOST))
-    grant, asked = Grant(c.integer("g"), c.integer("g_at")), Grant(c.integer("a"), c.integer("a_at"))
+    grant, asked = (
+        Grant(c.integer("g"), c.integer("g_at")),
+        Grant(c.integer("a"), c.integer("a_at")),
+    )
     room = c.boolean("any_room")
     answer = c.use(grant_asked, grant, asked, room)
     c.show(c.define(grants.is_after_proposal, grant, asked, room, answer), "it is its definition")

@@ -18,7 +18,9 @@ def claim(c: Claim) -> None:
     count, whole = c.integer("count"), c.integer("of")
     c.premise(c.all_of(count >= 0, count <= MOST, whole >= 0, whole <= MOST))
     is_one = c.use(is_majority, count, whole)
-    c.show(c.same(is_one, c.define(votes.is_majority, count, whole)), "a majority is its definition")
+    c.show(
+        c.same(is_one, c.define(votes.is_majority, count, whole)), "a majority is its definition"
+    )
     has = c.boolean("has")
     more = c.use(tally_step, count, has)
     counted = c.define(votes.counted, count, has, more)
@@ -48,4 +50,3 @@ def claim(c: Claim) -> None:
         text="shared",
         beside=[Beside((0, 0, 0), (other, members, shared), after)],
     )
-
