@@ -38,6 +38,7 @@ from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Steer, Up, Wish
 from cratous.services.mission.frames import Projection
 from cratous.services.mission.ground import floor_of
+from cratous.services.mission.merging import merging_of
 from cratous.services.mission.take_off import grounded
 from cratous.services.planning.flyers import MOMENT_MS, straight
 from cratous.services.sensing import surveillance
@@ -118,7 +119,7 @@ def fly_encounter(mission: Mission, *, daa: bool = True) -> Encounter:
 def ways_of(mission: Mission) -> dict[int, tuple[Position, ...]]:
     """The way of each vehicle: from where it is through its must_fly points, in the order of the file.
 
-    BadInput for relations, changes in flight, faults of the bridge, `link_loss`, starts on the ground, other tasks, tasks that are not for exactly one
+    BadInput for relations, changes in flight, faults of the bridge, `link_loss`, `merging`, starts on the ground, other tasks, tasks that are not for exactly one
     vehicle, and vehicles without a task: an encounter flies nothing of the kind; and where no vehicle is protected,
     since nothing would be judged.
     """
@@ -127,6 +128,7 @@ def ways_of(mission: Mission) -> dict[int, tuple[Position, ...]]:
         ("changes", mission.changes),
         ("simulation.bridge_faults", isinstance(mission.simulation, FaultySimulation)),
         ("link_loss", mission.link_loss is not None),
+        ("merging", merging_of(mission) is not None),
         ("vehicles.start", bool(grounded(mission))),
     ):
         if there:

@@ -28,6 +28,7 @@ from cratous.services.mission.ground import GROUND_MARGIN, floor_of
 from cratous.services.mission.landing import MAX_ACCELERATION_M_S2
 from cratous.services.mission.leg_bounds import LONGEST_LOOKAHEADS, MOST_TAKEOVERS
 from cratous.services.parameters.landing import landing_rows
+from cratous.services.parameters.merging import merging_rows
 from cratous.services.parameters.parameter import DEFAULT, DERIVED, FIXED, GIVEN, Parameter
 from cratous.services.parameters.sensed import SECTION, rows_of
 from cratous.services.parameters.take_off import take_off_rows
@@ -52,7 +53,7 @@ def parameters_of(mission: Mission, path: Path) -> tuple[Parameter, ...]:
     read again."""
     written = _written(path)
     rows = [*_of_mission(mission, written), *_of_sensing(mission, written)]
-    rows += _of_link_loss(mission, written)
+    rows += [*_of_link_loss(mission, written), *merging_rows(mission, written)]
     for k, vehicle in enumerate(mission.vehicles):
         rows += _of_vehicle(vehicle, _at(written, ("vehicles", k)))
         if vehicle.id in mission.instances:
