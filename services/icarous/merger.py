@@ -93,7 +93,7 @@ def hear(talks: Talks, merger: Merger, said: Said, now_ms: int) -> Merger:
             "not of this fix", item="member", expected=f"another of {members}", got=str(said.member)
         )
     before = _last(merger, said.member)
-    if before is not None and said.at_ms <= before.at_ms:
+    if before is not None and not lasted(before.at_ms, said.at_ms, 1):
         return merger  # overtaken: what it said is in what was heard since
     others = tuple(one for one in merger.heard if one.member != said.member)
     merger = merger._replace(heard=(*others, said))

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from cratous.core.authority.timeliness import in_time
+from cratous.core.authority.timeliness import in_time, lasted
 from cratous.core.avoidance.manoeuvre import Pace
 from cratous.core.avoidance.resolution import Choice
 from cratous.core.avoidance.way_ahead import near_line
@@ -37,8 +37,8 @@ from cratous.spec.records import replace
 
 WAITS_MS = 3_600_000
 """Who can wait has a slot within this [ms]."""
-STEADY_S = 3.0
-"""In the last seconds before the fix the speed is kept."""
+STEADY_MS = 3000
+"""So long before its slot a vehicle keeps its speed [ms]."""
 PASSED_M = 1.0
 """The fix is behind a vehicle that is no farther before it on its way [m]."""
 BEATS = 4
@@ -264,7 +264,7 @@ def _onward(
         return ()
     speed, slot = arrival.speed_m_s, state.merging.slot
     flying = going if going is not None and going.track is not None else None
-    if flying is not None and slot is not None and slot - sensed.now_ms < 1000 * STEADY_S:
+    if flying is not None and slot is not None and lasted(slot - STEADY_MS, sensed.now_ms, 0):
         speed = flying.speed_m_s
     own = Pace(speed, ability.acceleration_m_s2)
     if flying is not None:

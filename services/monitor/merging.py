@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass, field
 from itertools import product
 
-from cratous.core.geofence.distance import edge_against, edge_distance
+from cratous.core.geofence.distance import edge_distance, leg_within
 from cratous.core.geofence.passages import foot
 from cratous.core.kernel import Vec2, qualified
 from cratous.core.merging.grants import room_beside
@@ -54,7 +54,7 @@ class MergeWatch:
                 continue
             one, two = before[number], after[number]
             p, q = flat(one.position), flat(two.position)
-            if edge_against(fix, p, q, merging.entry_m) > 0:
+            if not leg_within(p, q, fix, fix, merging.entry_m):
                 stays.inside = False
                 continue
             squared = edge_distance(fix, p, q)
@@ -90,7 +90,7 @@ class MergeWatch:
             "G1", merge_item(merging.name, one, other), outcome, Kind.OBSERVED, "; ".join(names),
             time_ms=None if least is None else math.floor(least[1]), vehicles=(one, other),
             margin=margin, unit="" if margin is None else "s", checks=len(gaps),
-            kernels=tuple(map(qualified, (edge_against, edge_distance, foot, room_beside))) if gaps else (),
+            kernels=tuple(map(qualified, (leg_within, edge_distance, foot, room_beside))) if gaps else (),
         )  # fmt: skip
 
     def _words(self, number: int, passed: list[float]) -> str:

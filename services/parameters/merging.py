@@ -33,9 +33,7 @@ def merging_rows(mission: Mission, written: Any) -> Iterator[Parameter]:
             f"merging.{name}", 0, value, unit, one.get("default"), low, one["maximum"], origin, how
         )
     how = f"separation_s + 2 x {TOLERANCE_MS / 1000:g} s: so far slots are apart"
-    yield Parameter(
-        "slots apart", 0, apart_ms(merging) / 1000, "s", None, None, None, DERIVED, how
-    )
+    yield Parameter("slots apart", 0, apart_ms(merging) / 1000, "s", None, None, None, DERIVED, how)
     how = "coordination_m / min_speed_m_s + slots of all: so much longer ICAROUS flies it on a leg"
     for number in merging.vehicles:
         longer_s = merging_ms(mission, number) / 1000

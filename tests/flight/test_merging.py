@@ -48,11 +48,15 @@ class Merged(Flown):
 
     def slot(self, vehicle: int) -> int:
         """The last slot that a vehicle had [ms]."""
-        return [b.Slot for b in self.told("MergeState") if b.VehicleID == vehicle and b.Slot >= 0][-1]
+        return [b.Slot for b in self.told("MergeState") if b.VehicleID == vehicle and b.Slot >= 0][
+            -1
+        ]
 
     def rows(self, log: list[Any] | None = None) -> dict[str, Outcome]:
         """What the monitor says of every two."""
-        return {item: v.outcome for item, v in self.verdicts(log).items() if "separation at" in item}
+        return {
+            item: v.outcome for item, v in self.verdicts(log).items() if "separation at" in item
+        }
 
 
 def mission_file(root: Path, folder: Path, count: int = 3, **merging: Any) -> Path:
@@ -162,7 +166,9 @@ def test_who_comes_too_early_at_any_speed_holds_outside(root: Path, tmp_path: Pa
     merging = merging_of(flight.mission)
     assert merging is not None
     holds = [b.Time for b in flight.told("MergeState") if b.Stage.name == "Holding"]
-    goes = [b.Time for b in flight.told("MergeState") if b.Stage.name == "InSlot" and b.Time > holds[0]]
+    goes = [
+        b.Time for b in flight.told("MergeState") if b.Stage.name == "InSlot" and b.Time > holds[0]
+    ]
     there = [b for b in flight.told("TruthState") if b.VehicleID == held[0]]
     while_held = [math.hypot(b.North, b.East) for b in there if holds[0] <= b.Time < goes[0]]
     assert min(while_held) > merging.entry_m
@@ -189,7 +195,8 @@ def test_a_mission_is_read_back_as_it_was_logged(root: Path) -> None:
     mission = load(root / EXAMPLE)
     assert from_data(Mission, to_data(mission)) == mission
     fix, merging = read(root / EXAMPLE).fix, merging_of(mission)
-    assert fix is not None and merging is not None
+    assert fix is not None
+    assert merging is not None
     assert (fix.name, fix.vehicles) == (merging.name, frozenset(merging.vehicles))
     assert (fix.separation_ms, fix.entry_m) == (merging.separation_ms, merging.entry_m)
     assert "vehicles 1, 2, 3 pass gate at least 20 s apart" in mission.notes[0]

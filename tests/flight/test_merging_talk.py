@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import combinations, permutations
+from itertools import combinations, pairwise, permutations
 from random import Random
 
 import pytest
@@ -167,7 +167,8 @@ def test_who_asks_anew_gets_another_slot_and_what_it_had_counts_no_more() -> Non
     assert members.slots[2] is None
     members.run(members.now_ms + 4000)
     assert members.all_have_one
-    assert members.slots[1] == before[1] and members.slots[3] == before[3]
+    assert members.slots[1] == before[1]
+    assert members.slots[3] == before[3]
     assert members.states[2].wish.request == 2
 
 
@@ -196,7 +197,7 @@ def test_slots_are_found_exactly_where_some_order_has_them(seed: int) -> None:
             assert {n for n, _ in found} == set(windows)
             assert all(windows[n][0] <= time <= windows[n][1] for n, time in found)
             times = [time for _, time in found]
-            assert all(b - a >= 10 for a, b in zip(times, times[1:], strict=False))
+            assert all(b - a >= 10 for a, b in pairwise(times))
 
 
 def test_who_comes_first_goes_first_where_that_is_possible() -> None:
