@@ -7,8 +7,6 @@ from collections.abc import Iterator
 from typing import Any
 
 from cratous.core.tasks.rendezvous import spares_a_lap
-from cratous.services.flight.dynamics import turn_radius_m
-from cratous.services.icarous.ending import TURN_MARGIN
 from cratous.services.loading.checks import Finding, as_errors
 from cratous.services.loading.document import Document
 from cratous.services.loading.places import Places
@@ -105,6 +103,10 @@ def merging_problems(mission: Mission) -> Iterator[Finding]:
 
 
 def _no_room(merging: Merging, vehicle: Vehicle, mission: Mission, item: str) -> Iterator[Finding]:
+    # not needed where nobody merges
+    from cratous.services.flight.dynamics import turn_radius_m
+    from cratous.services.icarous.ending import TURN_MARGIN
+
     slow, fast = vehicle.min_speed_m_s, vehicle.max_speed_m_s
     radius_m = TURN_MARGIN * turn_radius_m(vehicle.speed_m_s, vehicle.max_bank_rad)
     least_m = merging.entry_m + CIRCLES * radius_m

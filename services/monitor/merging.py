@@ -14,7 +14,6 @@ from cratous.core.geofence.distance import edge_distance, leg_within
 from cratous.core.geofence.passages import foot
 from cratous.core.kernel import Vec2, qualified
 from cratous.core.merging.grants import room_beside
-from cratous.services.icarous.return_to_path import flat
 from cratous.services.mission.merging import merging_of
 from cratous.services.monitor.observation import Ending, Presence
 from cratous.services.monitor.required_rows import merge_item, merging_pairs
@@ -53,7 +52,8 @@ class MergeWatch:
                 stays.inside = False
                 continue
             one, two = before[number], after[number]
-            p, q = flat(one.position), flat(two.position)
+            (a, b, _), (c, d, _) = one.position, two.position
+            p, q = Vec2(a, b), Vec2(c, d)
             if not leg_within(p, q, fix, fix, merging.entry_m):
                 stays.inside = False
                 continue
