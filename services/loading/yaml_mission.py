@@ -31,6 +31,7 @@ from cratous.services.loading.start_distances import close_starts
 from cratous.services.loading.take_off import on_their_ground, take_off_problems
 from cratous.services.loading.take_off import words as take_off_words
 from cratous.services.loading.yaml_bridge_faults import yaml_bridge_faults
+from cratous.services.loading.yaml_guidance import guidance_problems, guided
 from cratous.services.loading.yaml_link_loss import place_problems, yaml_link_loss
 from cratous.services.loading.yaml_link_loss import words as link_loss_words
 from cratous.services.loading.yaml_merging import merging_problems, yaml_merging
@@ -122,6 +123,7 @@ def finish(mission: Mission, where: Any) -> Mission:
     later = tuple(c.zone for c in mission.changes if c.zone is not None)
     refuse(mission_problems(replace(mission, zones=(*mission.zones, *later)), where))
     refuse([*change_problems(mission, where), *zone_end_problems(mission, where)])
+    refuse(list(guidance_problems(mission, where)))
     notes: list[str] = []
     problems: list[BadInput] = []
 
@@ -319,7 +321,7 @@ def _daa(
     volume = {name: float(value) for name, value in data.get("well_clear", {}).items()}
     kept: dict[str, Any] = {"close_starts": bool(data.get("close_starts", False))}
     kept |= {name: float(data[name]) for name in ("lookahead_s", "buffer") if name in data}
-    volume_kept = replace(DEFAULT_WELL_CLEAR, **volume)
+    volume_kept = guided(replace(DEFAULT_WELL_CLEAR, **volume), data.get("guidance"))
     first = Resolution(data.get("resolution", Resolution.HEADING))
     if link_loss is not None:
         return LinkLossDaa(volume_kept, **kept, resolution=first, link_loss=link_loss)

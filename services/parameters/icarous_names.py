@@ -67,18 +67,37 @@ GROUPS = (
     )),
     Group("", "recovery is always looked for where nothing keeps well clear, and may be flown", (
         ("recovery_hdir", "true", ""), ("recovery_hs", "true", ""), ("recovery_vs", "true", ""),
-        ("recovery_alt", "true", ""), ("ca_bands", "true", ""),
+        ("recovery_alt", "true", ""),
     )),
-    Group("", "of the bands in flight, fixed as in DO-365B: 0.1 and 3 s", (
-        ("ca_factor", "0.1", ""), ("recovery_stability_time", "3.0", "s"),
+    Group("daa.guidance.recovery_shrinks", "", (
+        ("ca_bands", "true", ""),
     )),
-    Group("", "of the bands in flight, fixed as in DO-365B: hysteresis 5 s, persistence 4 s", (
-        ("hysteresis_time", "3.0", "s"), ("persistence_time", "3.0", "s"),
+    Group("daa.guidance.recovery_factor", "", (
+        ("ca_factor", "0.1", ""),
+    )),
+    Group("daa.guidance.recovery_stable_s", "", (
+        ("recovery_stability_time", "3.0", "s"),
+    )),
+    Group("daa.guidance.hysteresis_s", "", (
+        ("hysteresis_time", "3.0", "s"),
+    )),
+    Group("daa.guidance.persistence_s", "", (
+        ("persistence_time", "3.0", "s"),
+    )),
+    Group("daa.guidance.bands_persistence", "", (
         ("bands_persistence", "true", ""),
     )),
-    Group("", "of the bands in flight, fixed as in DO-365B: 15 deg, 100 knot, 250 fpm, 250 ft", (
-        ("persistence_preferred_hdir", "5.0", "deg"), ("persistence_preferred_hs", "2.0", "knot"),
-        ("persistence_preferred_vs", "50.0", "fpm"), ("persistence_preferred_alt", "30.0", "ft"),
+    Group("daa.guidance.preferred_heading_deg", "", (
+        ("persistence_preferred_hdir", "5.0", "deg"),
+    )),
+    Group("daa.guidance.preferred_speed_m_s", "", (
+        ("persistence_preferred_hs", "2.0", "knot"),
+    )),
+    Group("daa.guidance.preferred_climb_m_s", "", (
+        ("persistence_preferred_vs", "50.0", "fpm"),
+    )),
+    Group("daa.guidance.preferred_alt_m", "", (
+        ("persistence_preferred_alt", "30.0", "ft"),
     )),
     Group("", "contours are not looked for in flight", (
         ("contour_thr", "180.0", "deg"),
@@ -89,8 +108,11 @@ GROUPS = (
     Group("", "500 ft and 100 ft, or the thresholds where they are less; not judged", (
         ("horizontal_nmac", "5.0", "ft"), ("vertical_nmac", "5.5", "ft"),
     )),
-    Group("", "of the alerts in flight, fixed as in DO-365B: 2 of 4", (
-        ("alerting_m", "2", ""), ("alerting_n", "4", ""),
+    Group("daa.guidance.alerting_m", "", (
+        ("alerting_m", "2", ""),
+    )),
+    Group("daa.guidance.alerting_n", "", (
+        ("alerting_n", "4", ""),
     )),
     Group("", "who takes over and when is decided by predicted losses, not by alert levels", (
         ("ownship_centric_alerting", "true", ""),
@@ -104,8 +126,11 @@ GROUPS = (
         ("default_alert_1_spread_hdir", "0.0", "deg"), ("default_alert_1_spread_hs", "0.0", "knot"),
         ("default_alert_1_spread_vs", "0.0", "fpm"), ("default_alert_1_spread_alt", "0.0", "ft"),
     )),
-    Group("", "implicit coordination is in the bands of recovery alone: false, true", (
-        ("conflict_crit", "false", ""), ("recovery_crit", "false", ""),
+    Group("daa.guidance.conflict_crit", "", (
+        ("conflict_crit", "false", ""),
+    )),
+    Group("daa.guidance.recovery_crit", "", (
+        ("recovery_crit", "false", ""),
     )),
     Group("", "how far off a track may be is `sigmas` of the section `sensing`", (
         ("h_pos_z_score", "0.0", ""), ("h_vel_z_score_min", "0.0", ""),

@@ -7,6 +7,7 @@ functions that fly it (`services.icarous.derived`); in flight by the speed that 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import asdict
 from math import degrees
 from pathlib import Path
 from typing import Any
@@ -25,6 +26,7 @@ from cratous.services.loading.document import read_document
 from cratous.services.loading.schema import mission_schema
 from cratous.services.loading.yaml_mission import MAX_BANK_DEG, MAX_CLIMB_M_S
 from cratous.services.mission.ground import GROUND_MARGIN, floor_of
+from cratous.services.mission.guidance import guidance_of
 from cratous.services.mission.landing import MAX_ACCELERATION_M_S2
 from cratous.services.mission.leg_bounds import LONGEST_LOOKAHEADS, MOST_TAKEOVERS
 from cratous.services.parameters.landing import landing_rows
@@ -78,6 +80,7 @@ def _at(data: Any, key: tuple[str | int, ...]) -> Any:
 
 def _of_mission(mission: Mission, written: Any) -> Iterator[Parameter]:
     daa, simulation = mission.daa, mission.simulation
+    guidance = guidance_of(daa.well_clear)
     for section, name, value in (
         ("daa.well_clear", "dthr_m", daa.well_clear.dthr_m),
         ("daa.well_clear", "zthr_m", daa.well_clear.zthr_m),
@@ -86,6 +89,7 @@ def _of_mission(mission: Mission, written: Any) -> Iterator[Parameter]:
         ("daa", "lookahead_s", daa.lookahead_s),
         ("daa", "buffer", daa.buffer),
         ("daa", "close_starts", daa.close_starts),
+        *(("daa.guidance", name, value) for name, value in asdict(guidance).items()),
         ("simulation", "step_ms", simulation.step_ms),
         ("simulation", "heartbeat_ms", simulation.heartbeat_ms),
         ("simulation", "limit_s", simulation.limit_ms / 1000),

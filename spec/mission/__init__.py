@@ -12,6 +12,8 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import NamedTuple
 
+from cratous.spec.mission.camera import Camera as Camera
+from cratous.spec.mission.guidance import Guidance
 from cratous.spec.mission.link_loss import LandingSite, WithoutLink
 from cratous.spec.mission.merging import Merging
 from cratous.spec.mission.sensing import Sensing
@@ -42,27 +44,6 @@ class Frame:
     latitude_deg: float
     longitude_deg: float
     terrain_m: float = 0.0
-
-
-@dataclass(frozen=True)
-class Camera:
-    """A camera on a gimbal. Angles in radians; azimuth clockwise from the nose, elevation up."""
-
-    payload_id: int = 1
-    hfov_rad: float = 0.785398
-    aspect: float = 4 / 3
-    min_elevation_rad: float = -1.5708
-    max_elevation_rad: float = 0.0
-    min_azimuth_rad: float = -3.14159265
-    max_azimuth_rad: float = 3.14159265
-    wavelength: str = "AllAny"
-    pixels: int = 0
-    """How many pixels an image is wide; 0: not known."""
-    zoom_rad: tuple[float, ...] = ()
-    """Narrower fields of view that it has [rad]; with `zooms`, also all between the narrowest and hfov."""
-    zooms: bool = False
-    camera_id: int = 0
-    """The payload id of the camera itself; `payload_id` is its gimbal's."""
 
 
 @dataclass(frozen=True)
@@ -242,6 +223,13 @@ class WellClear:
     zthr_m: float
     tthr_s: float
     tcoa_s: float
+
+
+@dataclass(frozen=True)
+class GuidedWellClear(WellClear):
+    """The same where the mission says how alerts and bands of it follow one another in time."""
+
+    guidance: Guidance = field(default_factory=Guidance)
 
 
 class Resolution(StrEnum):
