@@ -31,7 +31,7 @@ def room_beside(so_far: bool, request: int, time: int, asked: int, separation: i
 
 
 has_room = fold(
-    name="has_room", implements="merging.grants.all_leave_room", step=room_beside, start=True
+    name="has_room", implements="merging.grants.leaves_room", step=room_beside, start=True
 )
 
 

@@ -27,19 +27,13 @@ def merge_step(
     return 1
 
 
-@kernel(
-    implements="merging.stages.must_fly",
-    restates="why ICAROUS has a vehicle; that nobody goes on without a slot is proved of it",
-)
+@kernel(implements="merging.stages.must_fly")
 def merging_takes(stage: int, foreseen: bool) -> bool:
     """True iff ICAROUS has to have the vehicle. foreseen: there is another reason."""
     return foreseen or stage == 2 or stage == 3
 
 
-@kernel(
-    implements="merging.stages.may_go_back",
-    restates="when a vehicle may go back; that it is kept until the fix is behind it is proved of it",
-)
+@kernel(implements="merging.stages.may_go_back")
 def merging_lets_go(stage: int, free: bool) -> bool:
     """True iff the vehicle may go back to UxAS. free: nothing else is against it."""
     return free and stage != 2 and stage != 3

@@ -56,7 +56,7 @@ def tally_step(count: int, has: bool) -> int:
     return count
 
 
-tally = fold(name="tally", implements="merging.votes.counted", step=tally_step, start=0)
+tally = fold(name="tally", implements="merging.votes.number_with", step=tally_step, start=0)
 
 
 @kernel(implements="merging.votes.is_majority")

@@ -31,6 +31,15 @@ def counted(before: int, has: bool, after: int) -> bool:
     return after - before == (1 if has else 0)
 
 
+MOST = 1 << 30
+"""No more members are counted."""
+
+
+def number_with(before: int, has: bool) -> int:
+    """How many are among them with one more member, up to MOST."""
+    return min(before + (1 if has else 0), MOST)
+
+
 def is_after_ask(before: Seat, term: int, candidate: int, after: Vote) -> bool:
     """A member is for whoever asks first in a term, and for nobody else in it; a term that is over is answered by no."""
     if term < before.latest:

@@ -256,3 +256,19 @@ def test_its_parameters_are_listed(root: Path) -> None:
     assert found["merging.coordination_m", 0].origin == "given"
     assert found["slots apart", 0].value == 22
     assert found["merging", 2].value == pytest.approx(3500 / 15 + 66, abs=0.01)
+
+
+def test_one_that_avoids_traffic_on_its_way_asks_anew_or_is_in_time(
+    root: Path, tmp_path: Path
+) -> None:
+    path = mission_file(root, tmp_path, 2)
+    data = yaml.safe_load(path.read_text())
+    place = {"north_m": -1800, "east_m": 2000, "alt_m": 300}
+    data["traffic"] = [{"id": 9, "position": place, "velocity": {"north_m_s": 0, "east_m_s": -20}}]
+    path.write_text(yaml.safe_dump(data))
+    flight = flown(path)
+    assert flight.result.outcome == "complete"
+    verdicts = flight.verdicts()
+    assert [verdicts[g].outcome for g in ("G1", "G2", "G3", "G4")] == [Outcome.HOLDS] * 4
+    assert set(flight.judged(tmp_path).values()) == {"holds"}
+    assert any(b.IntruderID == 9 or b.VehicleID == 1 for b in flight.told("Conflict"))

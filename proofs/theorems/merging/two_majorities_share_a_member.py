@@ -38,7 +38,7 @@ def claim(c: Claim) -> None:
     def goal(results: list[Any]) -> Any:
         a, (b, n, both) = results
         known = c.all_of(n >= 0, n <= MOST)
-        two = c.all_of(c.use(is_majority, a, n), c.use(is_majority, b, n))
+        two = c.all_of(c.define(votes.is_majority, a, n), c.define(votes.is_majority, b, n))
         return c.implies(c.all_of(known, two), both >= 1)
 
     along_items(
