@@ -14,7 +14,9 @@ from collections.abc import Iterator
 from cratous.core.avoidance.manoeuvre import Motion, way_along
 from cratous.core.avoidance.prediction import Piece, after, first_violation_s
 from cratous.core.avoidance.resolution import Scene
+from cratous.core.avoidance.way_ahead import near_line
 from cratous.core.geofence.clearance import leg_keeps
+from cratous.core.kernel import Vec2
 from cratous.core.permit.remainder import hold_at, hold_permits, zones_permit
 from cratous.core.routing.polylines import circle_points
 from cratous.services.icarous.course import Course
@@ -23,6 +25,7 @@ from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.permits import way_is_clear
 from cratous.spec.mission import Daa, Position, Zone
 
+ORIGIN = Vec2(0.0, 0.0)
 LEGS = 24
 """A lap is looked at as so many legs: 1 % of its radius off."""
 TAKEN = "somebody is on its ground"
@@ -39,7 +42,8 @@ def refused_soon(course: Course, sensed: Sensed, scene: Scene, daa: Daa, beat_s:
     pieces = way_along(sensed.motion, course.left, scene.lookahead_s, pace=course.pace).pieces
     flown_m = sum(piece.duration_s * _speed_m_s(piece) for piece in pieces)
     left_m = 0.0 if course.track is None else course.track.length_m - course.s_m
-    if not course.left or flown_m >= left_m:
+    ends = near_line(Vec2(left_m, 0.0), ORIGIN, ORIGIN, flown_m)
+    if not course.left or ends:
         return refused(course, sensed, scene, daa, beat_s)
     aside_m = sensed.motion.speed_m_s * beat_s / 2
     found = (*_against_zones(pieces, scene, aside_m), *_against_others(pieces, sensed, scene, daa))

@@ -14,6 +14,7 @@ from cratous.core.authority.timeliness import in_time, lasted
 from cratous.core.avoidance.manoeuvre import Pace
 from cratous.core.avoidance.resolution import Choice
 from cratous.core.avoidance.way_ahead import near_line
+from cratous.core.kernel import Vec2
 from cratous.core.merging.stages import HOLDING, IN_SLOT, merge_step
 from cratous.core.routing.polylines import Track, circle_points
 from cratous.core.tasks.rendezvous import Pace as Arrival
@@ -39,6 +40,7 @@ WAITS_MS = 3_600_000
 """Who can wait has a slot within this [ms]."""
 STEADY_MS = 3000
 """So long before its slot a vehicle keeps its speed [ms]."""
+ORIGIN = Vec2(0.0, 0.0)
 PASSED_M = 1.0
 """The fix is behind a vehicle that is no farther before it on its way [m]."""
 BEATS = 4
@@ -183,9 +185,10 @@ def _ahead(fix: Fix, course: Course | None, way: Followed | None, sensed: Sensed
     there = Position(*fix.place, 0.0)
     rest_m = max(track.length_m - at_m, 0.0)
     s_m = track.nearest(there, at_m, rest_m).s_m
+    to_fix_m = s_m - at_m
     passes = near_line(flat(track.at(s_m)), fix.place, fix.place, fix.entry_m)
-    ahead = at_m + PASSED_M < s_m < track.length_m
-    left_m = s_m - at_m if passes and ahead else None
+    passed = near_line(Vec2(to_fix_m, 0.0), ORIGIN, ORIGIN, PASSED_M)
+    left_m = to_fix_m if passes and not passed else None
     here = flat(sensed.motion.position)
     near, inside, entered = (
         left_m is not None and near_line(here, fix.place, fix.place, radius_m)

@@ -24,7 +24,8 @@ def guided(volume: WellClear, data: dict[str, Any] | None) -> WellClear:
 def guidance_problems(mission: Mission) -> Iterator[Finding]:
     """More looks that have to agree than are counted."""
     guidance = guidance_of(mission.daa.well_clear)
-    if guidance.alerting_m > guidance.alerting_n:
-        expected = f"at most alerting_n, {guidance.alerting_n}"
+    agree, looks = guidance.alerting_m, guidance.alerting_n
+    if agree > looks:
+        expected = f"at most alerting_n, {looks}"
         what = "no level would ever be shown"
-        yield Finding("daa.guidance.alerting_m", what, expected, str(guidance.alerting_m))
+        yield Finding("daa.guidance.alerting_m", what, expected, str(agree))

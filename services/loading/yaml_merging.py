@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+from cratous.core.avoidance.way_ahead import near_line
+from cratous.core.kernel import Vec2
 from cratous.core.tasks.rendezvous import spares_a_lap
 from cratous.services.loading.checks import Finding, as_errors
 from cratous.services.loading.document import Document
@@ -22,6 +24,7 @@ BESIDE = {
     "sensing": "what is flown over a merge fix is not permitted against sensed tracks",
     "link_loss": "a vehicle that acts by itself without the link keeps no slot",
 }
+ORIGIN = Vec2(0.0, 0.0)
 FOR_GOOD_MS = 86_400_000
 CIRCLES = 3.0
 """A circle that begins as the schedule zone is entered keeps out of the entry zone if there are so many radii between
@@ -110,7 +113,7 @@ def _no_room(merging: Merging, vehicle: Vehicle, mission: Mission, item: str) ->
     slow, fast = vehicle.min_speed_m_s, vehicle.max_speed_m_s
     radius_m = TURN_MARGIN * turn_radius_m(vehicle.speed_m_s, vehicle.max_bank_rad)
     least_m = merging.entry_m + CIRCLES * radius_m
-    if merging.schedule_m < least_m:
+    if not _within(least_m, merging.schedule_m):
         expected = (
             f"at least {least_m:.0f} m: entry_m and {CIRCLES:g} radii of vehicle {vehicle.id}"
         )
@@ -122,7 +125,12 @@ def _no_room(merging: Merging, vehicle: Vehicle, mission: Mission, item: str) ->
         yield Finding(item, "it cannot be there at any time", expected, f"{slow:g} to {fast:g} m/s")
     apart_m = merging.separation_ms / 1000 * slow
     kept_m = mission.daa.well_clear.dthr_m * mission.daa.buffer
-    if apart_m < kept_m:
+    if not _within(kept_m, apart_m):
         expected = f"at least {kept_m / slow:.1f} s: dthr_m with its buffer at {slow:g} m/s"
         got = f"{merging.separation_ms / 1000:g} s"
         yield Finding("merging.separation_s", "slots are nearer than well clear", expected, got)
+
+
+def _within(one_m: float, other_m: float) -> bool:
+    """Whether a distance is no greater than another one [m]."""
+    return near_line(Vec2(one_m, 0.0), ORIGIN, ORIGIN, other_m)
