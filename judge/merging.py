@@ -78,7 +78,8 @@ def passages(fix: Fix, track: Track) -> list[Fraction]:
 
 def _nearest(fix: Fix, before: State, after: State) -> tuple[Fraction, Fraction]:
     """The least distance from the fix on a leg, squared, and when that is [ms]."""
-    north, east = (Fraction(before[k]) - Fraction(fix[k]) for k in (1, 2))
+    north = Fraction(before.north_m) - Fraction(fix.north_m)
+    east = Fraction(before.east_m) - Fraction(fix.east_m)
     moved_n, moved_e = (Fraction(after[k]) - Fraction(before[k]) for k in (1, 2))
     length = moved_n * moved_n + moved_e * moved_e
     share = Fraction(0)

@@ -30,9 +30,10 @@ class Fix(NamedTuple):
 
 def fix_of(data: Node) -> Fix:
     """As the log has it; BadInput if it does not fit."""
-    numbers = data.reals("north_m", "east_m")
+    north_m, east_m, entry_m = data.reals("north_m", "east_m", "entry_m")
     who = frozenset(one.whole for one in data["vehicles"])
-    return Fix(data["name"].text, *numbers, who, data["separation_ms"].whole, data["entry_m"].real)
+    name, apart_ms = data["name"].text, data["separation_ms"].whole
+    return Fix(name, north_m, east_m, who, apart_ms, entry_m)
 
 
 def site_of(data: Node) -> Site:

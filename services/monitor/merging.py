@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from itertools import product
+from typing import Any
 
 from cratous.core.geofence.distance import edge_distance, leg_within
 from cratous.core.geofence.passages import foot
@@ -22,6 +23,8 @@ from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 
 SOME_REQUEST = 1
+DECIDE: tuple[Any, ...] = (leg_within, edge_distance, foot, room_beside)
+KERNELS = tuple(qualified(kernel) for kernel in DECIDE)
 
 
 @dataclass
@@ -90,7 +93,7 @@ class MergeWatch:
             "G1", merge_item(merging.name, one, other), outcome, Kind.OBSERVED, "; ".join(names),
             time_ms=None if least is None else math.floor(least[1]), vehicles=(one, other),
             margin=margin, unit="" if margin is None else "s", checks=len(gaps),
-            kernels=tuple(map(qualified, (leg_within, edge_distance, foot, room_beside))) if gaps else (),
+            kernels=KERNELS if gaps else (),
         )  # fmt: skip
 
     def _words(self, number: int, passed: list[float]) -> str:
