@@ -1,9 +1,9 @@
-"""Time to a proved optimum of assignment problems, against CP-SAT, problem by problem in one run.
+"""Time to a proved optimum of assignment problems, compared with CP-SAT, problem by problem in one run.
 
-`python bench/assignment.py FOLDER [--ortools PYTHON] [--only PART]`: FOLDER holds the problems
-(open-v*-t*.json); PYTHON is an interpreter with ortools (bench/requirements.txt). Each problem is
-solved by both, one after the other, so that a loaded machine loads both; times are wall seconds,
-CP-SAT with 2 workers, ours with one thread; CPU seconds stand beside them.
+`python bench/assignment.py FOLDER [--ortools PYTHON] [--only PART]`: FOLDER holds the problems (open-v*-t*.json);
+PYTHON is an interpreter with ortools (bench/requirements.txt). Each problem is solved by both, one after the other,
+so that load on the machine affects both; times are wall seconds, CP-SAT with 2 workers, ours with one thread; CPU
+seconds are listed too.
 """
 
 from __future__ import annotations

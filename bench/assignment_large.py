@@ -1,9 +1,8 @@
-"""How a problem of many tasks improves with time: cost, bound, CPU seconds and memory.
+"""How the solution of a large assignment problem improves with time: cost, bound, CPU seconds and memory.
 
-`python bench/assignment_large.py [--tasks 127] [--vehicles 6] [--seconds 60] [--chains 4]`: places at
-random in a square of 30 km (fixed seed), 25 m/s, tasks of 30 to 300 s; with --chains the tasks come
-in sequences of so many, on whatever vehicles. CPU seconds, since wall seconds on a shared machine
-say little.
+`python bench/assignment_large.py [--tasks 127] [--vehicles 6] [--seconds 60] [--chains 4]`: random places in a square
+of 30 km (fixed seed), 25 m/s, tasks of 30 to 300 s; with --chains the tasks come in sequences of that length, on any
+vehicles. CPU seconds, since wall seconds on a shared machine are not meaningful.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ SIDE_M, SPEED_M_S = 30_000.0, 25.0
 
 
 def problem(tasks: int, vehicles: int, chains: int, seed: int = 1) -> AssignmentProblem:
-    """A problem at random."""
+    """A random problem."""
     rng = random.Random(seed)
     places = [(rng.uniform(0, SIDE_M), rng.uniform(0, SIDE_M)) for _ in range(tasks)]
     starts = [(rng.uniform(0, SIDE_M), rng.uniform(0, SIDE_M)) for _ in range(vehicles)]
@@ -42,7 +41,7 @@ def problem(tasks: int, vehicles: int, chains: int, seed: int = 1) -> Assignment
 
 
 def main() -> None:
-    """Print each improvement, then the end."""
+    """Print each improvement, then the final result."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--tasks", type=int, default=127)
     parser.add_argument("--vehicles", type=int, default=6)

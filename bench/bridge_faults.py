@@ -1,10 +1,10 @@
-"""The crossing over a bridge that fails, in both topologies: the gate on board, and behind UxAS in processes.
+"""The crossing over a faulty bridge, in both topologies: the gate on board, and behind UxAS in separate processes.
 
     python bench/bridge_faults.py [--rate 4] [--only rough ...] [--processes-only]
 
 Each set of faults of `examples/campaigns/bridge-faults.yaml` is flown by `cratous run`, in one process and with
-`--processes`; a row says how it ended, which requirements hold, and how often ICAROUS had a vehicle. A flight in
-processes takes its time: 240 s of flight at four times real time a minute, and more where faults keep it long.
+`--processes`; a row gives the outcome, which requirements hold, and how often ICAROUS commanded a vehicle. A flight
+in processes takes a minute for 240 s of flight at four times real time, and more where faults prolong it.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ SIGNS = {"holds": "yes", "violated": "no", "excused": "excused", "unknown": "?"}
 
 
 def sets() -> dict[str, dict[str, Any]]:
-    """By name, the section `simulation` of each option of the campaign."""
+    """The section `simulation` of each option of the campaign, by name."""
     found = {}
     for option in yaml.safe_load(CAMPAIGN.read_text())["options"]:
         items = option["set"].items()
@@ -35,7 +35,7 @@ def sets() -> dict[str, dict[str, Any]]:
 
 
 def flown(simulation: dict[str, Any], folder: Path, *more: str) -> str:
-    """What a flight comes to, as cells of the table."""
+    """Fly once; returns the result as cells of the table."""
     mission = yaml.safe_load(MISSION.read_text())
     mission.pop("expect")
     folder.mkdir(parents=True)

@@ -1,10 +1,10 @@
-"""What a campaign costs beside its flights, in CPU time of both of its processes.
+"""The overhead of a campaign beyond its flights, in CPU time of both of its processes.
 
     python bench/campaign.py [FILE ...] [--runs 20]
 
-A flight is what plans, flies, monitors and logs it; the rest is what a campaign adds: making and reading the mission, the
-report, the judge, and in the process that stores the draws, the pipe, the store and the summary. The first run of a
-campaign, which loads everything, is left out.
+A flight comprises planning, flying, monitoring and logging; the overhead is what a campaign adds: making and reading
+the mission, the report, the judge, and in the process that stores the results the draws, the pipe, the store and the
+summary. The first run of a campaign, which loads everything, is left out.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _spent: dict[str, float] = {}
 
 
 def _timed(module: Any, name: str) -> None:
-    """Have calls of a function add to what it has taken."""
+    """Replace a function by one that sums its CPU time."""
     right: Callable[..., Any] = getattr(module, name)
 
     def timed(*args: Any, **named: Any) -> Any:
@@ -44,7 +44,7 @@ def _timed(module: Any, name: str) -> None:
 
 
 def fly(task: dict[str, Any]) -> dict[str, Any]:
-    """A run in the process that flies, which writes what its parts have taken so far."""
+    """A run in the process that flies; writes the CPU time of its parts so far."""
     from cratous.services import loading
     from cratous.services.campaign import encounters
     from cratous.services.certify import report
@@ -68,7 +68,7 @@ def fly(task: dict[str, Any]) -> dict[str, Any]:
 
 
 def measured(file: Path, runs: int) -> str:
-    """One line on the campaign of a file."""
+    """One line with the results for a campaign file."""
     from cratous.services.campaign.campaign import Conduct, Course
     from cratous.services.campaign.definition import load_campaign
     from cratous.services.campaign.engine import engine
@@ -110,7 +110,7 @@ def main() -> int:
     parser.add_argument("files", nargs="*", type=Path)
     parser.add_argument("--runs", type=int, default=20)
     asked = parser.parse_args()
-    gc.set_threshold(20_000, 5, 10)  # as in a command
+    gc.set_threshold(20_000, 5, 10)  # as in the command
     os.environ["PYTHONPATH"] = os.pathsep.join([str(HERE.parent), os.environ.get("PYTHONPATH", "")])
     examples = HERE.parents[1] / "examples"
     for file in asked.files or [examples / name for name in FILES]:

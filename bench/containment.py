@@ -1,9 +1,8 @@
-"""Containment with exact verdicts against shapely's `contains_xy`: one core, one run.
+"""Containment with exact verdicts compared with shapely's `contains_xy`: one core, one run.
 
-Star polygons of 1 km, points in their box; and points that lie on a vertex's height or on an edge,
-where a filter decides nothing. Verdicts are checked against rationals on a sample before anything
-is measured. Times are the least of several rounds in which both contenders take turns, of CPU time: a busy
-machine does not count.
+Star polygons of 1 km, with points in their bounding box; and points at a vertex's height or on an edge, where a
+filter decides nothing. Verdicts are checked against rationals on a sample before anything is measured. Times are the
+least CPU times of several rounds in which both contenders take turns, so load on the machine has little effect.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ def star(rng: np.random.Generator, n: int) -> np.ndarray:
 
 
 def check(points: np.ndarray, shape: geofence.Polygon, sample: int = 100) -> None:
-    """Compare a sample with rationals."""
+    """Compare the verdicts on a sample with rationals."""
     found = geofence.places(points, shape)
     edges = [
         tuple(Vec2(Fraction(v.x), Fraction(v.y)) for v in edge)  # type: ignore[arg-type]
@@ -44,7 +43,7 @@ def check(points: np.ndarray, shape: geofence.Polygon, sample: int = 100) -> Non
 
 
 def rows() -> list[tuple[str, float, str, float]]:
-    """(what, ns a point, peer, ns a point of it)."""
+    """(what, ns per point, peer, ns per point of the peer)."""
     rng = np.random.default_rng(1)
     found = []
     points = rng.uniform(-1000, 1000, (N, 2))

@@ -1,7 +1,7 @@
 """The peer of bench/assignment.py: CP-SAT on the pairwise-disjunctive model, 2 workers.
 
-Run by an interpreter that has ortools: reads one JSON object a line (problem, semantics, seconds) and
-answers with status, cost, bound and wall time.
+Run by an interpreter that has ortools: reads one JSON object per line (problem, semantics, seconds) and answers with
+status, cost, bound and wall time.
 """
 
 import json
@@ -12,7 +12,7 @@ from ortools.sat.python import cp_model
 
 
 def solve(problem, semantics, seconds):
-    """The makespan by CP-SAT; semantics `time` (waiting) or `order` (assignment order only)."""
+    """The minimal makespan by CP-SAT; semantics `time` (waiting) or `order` (assignment order only)."""
     tasks = problem["tasks"]
     n, vehicles = len(tasks), len(problem["vehicles"])
     number = {t["id"]: k for k, t in enumerate(tasks)}

@@ -1,9 +1,9 @@
-"""Detect and avoid: full four-dimension bands and batch alerting, CPU time on one core, warm.
+"""Detect and avoid: full four-dimensional bands and batch alerting, CPU time on one core, warm.
 
-The peer is a program that $DAIDALUS_PEER names: it reads encounters, one a line (the number of intruders, then for
+The peer is a program given by $DAIDALUS_PEER: it reads encounters, one per line (the number of intruders, then for
 ownship and intruders east, north, up [m], their rates [m/s] and the alerter), and answers each with the CPU time [ms]
-that alerts, bands in four dimensions and resolutions took. So the same encounters are put to both in one run; fresh
-state, no history. Without it a bar takes its place. `python bench/daa.py` prints a table.
+that alerts, bands in four dimensions and resolutions took. So both get the same encounters in one run; fresh state,
+no history. Without a peer a fixed bound is shown instead. `python bench/daa.py` prints a table.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from cratous.core.readings.machine.compiled import machine
 from cratous.spec.daa.presets import preset
 
 BAR_MS = 300.0
-"""What bands once a second may take where they are to leave 70 % of a core."""
+"""The most that bands computed once a second may take if 70 % of a core is to stay free."""
 SAMPLES = {1: 60, 5: 40, 20: 20, 100: 8}
 BAR_ENCOUNTERS_S = 400_000
 
 
 def encounter(rng: np.random.Generator, n: int) -> tuple[Aircraft, list[Aircraft]]:
-    """An ownship and n intruders within 10 nmi, most of them at about its altitude."""
+    """An ownship and n intruders within 10 nmi, most of them near its altitude."""
     alt = rng.uniform(1000, 8000)
 
     def one(name: str, spread_m: float, alerter: int) -> Aircraft:
@@ -51,7 +51,7 @@ def bands_ms(n: int) -> tuple[float, float | None]:
     rng = np.random.default_rng(n)
     scenes = [encounter(rng, n) for _ in range(SAMPLES[n])]
     for own, others in scenes:
-        Session(parameters).step(0.0, own, others)  # what is worth compiling is loaded by then
+        Session(parameters).step(0.0, own, others)  # loads the compiled code
     times = []
     for own, others in scenes:
         begin = time.process_time()
@@ -76,7 +76,7 @@ def peer_ms(scenes: list[tuple[Aircraft, list[Aircraft]]]) -> float | None:
 
 
 def alerts_per_s(encounters: int = 200_000, intruders: int = 3) -> float:
-    """Encounters of three intruders whose alert levels are found in a second of CPU time."""
+    """Encounters with three intruders for which alert levels are computed per second of CPU time."""
     parameters = preset("do_365b").parameters
     t = tables_at(parameters, 0.0)
     rng = np.random.default_rng(0)

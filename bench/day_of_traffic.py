@@ -1,11 +1,11 @@
-"""A day of simulated traffic through bus and message logger: nothing lost, flat memory.
+"""A day of simulated traffic through bus and message logger: no message lost, constant memory.
 
     python bench/day_of_traffic.py [--hours 24] [--vehicles 10] [--folder FOLDER] [--keep]
 
-Each vehicle says its state twice a second (24 h, 10 vehicles: 1,728,000 messages of
-afrl.cmasi.AirVehicleState). A second service subscribes to them and answers each hour, so that the
-bus has work to do. Afterwards the log is read again: every vehicle and time once, the digest, and
-each hundredth message decoded and compared.
+Each vehicle sends its state twice a second (24 h, 10 vehicles: 1,728,000 messages of
+afrl.cmasi.AirVehicleState). A second service subscribes to them and answers once an hour, so that the
+bus has deliveries to make. Afterwards the log is read again: every vehicle and time once, the digest, and
+every hundredth message decoded and compared.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ HOUR_MS = 3_600_000
 
 
 class Figures(NamedTuple):
-    """What a run measured; memory is resident [MB], rates are messages a second of CPU time."""
+    """The figures of a run; memory is resident [MB], rates are messages per second of CPU time."""
 
     sent: int
     logged: int
@@ -47,7 +47,7 @@ class Figures(NamedTuple):
 
 
 class Hourly:
-    """Counts states; a ServiceStatus each hour of a vehicle's."""
+    """Counts states; sends a ServiceStatus for each hour of a vehicle's states."""
 
     name = "hourly"
     subscribes = ("afrl.cmasi.EntityState",)
@@ -61,7 +61,7 @@ class Hourly:
 
 
 def state_of(vehicle: int, time_ms: int) -> Any:
-    """Where a vehicle is: on a circle of its own."""
+    """The state of a vehicle, on a circle of its own."""
     angle = time_ms / 1000 * 22.0 / 5000 + vehicle
     place = lmcp.new(
         "Location3D",
@@ -89,7 +89,7 @@ def resident_mb() -> float:
 
 
 def traffic(folder: Path, hours: float, vehicles: int) -> Figures:
-    """Run, then check what was logged; SystemExit if anything is missing or wrong."""
+    """Run, then check the log; SystemExit if anything is missing or wrong."""
     bus = Bus(lmcp.full_names)
     bus.add(Hourly())
     logger = MessageLogger(folder, clock="virtual")
@@ -130,7 +130,7 @@ def traffic(folder: Path, hours: float, vehicles: int) -> Figures:
 
 
 def verify(path: Path, steps: int, vehicles: int) -> int:
-    """Number of messages, after all that the log must hold was found in it."""
+    """Check the content of the log; returns the number of messages."""
     count = states = 0
     with SqliteLog(path) as log:
         log.verify()
@@ -144,7 +144,7 @@ def verify(path: Path, steps: int, vehicles: int) -> int:
             states += 1
             if entry.time_ms != step * STEP_MS:
                 raise SystemExit(f"{entry.place}: {entry.time_ms} ms, not {step * STEP_MS}")
-            # the codec rounds fields of 32 bits, so the comparison is with what it makes of them
+            # the codec rounds fields to 32 bits, so the comparison is with the rounded values
             if count % 100 == 0:
                 wanted = lmcp.binary.unpack(lmcp.binary.pack(state_of(vehicle, entry.time_ms)))
                 if to_object(entry) != wanted:
@@ -155,7 +155,7 @@ def verify(path: Path, steps: int, vehicles: int) -> int:
 
 
 def rows() -> list[tuple[str, float, str, float]]:
-    """(what, CPU ns each, bar, ns each): twenty minutes of the day, against its own pace."""
+    """(what, CPU ns each, bound, ns each): twenty minutes of the day, compared with real time."""
     with tempfile.TemporaryDirectory() as folder:
         figures = traffic(Path(folder), 1 / 3, 10)
     what = "message through bus and logger, 10 vehicles at 2 Hz, log checked"

@@ -1,9 +1,8 @@
-"""The well-clear predicate, plain and exact, against C on plain doubles: one core, one run.
+"""The well-clear predicate, plain and exact, compared with C on plain doubles: one core, one run.
 
-The C function is compiled here with `gcc -O3 -march=native` into a temporary folder; it has no
-branches, reads the same arrays and writes the same bytes. Exact verdicts are checked against
-rationals on a sample before anything is measured. Times are the least of several rounds in which
-all contenders take turns.
+The C function is compiled here with `gcc -O3 -march=native` into a temporary folder; it has no branches, reads the
+same arrays and writes the same bytes. Exact verdicts are checked against rationals on a sample before anything is
+measured. Times are the least of several rounds in which all contenders take turns.
 """
 
 from __future__ import annotations
@@ -72,13 +71,13 @@ def random_states(rng: np.random.Generator) -> Columns:
 
 
 def nudged(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Up to two units in the last place away."""
+    """Values shifted by up to two units in the last place."""
     moved: np.ndarray = values.view(np.int64) + rng.integers(-2, 3, values.size)
     return moved.view(np.float64)
 
 
 def on_circle(rng: np.random.Generator, n: int, low: int, high: int) -> Columns:
-    """|s| is DTHR, up to two units in the last place of x; DTHR is 2^low to 2^high."""
+    """States where |s| is DTHR, up to two units in the last place of x; DTHR is 2^low to 2^high."""
     d = rng.uniform(1, 2, n) * 2.0 ** rng.integers(low, high, n)
     angle = rng.uniform(0.0, 0.3, n)
     x, y = nudged(d * np.cos(angle), rng), d * np.sin(angle)
@@ -87,7 +86,7 @@ def on_circle(rng: np.random.Generator, n: int, low: int, high: int) -> Columns:
 
 
 def on_tau(rng: np.random.Generator, n: int, low: int, high: int) -> Columns:
-    """tau_mod is TTHR, up to two units in the last place, on a course through the circle."""
+    """States where tau_mod is TTHR, up to two units in the last place, on a course through the circle."""
     scale = 2.0 ** rng.integers(low, high, n)
     x, y = rng.uniform(1000, 2000, (2, n)) * scale
     u, v = -x / rng.uniform(30, 31, n), -y / rng.uniform(30, 31, n)
@@ -96,21 +95,21 @@ def on_tau(rng: np.random.Generator, n: int, low: int, high: int) -> Columns:
 
 
 def tangent(rng: np.random.Generator, n: int, low: int, high: int) -> Columns:
-    """The course touches the circle exactly (integers times a power of two)."""
+    """States whose course is exactly tangent to the circle (integers times a power of two)."""
     k, away, speed = rng.integers(1, 1000, (3, n)) * 2.0 ** rng.integers(low, high, n)
     still = np.full(n, 2.0**20)
     return [3 * k + 4 * away, 4 * k - 3 * away, -4 * speed, 3 * speed, 5 * k, still]
 
 
 def wide_tangent(rng: np.random.Generator, n: int, low: int, high: int) -> Columns:
-    """The same with integers of up to 53 bits: ties that no pair of doubles holds."""
+    """The same with integers of up to 53 bits: ties that no pair of doubles can represent."""
     k, away, speed = rng.integers(1, 2**50, (3, n)) * 2.0 ** rng.integers(low, high, n)
     still = np.full(n, 2.0**20)
     return [3 * k + 4 * away, 4 * k - 3 * away, -4 * speed, 3 * speed, 5 * k, still]
 
 
 def check(columns: Columns, verdicts: np.ndarray, sample: int = 500) -> int:
-    """Compare a sample with rationals; returns how many plain doubles get wrong."""
+    """Compare a sample with rationals; returns the number of errors of plain doubles."""
     plain = compiled(horizontal_violation)(*columns)
     wrong = 0
     for i in range(0, verdicts.size, max(1, verdicts.size // sample)):
@@ -123,7 +122,7 @@ def check(columns: Columns, verdicts: np.ndarray, sample: int = 500) -> int:
 
 
 def rows() -> list[tuple[str, float, str, float]]:
-    """(what, ns a state, peer or bar, ns a state of it)."""
+    """(what, ns per state, peer or bound, ns per state of it)."""
     rng = np.random.default_rng(1)
     plain, exact = compiled(horizontal_violation), exactly(horizontal_violation)
     states, limits = random_states(rng), (150.0, 15.0)

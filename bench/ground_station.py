@@ -1,11 +1,11 @@
-"""The page of a message log in headless Chromium: until it is seen, and how long its frames take.
+"""The page of a message log in headless Chromium: time to first view, and frame times.
 
     python bench/ground_station.py [--vehicles 50] [--minutes 5] [--seconds 30]
 
 The log is made first: states of the vehicles at 2 Hz, each on a circle of its own. Then `cratous serve`
-is started on it, the page opened in a browser of its own, and played at the pace of the clock. Wall
-times, on the machine as it is; a frame is the time between two calls of requestAnimationFrame, and
-the script is the part of it that the page itself draws in.
+is started on it, the page is opened in a browser of its own, and played in real time. Wall times,
+on the machine as it is; a frame is the time between two calls of requestAnimationFrame, and
+its script time is the part in which the page itself draws.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ COUNT_FRAMES = """(() => {
 
 
 class Figures(NamedTuple):
-    """What was measured; frames and their scripts in ms: 95 % are below the first, none above the second."""
+    """The figures; for frames and their scripts the 95th percentile and the maximum [ms]."""
 
     serve_s: float
     first_view_ms: float
@@ -54,7 +54,7 @@ class Figures(NamedTuple):
 
 
 def made(folder: Path, vehicles: int, minutes: float) -> Path:
-    """A log of that many vehicles for so long."""
+    """Write a log of this many vehicles and minutes."""
     bus = Bus(lmcp.full_names)
     logger = MessageLogger(folder, clock="virtual")
     bus.tap(logger.tap)
@@ -68,14 +68,14 @@ def made(folder: Path, vehicles: int, minutes: float) -> Path:
 
 
 def measured(log: Path, seconds: float) -> Figures:
-    """Open the page of a log and play it so long; SystemExit where too few frames were drawn to say."""
+    """Open the page of a log and play it for some seconds; SystemExit if too few frames were drawn."""
     begun = time.monotonic()
     with tempfile.TemporaryDirectory() as profile, serving(log) as (_, port):
         serve_s = time.monotonic() - begun
         with browsing(Path(profile)) as page:
             page.go(f"http://127.0.0.1:{port}/")
             page.until(SEEN)
-            # since the page was asked for; the question itself is in it
+            # since the page was requested; includes the time of this query
             first_ms = float(page.value("performance.now()"))
             frames, scripts = played(page, seconds)
     if len(frames) < 100:
@@ -90,7 +90,7 @@ def measured(log: Path, seconds: float) -> Figures:
 
 
 def played(page: Page, seconds: float) -> tuple[list[float], list[float]]:
-    """Times of the frames, and of the scripts in them, while the page plays [ms], each from low to high."""
+    """Times of the frames, and of the scripts in them, while the page plays [ms], each sorted in ascending order."""
     page.value(COUNT_FRAMES)
     page.click("#play")
     time.sleep(seconds)

@@ -1,9 +1,9 @@
-"""An hour of ten vehicles, flown, reported, certified and opened: CPU seconds of each.
+"""An hour of ten vehicles, flown, reported, certified and opened: CPU seconds of each step.
 
     python bench/hour_of_ten.py [--minutes 60] [--folder FOLDER]
 
-Five vehicles fly east on lanes 8 km apart, five north; two of them meet at each crossing of lanes with the same number, at
-one height, and ICAROUS takes over. Each passes four points. With --folder the mission and its results stay there.
+Five vehicles fly east on lanes 8 km apart, five north; the two on lanes with the same number meet where these cross,
+at one altitude, and ICAROUS takes over. Each passes four points. With --folder the mission and its results are kept.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ OPENED = (
 
 
 def mission(minutes: float) -> dict[str, Any]:
-    """The mission as the data of its file."""
+    """The content of the mission file."""
     length_m = SPEED_M_S * 60 * minutes
     vehicles, tasks = [], list[dict[str, Any]]()
     for number in range(1, 2 * LANES + 1):
@@ -57,7 +57,7 @@ def mission(minutes: float) -> dict[str, Any]:
 
 
 def spent(what: str, *command: str) -> None:
-    """Run a command and print what CPU time it took."""
+    """Run a command and print its CPU time."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run([sys.executable, *command], stdout=subprocess.DEVNULL)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)

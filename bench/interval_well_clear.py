@@ -1,9 +1,8 @@
-"""The interval kernel of well clear over arrays against C on plain doubles: one core, one run.
+"""The interval kernel of well clear over arrays compared with C on plain doubles: one core, one run.
 
-The C function is compiled here with `gcc -O3 -march=native` into a temporary folder; it has no
-branches, reads the same arrays, takes the same thresholds and writes the same two arrays. The
-results are compared bit by bit before anything is measured. Times are the least of several rounds
-in which the contenders take turns.
+The C function is compiled here with `gcc -O3 -march=native` into a temporary folder; it has no branches, reads the
+same arrays, takes the same thresholds and writes the same two arrays. The results are compared bit by bit before
+anything is measured. Times are the least of several rounds in which the contenders take turns.
 """
 
 from __future__ import annotations
@@ -67,7 +66,7 @@ def c_function(folder: Path) -> Callable[[Columns, tuple[np.ndarray, np.ndarray]
         raise RuntimeError("no gcc")
     source, library = folder / "interval.c", folder / "interval.so"
     source.write_text(SOURCE, encoding="utf-8")
-    # no fused operations, so that the results are the kernel's bit by bit
+    # no fused operations, so that the results equal the kernel's bit by bit
     flags = ["-O3", "-march=native", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math"]
     command = [compiler, *flags, "-shared", "-fPIC", "-o", str(library), str(source), "-lm"]
     subprocess.run(command, check=True)
@@ -85,7 +84,7 @@ def c_function(folder: Path) -> Callable[[Columns, tuple[np.ndarray, np.ndarray]
 
 
 def rows() -> list[tuple[str, float, str, float]]:
-    """(what, ns a state, peer, ns a state of it)."""
+    """(what, ns per state, peer, ns per state of the peer)."""
     rng = np.random.default_rng(1)
     states: Columns = [*(rng.normal(size=(2, N)) * 1500), *(rng.normal(size=(2, N)) * 30)]
     states += [rng.normal(size=N) * 80, rng.normal(size=N) * 3]
@@ -95,7 +94,7 @@ def rows() -> list[tuple[str, float, str, float]]:
         c = c_function(Path(folder))
         odd = [column.copy() for column in states]
         for column in (2, 3, 5):
-            odd[column][:1000] = 0.0  # some that do not move or climb
+            odd[column][:1000] = 0.0  # some states without motion or climb
         kernel(*odd, *LIMITS, out=ours)
         c(odd, theirs)
         if not all(np.array_equal(a, b) for a, b in zip(ours, theirs, strict=True)):

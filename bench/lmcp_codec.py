@@ -1,10 +1,9 @@
-"""LMCP: reading and writing AirVehicleState, the message that is sent most.
+"""LMCP: reading and writing AirVehicleState, the most frequent message.
 
-One message of 475 bytes (gimbal and camera with footprint), as the simulator sends it twice a second
-for each vehicle. Every row is reading plus writing of one message, with the checksum verified and
-computed, in CPU time. The peer is the Python code that LmcpGen generates, measured in the same run
-if LMCP_PEER names the folder it was generated into; otherwise the bar is its published-by-us rate,
-5,000 messages a second. The peer's reading does not verify the checksum.
+One message of 475 bytes (gimbal and camera with footprint), as the simulator sends it twice a second for each
+vehicle. Every row is reading plus writing of one message, with the checksum verified and computed, in CPU time. The
+peer is the Python code that LmcpGen generates, measured in the same run if LMCP_PEER gives its folder; otherwise a
+fixed rate that we measured for it, 5,000 messages a second. The peer's reading does not verify the checksum.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ CPP_NS = 1e9 / 97_000
 
 
 def message() -> Any:
-    """The object: nine objects in all."""
+    """The message: nine objects in all."""
     places = [
         lmcp.new("Location3D", Latitude=45.3 + i / 7, Longitude=-121 + i / 9) for i in range(5)
     ]
@@ -53,7 +52,7 @@ def each(run: Callable[[], object], count: int = 5_000, repeat: int = 7) -> floa
 
 
 def generated(raw: bytes) -> tuple[str, float]:
-    """(name, ns) of the generated Python, or of the bar."""
+    """(name, ns) of the generated Python, or of the fixed rate."""
     folder = os.environ.get("LMCP_PEER")
     if not folder:
         return "bar: generated Python, 5,000/s", BAR_NS

@@ -1,10 +1,10 @@
-"""Routes a second, and request to response for missions of OpenUxAS, by CPU time.
+"""Routes per second, and time from request to response for missions of OpenUxAS, in CPU time.
 
-Routes are between random poses, through a square of two kilometres with six keep-out zones inside a keep-in; the
-peer is the same function run by CPython, and both give the same bits before they are timed. Request to
-response is `make_plan` on a mission that is loaded, the least of some runs after the first, which
-also reads the compiled kernels from their cache; the bars are what the task allows. Missions are
-read from the folder `shared` beside the repository and left out where it is absent.
+Routes are between random poses, through a square of two kilometres with six keep-out zones inside a keep-in zone; the
+peer is the same function run by CPython, and both give identical results before they are timed. Request to response
+is `make_plan` on a loaded mission, the least of some runs after the first, which also reads the compiled kernels from
+their cache; the bounds are the requirements. Missions are read from the folder `shared` beside the repository and
+left out if it is absent.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def box(number: int, kind: ZoneKind, south: float, west: float, side: float) -> 
 
 
 def run(function: Callable[..., None], roadmap: Roadmap, count: int) -> tuple[float, np.ndarray]:
-    """CPU seconds for so many routes, and their lengths (0 where there is none)."""
+    """CPU seconds for `count` routes, and their lengths (0 where there is none)."""
     ends = np.random.default_rng(1).uniform(0, 2000, (2, count, 4))
     ends[:, :, 2] = 500.0
     ends[:, :, 3] /= 300.0

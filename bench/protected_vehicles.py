@@ -2,12 +2,12 @@
 
     python bench/protected_vehicles.py [--vehicles 50] [--seconds 30] [--no-bands]
 
-Half of the vehicles fly east and half north, on lanes that cross at one height, each to a point of its own; each has an
-ICAROUS instance behind the bridge, and a detection service of UxAS's that makes its bands against all others. It is the
-flight of `cratous run` and `cratous serve`: bus, sockets, log, heartbeats twice a second. What counts is the CPU time
-of the process: of a second of flight on the whole, and of each heartbeat with all that follows from it; one that takes
-more than its period would have been late with nothing else on the core. Planning is done before, told apart, and not
-counted; so is a flight of two seconds in which everything is compiled or loaded.
+Half of the vehicles fly east and half north, on lanes that cross at one altitude, each to its own destination; each
+has an ICAROUS instance behind the bridge, and a detection service of UxAS that computes its bands against all others.
+The flight is that of `cratous run` and `cratous serve`: bus, sockets, log, heartbeats twice a second. Measured is the
+CPU time of the process: per second of flight, and per heartbeat with everything it triggers; a heartbeat that takes
+more than its period would be late even on an idle core. Planning, which precedes the flight, is reported separately
+and not counted, nor is a flight of two seconds in which everything is compiled or loaded.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ SPEED_M_S = 22.0
 
 
 class Figures(NamedTuple):
-    """What was measured: CPU seconds of a second of flight; of its heartbeats [ms]: mean, 95 %, most; how many took
-    more than their period; bands that were told; takeovers."""
+    """CPU seconds per second of flight; times of its heartbeats [ms]: mean, 95th percentile, maximum; number of
+    heartbeats longer than their period; bands sent; takeovers."""
 
     share: float
     mean_ms: float
@@ -53,7 +53,7 @@ class Figures(NamedTuple):
 
 
 def mission(count: int) -> Mission:
-    """That many vehicles on lanes that cross, the first half eastward."""
+    """`count` vehicles on crossing lanes, the first half eastward."""
     vehicles, tasks = [], []
     for k in range(count):
         lane, first = APART_M * (k % ((count + 1) // 2)), k < (count + 1) // 2
@@ -92,12 +92,12 @@ def mission(count: int) -> Mission:
 
 
 def say(text: str) -> None:
-    """What is being done now, with the CPU time so far."""
+    """Print the current step, with the CPU time so far."""
     print(f"{time.process_time():7.1f} s of CPU: {text}", flush=True)
 
 
 def measured(count: int, seconds: float, bands: bool) -> Figures:
-    """Plan, fly two seconds, then so long."""
+    """Plan, fly two seconds, then fly `seconds`."""
     whole = mission(count)
     say(f"planning {count} vehicles")
     plan = make_plan(whole)
@@ -112,7 +112,7 @@ def measured(count: int, seconds: float, bands: bool) -> Figures:
 def flown(
     whole: Mission, plan: Plan, seconds: float, bands: bool, tell: Callable[[int, str], None]
 ) -> Figures:
-    """Fly so long, with a log in a folder of its own; tell(time, how it is) is called now and then."""
+    """Fly for `seconds`, with a log in a temporary folder; tell(time [ms], status text) is called now and then."""
     count = len(whole.vehicles)
     limited = replace(whole.simulation, limit_ms=round(1000 * seconds))
     whole = replace(whole, simulation=limited)
@@ -152,7 +152,8 @@ def flown(
 
 
 def main() -> int:
-    """Print the figures; 1 if a second of flight takes more than a second, or a heartbeat more than its period."""
+    """Print the figures; returns 1 if a second of flight takes more than a second, or a heartbeat more than its
+    period."""
     asked = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     asked.add_argument("--vehicles", type=int, default=50)
     asked.add_argument("--seconds", type=float, default=30.0)

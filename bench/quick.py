@@ -1,12 +1,12 @@
-"""How long a planner waits for the commands of a day: wall and CPU time of each as a process of its own.
+"""How long a planner waits for the everyday commands: wall and CPU time of each as a process of its own.
 
     python bench/quick.py [--rounds 5] [--only WORD] [--cold]
 
-Each command runs so often (medians are told) in a new folder; its CPU time is that of the process and of
-all that it started and waited for. "After its last line" is from the last byte of its output to the end of
-the process. --cold also plans the search example once with an empty cache, as on a machine that is new.
-Bytecode of modules is kept, as it is where the product is installed, whatever PYTHONDONTWRITEBYTECODE says.
-Targets are wall times on a quiet machine. The load is told first: where others run beside, look at CPU time.
+Each command is run several times in a new folder, and medians are reported; its CPU time is that of the process
+and of all its children. "After its last line" is from the last byte of its output to the end of the process.
+--cold also plans the search example once with an empty cache, as on a new machine. Bytecode of modules is kept,
+as in an installation, whatever PYTHONDONTWRITEBYTECODE says. Targets are wall times on an idle machine. The load
+is printed first: under load, compare CPU times.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ CROSSING = str(ROOT / "examples" / "crossing" / "mission.yaml")
 SEARCH = str(ROOT / "examples" / "search" / "mission.yaml")
 BAD = "name: bad\nvehicles: 3\n"
 BYTECODE = Path(tempfile.gettempdir()) / f"cratous-quick-{os.getuid()}"
-"""Where bytecode is kept from run to run."""
+"""The folder where bytecode is kept between runs."""
 
 
 class Took(NamedTuple):
-    """One run: wall and CPU time, and time from its last output to its end [s]; code: how it ended."""
+    """One run: wall and CPU time, and time from its last output to its end [s]; code: exit code."""
 
     wall_s: float
     cpu_s: float
@@ -41,7 +41,7 @@ class Took(NamedTuple):
 
 
 class Line(NamedTuple):
-    """What is measured: its name, the arguments of `cratous`, the exit codes that are right, its target [s]."""
+    """A measured command: its name, the arguments of `cratous`, the permitted exit codes, its target [s]."""
 
     name: str
     arguments: tuple[str, ...]
@@ -50,7 +50,7 @@ class Line(NamedTuple):
 
 
 def timed(arguments: Sequence[str], folder: Path, cache: Path | None = None) -> Took:
-    """Run `cratous` once in a folder. cache: of its own, else the user's."""
+    """Run `cratous` once in a folder. cache: a separate cache folder, by default the user's."""
     kept = {"CRATOUS_CACHE": str(cache)} if cache else {}
     environment = {**os.environ, "PYTHONPYCACHEPREFIX": str(BYTECODE), **kept}
     environment.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -72,7 +72,7 @@ def timed(arguments: Sequence[str], folder: Path, cache: Path | None = None) -> 
 
 
 def lines(log: Path, bad: Path) -> tuple[Line, ...]:
-    """The commands of a day. log: of a flight of the crossing; bad: a mission file with mistakes."""
+    """The everyday commands. log: of a flight of the crossing; bad: a mission file with mistakes."""
     return (
         Line("cratous --help", ("--help",), (0,), 0.1),
         Line("a bad file is refused", ("plan", str(bad)), (2,), 0.5),
@@ -84,7 +84,7 @@ def lines(log: Path, bad: Path) -> tuple[Line, ...]:
 
 
 def measured(line: Line, rounds: int, *, cold: bool = False) -> list[Took]:
-    """The runs of a command; SystemExit where one ends otherwise than it should. cold: each with an empty cache."""
+    """The runs of a command; SystemExit for an unexpected exit code. cold: each with an empty cache."""
     found = []
     for _ in range(rounds):
         with tempfile.TemporaryDirectory() as folder:

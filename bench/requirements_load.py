@@ -1,10 +1,10 @@
-"""What requirements of one's own cost where they are used: many at once, for long, and in the report of a long run.
+"""The cost of user-defined requirements: many at once, over long times, and in the report of a long run.
 
     python bench/requirements_load.py                a hundred requirements over ten vehicles that report at 10 Hz
-    python bench/requirements_load.py --samples 10000000     memory over so many samples of one requirement
+    python bench/requirements_load.py --samples 10000000     memory over this many samples of one requirement
     python bench/requirements_load.py --report RUN   the time of `cratous certify RUN` with ten requirements
 
-CPU time of one core; the states of the vehicles are LMCP messages, which are read as a log's are.
+CPU time of one core; the states of the vehicles are LMCP messages, read as from a log.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ OF_ONE = (
     "airspeed_{v} <= 40 m/s until within 20 s altitude_{v} >= 100 m",
     "not (altitude_{v} < 100 m and roll_{v} > 30 deg)",
 )
-"""Requirements of each vehicle."""
+"""Requirements for each vehicle."""
 
 
 def text(vehicles: int = VEHICLES, kinds: tuple[str, ...] = OF_ONE) -> str:
-    """A file of requirements: each kind for each vehicle."""
+    """The text of a requirements file: each kind for each vehicle."""
     lines = ["trace every 100 ms gap 1 s"]
     for v in range(1, vehicles + 1):
         for name, unit, field in (
@@ -56,7 +56,7 @@ def text(vehicles: int = VEHICLES, kinds: tuple[str, ...] = OF_ONE) -> str:
 
 
 def entries(seconds: int, apart_ms: int) -> Iterator[Entry]:
-    """States of all vehicles at 10 Hz; apart_ms: how far those of two vehicles lie apart."""
+    """States of all vehicles at 10 Hz; apart_ms: time offset between successive vehicles [ms]."""
     for k in range(seconds * HZ):
         for v in range(1, VEHICLES + 1):
             time_ms = k * 1000 // HZ + (v - 1) * apart_ms
@@ -68,7 +68,7 @@ def entries(seconds: int, apart_ms: int) -> Iterator[Entry]:
 
 
 def share(apart_ms: int) -> float:
-    """CPU seconds of a second of the vehicles' time, messages read and judged."""
+    """CPU seconds per second of flight, for reading and judging the messages."""
     spec = language.read(text())
     watching = Watch(spec)
     there = list(entries(SECONDS, apart_ms))
@@ -81,12 +81,12 @@ def share(apart_ms: int) -> float:
 
 
 def memory_mb() -> float:
-    """Most memory of this process so far [MB]."""
+    """Peak memory of this process so far [MB]."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
 
 
 def long_watch(samples: int) -> None:
-    """Memory after a tenth of the samples, and after all of them."""
+    """Print the memory after a tenth of the samples, and after all of them."""
     formula = (
         language.read(
             "trace every 1 s\nsignal a, b: bool\nrequirement R: a implies eventually within 1000 s b"
@@ -103,7 +103,7 @@ def long_watch(samples: int) -> None:
 
 
 def report(run: Path) -> None:
-    """The time of `cratous certify RUN --requirements FILE` on a copy of a run's folder."""
+    """Print the time of `cratous certify RUN --requirements FILE` on a copy of a run's folder."""
     import shutil
 
     from cratous.services.cli import main

@@ -1,11 +1,11 @@
-"""Cost of a sample of the requirement monitor, by formula and horizon, on the trace of the reference.
+"""Cost per sample of the requirement monitor, by formula and horizon, on the trace of the reference.
 
-Alone: `python bench/requirements_monitor.py`. In CPU time of one core, CSV reading apart. Where rtamt 0.4.10 is
-installed (an environment of its own, see requirements.txt) it judges the same trace in the same run; it looks at
-its whole buffer at each sample, so its cost grows with the horizon. Verdicts are held against a search of the
-whole trace before anything is timed. Without ../shared a made trace of the same shape takes its place.
-The rows `compiled` are of the loops over whole columns that a trace which has ended is judged by, over the same trace
-again and again, a million samples; their verdicts are held against those sample by sample.
+On its own: `python bench/requirements_monitor.py`. In CPU time of one core, without reading the CSV. Where rtamt
+0.4.10 is installed (in a separate environment, see requirements.txt) it judges the same trace in the same run; it
+evaluates its whole buffer at each sample, so its cost grows with the horizon. Verdicts are compared with a search of
+the whole trace before anything is timed. Without ../shared a generated trace of the same shape is used. The rows
+`compiled` measure the loops over whole columns, used for complete traces, over repetitions of the same trace, a
+million samples; their verdicts are compared with those sample by sample.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ HEAD = """INPUT
 FTSPEC
 """
 BAR_US, BAR_COMPILED_US = 10.0, 1.0
-"""What a sample may cost in Python and compiled, whatever the horizon."""
+"""The most that a sample may cost in Python and compiled [us], for any horizon."""
 MANY = 1_000_000
 Row = dict[str, float | None]
 
 
 def formulas() -> dict[str, tuple[str, str]]:
-    """Name, ours in C2PO, and rtamt's."""
+    """By name, the formula in C2PO and in rtamt."""
     found = {}
     for h in (10, 60, 100, 1000):
         found[f"response within {h}"] = (
@@ -62,7 +62,7 @@ def formulas() -> dict[str, tuple[str, str]]:
 
 
 def rows() -> list[Row]:
-    """The samples of the reference's trace, or of one that is made."""
+    """The samples of the reference's trace, or of a generated one."""
     if TRACE.is_file():
         with gzip.open(TRACE, "rt") as file:
             names = file.readline().strip().split(",")
@@ -83,7 +83,7 @@ def formula_of(text: str) -> Formula:
 
 
 def cost_us(formula: Formula, trace: Iterable[Row]) -> float:
-    """CPU time of a sample [us], the least of five runs."""
+    """CPU time per sample [us], the least of five runs."""
     trace, best = list(trace), math.inf
     for _ in range(5):
         evaluation = Evaluation(formula)
@@ -95,7 +95,7 @@ def cost_us(formula: Formula, trace: Iterable[Row]) -> float:
 
 
 def columns(trace: list[Row], most: int = MANY) -> Columns:
-    """A trace again and again, as whole columns."""
+    """A repeated trace, as whole columns."""
     found = Columns(trace[0])
     for k in range(most):
         found.add(k, trace[k % len(trace)])
@@ -103,7 +103,7 @@ def columns(trace: list[Row], most: int = MANY) -> Columns:
 
 
 def compiled_us(formula: Formula, whole: Whole) -> float:
-    """CPU time of a sample where the whole trace is there [us], the least of five runs."""
+    """CPU time per sample when the whole trace is available [us], the least of five runs."""
     best = math.inf
     for _ in range(5):
         begun = time.process_time()
@@ -113,7 +113,7 @@ def compiled_us(formula: Formula, whole: Whole) -> float:
 
 
 def same(formula: Formula, trace: list[Row]) -> None:
-    """Hold the counts of verdicts over whole columns against those sample by sample."""
+    """Compare the counts of verdicts over whole columns with those sample by sample."""
     one_by_one, at_once = (Outcome(Requirement("it", "", formula), 0) for _ in range(2))
     evaluation = Evaluation(formula, blames=True)
     for at, row in enumerate(trace):
@@ -148,7 +148,7 @@ def rtamt_us(text: str, trace: list[Row]) -> float | None:
 
 
 def checked(trace: list[Row]) -> None:
-    """Hold the verdicts of one formula against a search of the whole trace."""
+    """Compare the verdicts of one formula with a search of the whole trace."""
     evaluation, got = Evaluation(formula_of(formulas()["response within 60"][0])), {}
     for at, row in enumerate(trace):
         got |= dict(evaluation.sample(at, row))
@@ -160,7 +160,7 @@ def checked(trace: list[Row]) -> None:
 
 
 def memory_kb(formula: Formula, samples: int) -> float:
-    """Most memory that the evaluation takes over so many samples [kB]."""
+    """Peak memory of the evaluation over this many samples [kB]."""
     evaluation = Evaluation(formula)
     row: Row = {"request": 1.0, "response": 0.0}
     tracemalloc.start()

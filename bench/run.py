@@ -1,10 +1,9 @@
 """Benchmarks: ratios of two things measured in one run, on one core; prints a table.
 
-The well-clear rows are those of `exact_well_clear.py` and `interval_well_clear.py`, where the
-peer is C; those of points in polygons are those of `containment.py`, by CPU time; those of messages
-are in `lmcp_codec.py`, the one of the message logger in `day_of_traffic.py`, those of routes and
-plans in `planning.py`, those of bands and alerts, against recorded figures, in `daa.py`, those of
-requirements in `requirements_monitor.py`.
+The well-clear rows are those of `exact_well_clear.py` and `interval_well_clear.py`, where the peer is C; those of
+points in polygons are those of `containment.py`, by CPU time; those of messages are in `lmcp_codec.py`, the one of
+the message logger in `day_of_traffic.py`, those of routes and plans in `planning.py`, those of bands and alerts,
+compared with recorded figures, in `daa.py`, those of requirements in `requirements_monitor.py`.
 
 `python bench/run.py --write` puts the table into bench/README.md.
 """
@@ -116,7 +115,7 @@ def table() -> str:
 
 
 def main() -> int:
-    """Measure, print, and with --write keep."""
+    """Measure, print, and with --write store the table."""
     on_one_core()
     text = table()
     print(text)

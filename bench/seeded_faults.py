@@ -1,9 +1,9 @@
-"""After how many encounters is a seeded fault found: by sampling, and by a search for small margins.
+"""The number of encounters until a seeded fault is found: by sampling, and by a search for small margins.
 
     python bench/seeded_faults.py [--starts 10] [--most 400] [--only far]
 
-A run counts only if it fails with the fault and not without. Each start has seeds of its own. Nothing is printed but
-counts, medians and CPU seconds; a start in which nothing was found counts as more than `--most`.
+A run counts only if it fails with the fault and not without. Each start has seeds of its own. Only counts, medians
+and CPU seconds are printed; a start in which nothing was found counts as more than `--most`.
 """
 
 from __future__ import annotations
@@ -58,10 +58,10 @@ CAMPAIGNS = {
         "            ranges: {time_s: [290, 300], bend_m: [-150, 150]}}\nduration_s: 600\n",
     ),
 }
-"""By case: the fault, the requirement that it breaks, and what is flown. In `far` most of the two intruders are still far away
-when the 60 s are over, so the fault seldom matters."""
+"""By case: the fault, the requirement that it breaks, and the encounters. In `far` most of the intruder pairs are
+still far away when the 60 s are over, so the fault seldom matters."""
 APART = 1_000_000
-"""Between the first seeds of two starts."""
+"""The difference between the first seeds of two starts."""
 
 
 class Found(Exception):
@@ -78,20 +78,20 @@ def campaign(case: str, start: int) -> Campaign:
 
 
 def is_found(row: Row, requirement: str) -> bool:
-    """Whether a run that fails with the fault holds without it."""
+    """Whether a run that fails with the fault satisfies the requirement without it."""
     return fails(row, requirement) and not fails(
         row_of(row.run, fly_run(row.run.decides), (requirement,)), requirement
     )
 
 
 def flown(runs: Iterable[Run], fault: str, requirement: str) -> list[Row]:
-    """The rows of runs, with the fault."""
+    """The rows of these runs with the fault."""
     with seeded(fault):
         return [row_of(run, fly_run(run.decides), (requirement,)) for run in runs]
 
 
 def sampled(case: str, start: int, most: int) -> int:
-    """After how many seeds it is found; most + 1 if it is not."""
+    """The number of samples until the fault is found; most + 1 if it is not."""
     (fault, requirement, _), runs = CAMPAIGNS[case], runs_of(campaign(case, start), "", True)
     many, near = islice(runs, most), list[tuple[int, Run]]()
     for place, run in enumerate(many, 1):
@@ -108,9 +108,11 @@ def sampled(case: str, start: int, most: int) -> int:
 
 
 def can_meet(run: Run) -> bool:
-    """Whether anybody may lose well clear before the encounter is over, whatever is flown: if not, it need not be flown.
+    """Whether well clear could be lost before the encounter is over, whatever is flown; otherwise it need not be
+    flown.
 
-    Nobody closes faster than both fly at most, and range over closing speed bounds modified tau from below.
+    The closing speed is at most the sum of the greatest speeds, and range over closing speed bounds modified tau from
+    below.
     """
     data = yaml.load(run.decides["mission"], Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
     (own,), duration_s = data["vehicles"], data["simulation"]["limit_s"]
@@ -124,7 +126,7 @@ def can_meet(run: Run) -> bool:
 
 
 def searched(case: str, start: int, most: int) -> int:
-    """After how many runs of a search, whole batches, it is found; most + 1 if it is not."""
+    """The number of runs of a search, in whole batches, until the fault is found; most + 1 if it is not."""
     (fault, requirement, _), count = CAMPAIGNS[case], 0
 
     def fly(runs: Iterable[Run]) -> list[Row]:
@@ -143,7 +145,7 @@ def searched(case: str, start: int, most: int) -> int:
 
 
 def _spared(row: Row, requirement: str) -> dict[str, Any] | None:
-    """The result, where it fails without the fault too: the search goes on, by its margin."""
+    """The result for the search; if the run fails without the fault too, its verdict is changed to `holds`."""
     if row.result is None or not fails(row, requirement):
         return row.result
     found = row.result["requirements"]

@@ -1,6 +1,6 @@
-"""How fast the simulator is: dynamics and messages (packed LMCP) of 2 and 50 aircraft, one core.
+"""The speed of the simulator: dynamics and messages (packed LMCP) of 2 and 50 aircraft, one core.
 
-    python bench/simulator.py SCENARIO.xml      a scenario with one aircraft or more
+    python bench/simulator.py SCENARIO.xml      a scenario with at least one aircraft
 
 The aircraft of the scenario are copied under other ids, with their commands.
 """
@@ -21,7 +21,7 @@ GOALS = {2: 1000, 50: 50}
 
 
 def copies(events: list[Event], count: int) -> list[Event]:
-    """The events of the scenario's first aircraft, for so many of them."""
+    """The events of the scenario's first aircraft, for `count` copies of them."""
     first = next(e.body.ID for e in events if type(e.body).__name__ == "AirVehicleConfiguration")
     return [
         event._replace(body=_named(event.body, first, k + 1))
@@ -37,7 +37,7 @@ def _named(body: Any, first: int, number: int) -> Any:
 
 
 def main(path: str) -> int:
-    """Print times faster than real time; 1 if a goal is missed."""
+    """Print the speed as a multiple of real time; returns 1 if a target is missed."""
     events, missed = read(Path(path)).events, 0
     for count, goal in GOALS.items():
         world = World(copies(events, count), 1e9)

@@ -1,4 +1,4 @@
-"""Rows of the benchmarks as a table, measured on one core."""
+"""Benchmark results as a table, measured on one core."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Rows = list[tuple[str, float, str, float]]
 
 
 def on_one_core() -> None:
-    """Keep this process on one core, where the system can."""
+    """Bind this process to one core, where the system supports it."""
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
 
@@ -22,7 +22,7 @@ def least(
     n: int,
     clock: Callable[[], float] = time.process_time,
 ) -> list[float]:
-    """Least time of each run by a clock in seconds, CPU time by default [ns for each of n], the runs taking turns."""
+    """Least time of each run by a clock in seconds, by default CPU time [ns per each of n]; the runs take turns."""
     times = [[0.0] * rounds for _ in runs]
     for k in range(rounds):
         for row, run in zip(times, runs, strict=True):
@@ -33,7 +33,7 @@ def least(
 
 
 def markdown(rows: Rows) -> list[str]:
-    """A line of the table for each row."""
+    """The table's line for each row."""
     lines = []
     for what, ours, peer, theirs in rows:
         digits = 2 if ours < 10 else 0

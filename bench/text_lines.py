@@ -1,7 +1,7 @@
 """The text protocol of the bridge: lines of heartbeats and plans to messages, on one core.
 
-`python bench/text_lines.py` prints messages a second of CPU time, as they come whole in reads of 64 KiB,
-and, for comparison, where each line is cut in two, so that it is read field by field. The bar is 100,000.
+`python bench/text_lines.py` prints messages per second of CPU time for complete lines in reads of 64 KiB, and, for
+comparison, for lines each split in two, which are read field by field. The target is 100,000.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ TIMES, REPEAT, READ_BYTES = 4000, 5, 65536
 
 
 def rate(pieces: Iterable[bytes]) -> float:
-    """Messages a second of CPU time, the best of some runs."""
+    """Messages per second of CPU time, the best of some runs."""
     given, best = list(pieces), 0.0
     for _ in range(REPEAT):
         parser, count, start = StreamParser(Direction.DOWN), 0, time.process_time()
@@ -36,7 +36,7 @@ def rate(pieces: Iterable[bytes]) -> float:
 
 
 def main() -> None:
-    """Both figures."""
+    """Print both figures."""
     on_one_core()
     data, lines = LINES * TIMES, LINES.splitlines(keepends=True) * TIMES
     whole = [data[k : k + READ_BYTES] for k in range(0, len(data), READ_BYTES)]

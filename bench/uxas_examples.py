@@ -2,12 +2,12 @@
 
     python bench/uxas_examples.py EXAMPLES [--program /path/to/uxas] [--only 99_Tasks] [--json FILE]
 
-EXAMPLES is OpenUxAS's own folder of that name. Each configuration runs as it is shipped, in a copy of its folder;
-it is given one bridge more, on which this program watches, and `cratous sim` flies the example's scenario where the
-configuration looks for OpenAMASE (ports 5555, 5560, 5561, 9800, 9900 have to be free). Once all requests are
-answered the first is sent again. Wall and CPU time are from the request to its response as they come in on that
-bridge; planned seconds are the length of each mission command from where its vehicle is, at its waypoints' speeds,
-with its loiters: the longest, and all together; peak memory is resident, of all processes of the example.
+EXAMPLES is OpenUxAS's own folder of that name. Each configuration is run as shipped, in a copy of its folder;
+an extra bridge is added, on which this program observes, and `cratous sim` flies the example's scenario where the
+configuration expects OpenAMASE (ports 5555, 5560, 5561, 9800, 9900 have to be free). Once all requests are
+answered the first is sent again. Wall and CPU time are from a request to its response as they are received on that
+bridge; planned seconds are the duration of each mission command from its vehicle's position, at its waypoints'
+speeds, with its loiters: the longest, and the total; peak memory is resident, of all processes of the example.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ REQUESTED = re.compile(r'MessageFileName="[^"]*AutomationRequest[^"]*"')
 
 
 class Answer(NamedTuple):
-    """One response: its wall and CPU time [s], how many missions, and what they take [s]."""
+    """One response: its wall and CPU time [s], the number of missions, and their durations [s]."""
 
     wall_s: float
     cpu_s: float
@@ -53,7 +53,7 @@ class Answer(NamedTuple):
 
 
 class Row(NamedTuple):
-    """What came of an example: `again` is the first request once more; memory [MB]."""
+    """The results of an example: `again` is the first request sent once more; memory [MB]."""
 
     name: str
     asked: int
@@ -63,7 +63,7 @@ class Row(NamedTuple):
 
 
 def examples(root: Path) -> Iterator[tuple[str, list[Path]]]:
-    """Each folder with its configurations, which are processes of one system; those that ask for something."""
+    """Each folder with its configurations, which are processes of one system, if one of them makes a request."""
     for folder in sorted({path.parent for path in root.rglob("*cfg*.xml")}):
         files = [p for p in sorted(folder.glob("*cfg*.xml")) if not p.name.startswith("Send")]
         if any("AutomationRequest" in path.read_text() for path in files):
@@ -71,7 +71,7 @@ def examples(root: Path) -> Iterator[tuple[str, list[Path]]]:
 
 
 def watched(text: str) -> str:
-    """A configuration with a bridge more, for all messages; the last end tag may be missing or followed by nothing."""
+    """A configuration with an added bridge for all messages; the last end tag may be missing."""
     letters = "".join(
         f'<SubscribeToMessage MessageType="{c}"/>' for c in "abcdefghijklmnopqrstuvwxyz"
     )
@@ -93,7 +93,7 @@ class Watch:
         self.places: dict[int, Any] = {}
 
     def messages(self, until: float) -> Iterator[tuple[float, float, str, bytes]]:
-        """(wall, CPU [s], type, LMCP bytes) as they come in."""
+        """(wall, CPU [s], type, LMCP bytes) of messages as they are received."""
         while (left := until - time.monotonic()) > 0:
             self._socket.settimeout(left)
             try:
@@ -112,17 +112,17 @@ class Watch:
                 yield wall, cpu, name, message.payload
 
     def send(self, name: str, body: bytes) -> None:
-        """A message to the bus."""
+        """Send a message to the bus."""
         self._socket.sendall(sentinel.frame(envelope.enclose(name, body).pack()))
 
 
 def cpu_s(processes: Sequence[subprocess.Popen[bytes]]) -> float:
-    """CPU time of running processes [s], by the clock that the system keeps for each."""
+    """CPU time of running processes [s], by the system's clock of each."""
     return sum(time.clock_gettime((~p.pid << 3) | 2) for p in processes if p.poll() is None)
 
 
 def memory_mb(processes: Sequence[subprocess.Popen[bytes]]) -> float:
-    """The most memory that running processes have held [MB]."""
+    """Peak memory of running processes [MB]."""
     total = 0.0
     for process in processes:
         status = Path(f"/proc/{process.pid}/status")
@@ -143,7 +143,7 @@ def _connected(port: int, within_s: float) -> socket.socket:
 
 
 def planned_s(response: Any, places: dict[int, Any]) -> list[float]:
-    """What each mission command of a response takes [s]."""
+    """The duration of each mission command of a response [s]."""
     found = []
     for mission in response.MissionCommandList:
         here, total = places.get(mission.VehicleID), 0.0
@@ -158,7 +158,7 @@ def planned_s(response: Any, places: dict[int, Any]) -> list[float]:
 
 
 def apart_m(a: Any, b: Any) -> float:
-    """Distance of two places over the ground, on a sphere and flat between them [m]."""
+    """Horizontal distance of two positions, on a local flat approximation of a sphere [m]."""
     middle = math.radians((a.Latitude + b.Latitude) / 2)
     north, east = b.Latitude - a.Latitude, (b.Longitude - a.Longitude) * math.cos(middle)
     return EARTH_M * math.radians(math.hypot(north, east))
@@ -167,7 +167,7 @@ def apart_m(a: Any, b: Any) -> float:
 def answer(
     watch: Watch, asked: tuple[float, float], got: tuple[float, float], body: bytes
 ) -> Answer:
-    """What a response says, and how long it took."""
+    """The content of a response, and the time it took."""
     response = lmcp.binary.received(body)[0]
     response = getattr(response, "OriginalResponse", response)
     times = planned_s(response, watch.places)
@@ -179,7 +179,7 @@ def answer(
 def followed(
     watch: Watch, expected: int, patience_s: float
 ) -> tuple[int, list[Answer], Answer | None]:
-    """Requests, their answers, and the answer to the first when it is sent again."""
+    """The number of requests, their answers, and the answer to the first when it is sent again."""
     asked: list[tuple[float, float]] = []
     answers: list[Answer] = []
     first: tuple[str, bytes] | None = None
@@ -242,7 +242,7 @@ def row(name: str, files: Sequence[Path], program: Sequence[str]) -> Row:
 
 
 def started(program: Sequence[str], folder: Path, name: str) -> subprocess.Popen[bytes]:
-    """One process of an example, in a folder beside its messages."""
+    """Start one process of an example, in a folder beside its messages."""
     run = folder / f"RUNDIR_{name}"
     (run / "log").mkdir(parents=True)
     out = subprocess.DEVNULL
@@ -250,7 +250,7 @@ def started(program: Sequence[str], folder: Path, name: str) -> subprocess.Popen
 
 
 def started_simulator(folder: Path, texts: Sequence[str]) -> list[subprocess.Popen[bytes]]:
-    """The simulator with the example's scenario, if a configuration looks for one."""
+    """Start the simulator with the example's scenario, if a configuration expects one."""
     ports = [p for p in ("5555", "9800", "9900") if any(f"127.0.0.1:{p}" in t for t in texts)]
     scenarios = [p for p in sorted(folder.glob("*.xml")) if "scenario" in p.name.lower()]
     if not ports or not scenarios:

@@ -3,10 +3,10 @@
     python bench/uxas_flown.py EXAMPLE [--simulator "COMMAND {scenario}"] [--program /path/to/uxas] [--limit S] [--ready S]
 
 EXAMPLE is a folder with one configuration and one scenario. The simulator, `cratous sim` at five times real time or
-the command given, has to listen on port 5555, to begin at a line on its input or by itself, and to say footprints in
-its states, as OpenAMASE does. From the response on: seconds until the last TaskComplete; how far each state lies from
-the legs of the mission command about the waypoint that it makes for; and which share of the tasks' lines and areas,
-in points 12 m apart, lies within the simulator's own footprints.
+the command given, has to listen on port 5555, start on a line on its input or by itself, and include footprints in
+its states, as OpenAMASE does. From the response on: seconds until the last TaskComplete; the distance of each state
+from the legs of the mission command adjacent to its current waypoint; and the share of the tasks' lines and areas,
+in points 12 m apart, that lies within the simulator's own footprints.
 """
 
 from __future__ import annotations
@@ -36,24 +36,26 @@ SIMULATOR = (
 )
 LISTENS_S = 60.0
 MET_M = 20.0
-"""So near to its path a vehicle has met it: it flies on until the plan comes, the farther the faster time runs."""
+"""Within this distance a vehicle has reached its path; before the plan arrives it flies on, the farther the faster
+time runs."""
 
 
 class Plane(NamedTuple):
-    """A flat picture of the ground about a place [degrees]."""
+    """A local flat projection about a position [degrees]."""
 
     latitude: float
     longitude: float
 
     def of(self, places: Iterable[Any]) -> np.ndarray:
-        """North and east [m], a row for each place."""
+        """North and east [m], one row per position."""
         east = math.cos(math.radians(self.latitude))
         rows = [(p.Latitude - self.latitude, (p.Longitude - self.longitude) * east) for p in places]
         return EARTH_M * np.radians(np.array(rows, dtype=float).reshape(-1, 2))
 
 
 class Flight(NamedTuple):
-    """What the bus said: the newest of each object by kind and id, states from the response on, ends of tasks [ms]."""
+    """Messages on the bus: the newest of each object by kind and id, states from the response on, ends of tasks
+    [ms]."""
 
     told: dict[tuple[str, int], Any]
     response: Any
@@ -62,14 +64,14 @@ class Flight(NamedTuple):
 
 
 def followed(watch: Watch, limit_s: float) -> Flight:
-    """Until all tasks are complete, or as many seconds have been flown."""
+    """Observe until all tasks are complete, or for limit_s seconds of flight."""
     flight = Flight({}, None, [], {})
     for _, _, name, payload in watch.messages(time.monotonic() + 4 * limit_s):
         body = lmcp.binary.received(payload)[0]
         kind = name.rpartition(".")[2]
         if name in RESPONSES and flight.response is None:
             response = getattr(body, "OriginalResponse", body)
-            # one without a mission is not flown: another request may be answered
+            # a response without a mission is not flown: another request may be answered
             flight = flight._replace(response=response if response.MissionCommandList else None)
         elif kind == "TaskComplete":
             flight.ends_ms[body.TaskID] = body.TimeTaskCompleted
@@ -93,8 +95,8 @@ def followed(watch: Watch, limit_s: float) -> Flight:
 
 
 def off_path_m(flight: Flight, plane: Plane) -> np.ndarray:
-    """How far each state of a vehicle with a mission lies from the legs about its waypoint, from where it has met its
-    path until it makes for the last waypoint."""
+    """Distance [m] of each state of a vehicle with a mission from the legs adjacent to its waypoint, from when it has
+    reached its path until it heads for the last waypoint."""
     found: list[float] = []
     for command in flight.response.MissionCommandList:
         own = [s for s in flight.states if command.VehicleID == s.ID]
@@ -121,7 +123,7 @@ def _apart(here: np.ndarray, a: np.ndarray, b: np.ndarray) -> float:
 
 
 def wanted(task: Any, told: dict[tuple[str, int], Any], plane: Plane) -> np.ndarray:
-    """Points of what a task has looked at: of its line or area, or its place; none of other tasks."""
+    """Points that a task was to look at: of its line or area, or its position; none for other tasks."""
     line = getattr(task, "PointList", None)
     if hasattr(task, "LineID"):
         line = told["LineOfInterest", task.LineID].Line
@@ -161,7 +163,7 @@ def _within(area: Any, plane: Plane) -> np.ndarray:
 
 
 def _inside(points: np.ndarray, ring: np.ndarray) -> np.ndarray:
-    """Which points lie inside a ring, by how often a way to the east crosses it."""
+    """Which points lie inside a ring, by the number of its crossings with a ray to the east."""
     inside = np.zeros(len(points), dtype=bool)
     for (n1, e1), (n2, e2) in zip(ring, np.roll(ring, -1, axis=0), strict=True):
         if n1 != n2:
@@ -171,7 +173,7 @@ def _inside(points: np.ndarray, ring: np.ndarray) -> np.ndarray:
 
 
 def seen(points: np.ndarray, flight: Flight, plane: Plane) -> float:
-    """The share of points inside some footprint that a state has told."""
+    """The share of the points inside some footprint of the states."""
     left = points
     for state in flight.states:
         for payload in state.PayloadStateList:
@@ -213,7 +215,7 @@ def measured(name: str, flight: Flight) -> str:
 def flown(
     folder: Path, program: Sequence[str], simulator: str, limit_s: float, ready_s: float
 ) -> Flight:
-    """Run one example in a copy of its folder. ready_s: so long the program has before time begins to go."""
+    """Run one example in a copy of its folder. ready_s: time that the program has before the simulation starts [s]."""
     running: list[subprocess.Popen[Any]] = []
     with tempfile.TemporaryDirectory() as made:
         copy = Path(made) / "example"
@@ -241,7 +243,7 @@ def flown(
 
 
 def _listens(port: int) -> None:
-    """Wait until a port is listened on, and do not connect to it: a simulator may count its clients."""
+    """Wait until a port is listened on, without connecting to it: a simulator may count its clients."""
     end, wanted_port = time.monotonic() + LISTENS_S, f":{port:04X}"
     while time.monotonic() < end:
         for table in ("/proc/net/tcp", "/proc/net/tcp6"):

@@ -1,4 +1,4 @@
-"""The wires: LMCP and the CRATOUS text protocol."""
+"""The wire formats and connections: LMCP and the CRATOUS text protocol."""
 
 if __name__ != "cratous.bridge":
     raise ImportError(

@@ -1,7 +1,7 @@
 """The checksum of LMCP messages and of sentinel frames: the plain sum of the bytes, modulo 2^32.
 
-CPython adds bytes one object at a time. The lower half of Adler-32, started at 0, is the same sum
-modulo 65521, and 256 bytes cannot reach that: so pieces of 256 bytes are summed in C, exactly.
+CPython adds bytes one object at a time. The lower half of Adler-32, started at 0, is the same sum modulo 65521, which
+256 bytes cannot reach: so pieces of 256 bytes are summed in C, exactly.
 """
 
 from __future__ import annotations

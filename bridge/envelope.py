@@ -1,11 +1,11 @@
-"""The envelope of a message on the bus of UxAS, as it stands in ZeroMQ and sentinel frames.
+"""The envelope of a message on the bus of UxAS, as used in ZeroMQ and sentinel frames.
 
     address$contentType|descriptor|sourceGroup|sourceEntityId|sourceServiceId$payload
 
-The address is what subscriptions match: normally the full type name of the payload, also a
-service's or a group's address. Content type `lmcp` says that the payload is an LMCP message, the
-descriptor is its full type name. The first two `$` count: the payload may hold any bytes. Ids are
-texts, kept as they came, so that a message that passes through leaves as it arrived.
+Subscriptions match the address: normally the full type name of the payload, also the address of a
+service or group. Content type `lmcp` says that the payload is an LMCP message, the descriptor is its
+full type name. Only the first two `$` are separators: the payload may contain any bytes. Ids are
+kept as the text received, so that a message that is passed on leaves as it arrived.
 Format: UxAS 3.2 (AddressedAttributedMessage).
 """
 
@@ -17,8 +17,8 @@ from cratous.spec.errors import BadInput
 
 LMCP = "lmcp"
 ATTRIBUTES = ("contentType", "descriptor", "sourceGroup", "sourceEntityId", "sourceServiceId")
-MAX_HEADER = 4096  # bytes of address and attributes together, with their `$`
-_MIN = 11  # bytes, as UxAS has it
+MAX_HEADER = 4096  # limit for address and attributes together, including their `$` [bytes]
+_MIN = 11  # [bytes], as in UxAS
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,7 @@
-"""The bridge of one process over connections that fail, in virtual time: the same faults for the same seed.
+"""The bridge of one process over failing connections, in virtual time: the same faults for the same seed.
 
-Lines are what fails: they are changed, held back and dropped before they go to the sockets, so the parsers
-read what a broken wire would give them. The handshake of a connection that is opened anew is left alone.
+Faults act on lines: they are changed, delayed and dropped before they reach the sockets, so the parsers read what a
+faulty link would deliver. The handshake of a reopened connection is not affected.
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ from cratous.bridge.text_protocol.messages import Direction, SetMode
 from cratous.spec.mission.bridge_faults import BridgeFaults
 
 MOST_WAITING = 65536
-"""Bytes that wait for a peer that does not read; with more its connection breaks."""
+"""The most bytes waiting for a peer that does not read; beyond it the connection breaks."""
 EPOCHS = 6
-"""Forged modes are of the epochs below this."""
+"""Forged modes carry epochs below this."""
 
 
 class _Waiting(NamedTuple):
-    """Bytes on their way to one end, which arrive at the first exchange from `due_ms` on."""
+    """Bytes in transit to one end, which arrive at the first exchange from `due_ms` on."""
 
     due_ms: int
     data: bytes
 
 
 class FailingWay:
-    """Lines of one vehicle's connection in one direction: lost, changed, repeated and held back as `faults` says."""
+    """Lines of one vehicle's connection in one direction: lost, changed, repeated and delayed according to `faults`."""
 
     def __init__(self, faults: BridgeFaults, vehicle_id: int, direction: Direction) -> None:
         self._faults, self._direction = faults, direction
@@ -42,7 +42,7 @@ class FailingWay:
         if draw.random() < faults.loss:
             return
         if draw.random() < faults.truncation:
-            if len(data) < 2:  # of an empty line nothing is left
+            if len(data) < 2:  # an empty line has no byte to lose
                 return
             data = data[: draw.randrange(1, len(data))]
         if draw.random() < faults.corruption:
@@ -121,21 +121,21 @@ class FaultyBridge(Bridge):
         return True
 
     def _break(self, vid: int) -> None:
-        """The end of a connection: what was on its way is lost."""
+        """A connection ends: its lines in transit are lost."""
         for direction in Direction:
             self._ways[vid, direction].clear()
         if self.alive(vid):
             self.cut(vid)
 
     def _hand_over(self, vehicle_id: int, direction: Direction, data: bytes) -> bool:
-        """Let a line be lost, changed, repeated or delayed; False if the connection is dead."""
+        """Apply the faults to a line in transit; False if the connection is dead."""
         if not self.alive(vehicle_id):
             return False
         self._ways[vehicle_id, direction].take(data, self.now_ms)
         return True
 
     def _transmit(self) -> None:
-        """Give to the sockets what is due; what comes of it is in the exchange that follows."""
+        """Pass the lines that are due to the sockets; the exchange that follows delivers them."""
         for (vid, direction), way in self._ways.items():
             if direction is Direction.UP and (line := way.forged()):
                 super()._hand_over(vid, Direction.UP, line)

@@ -1,10 +1,9 @@
 """TCP over loopback without threads, timers or blocking, for virtual time.
 
-A `Link` is one end of a connection. When both ends live in this process they know each other as
-`peer`, and `pump` moves bytes until every byte that one end sent has reached the other, so what a
-step delivers does not depend on the operating system's timing. The wall clock serves only as a
-watchdog that gives up. A link that ends says so in `ended`; nothing here raises because a peer
-went away.
+A `Link` is one end of a connection. When both ends are in this process they know each other as `peer`, and `pump`
+moves bytes until every byte that one end sent has reached the other, so what a step delivers does not depend on the
+operating system's timing. The wall clock is used only as a watchdog. A link that ends reports it in `ended`; nothing
+here raises because a peer disconnected.
 """
 
 from __future__ import annotations
@@ -24,14 +23,14 @@ MAX_PENDING = 16 * 1024 * 1024
 
 
 class LinkStalled(CratousError):
-    """No byte moved for the watchdog's time although some were sent and had not arrived."""
+    """No byte moved within the watchdog's time although some had been sent and had not arrived."""
 
     exit_code = 3
 
 
 @dataclass(frozen=True)
 class LinkEvent:
-    """The end of a link: `eof` when the peer closed it, `error` with what the system said."""
+    """The end of a link: `eof` when the peer closed it, `error` with the system's message."""
 
     kind: str
     detail: str = ""
@@ -47,7 +46,7 @@ class Link:
         self._out = bytearray()
         self._in = bytearray()
         self.peer: Link | None = None
-        self.sent = 0  # accepted by `send`; those still in our buffer included
+        self.sent = 0  # bytes accepted by `send`, including those still in our buffer
         self.received = 0
         self.ended: LinkEvent | None = None
         self.closed = False
@@ -71,7 +70,7 @@ class Link:
 
     @property
     def remote_name(self) -> str:
-        """The other end's address as text; remembered, so that it is there after the peer has gone."""
+        """The other end's address as text; cached, so that it is available after the peer has gone."""
         try:
             return ":".join(map(str, self.remote))
         except OSError:
@@ -79,7 +78,7 @@ class Link:
 
     @property
     def itself(self) -> bool:
-        """True for a socket connected to itself: the system may give a client the very port that it connects to."""
+        """True for a socket connected to itself: the system may assign a client the port that it connects to."""
         try:
             return self.local == self.remote
         except OSError:
@@ -92,7 +91,7 @@ class Link:
 
     @property
     def unread(self) -> int | None:
-        """Bytes delivered to the peer that its program has not read yet; None where the system does not tell."""
+        """Bytes delivered to the peer that its program has not read yet; None where the system does not report it."""
         return unread_by_peer(self._sock)
 
     def send(self, data: bytes) -> bool:
@@ -122,9 +121,9 @@ class Link:
         return count > 0
 
     def drain(self, chunks: int | None = None) -> bool:
-        """Read all that has arrived into the inbox; True if anything did, the end included.
+        """Read all that has arrived into the inbox; True if anything did, including the end of the connection.
 
-        chunks: at most so many reads, so that a fast peer leaves time for the others.
+        chunks: the most reads, so that a fast peer leaves time for the others.
         """
         moved = False
         for _ in itertools.count() if chunks is None else range(chunks):
@@ -156,7 +155,7 @@ class Link:
         if not self.alive:
             return False
         if self.peer is None or not self.peer.alive:
-            return True  # unknown, or its end is still to be seen
+            return True  # unknown, or the end of the connection is still to be read
         return self.received < self.peer.sent
 
     def close(self) -> None:
@@ -175,7 +174,7 @@ class Link:
 
     def _end(self, kind: str, detail: str) -> None:
         self.ended = LinkEvent(kind, detail)
-        self.sent -= len(self._out)  # what the system did not take will never arrive
+        self.sent -= len(self._out)  # the bytes that the system did not accept will never arrive
         self._out.clear()
 
 
@@ -239,7 +238,7 @@ def connect(address: tuple[str, int], timeout_s: float = 10.0) -> Link:
 
 
 def connect_later(address: tuple[str, int]) -> Link:
-    """The client end of a connection that is still being established; failure is told as the link's end."""
+    """The client end of a connection still being established; a failure is reported as the link's end."""
     host, _ = address
     sock = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET, socket.SOCK_STREAM)
     sock.setblocking(False)
@@ -247,7 +246,7 @@ def connect_later(address: tuple[str, int]) -> Link:
     try:
         sock.connect(address)
     except BlockingIOError:
-        pass  # on its way
+        pass  # in progress
     except OSError as err:
         link.ended = LinkEvent("error", err.strerror or str(err))
     return link
@@ -256,7 +255,7 @@ def connect_later(address: tuple[str, int]) -> Link:
 def connect_pair(listener: Listener, timeout_s: float = 10.0) -> tuple[Link, Link]:
     """(server end, client end) of a new connection to our own listener, known to each other.
 
-    timeout_s: limit [s]. Connections of other programs that arrive in between are closed.
+    timeout_s: limit [s]. Connections of other programs that arrive in the meantime are closed.
     """
     client = connect(listener.address, timeout_s)
     deadline = time.monotonic() + timeout_s

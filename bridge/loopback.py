@@ -1,9 +1,8 @@
-"""The CRATOUS bridge of one process: for each vehicle a real TCP connection on loopback.
+"""The CRATOUS bridge within one process: for each vehicle a real TCP connection on loopback.
 
-UxAS has the server ends, every ICAROUS instance a client end. Messages are queued by
-`to_icarous` and `to_uxas` and delivered by `exchange`, once per virtual step, sorted by vehicle,
-direction and order of sending. Ports, the order of accepting and the wall clock reach nothing
-that is delivered; cutting the bytes anywhere (`segmenter`) changes nothing either.
+UxAS has the server ends, every ICAROUS instance a client end. Messages are queued by `to_icarous` and `to_uxas` and
+delivered by `exchange`, once per virtual step, sorted by vehicle, direction and order of sending. Ports, the order of
+accepting and the wall clock do not affect what is delivered; nor does how the bytes are segmented (`segmenter`).
 """
 
 from __future__ import annotations
@@ -37,11 +36,11 @@ _HANDSHAKE_ROUNDS = 8
 
 
 class BridgeError(CratousError):
-    """The bridge could not be opened; the text says what the two ends disagree on."""
+    """The bridge could not be opened; the text gives the disagreement between the two ends."""
 
 
 class Delivered(NamedTuple):
-    """One arrival: a message, a line that was skipped or refused, or the end of the connection."""
+    """One delivery: a message, a line that was skipped or refused, or the end of the connection."""
 
     vehicle_id: int
     direction: Direction
@@ -57,7 +56,7 @@ class Counters:
 
 
 class _End:
-    """One end of one connection: what it sends, and the parser of what comes in."""
+    """One end of one connection: what it sends, and the parser of what it receives."""
 
     def __init__(self, link: Link, parser: StreamParser, segmenter: Segmenter | None) -> None:
         self.link, self._parser, self._segmenter = link, parser, segmenter
@@ -72,7 +71,7 @@ class _End:
         return self._segmenter(data) if self._segmenter and data else (data,)
 
     def records(self, rest: bytes = b"") -> list[Record | LinkEvent]:
-        """What has arrived since the last call, the end of the link once and last."""
+        """Records received since the last call; the end of the link once, as the last record."""
         records: list[Record | LinkEvent] = []
         for piece in (rest, *self.pieces()):
             records += self._parser.feed(piece)
@@ -84,11 +83,10 @@ class _End:
 
 
 class Bridge:
-    """Connections for some vehicles, opened and shaken hands at once.
+    """Connections for some vehicles, opened with their handshakes done.
 
-    secret: 64 hexadecimal characters, no security measure. limits: the largest counts that both
-    parsers accept (`ORIGINAL_LIMITS` for what the original can hold). segmenter: cuts what is sent
-    and what is read, for tests.
+    secret: 64 hexadecimal characters, no security measure. limits: the largest counts that both parsers accept
+    (`ORIGINAL_LIMITS` for the capacity of the original). segmenter: splits what is sent and what is read, for tests.
     """
 
     def __init__(
@@ -111,7 +109,7 @@ class Bridge:
             )
         self._limits, self._watchdog_s = limits, watchdog_s
         self._secret, self._segmenter = secret, segmenter
-        self.now_ms = 0  # virtual time, kept by whoever exchanges; only faults depend on it
+        self.now_ms = 0  # virtual time, set by the caller of `exchange`; only faults use it
         self.counters = {direction: Counters() for direction in Direction}
         self._uxas: dict[int, _End] = {}
         self._icarous: dict[int, _End] = {}
@@ -160,13 +158,13 @@ class Bridge:
         return self._uxas[vehicle_id].link.alive and self._icarous[vehicle_id].link.alive
 
     def cut(self, vehicle_id: int) -> None:
-        """Break a vehicle's connection as a lost link would; what was sent before still arrives."""
+        """Break a vehicle's connection like a lost link; what was sent before still arrives."""
         pump(self._links, self._watchdog_s)  # unread bytes would turn the end of file into a reset
         self._icarous[vehicle_id].link.close()
         pump(self._links, self._watchdog_s)
 
     def reopen(self, vehicle_ids: Sequence[int]) -> None:
-        """New connections for vehicles whose connections are broken, with a handshake of their own."""
+        """Open new connections for vehicles whose connections are broken, each with a handshake."""
         for vid in vehicle_ids:
             for end in (self._uxas[vid], self._icarous[vid]):
                 end.link.close()
@@ -186,7 +184,7 @@ class Bridge:
         self.close()
 
     def _hand_over(self, vehicle_id: int, direction: Direction, data: bytes) -> bool:
-        """Give the bytes of a line to the sending end's socket; False if the link is dead."""
+        """Pass the bytes of a line to the sending end's socket; False if the link is dead."""
         ends = self._uxas if direction is Direction.DOWN else self._icarous
         return ends[vehicle_id].send(data)
 
@@ -206,7 +204,7 @@ class Bridge:
                 expected=direction.value,
                 got=direction_of(message).value,
             )
-        # what many are told is one object, encoded once
+        # a message to many vehicles is one object, encoded once
         before, data = self._encoded.get(id(message), (None, b""))
         if before is not message:
             data = encode(message, limits=self._limits)

@@ -1,7 +1,7 @@
 """Datagrams to a group of programs on this machine: UDP multicast on the loopback interface, both ways on one socket.
 
-What the network loses nobody can count. Whoever is on this machine can send to the group: what comes is to be
-authenticated, and of what comes too fast the system drops the rest before it is read.
+Losses in the network cannot be counted. Any program on this machine can send to the group, so received datagrams have
+to be authenticated; if they arrive too fast the system drops some before they are read.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from cratous.bridge.port import LOOPBACK, Address, Report, Tally
 from cratous.spec.errors import BadInput
 
 MOST_READ = 200
-"""So many datagrams are read at once, so that a flood leaves time for other links."""
+"""The most datagrams read in one step, so that a flood leaves time for other links."""
 _LONGEST = 65536
 _KEPT_BYTES = 1 << 20
 
@@ -22,7 +22,7 @@ class MulticastPort:
     """One UDP socket of a multicast group; see the module."""
 
     def __init__(self, where: Address, report: Report = lambda _severity, _text: None) -> None:
-        """BadInput if `where` is no group, or cannot be joined."""
+        """Raises BadInput if `where` is not a multicast group, or cannot be joined."""
         try:
             group = ip_address(where.host)
         except ValueError:
@@ -68,7 +68,7 @@ class MulticastPort:
         for _ in range(MOST_READ):
             try:
                 found.append(self._socket.recv(_LONGEST))
-            except OSError:  # nothing is there, or an earlier datagram was not taken
+            except OSError:  # nothing has arrived, or an earlier datagram was not accepted
                 break
         self.counts.received += len(found)
         return found
@@ -83,7 +83,7 @@ class MulticastPort:
         self.counts.sent += 1
 
     def refuse(self, why: str, detail: str) -> None:
-        """Count a dropped datagram under `why` and report it at its 1st, 2nd, 4th, 8th... time; detail: of this one."""
+        """Count a dropped datagram under `why`; reported at its 1st, 2nd, 4th, 8th... occurrence with `detail`."""
         self._tally.refuse(why, detail)
 
     def close(self) -> None:

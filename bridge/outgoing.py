@@ -1,4 +1,4 @@
-"""What waits to be written to one peer: whole messages, of which the first may be half gone."""
+"""The queue of data for one peer: whole messages, of which the first may be partly written."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections import deque
 
 
 class Outgoing:
-    """Queue of messages for one peer; `waiting`: bytes that are not written yet."""
+    """Queue of messages for one peer; `waiting`: number of bytes not written yet."""
 
     def __init__(self) -> None:
         self._messages: deque[bytes] = deque()
@@ -14,7 +14,7 @@ class Outgoing:
         self.waiting = 0
 
     def __len__(self) -> int:
-        """How many messages are not wholly gone."""
+        """The number of messages not completely written."""
         return len(self._messages)
 
     def put(self, message: bytes) -> None:

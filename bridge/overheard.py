@@ -1,8 +1,8 @@
-"""What the two ends of a CRATOUS connection say, read beside them by who takes no part in it.
+"""Decodes both directions of a CRATOUS connection for an observer who takes no part in it.
 
-Who of the two is UxAS's end, and the dialect, their opening tells. Packets of v2 are judged by the vehicle's key where that
-is here; without it their lines are read and not authenticated, as are those of the dialects without keys. Nothing
-raises because of what comes: what cannot be read is a `WireError`.
+The opening tells which end is UxAS's, and the dialect. Packets of v2 are verified with the vehicle's key where it is
+available; without it their lines are read unauthenticated, like those of the dialects without keys. Nothing raises
+because of received data: what cannot be read is a `WireError`.
 """
 
 from __future__ import annotations
@@ -35,19 +35,19 @@ from cratous.bridge.text_protocol.sealed import (
 KeyOf = Callable[[int], bytes | None]
 MOST_OPENING = 2 * MOST_LINE
 UNJUDGED = 10**18
-"""What the other end has sent is not for this one to know, so any acknowledgement of it is taken."""
+"""The number of packets sent by the other end is unknown here, so any acknowledgement is accepted."""
 NO_OPENING, REFUSED = "not the opening of a CRATOUS bridge", "the opening was refused"
 
 
 class Said(NamedTuple):
-    """A record with its direction; direction None: what is wrong with the connection itself."""
+    """A record with its direction; direction None: an error of the connection itself."""
 
     direction: Direction | None
     record: Record
 
 
 class _Lines:
-    """One direction of a dialect without keys, which its first line tells."""
+    """One direction of a dialect without keys; the first line tells which one."""
 
     def __init__(self, direction: Direction) -> None:
         self._direction, self._held = direction, b""
@@ -65,13 +65,13 @@ class _Lines:
         return self._parser.feed(data)
 
     def skip(self) -> None:
-        """Bytes are missing here: what is whole again begins with the next line."""
+        """Bytes are missing here: decoding resumes at the next complete line."""
         if self._parser is not None:
-            self._parser.feed(b"\x00")  # the line that was cut is none
+            self._parser.feed(b"\x00")  # makes the truncated line invalid
 
 
 class _Packets:
-    """One direction of v2; by the seal, or without a key by checksums alone."""
+    """One direction of v2: verified by its seal, or without a key by checksums alone."""
 
     def __init__(self, direction: Direction, seal: Seal | None) -> None:
         self._seal, self._part = seal, b""
@@ -98,7 +98,7 @@ class _Packets:
         return [*self._parser.feed(lines), *wrong]
 
     def skip(self) -> None:
-        """Packets are missing here: their numbers are not to be followed any more."""
+        """Packets are missing here: their sequence numbers are no longer checked."""
         self._seal, self._part = None, b"\x00"
 
 
@@ -107,17 +107,17 @@ def _parser(direction: Direction, dialect: Dialect) -> StreamParser:
 
 
 class Overheard:
-    """Decoder of one connection watched from outside.
+    """Decoder of one connection observed from outside.
 
-    vehicle_id: 0 until a message tells it. authenticated: packets are verified with the vehicle's key.
+    vehicle_id: 0 until a message gives it. authenticated: packets are verified with the vehicle's key.
     """
 
     def __init__(self, key_of: KeyOf = lambda _vehicle: None) -> None:
-        """key_of: the key of a vehicle, None where there is none here."""
+        """key_of: returns the key of a vehicle, None if it is not available here."""
         self._key_of = key_of
         self.vehicle_id, self.authenticated, self.over = 0, False, False
         self.other_key = False
-        """The key of its vehicle here is not that by which the two ends speak."""
+        """True if the vehicle's key available here is not the one that the two ends use."""
         self._held = {True: b"", False: b""}
         self._ways: dict[bool, tuple[Direction, _Lines | _Packets]] = {}
 
@@ -127,7 +127,7 @@ class Overheard:
         return bool(self._ways)
 
     def feed(self, near: bool, data: bytes) -> list[Said]:
-        """The records of the next bytes; near: sent by the end that connected, else by the end that listens."""
+        """The records of the next bytes; near: sent by the end that connected, otherwise by the end that listens."""
         if self.over:
             return []
         if not self._ways:
@@ -140,7 +140,7 @@ class Overheard:
         return found
 
     def skip(self) -> None:
-        """Bytes were not copied: decoding resumes at the next whole line; nothing is authenticated any more."""
+        """Bytes were not copied: decoding resumes at the next complete line, unauthenticated from now on."""
         self.authenticated = False
         for _, way in self._ways.values():
             way.skip()
@@ -152,9 +152,9 @@ class Overheard:
             self.vehicle_id = self.vehicle_id or record.vehicle_id
 
     def _opening(self) -> list[Said]:
-        """Go on with the opening; what came with its end is read."""
+        """Continue with the opening; bytes received after it are decoded."""
         begun = {uxas: way for uxas in (False, True) if (way := self._begun(self._held[uxas]))}
-        if len(begun) == 2:  # both would be UxAS's end
+        if len(begun) == 2:  # both claim to be UxAS's end
             return self._fail(NO_OPENING)
         for uxas, way in begun.items():
             return way(uxas)
@@ -165,7 +165,7 @@ class Overheard:
         return self._fail(NO_OPENING)
 
     def _begun(self, text: bytes) -> Callable[[bool], list[Said]] | None:
-        """How to go on with what an end has said, if it speaks as UxAS's end does."""
+        """The continuation for an end that opens like UxAS's; None for any other text."""
         if text.startswith(HELLO):
             return self._plain
         line, newline, _ = text.partition(b"\n")
@@ -224,7 +224,7 @@ class Overheard:
 
     def _fail(self, why: str) -> list[Said]:
         held = [text for text in self._held.values() if text]
-        # what answers an opening may hold a secret
+        # the answer to an opening may contain a secret
         shown = ascii(held[0][:20])[1:] if why == NO_OPENING and len(held) == 1 else ""
         self.over, self._held = True, {}
         return [Said(None, WireError(1, 1, why, "the dialects without keys, or v2", shown))]

@@ -1,8 +1,8 @@
-"""What all ports to the outside have in common: addresses, limits, counts, the loop's interface.
+"""What all ports to the outside have in common: addresses, limits, counts, the interface to the event loop.
 
-A port moves bytes between sockets and lists, without threads and without ever blocking. `step`
-gives what has arrived; `send` takes or loses at once, and what it loses is counted and reported.
-The runtime polls `handles` and calls `step` when one of them is ready or `due_s` has come.
+A port moves bytes between sockets and lists, without threads and without ever blocking. `step` returns what has
+arrived; `send` accepts or discards at once, and discarded messages are counted and reported. The runtime polls
+`handles` and calls `step` when one of them is ready or `due_s` has come.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Address(NamedTuple):
 
     @property
     def loopback(self) -> bool:
-        """True if it can be reached from this machine alone."""
+        """True if it can be reached from this machine only."""
         with suppress(ValueError):
             return ip_address(self.host).is_loopback
         return self.host == "localhost"  # any other name may be that of another machine
@@ -57,9 +57,9 @@ class Address(NamedTuple):
 class Limits:
     """Resource limits of a port.
 
-    payload_bytes: longest message; waiting_bytes: most that is queued for one peer that does not read;
-    when_full: which message is lost then, or that the peer is dropped; frame_s: how long one frame may
-    take to arrive [s]; connections: peers at once; held_bytes: incomplete frames of all peers together.
+    payload_bytes: longest message; waiting_bytes: most that is queued for one peer that does not read; when_full:
+    which message is then discarded, or that the peer is dropped; frame_s: longest time for one frame to arrive [s];
+    connections: peers at once; held_bytes: incomplete frames of all peers together.
     """
 
     payload_bytes: int = 16 * 1024 * 1024
@@ -68,7 +68,7 @@ class Limits:
     frame_s: float = 30.0
     connections: int = 2000
     held_bytes: int = 64 * 1024 * 1024
-    high_water: int = 100_000  # messages in a ZeroMQ socket, as UxAS has it
+    high_water: int = 100_000  # messages in a ZeroMQ socket, as in UxAS
 
 
 @dataclass
@@ -103,7 +103,7 @@ class Port(Protocol):
 
     @property
     def due_s(self) -> float | None:
-        """When `step` has something to do even if no bytes arrive [s, monotonic clock]; None: never."""
+        """When `step` must be called even if no bytes arrive [s, monotonic clock]; None: not needed."""
 
     def handles(self) -> list[tuple[Any, int]]:
         """Sockets or file descriptors to poll, each with its zmq.POLLIN / POLLOUT flags."""
@@ -155,9 +155,9 @@ class Tally:
 def address(
     text: str, schemes: tuple[str, ...], *, where: str = "", item: str = "", free: bool = False
 ) -> Address:
-    """A socket's address, e.g. `tcp://127.0.0.1:5555`, `ipc:///run/user/x`, `inproc://hub`, else BadInput.
+    """A socket's address, e.g. `tcp://127.0.0.1:5555`, `ipc:///run/user/x`, `inproc://hub`; else BadInput.
 
-    `zmq://127.0.0.1:5560` is of a ZeroMQ socket on TCP, where plain TCP may be meant as well.
+    `zmq://127.0.0.1:5560` is a ZeroMQ socket on TCP, where plain TCP would be possible too.
 
     free: port 0 (chosen by the system) is allowed.
     """
@@ -169,7 +169,7 @@ def address(
     if scheme not in schemes or not rest:
         raise wrong
     if scheme in ("ipc", "inproc"):
-        if scheme == "ipc" and len(rest.encode()) > 100:  # of the operating system
+        if scheme == "ipc" and len(rest.encode()) > 100:  # limit of the operating system
             raise BadInput("path too long", where=where, item=item, expected="100 bytes", got=text)
         return Address(scheme, rest, 0, text)
     match = _ADDRESS.fullmatch(text)

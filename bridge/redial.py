@@ -1,5 +1,5 @@
-"""Connections that are made again whenever they end, with longer and longer pauses; waiting for nothing but the
-look-up of a host's name."""
+"""Connections that are re-established whenever they end, with increasing pauses; blocks only for the look-up of a
+host name."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ PAUSE_S = (0.1, 2.0)
 class _Target:
     where: Address
     key: int | None = None
-    again_s: float | None = None  # None: at once
+    again_s: float | None = None  # None: immediately
     pause_s: float = PAUSE_S[0]
-    why: str = ""  # the last attempt or connection has ended
+    why: str = ""  # why the last attempt or connection ended
     opened_s: float | None = None
 
 
@@ -44,14 +44,15 @@ class Redial:
     def opened(self, key: int, now_s: float) -> None:
         """The handshake on connection `key` is complete at now_s [s].
 
-        If it lasts PAUSE_S[1] seconds, pauses start from the shortest again after its end.
+        If the connection lasts PAUSE_S[1] seconds, the pauses after its end start again from the shortest.
         """
         for one in self._targets:
             if one.key == key:
                 one.opened_s = now_s
 
     def ended(self, key: int, why: str, now_s: float) -> str:
-        """Connection `key` ended at now_s [s] because of `why`; what to report, empty if the last one ended so too."""
+        """Connection `key` ended at now_s [s] because of `why`; returns what to report, empty if the last one ended
+        alike."""
         said = ""
         for one in self._targets:
             if one.key == key:

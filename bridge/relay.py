@@ -1,8 +1,9 @@
-"""A relay between the clients of a program that listens and that program: byte for byte, with a copy for who watches.
+"""A relay between the clients of a listening program and that program: byte for byte, with a copy for an observer.
 
-A process of its own, so that the watcher cannot slow what it watches. What the watcher does not take is left out of
-the copy and counted; the relay waits for nobody but the two ends themselves. When the watcher is gone no new client is taken,
-and it ends with the last connection. What comes is not looked at, but for the opening of v2 where nothing else may pass.
+It runs as a process of its own, so that the observer cannot slow the traffic. What the observer does not read in time
+is left out of the copy and counted; the relay waits only for the two ends. When the observer has gone no new client
+is accepted, and the relay ends with the last connection. Data are not interpreted, except for the opening of v2 where
+nothing else may pass.
 """
 
 from __future__ import annotations
@@ -20,11 +21,13 @@ from cratous.bridge.port import is_due
 from cratous.bridge.unread import unread_by_peer
 
 RECORD = struct.Struct("!BIQI")
-"""A record of the copy: kind, connection, CLOCK_MONOTONIC [ns], and how many bytes follow."""
+"""A record of the copy: kind, connection, CLOCK_MONOTONIC [ns], and the number of bytes that follow."""
 OPENED, NEAR, FAR, CLOSED, LOST, BARRED = range(1, 7)
-"""A client has come; bytes of it; bytes of the program; it has ended; bytes were left out here; it may not pass."""
+"""Kinds of records: client connected; bytes of the client; bytes of the program; connection ended; bytes left out
+here; client not admitted."""
 READ = 32_768
-"""Most that one end is given beyond what its program has read: the original's client dies of twice as much."""
+"""The most bytes forwarded beyond what the receiving program has read: the original's client crashes at twice as
+much."""
 MOST_COPIED = 16 << 20
 MOST_CONNECTIONS = 256
 CONNECTS_S, AGAIN_MS = 10.0, 20
@@ -33,7 +36,7 @@ _END_HARD = struct.pack("ii", 1, 0)
 
 
 class Copy:
-    """The copy for the watcher: queued up to MOST_COPIED bytes, then dropped and counted; relaying never waits for
+    """The copy for the observer: queued up to MOST_COPIED bytes, then dropped and counted; relaying never waits for
     it."""
 
     def __init__(self, sock: socket.socket | None) -> None:
@@ -79,7 +82,7 @@ class Copy:
                 return
 
     def close(self) -> None:
-        """The watcher has gone: discard the copy. May be called twice."""
+        """The observer has gone: discard the copy. May be called twice."""
         if self.sock is not None:
             self.sock.close()
         self.sock, self.out = None, bytearray()
@@ -131,7 +134,7 @@ class Way:
         self.tail = b""
 
     def write(self) -> None:
-        """Forward what the receiver accepts; after the last byte its end of file."""
+        """Forward what the receiver accepts; after the last byte, the end of file."""
         while self.held:
             try:
                 del self.held[: self.sink.send(self.held, socket.MSG_NOSIGNAL)]
@@ -144,7 +147,7 @@ class Way:
 
 
 class Pair:
-    """A client and the connection made for it."""
+    """A client, and the connection made on its behalf."""
 
     def __init__(self, number: int, near: socket.socket, far: socket.socket, plain: bool) -> None:
         self.number, self.near, self.far, self.plain = number, near, far, plain
@@ -203,7 +206,7 @@ class Relay:
     def __init__(
         self, listener: socket.socket, watcher: socket.socket, to: tuple[str, int], plain: bool
     ) -> None:
-        """plain: also what is not v2 may pass."""
+        """plain: traffic other than v2 may pass too."""
         self.listener: socket.socket | None = listener
         self.copy, self._to, self._plain = Copy(watcher), to, plain
         self.pairs: dict[int, Pair] = {}
@@ -212,7 +215,7 @@ class Relay:
         listener.setblocking(False)
 
     def run(self) -> None:
-        """Relay until the watcher and all connections have gone."""
+        """Relay until the observer and all connections have gone."""
         while self.copy.sock is not None or self.pairs:
             ready = self._wait()
             self._accept()
@@ -235,19 +238,19 @@ class Relay:
                 near, _ = self.listener.accept()
             except BlockingIOError:
                 break
-            except OSError:  # no handle is left: not again at once
+            except OSError:  # no file descriptor is left: retry later
                 self._rests = True
                 break
             if len(self.pairs) + len(self._waiting) < MOST_CONNECTIONS:
                 self._waiting.append(near)
             else:
                 near.close()
-        # one after the other, so that the program meets them in the order in which they came
+        # one after the other, so that the program accepts them in order of arrival
         while self._waiting and not any(pair.connecting for pair in self.pairs.values()):
             near = self._waiting.popleft()
             try:
                 pair = Pair(self._count + 1, near, self._far(), self._plain)
-            except OSError:  # no handle is left, or it is gone
+            except OSError:  # no file descriptor is left, or the program has gone
                 near.close()
                 continue
             self._count += 1
@@ -292,7 +295,7 @@ class Relay:
 
 def main(words: list[str]) -> None:
     """Run the relay. words: file descriptors of listener and watcher, host, port, and `plain` or `sealed`."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the watcher
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is meant for the observer
     listener, watcher = (socket.socket(fileno=int(word)) for word in words[:2])
     Relay(listener, watcher, (words[2], int(words[3])), words[4] == "plain").run()
 

@@ -3,17 +3,17 @@
     +=+=+=+= <length> #@#@#@#@ <payload> !%!%!%!% <sum> ?^?^?^?^      (without the blanks)
 
 length and sum are decimal ASCII; length counts the payload's bytes, sum is their plain sum modulo
-2^32. The length is what counts: a payload may hold any bytes, sentinels too.
+2^32. The length delimits the payload, which may contain any bytes, sentinels too.
 
     stream = FrameStream(on_drop=log)
     for payload in stream.feed(received): ...
 
-`FrameStream` takes bytes in any segmentation and gives the same payloads for each. What is no frame
-is dropped, counted and reported with its place in the stream, and the reader goes on at the next
-head sentinel: one byte after a head that led nowhere, behind a frame that is whole but for its sum.
-It holds no more than the bytes received of one frame within `max_payload`; what a frame announces
-is not allocated. A frame that is never finished holds the line until its length has arrived: a
-bridge that has waited long enough (its own clock) calls `abandon`. Format: UxAS 3.2, OpenAMASE.
+`FrameStream` takes bytes in any segmentation and returns the same payloads for each. Anything else
+is dropped, counted and reported with its position in the stream, and reading resumes at the next
+head sentinel: one byte after the head of a malformed frame, or after a frame whose only error is its
+sum. It holds no more than the bytes received of one frame within `max_payload`; the announced length
+is not allocated. A frame that is never completed blocks the line until its length has arrived: a
+bridge calls `abandon` after a timeout by its own clock. Format: UxAS 3.2, OpenAMASE.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ from cratous.bridge.bytesum import byte_sum
 from cratous.spec.errors import BadInput
 
 HEAD, BODY, TAIL, END = b"+=+=+=+=", b"#@#@#@#@", b"!%!%!%!%", b"?^?^?^?^"
-MAX_PAYLOAD = 16 * 1024 * 1024  # bytes; ten times the largest message of the UxAS examples
-_DIGITS = 10  # uint32 has no more
+MAX_PAYLOAD = 16 * 1024 * 1024  # [bytes]; ten times the largest message of the UxAS examples
+_DIGITS = 10  # the most digits of a uint32
 _NUMBER = re.compile(rb"[0-9]{1,10}")
 _KEPT_DROPS = 100
 
@@ -44,8 +44,8 @@ UNFINISHED = "unfinished frame"
 
 @dataclass(frozen=True, slots=True)
 class Drop:
-    """Something that was no frame: reason (a constant of this module), where in the stream [bytes
-    from its start], and what was expected and got, for people."""
+    """Data that are not a frame: reason (a constant of this module), position in the stream [bytes from its start],
+    and what was expected and got, for people."""
 
     reason: str
     offset: int
@@ -53,7 +53,7 @@ class Drop:
     got: str = ""
 
     def error(self, where: str = "stream") -> BadInput:
-        """The same as the error that users see."""
+        """The drop as the error that users see."""
         return BadInput(
             self.reason, where=f"{where}: byte {self.offset}", expected=self.expected, got=self.got
         )
@@ -71,7 +71,7 @@ def frame(payload: bytes) -> bytes:
 
 
 def unframe(data: bytes, where: str = "frame") -> bytes:
-    """The payload of exactly one frame; BadInput says what is wrong with it, and at which byte."""
+    """The payload of exactly one frame; otherwise BadInput with the error and its byte."""
     stream = FrameStream(max_payload=max(len(data), 1))
     payloads = stream.feed(data)
     if stream.pending:
@@ -86,11 +86,11 @@ def unframe(data: bytes, where: str = "frame") -> bytes:
 class FrameStream:
     """The payloads in one direction of a connection; see the module.
 
-    max_payload: longest payload accepted [bytes]. max_strays: after so many heads in a row that led
-    nowhere the stream is given up (`spoiled`): nothing of it is read any more; None: never.
-    on_drop: called with every Drop, as soon as it is certain. frames: payloads given so far. counts: drops by reason. dropped_bytes: all bytes that
-    belonged to no payload's frame. drops: the last 100 of them. pending: bytes held back because
-    what follows decides. None of these depends on how the bytes were segmented, but `pending`.
+    max_payload: longest payload accepted [bytes]. max_strays: number of consecutive drops after which the stream is
+    given up (`spoiled`) and no longer read; None: never. on_drop: called with every Drop, as soon as it is certain.
+    frames: number of payloads so far. counts: drops by reason. dropped_bytes: all bytes that belonged to no payload's
+    frame. drops: the last 100 drops. pending: bytes held back until the following ones decide. None of these but
+    `pending` depends on how the bytes were segmented.
     """
 
     def __init__(
@@ -110,18 +110,18 @@ class FrameStream:
         self.drops: deque[Drop] = deque(maxlen=_KEPT_DROPS)
         self._on_drop = on_drop
         self._buffer = bytearray()
-        self._start = 0  # place of the buffer's first byte in the stream
-        self._in_step = True  # what came last was a frame, or nothing yet
+        self._start = 0  # position in the stream of the buffer's first byte
+        self._in_step = True  # the last data were a frame, or nothing has been read yet
         self._strays = 0  # drops since the last frame
-        self._need = 0  # bytes that the buffer must hold before anything can be decided
+        self._need = 0  # bytes that the buffer must hold before the next decision
 
     @property
     def pending(self) -> int:
-        """Bytes held back [bytes]; not 0 for long means a peer that does not finish its frame."""
+        """Bytes held back; a value above 0 for long indicates a peer that does not complete its frame."""
         return len(self._buffer)
 
     def feed(self, data: bytes | bytearray | memoryview) -> list[bytes]:
-        """Take the next bytes of the stream; the payloads that they complete, in order."""
+        """Take the next bytes of the stream; returns the payloads that they complete, in order."""
         if self.spoiled:
             self.dropped_bytes += len(data)
             self._start += len(data)
@@ -132,9 +132,9 @@ class FrameStream:
         return self._read()
 
     def abandon(self) -> list[bytes]:
-        """Give up the frame that is not finished: dropped as UNFINISHED, its bytes read on.
+        """Give up the incomplete frame: it is dropped as UNFINISHED, and the bytes after its head are read again.
 
-        Returns the payloads of whole frames that stood behind its head.
+        Returns the payloads of complete frames after its head.
         """
         if self._buffer.startswith(HEAD[:1]) and self._buffer:
             self._drop(UNFINISHED, 0, "the rest of the frame", f"{len(self._buffer)} bytes")
@@ -142,7 +142,7 @@ class FrameStream:
         return self._read()
 
     def close(self) -> list[bytes]:
-        """The stream has ended: as `abandon`, until nothing is left."""
+        """The stream has ended: like `abandon`, until nothing is left."""
         payloads: list[bytes] = []
         while self._buffer:
             payloads += self.abandon()
@@ -162,9 +162,9 @@ class FrameStream:
         self.dropped_bytes += size
 
     def _read(self) -> list[bytes]:
-        """Everything that can be decided with the bytes at hand."""
+        """The payloads of everything that can be decided with the bytes received."""
         payloads: list[bytes] = []
-        buffer, at = self._buffer, 0  # before `at` all is decided
+        buffer, at = self._buffer, 0  # everything before `at` is decided
         while True:
             head = buffer.find(HEAD, at)
             if head < 0:
@@ -195,13 +195,13 @@ class FrameStream:
         return payloads
 
     def _strayed(self) -> bool:
-        """One more that was no frame; whether the stream is given up by that."""
+        """Count a drop; returns whether the stream is given up."""
         self._strays += 1
         self.spoiled = self._strays == self.max_strays
         return self.spoiled
 
     def _frame(self, at: int) -> tuple[int, bytes | None]:
-        """What stands at a head: (bytes done with, payload or None); (0, None) is not decided."""
+        """Decode at a head: (bytes consumed, payload or None); (0, None) if more bytes are needed."""
         buffer, held = self._buffer, len(self._buffer)
         if held < at + len(HEAD) + 1:
             self._need = held + 1
@@ -215,7 +215,7 @@ class FrameStream:
         end = start + length
         self._need = end + len(TAIL) + 1
         if held < self._need:
-            # The payload is not looked into: a frame inside of it is a part of it.
+            # The payload is not searched: a frame within it is part of it.
             return 0, None
         if buffer[end : end + len(TAIL)] != TAIL:
             got = _shown(bytes(buffer[end : end + len(TAIL)]))
@@ -233,8 +233,8 @@ class FrameStream:
         return done, payload
 
     def _number(self, at: int, begin: int, mark: bytes, reason: str) -> tuple[int | None, int]:
-        """The number from `begin` up to its end mark, and where this ends; else None, and how many
-        bytes from the head on are done with: 0 if it is not decided, 1 if it is dropped for `reason`."""
+        """The number from `begin` up to its end mark, and the position after it; else None, and the number of bytes
+        consumed from the head on: 0 if more are needed, 1 if it is dropped for `reason`."""
         buffer = self._buffer
         number = _NUMBER.match(buffer, begin)
         after = number.end() if number else begin
@@ -254,7 +254,7 @@ def _shown(data: bytes) -> str:
 
 
 def _until_wrong(data: bytes, sentinel: bytes) -> str:
-    """Digits and the beginning of a sentinel, up to and with the first byte that is wrong."""
+    """Digits and the beginning of a sentinel, up to and including the first wrong byte."""
     digits = _NUMBER.match(data)
     at = digits.end() if digits else 0
     for expected in sentinel if digits else b"":
@@ -265,7 +265,7 @@ def _until_wrong(data: bytes, sentinel: bytes) -> str:
 
 
 def _tail_overlap(buffer: bytearray, at: int) -> int:
-    """How many bytes at the end, from `at` on, may be the beginning of a head."""
+    """The number of bytes at the end, from `at` on, that may be the beginning of a head."""
     for size in range(min(len(HEAD) - 1, len(buffer) - at), 0, -1):
         if buffer.endswith(HEAD[:size]):
             return size

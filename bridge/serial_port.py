@@ -1,7 +1,6 @@
 """Sentinel frames over a serial line, as UxAS's serial bridge sends them (57600 baud, 8N1).
 
-A line that is gone (a cable, a modem) is opened again and again; meanwhile what should go out is
-counted as lost.
+A line that fails (a cable, a modem) is reopened repeatedly; meanwhile outgoing messages are counted as lost.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ class SerialPort:
         report: Report = lambda _severity, _text: None,
         where: str = "",
     ) -> None:
-        """Opens the device; BadInput if that fails (the first time only)."""
+        """Opens the device; BadInput if that fails (only this first time)."""
         self._device, self._baud = device, baud
         self._limits = limits or Limits()
         self._report = report
@@ -59,7 +58,7 @@ class SerialPort:
 
     @property
     def due_s(self) -> float | None:
-        """When an incomplete frame times out, or the device is opened again [s, monotonic clock]; None: never."""
+        """When an incomplete frame times out, or the device is to be reopened [s, monotonic clock]; None: neither."""
         late = None if self._begun_s is None else self._begun_s + self._limits.frame_s
         return min((t for t in (late, self._again_s) if t is not None), default=None)
 
@@ -96,7 +95,7 @@ class SerialPort:
         return [Incoming((payload,), self._device) for payload in found]
 
     def send(self, parts: tuple[bytes, ...]) -> None:
-        """Queue one message; when the queue is full, one is lost as `Limits.when_full` says."""
+        """Queue one message; when the queue is full, one is discarded according to `Limits.when_full`."""
         if self._line is None:
             self._tally.lose(GONE)
             return
@@ -114,7 +113,7 @@ class SerialPort:
         self._flush()
 
     def close(self) -> None:
-        """Write what is queued as far as possible, then close the device."""
+        """Write as much as possible of the queue, then close the device."""
         if self._line is not None:
             self._flush()
         if self._line is not None:
@@ -157,7 +156,7 @@ class SerialPort:
         assert self._line is not None
         try:
             while self._out:
-                # pyserial's own write waits in a busy loop for a line that takes nothing
+                # pyserial's own write would wait in a busy loop for a line that accepts nothing
                 self._out.took(os.write(self._line.fileno(), self._out.next()))
         except (BlockingIOError, InterruptedError):
             return

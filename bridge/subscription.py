@@ -1,6 +1,7 @@
-"""All that a ZeroMQ publisher tells, as of UxAS's `LmcpObjectNetworkPublishPullBridge`; nothing is sent to it.
+"""Receives everything from a ZeroMQ publisher, like UxAS's `LmcpObjectNetworkPublishPullBridge`; nothing is sent to
+it.
 
-What a publisher tells before the subscription has come, or while its queue for us is full, ZeroMQ drops without a word.
+ZeroMQ silently drops what is published before the subscription is active, or while its queue for us is full.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""A tap on a CRATOUS bridge: clients connect here, and a relay of its own process takes them to where they would have gone.
+"""A tap on a CRATOUS bridge: clients connect here, and a relay process connects them to their destination.
 
-What both ends say goes through byte for byte (`relay`), whether it is looked at here or not; here comes a copy.
+The traffic of both ends passes unchanged (`relay`), whether it is observed or not; this process gets a copy.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _READ = 1 << 16
 class Copied(NamedTuple):
     """One record of the relay's copy, see `relay`.
 
-    time_ns: when it passed [ns, CLOCK_MONOTONIC]; lost: number of bytes not copied (kind LOST).
+    time_ns: time of passing [ns, CLOCK_MONOTONIC]; lost: number of bytes not copied (kind LOST).
     """
 
     kind: int
@@ -41,7 +41,8 @@ class Tap:
     """A relay process and the copy that it makes of the traffic."""
 
     def __init__(self, listens: Address, leads_to: Address) -> None:
-        """BadInput if it cannot listen, or nobody knows the other address. Beyond loopback v2 alone passes."""
+        """Raises BadInput if it cannot listen, or the other address cannot be resolved. Beyond loopback only v2
+        passes."""
         self._part = b""
         where = _resolved(leads_to)
         host = "0.0.0.0" if listens.everywhere else listens.host
@@ -51,11 +52,11 @@ class Tap:
         handles = (self._listener.fileno(), theirs.fileno())
         words = [*map(str, handles), where[0], str(where[1])]
         words.append("plain" if listens.loopback else "sealed")
-        # it goes on with what is connected when the watch ends, so Ctrl-C is not for it
+        # it keeps relaying open connections after the observer ends, so it ignores Ctrl-C
         self.process = subprocess.Popen(
             [sys.executable, "-m", "cratous.bridge.relay", *words],
             pass_fds=handles,
-            # who reads what the watch prints does not wait for the relay
+            # a reader of the observer's output must not have to wait for the relay to end
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,

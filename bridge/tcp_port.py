@@ -1,8 +1,8 @@
 """Sentinel frames over TCP: one server with any number of clients, or one client that reconnects.
 
-As UxAS's TCP bridge and AMASE do it, without their faults: frames may come in any pieces and of
-any size within the limit; a peer that sends nonsense, never ends a frame or does not read is
-limited, reported, and of no consequence to the others.
+Compatible with UxAS's TCP bridge and AMASE, without their faults: frames may arrive in any segmentation and of any
+size within the limit; a peer that sends garbage, never completes a frame or does not read is limited and reported,
+and does not affect the others.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from cratous.bridge.port import Address, Incoming, Limits, Report, Tally, is_due
 from cratous.spec.errors import BadInput
 
 _CHUNK = 65536
-_READS = 16  # chunks from one peer in one step, so that a fast one leaves time for the others
+_READS = 16  # reads from one peer in one step, so that a fast one leaves time for the others
 _MOST_UNFINISHED = 3
-_MOST_STRAYS = 10_000  # pieces that are no frame, one after the other
+_MOST_STRAYS = 10_000  # consecutive pieces of data that are not a frame
 _RETRY_S = (0.1, 2.0)  # first and longest pause between attempts to connect
 
 STALLED = "peer does not read"
@@ -34,12 +34,12 @@ NOISE = "nothing but what is no frame"
 
 
 class _Connection:
-    """One peer: its socket, what has come of a frame, and what waits to go out."""
+    """One peer: its socket, the incomplete frame received, and the outgoing queue."""
 
     def __init__(self, sock: socket.socket, name: str, stream: sentinel.FrameStream) -> None:
         self.sock, self.name, self.stream = sock, name, stream
         self.out = Outgoing()
-        self.begun_s: float | None = None  # when the frame that is not finished began
+        self.begun_s: float | None = None  # when the incomplete frame began
         self.unfinished = 0
         self.writing = False
         self.connecting = False
@@ -56,7 +56,7 @@ class TcpPort:
         limits: Limits | None = None,
         report: Report = lambda _severity, _text: None,
     ) -> None:
-        """Server: listens at once, BadInput if it cannot. Client: connects, and again for ever."""
+        """Server: listens at once, BadInput if it cannot. Client: connects, and reconnects indefinitely."""
         self._where, self._server = where, server
         self._limits = limits or Limits()
         self._tally = Tally(where.text, report)
@@ -67,7 +67,7 @@ class TcpPort:
         self._listener: socket.socket | None = None
         self._again_s = 0.0
         self._pause_s = _RETRY_S[0]
-        self._failures = 0  # attempts since it was connected
+        self._failures = 0  # attempts since the last connection
         self._paused_s: float | None = None  # no connections are accepted until then
         self._now_s = 0.0
         self._closed = False
@@ -93,7 +93,7 @@ class TcpPort:
 
     @property
     def due_s(self) -> float | None:
-        """When `step` has something to do even if no bytes arrive [s, monotonic clock]; None: never."""
+        """When `step` must be called even if no bytes arrive [s, monotonic clock]; None: not needed."""
         times = [
             p.begun_s + self._limits.frame_s for p in self._peers.values() if p.begun_s is not None
         ]
@@ -134,8 +134,7 @@ class TcpPort:
         return found
 
     def send(self, parts: tuple[bytes, ...], but: str = "") -> None:
-        """Queue the payload for every peer but the one of that name; without any, a client counts it
-        as lost."""
+        """Queue the payload for every peer except the one named `but`; without any peer, a client counts it as lost."""
         payload = b"".join(parts)
         if len(payload) > self._limits.payload_bytes:
             self._tally.lose("message longer than the limit", f"{len(payload)} bytes")
@@ -158,8 +157,8 @@ class TcpPort:
             self._listener, self._paused_s = None, None
 
     def redial(self, why: str) -> None:
-        """Client only: drop the connection, or the attempt, because of `why`, and connect again at once. What was
-        queued is lost and counted."""
+        """Client only: drop the connection or attempt because of `why`, and connect again at once. Queued messages
+        are lost and counted."""
         for peer in list(self._peers.values()):
             self._drop(peer, why)
         self._again_s = self._now_s
@@ -216,7 +215,7 @@ class TcpPort:
                 return
             except ConnectionError:
                 continue
-            except OSError as error:  # no file descriptors left: look again in a second
+            except OSError as error:  # no file descriptor is left: retry in a second
                 self._tally.refuse(FULL, error.strerror or str(error))
                 self._paused_s = self._now_s + 1.0
                 self._poll.modify(self._listener.fileno(), 0)
@@ -267,7 +266,7 @@ class TcpPort:
 
     def _connected(self, peer: _Connection) -> None:
         code = peer.sock.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR)
-        # a port of this machine that nobody listens on may be given to our own end of it
+        # the system may assign our end the port of this machine that it connects to, if nobody listens on it
         itself = code == 0 and peer.sock.getsockname() == peer.sock.getpeername()
         if code or itself:
             self._forget(peer)
@@ -336,12 +335,12 @@ class TcpPort:
 
     def _queue(self, peer: _Connection, frame: bytes) -> None:
         room = self._limits.waiting_bytes
-        if not peer.out:  # even one that is longer than the room
+        if not peer.out:  # even one that is larger than the queue
             peer.out.put(frame)
             self._flush(peer)
             return
         if self._limits.when_full == "DropOldest":
-            # the first one may be half gone: it stays
+            # the first one may be partly written: it stays
             while peer.out.waiting + len(frame) > room and len(peer.out) > 1:
                 peer.out.drop_oldest()
                 self._tally.lose(STALLED, f"{peer.name}, the oldest message")

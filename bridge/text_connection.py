@@ -1,6 +1,6 @@
-"""One connection of the text protocol: its socket, handshake and parser, and what it may cost.
+"""One connection of the text protocol: socket, handshake, parser and resource limits.
 
-A peer of another dialect is told so by a line `error,REASON` before it is dropped, so that both ends know why.
+A peer of another dialect is sent a line `error,REASON` before it is dropped, so that both ends know the reason.
 """
 
 from __future__ import annotations
@@ -25,18 +25,18 @@ from cratous.bridge.text_protocol.parser import (
 from cratous.bridge.text_protocol.sealed import MOST_UNACKNOWLEDGED, Seal, SealedHandshake
 
 PROGRAM_LIMITS = Limits(10_000, 1000, 1000, 9999, 9999)
-"""The largest counts that the two programs take; a vehicle's memory is bounded by them."""
+"""The largest counts that the two programs accept; a vehicle's memory is bounded by them."""
 _READS = 16
 REFUSED = "refused"
 """The kind of the end of a connection whose ends speak different dialects."""
 REFUSAL = "error,"
-"""So begins the line that tells a peer why it is refused, as in the opening of v2."""
+"""The start of the line that tells a peer why it is refused, as in the opening of v2."""
 PARTING_S = 2.0
-"""So long a peer that was told why it is refused may take to read that before it is dropped [s]."""
+"""Time that a refused peer has to read the reason before it is dropped [s]."""
 MOST_UNREAD = 32_768
-"""The original's client dies of a read of 65,535 bytes or more: where it has not read so many, no more goes to it."""
+"""The original's client crashes on a read of 65,535 bytes or more: nothing is sent while this many bytes are unread."""
 AGAIN_S = 0.05
-"""So soon it is looked again whether it has read [s]."""
+"""Interval at which it is checked whether the peer has read [s]."""
 NOISE, SILENT, LATE, FAST, NOBODY, DEAF, STOPPED = (
     "nothing but what cannot be read",
     "silent",
@@ -52,10 +52,9 @@ NOISE, SILENT, LATE, FAST, NOBODY, DEAF, STOPPED = (
 class Bounds:
     """Resource limits of one peer.
 
-    handshake_s: limit of the handshake [s]; silence_s: longest silence [s], None: unlimited;
-    bytes_per_s, burst_bytes: sustained rate and burst accepted; bad_lines: unreadable lines in a row
-    before it is dropped; connections: peers at once; stopped_s: how long an original's client may
-    leave queued lines unread [s].
+    handshake_s: limit of the handshake [s]; silence_s: longest silence [s], None: unlimited; bytes_per_s,
+    burst_bytes: sustained rate and burst accepted; bad_lines: consecutive unreadable lines before it is dropped;
+    connections: peers at once; stopped_s: how long an original's client may leave queued lines unread [s].
     """
 
     handshake_s: float = 10.0
@@ -85,7 +84,7 @@ class Connection:
         bounds: Bounds,
         now_s: float,
     ) -> None:
-        """direction: of what comes in. now_s: a clock that does not go back."""
+        """direction: of received messages. now_s: monotonic clock [s]."""
         self.link, self._handshake, self._bounds = link, handshake, bounds
         self._parser = StreamParser(
             direction, limits=PROGRAM_LIMITS, original_peer=True, dialect=dialect
@@ -113,7 +112,7 @@ class Connection:
             return self.link.send(line)
         seal = self.seal
         if seal is None:
-            return False  # nothing goes before hands are shaken
+            return False  # nothing is sent before the handshake is complete
         if seal.unacknowledged not in range(MOST_UNACKNOWLEDGED):
             self.drop(DEAF)
             return False
@@ -121,14 +120,14 @@ class Connection:
 
     @property
     def due_s(self) -> float | None:
-        """When the peer is dropped unless it says something, or queued lines are tried again [s]; None: never."""
+        """When a silent peer is dropped, or queued lines are tried again [s]; None: never."""
         if not self._waiting:
             return self._until_s
         again_s = self._looked_s + AGAIN_S
         return again_s if self._until_s is None else min(again_s, self._until_s)
 
     def _queue(self, line: bytes, now_s: float) -> bool:
-        """A line for the original's client, that waits as long as that does not read."""
+        """Queue a line for the original's client until it has read enough."""
         if not self.link.alive:
             return False
         if self._waiting.waiting + len(line) > MAX_PENDING:
@@ -141,8 +140,8 @@ class Connection:
         return True
 
     def _pour(self, now_s: float) -> None:
-        """Whole lines, as long as the peer has read enough of those before; it is dropped when none goes for too
-        long."""
+        """Send complete lines while the peer has read enough of the previous ones; it is dropped if none can be sent
+        for too long."""
         self._looked_s = now_s
         unread = self.link.unread
         while self._waiting:
@@ -166,7 +165,7 @@ class Connection:
         if not self.opened and self.link.itself:
             self.drop(NOBODY)
             data = b""
-        if self._refused:  # what it still sends is not for us
+        if self._refused:  # data from a refused peer are ignored
             return self._part(now_s)
         found = self._read(data, now_s) if data else []
         self._spend(len(data), now_s)
@@ -198,7 +197,7 @@ class Connection:
         self._refused, self._until_s = why, now_s + PARTING_S
 
     def _part(self, now_s: float) -> list[Opened | Record | LinkEvent]:
-        """The end of a peer that is refused, once it is gone or has had its time."""
+        """The end of a refused peer, once it has disconnected or its time is over."""
         if self.link.alive and not is_due(self._until_s, now_s):
             return []
         self.link.ended = LinkEvent(REFUSED, self._refused)
@@ -209,7 +208,7 @@ class Connection:
         if not self._handshake.done:
             self.link.send(self._handshake.feed(data))
             if self._handshake.failed:
-                self.link.flush()  # the reason goes before an end that came with it
+                self.link.flush()  # the reason is sent even if the connection has ended meanwhile
                 self.link.ended = LinkEvent(
                     "dropped", f"handshake failed: {self._handshake.failed}"
                 )

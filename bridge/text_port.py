@@ -1,10 +1,9 @@
 """The CRATOUS text protocol over TCP between processes: one end that listens, one that connects.
 
-Either of UxAS's end, which speaks first, and ICAROUS's may be the one that listens.
-Nothing here blocks, but for the look-up of a host's name, and nothing raises because of a peer: what it sends
-is a record (a message, a refused or skipped line), its end is a `LinkEvent`. A peer that does not finish the
-handshake, sends faster than it may, sends nothing but what cannot be read, or falls silent, is dropped with
-the reason.
+Either UxAS's end, which speaks first, or ICAROUS's may be the one that listens. Nothing here blocks, except for the
+look-up of a host name, and nothing raises because of a peer: what it sends is a record (a message, a refused or
+skipped line), its end is a `LinkEvent`. A peer that does not complete the handshake, exceeds its rate, sends only
+unreadable lines, or falls silent, is dropped with the reason.
 """
 
 from __future__ import annotations
@@ -62,13 +61,13 @@ OURS = (
     WayOfAnother,
     VelocityOfAnother,
 )
-"""What a peer of another dialect than ours is not sent."""
+"""Messages that are not sent to peers of other dialects than ours."""
 PATIENCE_S = 1.0
-"""So long a connection that has not shaken hands keeps its place where others wait for one [s]."""
+"""Time for which a connection without a handshake is kept where others wait for its place [s]."""
 
 
 class Came(NamedTuple):
-    """What one connection delivered: that it opened, a record, or its end, which comes last."""
+    """An event of one connection: it opened, a record, or its end, which comes last."""
 
     key: int
     what: Opened | Record | LinkEvent
@@ -88,18 +87,19 @@ class TextPort:
         secret: str | Keys = DEFAULT_SECRET,
         report: Report = lambda _severity, _text: None,
     ) -> None:
-        """server: UxAS's end, which speaks first; else ICAROUS's. listens: it waits for peers (BadInput
-        if it cannot listen), else it connects, see `dial`; as in the original, UxAS's end waits.
+        """server: UxAS's end, which speaks first; else ICAROUS's. listens: accepts peers (BadInput if it cannot
+        listen), otherwise it connects, see `dial`; as in the original, by default UxAS's end listens.
 
-        dialect: of the peers. That of the original: no HELLO and HBEAT, its number formats, no count above
-        what its arrays hold. That of the thesis: the same messages in its form. secret: of the compatible handshake; keys make the dialect v2.
+        dialect: of the peers. The original's: no HELLO and HBEAT, its number formats, no count above the size of its
+        arrays. The thesis's: the same messages in its form. secret: of the compatible handshake; a `Keys` object
+        selects the dialect v2.
         """
         self.where, self._server, self._dialect = where, server, dialect
         self._bounds, self._secret, self._report = bounds or Bounds(), secret, report
         self._tally = Tally(where.text, report)
         self.counts = self._tally.counts
         self._connections: dict[int, Connection] = {}
-        self.numbers = itertools.count(1)  # of the connections
+        self.numbers = itertools.count(1)  # of connections
         self._listener: Listener | None = None
         self._closed, self._now_s = False, 0.0
         if server if listens is None else listens:
@@ -119,7 +119,7 @@ class TextPort:
 
     @property
     def due_s(self) -> float | None:
-        """When `step` has something to do even if no bytes arrive [s, monotonic clock]; None: never."""
+        """When `step` must be called even if no bytes arrive [s, monotonic clock]; None: not needed."""
         times = [c.due_s for c in self._connections.values() if c.due_s is not None]
         return min(times, default=None)
 
@@ -135,9 +135,9 @@ class TextPort:
         return found
 
     def dial(self, now_s: float, where: Address | None = None) -> int:
-        """Connect to an end that listens, `self.where` if none is said; the connection's key.
+        """Connect to a listening end, by default `self.where`; returns the connection's key.
 
-        It waits for the look-up of a name alone: that nobody is there is the connection's `LinkEvent`.
+        Blocks only for the look-up of a host name: a failure to connect is the connection's `LinkEvent`.
         """
         where = where or self.where
         return self._join(connect_later((where.host, where.port)), now_s)
@@ -171,7 +171,7 @@ class TextPort:
             return True
         original, dialect = self._dialect is Dialect.ORIGINAL, self._dialect
         if original and isinstance(message, FenceVertex):
-            # the original writes fences so that its own client misreads those of ten vertices
+            # the original writes zones of ten vertices in a way that its own client misreads
             dialect = Dialect.CRATOUS
         limits = ORIGINAL_LIMITS if original else PROGRAM_LIMITS
         try:
@@ -185,8 +185,8 @@ class TextPort:
         return True
 
     def drop(self, key: int, why: str, detail: str = "") -> None:
-        """End a connection for a reason, which its `LinkEvent` bears. why: counted by it, so it holds nothing that
-        the peer can choose; detail: this time, `why` itself if there is none."""
+        """End a connection; its `LinkEvent` carries the reason. why: used for counting, so it must not contain text
+        chosen by the peer; detail: for this occurrence, by default `why`."""
         if key in self._connections:
             one = self._connections[key]
             one.drop(detail or why)
@@ -222,7 +222,8 @@ class TextPort:
             self._join(link, now_s)
 
     def _made_room(self, now_s: float) -> bool:
-        """Whether the oldest connection that has taken its time to shake hands was dropped for another one."""
+        """Drop the oldest connection whose time for the handshake is over, to make room; returns whether there was
+        one."""
         for one in self._connections.values():
             if not one.opened and one.link.alive and is_due(one.begun_s + PATIENCE_S, now_s):
                 one.drop("handshake not finished when others came")

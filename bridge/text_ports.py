@@ -1,4 +1,4 @@
-"""Several ports of the text protocol as one: each has an address, a dialect and keys of its own."""
+"""Several ports of the text protocol as one: each with its own address, dialect and keys."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class TextPorts:
     """Several text ports as one, with connections numbered across them; `bound` is that of the first."""
 
     def __init__(self, ports: Sequence[TextPort]) -> None:
-        """ports: at least one, none of which has a connection yet."""
+        """ports: at least one, none of them with a connection yet."""
         self.ports, numbers = tuple(ports), itertools.count(1)
         for port in self.ports:
             port.numbers = numbers
@@ -41,7 +41,7 @@ class TextPorts:
 
     @property
     def due_s(self) -> float | None:
-        """When `step` has something to do even if no bytes arrive [s, monotonic clock]; None: never."""
+        """When `step` must be called even if no bytes arrive [s, monotonic clock]; None: not needed."""
         return min((p.due_s for p in self.ports if p.due_s is not None), default=None)
 
     def handles(self) -> list[tuple[Any, int]]:

@@ -1,7 +1,7 @@
-"""Messages over UDP, one datagram each: as fast as it gets, and without any promise of the network.
+"""Messages over UDP, one datagram each, without delivery guarantees.
 
-What the network loses nobody can count; what does not fit a datagram, or what the system does not
-take, is counted here.
+Losses in the network cannot be counted; messages that do not fit a datagram, or that the system does not accept, are
+counted here.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import zmq
 from cratous.bridge.port import Address, Incoming, Limits, Report, Tally
 from cratous.spec.errors import BadInput
 
-MAX_DATAGRAM = 65507  # bytes of a UDP datagram over IPv4
+MAX_DATAGRAM = 65507  # [bytes] of a UDP datagram over IPv4
 _BATCH = 2000
 
 
@@ -96,7 +96,7 @@ class UdpPort:
         return found
 
     def send(self, parts: tuple[bytes, ...]) -> None:
-        """Send one datagram; what is too long or not accepted by the system is counted as lost."""
+        """Send one datagram; a message that is too long or not accepted by the system is counted as lost."""
         if self._out is None:
             return
         payload = b"".join(parts)
@@ -105,7 +105,7 @@ class UdpPort:
             return
         try:
             self._out.send(payload)
-        except OSError as error:  # full, or nobody listens there
+        except OSError as error:  # queue full, or no receiver
             self._tally.lose("not taken by the network", error.strerror or str(error))
             return
         self.counts.sent += 1

@@ -1,6 +1,6 @@
-"""How many bytes a program of this machine has not read yet of what came to its end of a TCP connection.
+"""The number of bytes at the other end of a TCP connection that a program of this machine has not read yet.
 
-The system is asked (sock_diag(7), which Linux has): what a window tells of it is too late and too coarse.
+Queried from the system (sock_diag(7) of Linux): the TCP window reports it too late and too coarsely.
 """
 
 from __future__ import annotations
@@ -12,25 +12,25 @@ import termios
 from contextlib import suppress
 
 _NETLINK_SOCK_DIAG = 4
-_BY_FAMILY = 20  # the message that asks for one socket, and that of the answer
+_BY_FAMILY = 20  # message types: request for one socket, and its reply
 _REQUEST = 1
 _ALL_STATES = 0xFFFFFFFF
 _HEADER = struct.Struct("=IHHII")  # length, type, flags, sequence, port
 _ASKED = struct.Struct("=BBBxI")  # family, protocol, extensions, states
 _ADDRESSES = struct.Struct("!HH4s12x4s12x")
 _ANY = struct.pack("=III", 0, 0xFFFFFFFF, 0xFFFFFFFF)  # interface and cookie
-_QUEUE = _HEADER.size + 4 + _ADDRESSES.size + len(_ANY) + 4  # where the answer has what is unread
+_QUEUE = _HEADER.size + 4 + _ADDRESSES.size + len(_ANY) + 4  # offset of the unread count
 
 
 def unread_by_peer(link: socket.socket) -> int | None:
-    """Bytes sent to the other end of a connection, arrived or not, that its program has not read; None where the system
-    does not tell: another machine, another system than Linux, IPv6, or an end that is gone."""
+    """Bytes sent to the other end of a connection, arrived or not, that its program has not read; None where the
+    system cannot tell: another machine, a system other than Linux, IPv6, or an end that has gone."""
     with suppress(OSError, ValueError, struct.error):
         here, there = link.getsockname(), link.getpeername()
         if link.family != socket.AF_INET:
             return None
         ends = (socket.inet_aton(there[0]), socket.inet_aton(here[0]))
-        # first, since what arrives in between may count twice but must not be missed
+        # read first: data arriving in between may be counted twice but must not be missed
         on_its_way = struct.unpack("=i", fcntl.ioctl(link, termios.TIOCOUTQ, bytes(4)))[0]
         body = _ASKED.pack(socket.AF_INET, socket.IPPROTO_TCP, 0, _ALL_STATES)
         body += _ADDRESSES.pack(there[1], here[1], *ends) + _ANY

@@ -1,8 +1,8 @@
-"""Keys for ZeroMQ (CURVE): encrypted, and only known peers, where a configuration asks for it.
+"""Keys for ZeroMQ (CURVE): encryption and admission of known peers only, if configured.
 
-The side that binds has a key pair and, if it is to admit known clients only, a folder of their
-public keys; the side that connects has its own pair and the server's public key. Key files are
-those of ZeroMQ (`*.key`, `*.key_secret`); `make_keys` writes them.
+The side that binds has a key pair and, if it is to admit known clients only, a folder of their public keys; the side
+that connects has its own pair and the server's public key. Key files are those of ZeroMQ (`*.key`, `*.key_secret`);
+`make_keys` writes them.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _ZAP = "inproc://zeromq.zap.01"
 
 
 def make_keys(folder: Path, name: str) -> tuple[Path, Path]:
-    """Write a new pair as NAME.key and NAME.key_secret (readable by the owner alone)."""
+    """Write a new pair as NAME.key and NAME.key_secret (readable by the owner only); returns the two paths."""
     folder.mkdir(parents=True, exist_ok=True)
     public, secret = map(Path, zmq.auth.create_certificates(folder, name))
     secret.chmod(0o600)
@@ -52,10 +52,10 @@ class Curve:
         where: str = "",
         domain: str = "cratous",
     ) -> None:
-        """BadInput if a file holds no key.
+        """Raises BadInput if a file holds no key.
 
-        clients: a folder of *.key files, or None for anybody; domain: what the doorkeeper knows
-        them by.
+        clients: a folder of *.key files, or None to admit anyone; domain: the name of this set of keys at the
+        doorkeeper.
         """
         self.where, self.domain = where, domain
         self.public, private = _load(secret_file, True, where, "CurveSecretKeyFile")

@@ -1,13 +1,12 @@
 """Messages over ZeroMQ: one socket that sends and one that receives, as UxAS pairs them.
 
 PUB with PULL (the side that binds), SUB with PUSH (the side that connects). A message is one part,
-`address$attributes$payload`; IMPACT's has two, its address and the LMCP bytes. Transports: inproc,
-ipc, tcp, and udp (a datagram a message, by `udp_port`).
+`address$attributes$payload`; IMPACT's has two, its address and the LMCP bytes. Transports: inproc, ipc, tcp, and udp
+(one datagram per message, by `udp_port`).
 
-Backpressure: a PUB whose subscriber is full sends to the others, and counts and reports how often
-that happened; how many messages that one loses until it reads again ZeroMQ does not tell, so
-`since_full` bounds it from above. A PUSH without a reader keeps a bounded queue, then loses by the
-policy.
+Backpressure: a PUB whose subscriber's queue is full sends to the others, and counts and reports this; ZeroMQ does not
+tell how many messages that subscriber loses until it reads again, so `since_full` gives an upper bound. A PUSH
+without a reader keeps a bounded queue, then discards by the policy.
 """
 
 from __future__ import annotations
@@ -40,7 +39,7 @@ _TELL = {
 
 @dataclass(frozen=True)
 class End:
-    """One socket: kind (PUB, PUSH, PULL, SUB), its address, whether it binds, what it subscribes."""
+    """One socket: kind (PUB, PUSH, PULL, SUB), its address, whether it binds, its subscriptions."""
 
     kind: str
     address: Address
@@ -65,10 +64,10 @@ class ZmqPort:
         report: Report = lambda _severity, _text: None,
         settle_s: float = 0.0,
     ) -> None:
-        """parts: how many parts a message has. BadInput if an address cannot be used.
+        """parts: number of parts of a message. Raises BadInput if an address cannot be used.
 
-        settle_s: for so long after the first step nothing is read, so that a client that has been
-        trying to connect is there to hear the answer to what it has queued.
+        settle_s: time [s] after the first step during which nothing is read, so that a client that has been trying to
+        connect is there to receive the answer to what it has queued.
         """
         self._settle_s = settle_s  # 0 when it is over
         self._limits = limits or Limits()
@@ -83,8 +82,8 @@ class ZmqPort:
         self._context, self._curve = context, curve
         self._waiting: deque[tuple[bytes, ...]] = deque()
         self._bytes = 0
-        self.connected = 0  # peers that have shaken hands and are not gone
-        self.since_full = 0  # messages sent since a subscriber was first full, that one included
+        self.connected = 0  # peers that have completed the handshake and are still connected
+        self.since_full = 0  # messages since a subscriber's queue was first full, inclusive
         try:
             if receiver is not None:
                 self._in = self._open(receiver)
@@ -100,7 +99,8 @@ class ZmqPort:
         return self._bytes
 
     def bound(self, receiving: bool) -> str:
-        """The address of the sending or (receiving) the receiving socket, with the port that the system chose."""
+        """The address of the sending, or if `receiving` of the receiving socket, with the port that the system
+        chose."""
         sock = self._in if receiving else self._out
         return str(sock.getsockopt_string(zmq.LAST_ENDPOINT))
 
@@ -183,7 +183,7 @@ class ZmqPort:
                 self._report("WARN", f"{self._tally.name}: closed with {count} messages unsent")
         for sock in (self._in, self._out):
             if sock is not None and not sock.closed:
-                sock.disable_monitor()  # while its reader is there: its last event waits for one
+                sock.disable_monitor()  # while its reader exists: its last event waits for one
         for monitor, _ in self._monitors:
             monitor.close(linger=0)
         self._monitors.clear()
@@ -194,7 +194,7 @@ class ZmqPort:
     def _open(self, end: End) -> Any:
         sock = self._context.socket(_KINDS[end.kind])
         try:
-            sock.linger = 200  # ms; a peer that is not there must not hold up the end
+            sock.linger = 200  # [ms]; a peer that has gone must not delay the shutdown
             sock.sndhwm = sock.rcvhwm = self._limits.high_water
             sock.maxmsgsize = self._limits.payload_bytes + 8192
             sock.ipv6 = ":" in end.address.host
@@ -231,8 +231,8 @@ class ZmqPort:
                 self._out.send_multipart(parts, zmq.NOBLOCK)
                 return
             except zmq.Again:
-                _ = self._out.events  # has the socket learn what was read meanwhile
-        # a subscriber is full: it alone loses this message, and those until it reads again
+                _ = self._out.events  # makes the socket process what was read meanwhile
+        # a subscriber's queue is full: it alone loses this message, and further ones until it reads again
         self.since_full = max(1, self.since_full)
         self._tally.lose(SLOW, f"{self.since_full} messages sent since one was first full")
         self._out.setsockopt(zmq.XPUB_NODROP, 0)

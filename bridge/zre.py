@@ -1,9 +1,9 @@
-"""A peer of ZRE (RFC 36), the protocol of Zyre: peers find each other by UDP beacons and talk
-over ZeroMQ, one to one (whisper) or to a group (shout).
+"""A peer of ZRE (RFC 36), the protocol of Zyre: peers discover each other by UDP beacons and communicate over ZeroMQ,
+one to one (whisper) or with a group (shout).
 
-Without threads: `step` does all that is due and gives what has happened. A peer that is silent is
-pinged after five seconds and gone after thirty, as RFC 36 has it; one that lost messages, speaks
-another version or is one too many is refused with a reason. Compatible with C Zyre 2.
+Without threads: `step` does all that is due and returns the events. A silent peer is pinged after five seconds and
+dropped after thirty, as in RFC 36; one that has lost messages, speaks another version or exceeds the number of peers
+is refused with a reason. Compatible with C Zyre 2.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _BATCH = 2000
 
 
 class Beacons(NamedTuple):
-    """How a node makes itself known: on which network device and UDP port, and how often [s]."""
+    """How a node announces itself: network device, UDP port, and interval [s]."""
 
     device: str = "lo"
     port: int = BEACON_PORT
@@ -45,7 +45,7 @@ class ZreNode:
         report: Report = lambda _severity, _text: None,
         where: str = "",
     ) -> None:
-        """Listens and sends beacons from the first `step` on. BadInput if the device is not there."""
+        """Listens, and sends beacons from the first `step` on. BadInput if the device does not exist."""
         self._context, self.name = context, name
         self._headers = dict(headers or {})
         self._limits = limits or Limits()
@@ -67,7 +67,7 @@ class ZreNode:
             self._inbox.linger = 0
             self._inbox.rcvhwm = self._limits.high_water
             self._inbox.maxmsgsize = self._limits.payload_bytes + 8192
-            self._inbox.router_handover = True  # a peer that comes again takes its old place
+            self._inbox.router_handover = True  # a reconnecting peer takes over its identity
             port = self._inbox.bind_to_random_port(f"tcp://{self._beacon.address}")
         except zmq.ZMQError as error:
             self._beacon.close()
@@ -123,13 +123,13 @@ class ZreNode:
         return events
 
     def join(self, group: str) -> None:
-        """Join a group, and tell all peers."""
+        """Join a group, and notify all peers."""
         if group not in self._groups:
             self._groups.append(group)
             self._membership(wire.JOIN, group)
 
     def leave(self, group: str) -> None:
-        """Leave a group, and tell all peers."""
+        """Leave a group, and notify all peers."""
         if group in self._groups:
             self._groups.remove(group)
             self._membership(wire.LEAVE, group)
@@ -151,7 +151,7 @@ class ZreNode:
         return sent
 
     def close(self) -> None:
-        """Announce leaving by a beacon with port 0, then close all sockets."""
+        """Announce the departure by a beacon with port 0, then close all sockets."""
         if self._closed:
             return
         self._beacon.shine(0)
@@ -172,7 +172,7 @@ class ZreNode:
                     self._refresh(peer)
 
     def _require(self, uuid: bytes, endpoint: str) -> Peer | None:
-        """The peer with a uuid, connected to and greeted if it is new."""
+        """The peer with this uuid; a new one is connected to and greeted."""
         peer = self._peers.get(uuid)
         if peer is not None:
             return peer
@@ -231,7 +231,7 @@ class ZreNode:
     def _command(self, uuid: bytes, command: wire.Command, content: tuple[bytes, ...]) -> None:
         peer = self._peers.get(uuid)
         if command.number == wire.HELLO:
-            if peer is not None and peer.ready:  # it has started anew
+            if peer is not None and peer.ready:  # it has restarted
                 self._remove(uuid, "it says hello again")
             if not command.endpoint.startswith("tcp://"):
                 raise BadInput("endpoint that cannot be used", got=command.endpoint)

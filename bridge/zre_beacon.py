@@ -1,6 +1,6 @@
-"""The beacons of ZRE (RFC 36): how peers of one network hear that others are there.
+"""The beacons of ZRE (RFC 36), by which peers on one network discover each other.
 
-A beacon is a UDP broadcast with the sender's uuid and the port of its inbox; port 0 says good-bye.
+A beacon is a UDP broadcast with the sender's uuid and the port of its inbox; port 0 announces its departure.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Beacon:
     """The socket of the beacons on a network device; `address` is the device's."""
 
     def __init__(self, device: str, port: int, uuid: bytes, tally: Tally, where: str = "") -> None:
-        """BadInput if there is no such device, or the port is not to be had."""
+        """Raises BadInput if there is no such device, or the port is not available."""
         self.address, broadcast = interface(device, where)
         self._to = (broadcast, port)
         self._uuid, self._tally = uuid, tally
@@ -57,14 +57,14 @@ class Beacon:
         return self._udp.fileno()
 
     def shine(self, port: int) -> None:
-        """Broadcast the port of our inbox; port 0: that we leave."""
+        """Broadcast the port of our inbox; port 0: we leave."""
         try:
             self._udp.sendto(wire.beacon(self._uuid, port), self._to)
         except OSError as error:
             self._tally.lose("beacon not taken by the network", error.strerror or str(error))
 
     def read(self) -> Iterator[tuple[bytes, str, int]]:
-        """(uuid, host, port) of each beacon of another node that has arrived."""
+        """(uuid, host, port) of each beacon received from another node."""
         for _ in range(_BATCH):
             try:
                 data, (host, _port) = self._udp.recvfrom(1024)
@@ -88,7 +88,7 @@ def _beacon_socket(port: int, where: str) -> socket.socket:
     try:
         sock.setblocking(False)
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_BROADCAST, 1)
-        # several peers of one machine hear the same beacons
+        # several peers on one machine receive the same beacons
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
         sock.bind(("", port))

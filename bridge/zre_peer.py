@@ -1,4 +1,4 @@
-"""What a ZRE node knows of its peers, and what it says has happened to them."""
+"""What a ZRE node knows of its peers, and the events that it reports about them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import zmq
 
 from cratous.bridge import zre_wire as wire
 
-IDENTITY = b"\x01"  # stands before the uuid in the identity of a peer's socket
+IDENTITY = b"\x01"  # precedes the uuid in the identity of a peer's socket
 
 
 @dataclass(frozen=True)
@@ -27,12 +27,12 @@ class Event:
 
 @dataclass
 class Peer:
-    """What a node knows of another one, and the socket to it."""
+    """The state of another node, and the socket to it."""
 
     sock: Any
     endpoint: str
     name: str = ""
-    ready: bool = False  # it has said hello
+    ready: bool = False  # its HELLO has been received
     sent: int = 0
     wanted: int = 0
     seen_s: float = 0.0
@@ -42,7 +42,7 @@ class Peer:
 
     @staticmethod
     def connect(context: zmq.Context[Any], uuid: bytes, endpoint: str, high_water: int) -> Peer:
-        """A peer that HELLO was not sent to yet; uuid: our own. zmq.ZMQError for an address that cannot be used."""
+        """A new peer, before HELLO is sent; uuid: our own. zmq.ZMQError for an address that cannot be used."""
         sock = context.socket(zmq.DEALER)
         sock.linger = 0
         sock.identity = IDENTITY + uuid

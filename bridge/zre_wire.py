@@ -1,8 +1,8 @@
 """The commands of ZRE version 2 (RFC 36 of ZeroMQ) as bytes, and its beacon.
 
-A command is `AA A1`, its number, version 2, a sequence number, and its fields, big endian; short
-strings have one byte of length, long ones four. WHISPER and SHOUT are followed by their content in
-further frames. A beacon is `ZRE`, version 1, the sender's uuid and its port, 0 when it leaves.
+A command is `AA A1`, its number, version 2, a sequence number, and its fields, big endian; short strings have a
+length of one byte, long ones of four. WHISPER and SHOUT are followed by their content in further frames. A beacon is
+`ZRE`, version 1, the sender's uuid and its port, 0 when it leaves.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from cratous.spec.errors import BadInput
 SIGNATURE = b"\xaa\xa1"
 VERSION = 2
 HELLO, WHISPER, SHOUT, JOIN, LEAVE, PING, PING_OK = range(1, 8)
-ELECT, LEADER, GOODBYE = 8, 9, 10  # of the C implementation; the first two are of no use to us
+ELECT, LEADER, GOODBYE = 8, 9, 10  # of the C implementation; the first two are not used here
 _KNOWN = frozenset(range(1, 11))
 _HEAD = struct.Struct(">2sBBH")
 _BEACON = struct.Struct(">3sB16sH")
 _MOST = 1000  # entries of a list or a table
-_TEXT = 65536  # bytes of a long string
+_TEXT = 65536  # [bytes] of a long string
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ def beacon(uuid: bytes, port: int) -> bytes:
 
 
 def read_beacon(data: bytes) -> tuple[bytes, int] | None:
-    """(uuid, port) of a beacon, or None if it is none of version 1 (others share the port)."""
+    """(uuid, port) of a beacon, or None if it is not one of version 1 (other protocols share the port)."""
     if len(data) != _BEACON.size:
         return None
     name, version, uuid, port = _BEACON.unpack(data)

@@ -1,8 +1,9 @@
-"""The judge: did a logged flight keep G1 to G5? A program of its own.
+"""The judge: whether a logged flight satisfied G1 to G5. A stand-alone program.
 
 It shares no code with planner, pilot, monitor, kernels or definitions: it reads the SQLite file and
-the mission in it (or a mission file), and decides by its own geometry, its own reading of the process
-algebra, and its own definitions. Of ours it imports `cratous.spec.errors` alone. See docs/guides/judge.md.
+the mission in it (or a mission file), and decides by its own geometry, its own parser of the
+process algebra, and its own definitions. From CRATOUS it imports only `cratous.spec.errors`. See
+docs/guides/judge.md.
 """
 
 if __name__ != "cratous.judge":

@@ -1,4 +1,4 @@
-"""The process algebra, read by recursive descent.
+"""The process algebra, with a recursive-descent parser.
 
 .(a b)  b starts no earlier than a ends      |(a b)  both, in any order
 ~(a b)  b starts no earlier than a starts    +(a b)  exactly one
@@ -19,7 +19,7 @@ MOST_MS = 2**61
 
 @dataclass(frozen=True)
 class Window:
-    """A timing: from `first` to `last` [ms], relative to mission start or to the operand before."""
+    """A time window from `first` to `last` [ms], relative to mission start or to the previous operand."""
 
     relative: bool
     first: int
@@ -31,7 +31,7 @@ class Window:
 
 @dataclass(frozen=True)
 class Term:
-    """A task (operator empty) or an operator over operands, perhaps timed."""
+    """A task (empty operator) or an operator with operands, optionally with a time window."""
 
     operator: str
     task: int
@@ -45,7 +45,7 @@ class Term:
         return f"{inner}{self.window or ''}"
 
     def tasks(self) -> list[int]:
-        """The tasks in it, each once, in the order of the text."""
+        """Its tasks without duplicates, in the order of the text."""
         if not self.operator:
             return [self.task]
         return list(dict.fromkeys(t for operand in self.operands for t in operand.tasks()))
@@ -123,7 +123,7 @@ class _Reader:
 
 
 def parse(text: str) -> Term:
-    """The term that the whole text is; BadInput if it is none."""
+    """The term that the whole text represents; BadInput if it is invalid."""
     reader = _Reader(text)
     found = reader.term()
     if reader.k < len(reader.parts):
@@ -137,7 +137,7 @@ def all_of(tasks: list[int]) -> Term:
 
 
 def without(term: Term, gone: set[int]) -> Term | None:
-    """The term when these tasks do not take part; None if nothing is left."""
+    """The term without these tasks; None if nothing is left."""
     if not term.operator:
         return None if term.task in gone else term
     parts = tuple(p for p in (without(operand, gone) for operand in term.operands) if p)

@@ -1,9 +1,9 @@
-"""G5 where the mission says what is flown without the link: did each vehicle begin it in time, and fly nothing else?
+"""G5 with a lost-link procedure: whether each vehicle began it in time, and flew nothing else.
 
-By what each ICAROUS says (`LinkLossState`), by the connections that UxAS's end declares, and for a landing by where the
-vehicle was: of one that may land and was not logged throughout it is not known. Modes follow one another as `AFTER` has
-it. Where lines of the bridge were lost, damaged or late, or ICAROUS stopped reading, whether UxAS was heard is not in
-the log.
+Judged by what each ICAROUS reports (`LinkLossState`), the connections that the UxAS end reports
+and, for a landing, the vehicle's position: unknown for a vehicle that may land and was not logged
+throughout. Modes follow one another as in `AFTER`. If lines of the bridge were lost, damaged or
+late, or ICAROUS stopped reading, the log does not show whether UxAS was heard.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, seconds
 
 LINKED, OVER, LAND, FINAL, LANDED = "Linked", "Over", "Land", "Final", "Landed"
 NOTICED = 2
-"""So many heartbeats after the bound at the latest it has been said."""
+"""Maximum delay of a report after the bound, in heartbeats."""
 
 
 def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
@@ -52,12 +52,12 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
 
 
 def _unseen(track: Track | None) -> str:
-    """Why it is not known where a vehicle was all the time; empty if it is."""
+    """Why the position of a vehicle is not known throughout; empty if it is."""
     return "no position of it was logged" if track is None else track.doubt
 
 
 def _after(mode: str, chosen: str) -> set[str]:
-    """What may follow a mode."""
+    """The modes that may follow a mode."""
     if mode in (FINAL, LANDED):
         return {LANDED} - {mode}
     if mode == LINKED:
@@ -72,7 +72,7 @@ def _after(mode: str, chosen: str) -> set[str]:
 
 
 def _faults(mission: Mission, asked: WithoutLink, said: list[Alone]) -> Iterator[tuple[int, str]]:
-    """What was said that cannot be."""
+    """Reports that are impossible."""
     mode, beat_ms = LINKED, mission.heartbeat_ms
     for one in said:
         silent_ms = one.time_ms - one.heard_ms
@@ -94,7 +94,7 @@ def _faults(mission: Mission, asked: WithoutLink, said: list[Alone]) -> Iterator
 def _missed(
     mission: Mission, asked: WithoutLink, log: Log, vehicle: int, said: list[Alone]
 ) -> Iterator[tuple[int, str]]:
-    """Connections that had ended for too long, and nothing was said."""
+    """Connections that had been down for too long without a report."""
     since: int | None = None
     changes = [(s.time_ms, s.alive, s.lost) for s in log.bridges.get(vehicle, [])]
     changes += [] if log.end_ms is None else [(log.end_ms, True, False)]
@@ -125,9 +125,9 @@ def _taken(
 def _landing(
     mission: Mission, said: list[Alone], place: Down | None, end_ms: int, track: Track | None
 ) -> Iterator[tuple[int, str]]:
-    """What was said of the ground, and where the vehicle was; nothing of where it was not logged."""
+    """Faults of reports on landing, compared with the vehicle's position; none where it was not logged."""
     landed, seen = [one.time_ms for one in said if one.mode == LANDED], not _unseen(track)
-    # where it was logged before it was on the ground, it was in the air
+    # where it was logged before touchdown, it was in the air
     times = [] if track is None else track.times
     flew = [t for t in times if landed and landed[0] <= t and (place is None or t < place.at_ms)]
     if place is None:

@@ -1,9 +1,9 @@
-"""The judge's answer to each row of a report on the flight, and to those that the report should have.
+"""The judge's answers to the rows of a report on the flight, and rows that the report lacks.
 
-Every row that the judge has something to say of is expected of a report: where it saw nothing to decide
-(a task of another choice that nobody began, aircraft that were never in the air together) the report may
-be silent as well. A row that no monitor writes on the mission is foreign: its words say something else,
-name what the mission does not have, or the same row stands there twice.
+Every row on which the judge has a verdict is expected in a report. Where nothing had to be decided
+(a task of another choice that was never begun, aircraft never in the air at the same time) the
+report may omit it. A row that no monitor writes for the mission is foreign: it has other words,
+names something that the mission does not have, or is a duplicate.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ SENTENCE = re.compile(
     f"{FLIGHT}`[^`]+`: p[0-9]+ (?:starts no earlier than {EVENT}|starts at least [0-9]+ ms after {EVENT}"
     f"|ends at most [0-9]+ ms after {EVENT}|starts at [0-9]+ ms or later|ends at [0-9]+ ms or earlier)"
 )
-"""A row on order or timing."""
+"""Pattern of a row on order or timing."""
 
 
 class Answer(NamedTuple):
-    """A verdict of the monitor and the judge's on the same: each empty where that one has no such row.
+    """Verdicts of monitor and judge on the same subject, each empty if it has no such row.
 
-    foreign: no monitor writes such a row on this mission.
+    foreign: no monitor writes such a row for this mission.
     """
 
     guarantee: str
@@ -40,12 +40,12 @@ class Answer(NamedTuple):
 
     @property
     def confirmed(self) -> bool:
-        """Whether the judge says the same."""
+        """Whether the judge agrees."""
         return self.monitor == self.judge
 
 
 def answers_to(rows: list[Row], report: Node) -> list[Answer]:
-    """The judge's verdict on every row of the report that is on the flight, then those that it lacks."""
+    """The judge's verdict on every flight row of the report, then those that the report lacks."""
     theirs, strange = theirs_of(report)
     mine = by_key(rows)
     del mine[CHOICE]  # its rows are those on the relations and on service
@@ -70,16 +70,16 @@ def _on(key: Key, said: list[tuple[str, str]], mine: dict[Key, list[Row]]) -> li
 
 
 def _expected(row: Row) -> bool:
-    """Whether a report without this row is silent on something that was to be decided."""
+    """Whether a report without this row omits something that had to be decided."""
     alone = row.subject[0] == "pair" and len(row.subject) == 2
     return row.checks > 0 or row.verdict != HOLDS or alone
 
 
 def _on_relations(said: list[tuple[str, str]], rows: list[Row]) -> list[Answer]:
-    """On the relations, sentence by sentence.
+    """Answers on the relations, sentence by sentence.
 
-    With a `+` in them the monitor may have taken another way to resolve it, so that a sentence of that form
-    that the judge does not have is not foreign, though nothing confirms it.
+    With a `+` in the relations the monitor may have resolved it differently, so that a sentence of
+    this form that the judge does not have is not foreign, although nothing confirms it.
     """
     known = {f"{FLIGHT}{text}": verdict for row in rows for text, verdict in _parts(row)}
     choices = [row.verdict for row in rows if row.subject[1].startswith("choice ")]
@@ -96,6 +96,6 @@ def _on_relations(said: list[tuple[str, str]], rows: list[Row]) -> list[Answer]:
 
 
 def _parts(row: Row) -> list[tuple[str, str]]:
-    """The sentences of a row, none surer than the whole row is."""
+    """The sentences of a row with their verdicts, each at most as certain as the whole row."""
     sure = row.verdict == worst([verdict for _, verdict in row.parts])
     return [(text, verdict if sure else UNKNOWN) for text, verdict in row.parts]

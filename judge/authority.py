@@ -1,14 +1,14 @@
 """G4: exactly one of UxAS and ICAROUS commands each protected vehicle, and takeovers end.
 
-Three sources must tell one story: the gate's states, the commands that were let through or dropped,
-and the announced changes of authority. A vehicle begins with UxAS in epoch 0. ICAROUS takes over, offers
-control, or withdraws its offer, each in the next epoch. UxAS has control again when its first command
-of the offer's epoch has come; that begins no epoch. A command acts if its epoch is the present one and
+Three sources must be consistent: the gate's states, the accepted or dropped commands, and the
+reported changes of authority. A vehicle begins with UxAS in epoch 0. ICAROUS takes over, offers
+control, or withdraws its offer, each in the next epoch. UxAS regains control with its first command
+of the offer's epoch; this begins no epoch. A command is valid if its epoch is the current one and
 its sender has control, or is UxAS under an offer; any other must be dropped.
 
-Who has lost the link cannot hand back. A takeover that is open at the end is violated; where the link had been
-declared down (BridgeStatus) and was not declared alive again, it is unknown whether it would have ended. A takeover also ends
-where the vehicle has come to a stand on a landing site.
+Without a link no handback is possible. A takeover open at the end is a violation; if the link had
+been declared down (BridgeStatus) and not declared alive again, it is unknown whether it would have
+ended. A takeover also ends when the vehicle has come to rest on a landing site.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ UXAS, ICAROUS = "UxAS", "ICAROUS"
 
 
 class _Story:
-    """What has been told of one vehicle so far. due: what has to be told next."""
+    """The history of one vehicle so far. due: the report that must come next."""
 
     def __init__(self) -> None:
         self.owner, self.epoch, self.offered = UXAS, 0, False
@@ -39,7 +39,7 @@ class _Story:
         self.faults.append((at_ms, text))
 
     def settle(self, at_ms: int) -> None:
-        """Nothing may be due any more."""
+        """Record a fault if a report is still due."""
         if self.due == "drop":
             self.fault(at_ms, "a command came through from one who did not have control")
         elif self.due == "handback":
@@ -99,10 +99,12 @@ class _Story:
             self.said_owner = self.owner
 
     def end(self, at_ms: int, down_ms: int | None, landed: bool) -> str:
-        """The mission's end: control has been handed back. That a task failed meanwhile ends no takeover.
+        """Process the mission's end: control must have been handed back. A failed task ends no
+        takeover.
 
-        down_ms: since when the link is declared down, None if it is not. What is not known for that is answered. landed:
-        it stands on a landing site, or on the ground where it started.
+        down_ms: time since which the link is declared down, None if it is not. Returns what is
+        unknown for that reason. landed: it is at rest on a landing site, or on the ground where it
+        started.
         """
         self.settle(at_ms)
         self._announced(at_ms)
@@ -116,7 +118,7 @@ class _Story:
 
 
 def _down_ms(statuses: list[Bridge], end_ms: int) -> int | None:
-    """Since when a link is declared down at the end; None if it is not."""
+    """Time since which a link is declared down at the end; None if it is not."""
     since = None
     for status in statuses:
         if status.time_ms > end_ms:

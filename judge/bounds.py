@@ -1,4 +1,4 @@
-"""Windows and what they count from, and order and timing in the words of a report."""
+"""Time windows and their reference times, and order and timing constraints in the words of a report."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ from cratous.judge.algebra import Term, Window
 
 
 def bounded(term: Term, outer: Window | None) -> Term:
-    """The term under an outer window. One that has none of its own takes it."""
+    """The term inside an outer window, which applies if the term has none of its own."""
     if outer is None or (term.window and not counts_from_before(term)):
-        return term  # its own window is the inner one, and bounds all of it
+        return term  # its own window is the inner one, and applies to all of it
     return Term("|", 0, (term,), outer) if term.window else replace(term, window=outer)
 
 
 def counts_from_before(term: Term) -> bool:
-    """Whether its window leaves the first operand alone."""
+    """Whether its window does not apply to the first operand."""
     return term.window is not None and term.window.relative and term.operator in (".", "~")
 
 
 def quoted(term: Term) -> str:
-    """A term as reports quote it: shortened in the middle if it is long."""
+    """A term as quoted in reports: long ones are shortened in the middle."""
     text = str(term)
     return f"`{text}`" if len(text) <= 64 else f"`{text[:40]}…{text[-20:]}`"
 
 
 def event(operator: str, before: Term) -> str:
-    """What a later operand waits for, in the words of a report."""
+    """The event for which a later operand waits, in the words of a report."""
     verb, which = ("ends", "last") if operator == "." else ("starts", "first")
     names = [f"p{task}" for task in before.tasks()]
     if len(names) == 1:
@@ -36,8 +36,9 @@ def event(operator: str, before: Term) -> str:
 
 
 class Bound(NamedTuple):
-    """What bounds a task. ref_ms: what the window counts from, None: it never came; since: the same in
-    the words of a report, empty for the mission's start."""
+    """The bound of a task. ref_ms: reference time of the window, None: never reached; since: the
+    reference in the words of a report, empty for the mission's start.
+    """
 
     term: Term
     ref_ms: int | None
@@ -45,7 +46,7 @@ class Bound(NamedTuple):
     since: str = ""
 
     def parts(self, task: int) -> tuple[str, str]:
-        """What it asks of the start and of the end of a task, in the words of a report."""
+        """Its constraints on the start and the end of a task, in the words of a report."""
         said, first, last = quoted(self.term), self.window.first, self.window.last
         if self.since:
             return (

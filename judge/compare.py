@@ -1,10 +1,10 @@
-"""The judge's rows beside those of the flight's monitor, as its report.json has them.
+"""Compares the judge's rows with those of the flight's monitor in report.json.
 
-- *disagree*: one says that something holds and the other that it is violated; or a violation that the
-  monitor has no row for, or calls unknown; or something it excuses that holds; or a row that the
-  judge does not expect and that is not unknown.
-- *claimed excused*: violated here, excused there. The judge knows no excuses.
-- *undecided*: one of the two cannot say.
+- *disagree*: one has `holds` and the other `violated`; or a violation for which the monitor has no row
+  or `unknown`; or an excused row that holds; or a row that the judge does not expect and that is not
+  unknown.
+- *claimed excused*: violated here, excused there. The judge has no excuses.
+- *undecided*: one of the two is unknown.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from cratous.spec.errors import BadInput
 
 NAME = "report.json"
 LARGEST = 1 << 28
-"""Bytes of a report at most: what it is read into takes many times as much."""
+"""Maximum size of a report [bytes]: its parsed form takes many times as much."""
 FORMATS = ("cratous-report/2", "cratous-report/1")
-"""What is compared stands in both alike."""
+"""Supported formats: the compared entries are the same in both."""
 EXCUSED = "excused"
 DISAGREE, CLAIMED, UNDECIDED = "disagree", "claimed excused", "undecided"
 NUMBER = r"(-?\d+)"
@@ -47,7 +47,7 @@ ITEMS = (
 
 @dataclass(frozen=True)
 class Difference:
-    """Where the two do not say the same."""
+    """A difference between judge and monitor."""
 
     kind: str
     guarantee: str
@@ -57,7 +57,7 @@ class Difference:
     note: str
 
     def line(self) -> str:
-        """In one line."""
+        """The difference as one line of text."""
         return f"{self.guarantee} {self.item}: judge {self.judge}, monitor {self.monitor} ({self.note})"
 
 
@@ -66,7 +66,7 @@ CHOICE = ("G1", "choice")
 
 
 def report_of(path: Path) -> Path | None:
-    """The report beside a log, if there is one."""
+    """The report beside a log; None if there is none."""
     folder = path if path.is_dir() else path.parent
     if not path.is_dir() and path.name != "log.sqlite":
         return None
@@ -75,7 +75,7 @@ def report_of(path: Path) -> Path | None:
 
 
 def read(path: Path) -> Node:
-    """The report; BadInput if it is none."""
+    """The report; BadInput if it is invalid."""
     try:
         if path.stat().st_size > LARGEST:
             raise BadInput("too large", where=str(path), expected=f"at most {LARGEST} bytes")
@@ -88,7 +88,7 @@ def read(path: Path) -> Node:
 
 
 def differences(rows: list[Row], report: Node, digest: str) -> list[Difference]:
-    """All of them, those that disagree first."""
+    """All differences, disagreements first."""
     theirs, strange = theirs_of(report)
     mine = by_key(rows)
     found = []
@@ -111,7 +111,7 @@ def differences(rows: list[Row], report: Node, digest: str) -> list[Difference]:
 
 
 def by_key(rows: list[Row]) -> dict[Key, list[Row]]:
-    """The judge's rows by key, with those on the choice."""
+    """The judge's rows by key, including those on the choice."""
     mine: dict[Key, list[Row]] = {}
     for row in rows:
         mine.setdefault(_key(row), []).append(row)
@@ -120,7 +120,7 @@ def by_key(rows: list[Row]) -> dict[Key, list[Row]]:
 
 
 def _choice(rows: list[Row]) -> list[Row]:
-    """The judge's rows on what a monitor calls the choice: whether it is one, and whether it was done."""
+    """The judge's rows for the monitor's item on the choice: whether it is a choice, and whether it was done."""
     return [row for row in rows if row.subject[0] == "served" or row.item.startswith("choice: ")]
 
 
@@ -131,7 +131,7 @@ def _key(row: Row) -> Key:
 
 
 def theirs_of(report: Node) -> tuple[dict[Key, list[tuple[str, str]]], list[tuple[str, str, str]]]:
-    """The monitor's verdicts by the judge's keys, and those that fit no key."""
+    """The monitor's verdicts by the judge's keys, and those without a key."""
     found: dict[Key, list[tuple[str, str]]] = {}
     strange = []
     for row in report["constraints"]:
@@ -192,9 +192,10 @@ def _worst_of(verdicts: list[str]) -> str:
 
 
 def met_nobody(key: Key, mine: dict[Key, list[Row]]) -> bool:
-    """A row of the monitor that says that a vehicle met nobody, which the judge says pair by pair.
+    """Whether this is a monitor row that a vehicle met no traffic, which the judge has pair by
+    pair.
 
-    Of a vehicle that is not protected, or is none of the mission, the judge says nothing.
+    The judge has no rows on vehicles that are not protected, or not part of the mission.
     """
     if key[:2] != ("G2", "pair") or len(key) != 3 or ("G4", "authority", key[2]) not in mine:
         return False

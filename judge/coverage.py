@@ -1,8 +1,9 @@
-"""How much of a line or an area was seen in footprints: a share from below and one from above.
+"""Coverage of a line or an area by footprints: a lower and an upper bound.
 
-Footprints are convex polygons (what is not convex is left out from below, and taken as its bounding box from
-above). A line is cut where footprints begin and end. An area is cut into squares, in four again
-wherever neither one footprint contains a square nor all miss it, down to FINEST_M.
+Footprints are convex polygons (others are omitted from the lower bound, and replaced by their
+bounding box in the upper bound). A line is split where footprints begin and end. An area is divided
+into squares, which are quartered wherever neither one footprint contains a square nor all miss it,
+down to FINEST_M.
 """
 
 from __future__ import annotations
@@ -19,11 +20,11 @@ from cratous.judge.earth import ACCURACY_M
 from cratous.judge.mission import Point, Task
 
 FINEST_M = 1.25
-"""Squares are not cut smaller than about this [m]."""
+"""Approximate minimum size of squares [m]."""
 COARSEST_M = 160.0
 MOST_SQUARES = 400_000
 ROUND = 256
-"""Corners of a polygon that stands for a disc."""
+"""Number of corners of a polygon that approximates a disc."""
 Floats = NDArray[np.float64]
 
 
@@ -40,14 +41,14 @@ class Footprints:
         return len(self.sure)
 
     def take(self, index: NDArray[np.intp]) -> Footprints:
-        """Some of them."""
+        """The footprints with these indices."""
         return Footprints(
             self.normals[index], self.offsets[index], self.boxes[index], self.sure[index]
         )
 
 
 def footprints(polygons: Sequence[Sequence[Point]]) -> Footprints:
-    """Prepared for asking; those with fewer corners than others repeat their last edge."""
+    """The footprints as half planes; those with fewer corners than others repeat their last edge."""
     most = max((len(p) for p in polygons), default=3)
     normals, offsets = np.zeros((len(polygons), most, 2)), np.zeros((len(polygons), most))
     boxes, sure = np.zeros((len(polygons), 4)), np.zeros(len(polygons), np.bool_)
@@ -72,7 +73,7 @@ def footprints(polygons: Sequence[Sequence[Point]]) -> Footprints:
 
 
 def point_seen(prints: Footprints, point: Point) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Which footprints contain a point for sure, and which may."""
+    """Which footprints certainly contain a point, and which may."""
     n, e = point
     over = np.max(prints.normals @ np.array(point, float) - prints.offsets, axis=1)
     box = prints.boxes
@@ -82,7 +83,7 @@ def point_seen(prints: Footprints, point: Point) -> tuple[NDArray[np.bool_], NDA
 
 
 def line_seen(prints: Footprints, points: Sequence[Point]) -> tuple[float, float, float]:
-    """Lengths of a polyline that are seen for sure, and perhaps, and its whole length [m]."""
+    """Lengths of a polyline that are certainly seen, and possibly seen, and its total length [m]."""
     sure = may = whole = 0.0
     for p, q in pairwise(points):
         length = math.dist(p, q)
@@ -99,7 +100,7 @@ Spans = list[tuple[float, float]]
 
 
 def _spans(prints: Footprints, p: Point, q: Point, length: float) -> tuple[Spans, Spans]:
-    """The parts of a segment in each footprint, as parameters from 0 to 1: surely, perhaps."""
+    """The parts of a segment in each footprint, as parameters from 0 to 1: certain, possible."""
     start, way = np.array(p), np.array(q) - np.array(p)
     low: Spans = []
     high: Spans = []
@@ -134,7 +135,7 @@ def _union(spans: Spans) -> float:
 
 
 def outlines(task: Task) -> tuple[list[Point], list[Point]]:
-    """The polygon that has to be seen: one within it and one around it (a disc is no polygon)."""
+    """Polygons inside and around the area to be seen; they differ only for a disc."""
     if task.kind == "area_search":
         return list(task.points), list(task.points)
     (n, e), r = task.points[0], task.extent_m
@@ -163,7 +164,7 @@ def area_m2(ring: Sequence[Point]) -> float:
 
 @dataclass
 class AreaSeen:
-    """Areas [m^2]: seen, not seen, and neither by squares of `finest_m`."""
+    """Areas [m^2]: seen, not seen, and undecided with squares of `finest_m`."""
 
     seen: float = 0.0
     unseen: float = 0.0
@@ -172,7 +173,7 @@ class AreaSeen:
 
 
 def area_seen(prints: Footprints, ring: Sequence[Point]) -> AreaSeen:
-    """How much of a polygon was seen. The polygon is cut by halves along with the squares."""
+    """How much of a polygon was seen. The polygon is clipped along with the squares."""
     low = [min(p[k] for p in ring) for k in (0, 1)]
     span = max(max(p[k] for p in ring) - low[k] for k in (0, 1))
     levels = max(0, math.ceil(math.log2(max(span, FINEST_M) / FINEST_M)))
@@ -208,7 +209,7 @@ def area_seen(prints: Footprints, ring: Sequence[Point]) -> AreaSeen:
 def _square(
     prints: Footprints, index: NDArray[np.intp], n: float, e: float, side: float
 ) -> tuple[bool, NDArray[np.intp]]:
-    """Whether one footprint surely contains the square, and which of them may touch it."""
+    """Whether one footprint certainly contains the square, and which of them may touch it."""
     half = side / 2
     centre = np.array([n + half, e + half])
     normals = prints.normals[index]
@@ -223,7 +224,7 @@ def _square(
 
 
 def _cut(ring: list[Point], axis: int, at: float) -> tuple[list[Point], list[Point]]:
-    """A polygon on both sides of a line along an axis; parts may be joined by edges of no width."""
+    """A polygon split by a line along an axis; parts may be joined by edges of zero width."""
     less: list[Point] = []
     more: list[Point] = []
     for k, q in enumerate(ring):

@@ -1,6 +1,7 @@
-"""From latitude and longitude (WGS-84) to the mission frame: distance and azimuth from its origin.
+"""Converts latitude and longitude (WGS-84) to the mission frame: distance and azimuth from its
+origin.
 
-The geodesic is Vincenty's inverse solution (1975), good to a tenth of a millimetre.
+The geodesic is Vincenty's inverse solution (1975), accurate to a tenth of a millimetre.
 """
 
 from __future__ import annotations
@@ -11,13 +12,13 @@ A = 6_378_137.0
 F = 1 / 298.257223563
 B = A * (1 - F)
 ACCURACY_M = 1e-3
-"""Positions that were degrees in a message are not known better than this [m]."""
+"""Accuracy of positions that were degrees in a message [m]."""
 
 
 def to_local(
     origin_lat: float, origin_lon: float, lat: float, lon: float
 ) -> tuple[float, float] | None:
-    """North and east [m] of a place; None where the iteration fails (the far side of the Earth)."""
+    """North and east [m] of a place; None if the iteration fails (the far side of the Earth)."""
     u1 = math.atan((1 - F) * math.tan(math.radians(origin_lat)))
     u2 = math.atan((1 - F) * math.tan(math.radians(lat)))
     apart = math.radians(math.remainder(lon - origin_lon, 360.0))

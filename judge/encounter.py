@@ -1,8 +1,9 @@
-"""Short flights without a log: from the mission's file and where everybody was, by the geometry of whole flights.
+"""Judges short flights without a log, from the mission's file and the aircraft states, with the
+geometry of whole flights.
 
-Judged are zones (G1), well clear (G2), and points (G3): of each protected vehicle the first `reached` points of its
-must_fly tasks, in the order of the file, were passed within 50 m, one after the other. Of a vehicle that reached none
-that is unknown.
+Judged are zones (G1), well clear (G2), and points (G3): for each protected vehicle the first
+`reached` points of its must_fly tasks, in file order, must be passed within 50 m one after the
+other. Unknown for a vehicle that reached none.
 """
 
 from __future__ import annotations
@@ -22,13 +23,13 @@ from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, doubted
 from cratous.spec.errors import BadInput
 
 States = Mapping[int, list[list[float]]]
-"""By aircraft, one or more: time [ms]; north, east, altitude [m]; velocity north, east, up [m/s]; in the order of time."""
+"""By aircraft, one or more: time [ms]; north, east, altitude [m]; velocity north, east, up [m/s]; in time order."""
 
 
 def judge_encounter(file: Path, states: States, reached: Mapping[int, int]) -> list[Row]:
-    """All rows of an encounter; BadInput if the mission or the states do not fit.
+    """All rows of an encounter; BadInput if mission or states are invalid.
 
-    reached: by vehicle, how many of its points it is said to have passed.
+    reached: by vehicle, the number of its points that it is reported to have passed.
     """
     mission = mission_file.read(file)
     if not any(states.values()):
@@ -43,7 +44,7 @@ def judge_encounter(file: Path, states: States, reached: Mapping[int, int]) -> l
 
 
 def _read(told: Node) -> Iterator[State]:
-    """The states in a list; those of plain numbers, nearly all, without a place for each number."""
+    """The states in a list; valid plain numbers, the usual case, are read without tracking positions."""
     if type(told.data) is not list:
         raise told.wrong("a list")
     for k, state in enumerate(told.data):
@@ -51,13 +52,13 @@ def _read(told: Node) -> Iterator[State]:
 
 
 def _plain(state: object) -> State | None:
-    """A state of a whole number and six doubles that `real` takes as they are; None where that is not certain."""
+    """A state of an integer and six doubles that `real` accepts unchanged; None if that is not certain."""
     if type(state) is not list or len(state) != len(State._fields):
         return None
     time, *values = state
     if type(time) is not int or abs(time) >= MOST or set(map(type, values)) != {float}:
         return None
-    # also of NaN the comparison is false
+    # the comparison is false for NaN too
     return State._make(state) if sum(map(abs, values)) <= FARTHEST else None
 
 

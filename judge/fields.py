@@ -1,4 +1,4 @@
-"""Plain data (of JSON or YAML) read with its types: what does not fit is a BadInput with its path."""
+"""Typed access to plain data (from JSON or YAML): invalid values raise BadInput with their path."""
 
 from __future__ import annotations
 
@@ -9,35 +9,35 @@ from typing import Any
 from cratous.spec.errors import BadInput
 
 MOST = 2**61
-"""No whole number reaches this."""
+"""Exclusive limit of integers."""
 FARTHEST = 1e15
-"""No real number exceeds this; squares and products of four stay far from the end of the doubles."""
+"""Limit of real numbers; squares and products of four are far from overflow."""
 
 
 def is_plain(value: Any) -> bool:
-    """Whether a value is a double that `real` takes as it is; also of NaN the comparison is false."""
+    """Whether a value is a double that `real` accepts unchanged; the comparison is false for NaN too."""
     return type(value) is float and -FARTHEST <= value <= FARTHEST
 
 
 class Node:
-    """A value with the place where it stands; `where` is the file."""
+    """A value with its position; `where` is the file."""
 
     __slots__ = ("_name", "_whole", "data", "where")
 
     def __init__(self, data: Any, where: str, name: str | int, whole: Node | None = None) -> None:
-        """name: the item; of a part of another value (`whole`) its field or number in that."""
+        """name: the item; for a part of another value (`whole`) its field or index."""
         self.data, self.where, self._name, self._whole = data, where, name, whole
 
     @property
     def item(self) -> str:
-        """Where in the file it stands; put together only where an error says it."""
+        """Its path in the file, computed only when an error needs it."""
         if self._whole is None:
             return str(self._name)
         part = f"[{self._name}]" if isinstance(self._name, int) else f".{self._name}"
         return self._whole.item + part
 
     def wrong(self, expected: str) -> BadInput:
-        """The error that this value is."""
+        """The error for an invalid value."""
         try:
             got = repr(self.data) if not isinstance(self.data, int) else _digits(self.data)
         except RecursionError:
@@ -57,7 +57,7 @@ class Node:
         return Node(self.data[name], self.where, name, self)
 
     def get(self, name: str, default: Any = None) -> Node:
-        """A field of an object, or this default."""
+        """A field of an object, or the default."""
         if not isinstance(self.data, dict):
             raise self.wrong("an object")
         return Node(self.data.get(name, default), self.where, name, self)
@@ -70,12 +70,12 @@ class Node:
             yield Node(part, self.where, k, self)
 
     def has(self, name: str) -> bool:
-        """Whether an object has the field, and not null in it."""
+        """Whether an object has the field with a value other than null."""
         return isinstance(self.data, dict) and self.data.get(name) is not None
 
     @property
     def whole(self) -> int:
-        """A whole number."""
+        """An integer."""
         if type(self.data) is not int or abs(self.data) >= MOST:
             raise self.wrong("a whole number of at most 61 bits")
         return self.data
@@ -99,25 +99,25 @@ class Node:
 
     @property
     def text(self) -> str:
-        """A text."""
+        """A string."""
         if type(self.data) is not str:
             raise self.wrong("a text")
         return self.data
 
     @property
     def flag(self) -> bool:
-        """True or false."""
+        """A boolean."""
         if type(self.data) is not bool:
             raise self.wrong("true or false")
         return self.data
 
     def one_of(self, *choices: str) -> str:
-        """One of these texts."""
+        """One of these strings."""
         if self.data not in choices:
             raise self.wrong(" or ".join(choices))
         return str(self.data)
 
 
 def _digits(number: int) -> str:
-    # a number of very many digits is not written out
+    # a number with very many digits is not printed
     return str(number) if abs(number) < 10**60 else f"a number of {number.bit_length()} bits"

@@ -1,4 +1,4 @@
-"""The whole judgement of one log."""
+"""The complete judgement of one log."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ from cratous.judge.work import Flight
 
 @dataclass(frozen=True)
 class Judgement:
-    """Rows, and where the flight's report says otherwise. report: whether there is one.
+    """Rows, and differences from the flight's report. report: whether there is one.
 
-    answers: to each row of the report on the flight, and rows that it should have and lacks; meta: what
-    the log says of the flight besides its messages, as it stands there.
+    answers: on each flight row of the report, and rows that it should have and lacks; meta: the
+    log's meta data, unchanged.
     """
 
     rows: tuple[Row, ...]
@@ -47,16 +47,16 @@ class Judgement:
 
     @property
     def verdict(self) -> str:
-        """The worst of all."""
+        """The worst verdict of all rows."""
         return worst([self.of(guarantee) for guarantee in GUARANTEES])
 
     def of(self, guarantee: str) -> str:
-        """The verdict on G1 to G5; without a row it is unknown."""
+        """The verdict on one of G1 to G5; unknown without a row."""
         return worst([row.verdict for row in self.rows if row.guarantee == guarantee])
 
     @property
     def disagreements(self) -> list[Difference]:
-        """Where one of the two must be wrong."""
+        """Differences in which one of the two must be wrong."""
         return [d for d in self.differences if d.kind == DISAGREE]
 
     @property
@@ -67,7 +67,7 @@ class Judgement:
         return 0 if self.verdict == HOLDS else 3
 
     def data(self) -> dict[str, Any]:
-        """All of it as plain data."""
+        """The judgement as plain data."""
         return {
             "verdict": self.verdict,
             "exit_code": self.exit_code,
@@ -83,14 +83,14 @@ class Judgement:
 
 def _row_data(row: Row) -> dict[str, Any]:
     data = {**asdict(row), "subject": list(row.subject)}
-    del data["parts"]  # the row says the same in its own words
+    del data["parts"]  # the row states the same in its own words
     return data
 
 
 def judge(path: Path, mission: Path | None = None) -> Judgement:
-    """Judge a log, or the folder it is in, against its mission or that of a file.
+    """Judge a log, or the folder that contains it, against its mission or that of a file.
 
-    Raises BadInput (`cratous.spec.errors`), and nothing else, for what cannot be judged.
+    Raises only BadInput (`cratous.spec.errors`), for input that cannot be judged.
     """
     found = log.read(log.place_of(path))
     asked = mission_file.read(mission) if mission else from_log(log.mission_node(found))
@@ -110,7 +110,7 @@ def judge(path: Path, mission: Path | None = None) -> Judgement:
 
 
 def judged(mission: Mission, found: log.Log) -> list[Row]:
-    """All rows that the mission asks for, and that the log adds."""
+    """All rows that the mission requires, and those that the log adds."""
     flown = tracks(mission, found)
     done = relations.deeds(mission, found)
     flight = Flight(mission, found, flown, done)
@@ -136,7 +136,7 @@ def judged(mission: Mission, found: log.Log) -> list[Row]:
 
 
 def _not_missed(row: Row, lossy: str) -> Row:
-    """What is violated because something was not said is unknown where messages are missing."""
+    """A violation by the absence of a message becomes unknown if messages are missing."""
     by_presence = row.guarantee == "G2" or row.subject[0] in ("zone", "eligible", "merge")
     if not lossy or by_presence or row.verdict != VIOLATED:
         return row
@@ -148,7 +148,7 @@ def _place(row: Row) -> tuple[str, bool]:
 
 
 def _unsafe(rows: list[Row]) -> dict[int, list[int]]:
-    """When each vehicle broke a zone or lost well clear, by vehicle."""
+    """Times at which each vehicle violated a zone or lost well clear, by vehicle."""
     found: dict[int, list[int]] = {}
     for row in rows:
         if row.verdict == VIOLATED and row.at_ms is not None:

@@ -1,7 +1,8 @@
-"""Who is on the ground: by where a vehicle was, at a landing site or beside all of them.
+"""Which vehicles are on the ground, by position: on a landing site or outside all of them.
 
-A vehicle is on the ground where it is not above it by more than a centimetre: that of a site within its disc, the flat
-terrain elsewhere. In a mission without landing sites nobody is, but who starts there and has not left it.
+A vehicle is on the ground if it is at most a centimetre above it: a site's ground within its disc,
+the flat terrain elsewhere. In a mission without landing sites none is, except one that starts there
+and has not left it.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ MOVES = "and did not stand there at the end"
 
 
 class Down(NamedTuple):
-    """The first contact [ms], at which site (None: beside all), and what is wrong with what followed; "" if nothing."""
+    """Time of first contact [ms], the site (None: outside all), and faults afterwards; "" if none."""
 
     at_ms: int
     site: Site | None
@@ -30,11 +31,11 @@ class Down(NamedTuple):
 
     @property
     def good(self) -> bool:
-        """It came down on a site, stayed, and stands there."""
+        """Whether it landed on a site, stayed, and is at rest there."""
         return self.site is not None and not self.fault
 
     def words(self) -> str:
-        """In words."""
+        """The landing in words."""
         where = f"on {self.site.name}" if self.site else "beside every landing site"
         return (
             f"came to the ground {where} at {seconds(self.at_ms)}{self.fault and ', ' + self.fault}"
@@ -42,7 +43,7 @@ class Down(NamedTuple):
 
 
 def site_at(mission: Mission, state: State) -> Site | None:
-    """The site in whose disc a state is, at whatever height."""
+    """The site whose disc contains a state, at any height."""
     for site in mission.sites:
         if math.dist((state.north_m, state.east_m), (site.north_m, site.east_m)) <= site.radius_m:
             return site
@@ -59,12 +60,12 @@ def grounded(mission: Mission, state: State) -> bool:
 
 
 def is_at(mission: Mission, vehicle: int, state: State) -> bool:
-    """Whether a vehicle that starts on the ground is as low as there."""
+    """Whether a vehicle that starts on the ground is no higher than there."""
     return state.alt_m <= mission.grounds[vehicle] + NEAR_M
 
 
 def first_in_the_air(mission: Mission, vehicle: int, states: Sequence[State]) -> int:
-    """The number of the first of its states at which a vehicle is not where it started on the ground any more."""
+    """Index of the first state at which a vehicle has left the ground where it started."""
     if vehicle not in mission.grounds:
         return 0
     off = (k for k, state in enumerate(states) if not is_at(mission, vehicle, state))
@@ -72,7 +73,7 @@ def first_in_the_air(mission: Mission, vehicle: int, states: Sequence[State]) ->
 
 
 def stands_at_start(mission: Mission, vehicle: int, track: Track | None) -> bool:
-    """Whether a vehicle has stood where it started on the ground to the end, and all of that was logged."""
+    """Whether a vehicle stood where it started on the ground until the end, with complete logging."""
     if track is None or track.doubt or vehicle not in mission.grounds or not track.states:
         return False
     last, states = track.states[-1], track.states
@@ -81,7 +82,7 @@ def stands_at_start(mission: Mission, vehicle: int, track: Track | None) -> bool
 
 
 def on_ground(mission: Mission, vehicle: int, track: Track) -> set[int]:
-    """When the legs of one of ours begin whose both ends are on the ground [ms]."""
+    """Start times [ms] of a mission vehicle's legs with both ends on the ground."""
     states, began = track.states, first_in_the_air(mission, vehicle, track.states)
     found = {state.time_ms for state in states[: max(began - 1, 0)]}
     return found | {
@@ -92,7 +93,7 @@ def on_ground(mission: Mission, vehicle: int, track: Track) -> set[int]:
 
 
 def down(mission: Mission, vehicle: int, track: Track | None) -> Down | None:
-    """How a vehicle came to the ground; None if it did not."""
+    """How a vehicle landed; None if it did not."""
     states = [] if track is None else track.states
     states = states[first_in_the_air(mission, vehicle, states) :]
     first = next((k for k, state in enumerate(states) if grounded(mission, state)), None)

@@ -1,11 +1,13 @@
-"""G5: heartbeats both ways, none later than two periods; or the vehicle acts safely alone.
+"""G5: heartbeats in both directions, none later than two periods; otherwise the vehicle acts safely
+alone.
 
-A silence that nobody declared is a violation. During one that was declared (BridgeStatus) the vehicle
-acts alone: if it then breaks a zone or loses well clear that is a violation; if not, it is not known
-whether it would have acted, and the verdict is unknown. In a flight in processes the gate is not on board,
-so that nobody acts for the vehicle, and a silence is a violation however it was declared. A heartbeat whose number came before, or is below one that came,
-is no sign of life. Of a flight with the original's clients, whose protocol has none, it is unknown what ICAROUS would
-have said. What goes down is logged when it is sent: where the bridge was made to fail that it came is not known.
+An undeclared silence is a violation. During a declared silence (BridgeStatus) the vehicle acts
+alone: violating a zone or losing well clear is then a violation; otherwise it is not known whether
+it would have acted, and the verdict is unknown. In a flight in processes the gate is not on board,
+so nothing acts for the vehicle, and any silence is a violation. A heartbeat with a repeated or
+lower number is no sign of life. In a flight with the original's clients, whose protocol has none,
+it is unknown what ICAROUS would have sent. Downlink messages are logged when sent: with injected
+bridge faults their arrival is not known.
 """
 
 from __future__ import annotations
@@ -20,13 +22,13 @@ from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, seconds
 
 PERIODS = 2
 IN_PROCESSES = "processes"
-"""A log with this in its meta data is of a flight whose gate stands in UxAS's process."""
+"""Meta entry of logs of flights whose gate is in UxAS's process."""
 ORIGINAL = "--original-clients"
-"""With this word in its command a flight had the original's clients."""
+"""Option in the command of flights with the original's clients."""
 
 
 def rows(mission: Mission, log: Log, unsafe: dict[int, list[int]]) -> Iterator[Row]:
-    """One row for each protected vehicle and direction. unsafe: when each broke G1's zones or G2."""
+    """One row for each protected vehicle and direction. unsafe: times at which each violated G1's zones or G2."""
     for vehicle in mission.protected:
         for way, name in (("Down", "to"), ("Up", "from")):
             yield _row(mission, log, (vehicle, way), name, unsafe.get(vehicle, []))
@@ -86,7 +88,7 @@ def _row(mission: Mission, log: Log, key: tuple[int, str], name: str, unsafe: li
 
 
 def _news(beats: list[Beat]) -> list[Beat]:
-    """Those of a number that is above every one before."""
+    """Heartbeats with a number above all previous ones."""
     found: list[Beat] = []
     for beat in beats:
         if not found or beat.number > found[-1].number:
@@ -95,7 +97,7 @@ def _news(beats: list[Beat]) -> list[Beat]:
 
 
 def _fault(beats: list[Beat], bound: int) -> tuple[int, str] | None:
-    """A heartbeat that came late after it was sent, or a log that goes back in time."""
+    """A heartbeat that arrived late, or a log whose time decreases."""
     last: Beat | None = None
     for beat in beats:
         late = beat.logged_ms - beat.time_ms
@@ -108,8 +110,8 @@ def _fault(beats: list[Beat], bound: int) -> tuple[int, str] | None:
 
 
 def _words(command: str) -> list[str]:
-    """The words of a command as a shell has them: a name with spaces in quotes is one."""
+    """The words of a command line as a shell splits them, quotes respected."""
     try:
         return shlex.split(command)
-    except ValueError:  # no shell has written it: a quote stands open
+    except ValueError:  # unbalanced quote: not written by a shell
         return command.split()

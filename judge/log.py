@@ -1,6 +1,6 @@
-"""Reads a message log, raw: SQLite and the JSON in it. Documented in docs/reference/logs.md.
+"""Reads a raw message log: SQLite and the JSON in it. Documented in docs/reference/logs.md.
 
-What is missing of it (gaps, holes, no end) is a doubt that no verdict `holds` survives.
+Missing parts (gaps, holes, no end) are doubts that turn `holds` into unknown.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ LEAVES = ("Standing", "Rolling", "Climbing", "Up")
 
 
 class State(NamedTuple):
-    """Where an aircraft is, and with which velocity it flies on: north, east, up."""
+    """Position of an aircraft, and the velocity of its next leg: north, east, up."""
 
     time_ms: int
     north_m: float
@@ -44,7 +44,7 @@ class State(NamedTuple):
 
 
 class Look(NamedTuple):
-    """What a camera sees at an instant: corners as latitude, longitude [deg]."""
+    """A camera footprint at an instant: corners as latitude, longitude [deg]."""
 
     vehicle: int
     time_ms: int
@@ -55,7 +55,7 @@ class Look(NamedTuple):
 
 
 class Progress(NamedTuple):
-    """A task's phase, as it was said. logged_ms: when."""
+    """A reported phase of a task. logged_ms: time of the report [ms]."""
 
     task: int
     vehicle: int
@@ -65,7 +65,7 @@ class Progress(NamedTuple):
 
 
 class Gate(NamedTuple):
-    """A message about authority. kind: state, command, drop or change; side: who owns or sends."""
+    """A message on authority. kind: state, command, drop or change; side: owner or sender."""
 
     kind: str
     vehicle: int
@@ -84,7 +84,7 @@ class Beat(NamedTuple):
 
 
 class Bridge(NamedTuple):
-    """Whether the bridge to a vehicle is said to be alive. lost: its connection has ended."""
+    """Whether the bridge to a vehicle is reported alive. lost: its connection has ended."""
 
     time_ms: int
     alive: bool
@@ -92,7 +92,7 @@ class Bridge(NamedTuple):
 
 
 class Alone(NamedTuple):
-    """What a vehicle says that it flies without the link, what was chosen, and when it last heard UxAS."""
+    """A vehicle's report of what it flies without the link, of the choice made, and when it last heard UxAS."""
 
     time_ms: int
     mode: str
@@ -101,7 +101,7 @@ class Alone(NamedTuple):
 
 
 class Leaves(NamedTuple):
-    """How a vehicle says that it leaves the ground, and when it last heard UxAS."""
+    """A vehicle's report on its take-off, and when it last heard UxAS."""
 
     time_ms: int
     mode: str
@@ -110,8 +110,8 @@ class Leaves(NamedTuple):
 
 @dataclass
 class Log:
-    """What the judge takes from a log. planned: the tasks of the last plan; doubts: why nothing in it can be said to hold; lossy: why
-    nothing can be said to be missing from it."""
+    """The judge's extract of a log. planned: tasks of the last plan; doubts: why nothing in it can be said to hold;
+    lossy: why absence from it proves nothing."""
 
     path: Path
     meta: dict[str, Any] = field(default_factory=dict)
@@ -132,17 +132,17 @@ class Log:
 
     @property
     def end_ms(self) -> int | None:
-        """When the mission ended; None if the log does not say so."""
+        """Time of the mission's end; None if the log does not contain it."""
         return self.ends[-1][0] if self.ends else None
 
 
 def place_of(path: Path) -> Path:
-    """The log of a folder, or the file itself."""
+    """The log in a folder, or the file itself."""
     return path / NAME if path.is_dir() else path
 
 
 def read(path: Path) -> Log:
-    """The log; BadInput, which says where, for a file that is not a whole one."""
+    """The log; BadInput, with the position, for an incomplete or invalid file."""
     log = Log(path)
     database = _open(path)
     try:
@@ -215,7 +215,7 @@ def _typed(row: tuple[Any, ...], where: str) -> tuple[int, int, Any]:
 
 
 def _feed(digest: Any, row: tuple[Any, ...]) -> None:
-    """One message of the digest: its head as JSON, its body, each with a line's end."""
+    """Add one message to the digest: its header as JSON, its body, each followed by a newline."""
     if row.count(None) < len(row) - len(OLD):
         text = json.dumps([*row[:4], *row[5:]], separators=(",", ":"), ensure_ascii=False)
     else:
@@ -262,7 +262,7 @@ def _refuse(name: str) -> float:
 
 _decode = json.JSONDecoder(parse_constant=_refuse).decode
 _quoted = lru_cache(256)(json.JSONEncoder(ensure_ascii=False).encode)
-"""A text as JSON; names of senders and types come again and again."""
+"""A string as JSON, cached, since names of senders and types recur."""
 
 
 def _json(text: str, where: str, item: str) -> Any:

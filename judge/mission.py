@@ -1,4 +1,4 @@
-"""The mission as the judge sees it: from the data that a log carries. See also `mission_file`."""
+"""The mission as the judge uses it, from the data in a log. See also `mission_file`."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ Point = tuple[float, float]
 SEARCHES = ("line_search", "point_search", "area_search", "pattern_search")
 KINDS = (*SEARCHES, "must_fly", "loiter")
 Said = dict[int, tuple[tuple[int, bool], ...]]
-"""By number: when it was said to take part (True) or not any more, in the order of time [ms]."""
+"""By number: when it was announced as present (True) or absent, in time order [ms]."""
 CHANGES = (
     "zone", "zone_ends", "vehicle_lost", "vehicle_joins", "task_added", "task_removed", "wind",
     "vehicle_holds", "vehicle_resumes",
 )  # fmt: skip
 ASK_NOTHING = ("wind", "vehicle_holds", "vehicle_resumes")
-"""Nothing more or less is asked for after these."""
+"""Changes that neither add nor remove requests."""
 
 
 class Camera(NamedTuple):
@@ -35,7 +35,7 @@ class Camera(NamedTuple):
 
 @dataclass(frozen=True)
 class Vehicle:
-    """One of ours."""
+    """A mission vehicle."""
 
     id: int
     protected: bool
@@ -43,12 +43,13 @@ class Vehicle:
     bank_rad: float
     cameras: tuple[Camera, ...] = ()
     ground_m: float | None = None
-    """How high the ground is on which it starts [m MSL]; None of one that starts in the air."""
+    """Ground height at its start [m MSL]; None if it starts in the air."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """What is asked for. shape, size_m, length_m: of a loiter; pattern, extent_m: of a pattern; views_deg: see `views`."""
+    """A requested task. shape, size_m, length_m: of a loiter; pattern, extent_m: of a pattern; views_deg: see
+    `views`."""
 
     id: int
     kind: str
@@ -70,8 +71,7 @@ class Task:
 class Zone:
     """A polygon (north, east) between two altitudes, known from an instant on, and until one if it ends.
 
-    padding_m widens a keep-out and narrows a keep-in, by distance.
-    """
+    padding_m enlarges a keep-out and reduces a keep-in, by distance."""
 
     id: int
     keep_in: bool
@@ -83,12 +83,12 @@ class Zone:
     until_ms: int | None = None
 
     def over(self, time_ms: int) -> bool:
-        """Whether it binds no leg that begins at an instant, because it has ended."""
+        """Whether it has ended, and applies to no leg that begins at time_ms."""
         return self.until_ms is not None and time_ms >= self.until_ms
 
 
 class Traffic(NamedTuple):
-    """An aircraft of others, and when it is there."""
+    """A traffic aircraft, and when it is present."""
 
     id: int
     appears_ms: int
@@ -96,8 +96,8 @@ class Traffic(NamedTuple):
 
 
 class WithoutLink(NamedTuple):
-    """What is flown without the link, as the log names it; after which silence; whether lines of the bridge may not
-    come, or late, while a connection stands."""
+    """The lost-link procedure, named as in the log; the silence that starts it; whether bridge lines may be lost or
+    late while a connection is up."""
 
     choice: str
     after_ms: int
@@ -120,7 +120,7 @@ class Volume(NamedTuple):
 
 @dataclass(frozen=True)
 class Mission:
-    """All of it. lost, joins, added, removed: since when, by id [ms]; terrain_m: the ground where there is no site."""
+    """The whole mission. lost, joins, added, removed: times by id [ms]; terrain_m: ground outside the sites."""
 
     name: str
     latitude_deg: float
@@ -146,22 +146,22 @@ class Mission:
 
     @property
     def grounds(self) -> dict[int, float]:
-        """How high the ground is under each vehicle that starts on it, by id [m MSL]."""
+        """Ground height below each vehicle that starts on it, by id [m MSL]."""
         return {v.id: v.ground_m for v in self.vehicles.values() if v.ground_m is not None}
 
     @property
     def silence_ms(self) -> int:
-        """For how long UxAS may be silent while a vehicle rolls [ms]."""
+        """Maximum silence of UxAS while a vehicle rolls [ms]."""
         return SILENCE_MS if self.without_link is None else self.without_link.after_ms
 
     @property
     def protected(self) -> list[int]:
-        """The vehicles that the guarantees are for."""
+        """The vehicles to which the guarantees apply."""
         return sorted(v.id for v in self.vehicles.values() if v.protected)
 
 
 def said_of(changes: Sequence[tuple[str, int, int]], enters: str, leaves: str) -> Said:
-    """What is said of the vehicles or tasks among changes (kind, number, instant), by time."""
+    """Announcements of vehicles or tasks in changes (kind, number, time), by time."""
     found: dict[int, list[tuple[int, bool]]] = {}
     for kind, number, at in sorted(changes, key=lambda change: change[2]):
         if kind in (enters, leaves):
@@ -170,10 +170,9 @@ def said_of(changes: Sequence[tuple[str, int, int]], enters: str, leaves: str) -
 
 
 def away_because(said: Said, number: int, at_ms: int) -> str:
-    """`left` or `to come` if it does not take part at an instant nor just before; else empty.
+    """`left` or `to come` if it is absent both at an instant and just before; otherwise empty.
 
-    What was said last counts; what is first said to come was not there before.
-    """
+    The last announcement counts; what is first announced as coming was absent before."""
     entries = said.get(number, ())
     before = [there for at, there in entries if at < at_ms]
     now = [there for at, there in entries if at <= at_ms]
@@ -184,7 +183,7 @@ def away_because(said: Said, number: int, at_ms: int) -> str:
 
 
 def from_log(data: Node) -> Mission:
-    """The mission that the log's meta data carry; BadInput if they do not fit."""
+    """The mission in a log's meta data; BadInput if it is invalid."""
     frame, simulation, daa = data["frame"], data["simulation"], data["daa"]["well_clear"]
     zones = [zone(z) for z in data["zones"]]
     said, ends = [], []
@@ -233,7 +232,7 @@ def from_log(data: Node) -> Mission:
 
 
 def check(mission: Mission, data: Node) -> None:
-    """What a mission has to be, whichever way it was read."""
+    """Checks of a mission, from whichever source."""
     if min(mission.volume) < 0:
         raise data["daa"].wrong("a well-clear volume without negative sizes")
     if not abs(mission.latitude_deg) <= 90:
@@ -265,10 +264,9 @@ def zone(data: Node, from_ms: int = 0) -> Zone:
 
 
 def with_ends(zones: Sequence[Zone], ends: Sequence[tuple[Node, int]]) -> tuple[Zone, ...]:
-    """The zones, with the instant at which each ends, if one does; BadInput for an end of none of them.
+    """The zones with their end times, if any; BadInput for an end of an unknown zone.
 
-    ends: the id of a zone, and when [ms].
-    """
+    ends: the id of a zone, and its end time [ms]."""
     known, until = {one.id: one.from_ms for one in zones}, dict[int, int]()
     for number, at in ends:
         if number.whole in until or at <= known.get(number.whole, at):
@@ -278,7 +276,7 @@ def with_ends(zones: Sequence[Zone], ends: Sequence[tuple[Node, int]]) -> tuple[
 
 
 def refuse_bad_ring(ring: tuple[Point, ...], data: Node) -> None:
-    """BadInput if these corners are no simple polygon."""
+    """BadInput if these corners are not a simple polygon."""
     fault = fault_of_ring(ring)
     if fault:
         raise BadInput(
@@ -290,7 +288,7 @@ def refuse_bad_ring(ring: tuple[Point, ...], data: Node) -> None:
 
 
 def lines_fail(faults: Node, unit: str) -> bool:
-    """Whether faults of the bridge lose, damage or delay lines, or ICAROUS stops reading. unit: at the end of names."""
+    """Whether bridge faults lose, damage or delay lines, or ICAROUS stops reading. unit: suffix of names."""
     if not isinstance(faults.data, dict):
         return False
     shares = ("loss", "truncation", "corruption", f"delay{unit}")
@@ -307,7 +305,7 @@ def pair(data: Node) -> Point:
 
 
 def by_id(found: Sequence[Any], data: Node) -> dict[int, Any]:
-    """By their ids; BadInput if one stands twice."""
+    """Items by id; BadInput for a duplicate."""
     numbers = [one.id for one in found]
     if len(set(numbers)) != len(numbers):
         raise data.wrong("each id once")
@@ -321,7 +319,7 @@ def _not_negative(data: Node) -> int:
 
 
 def positive(data: Node) -> int:
-    """A whole number above 0."""
+    """A positive integer."""
     if data.whole <= 0:
         raise data.wrong("more than 0")
     return data.whole
@@ -373,7 +371,7 @@ def _task(data: Node) -> Task:
 
 
 def check_task(task: Task, data: Node) -> None:
-    """BadInput if a task does not say where."""
+    """BadInput if a task has no position."""
     least = {"line_search": 2, "area_search": 3}.get(task.kind, 1)
     if len(task.points) < least:
         raise data.get("points").wrong(f"at least {least} points")

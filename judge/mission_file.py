@@ -1,7 +1,7 @@
-"""The mission as its file (YAML) says it, with the judge's own reading of units and paddings.
+"""The mission from its YAML file, with the judge's own handling of units and paddings.
 
-Paddings stay distances here, where the log has outlines with mitred corners. A file with a
-`variation` says another mission for every seed, so it is not taken for a flown variant.
+Paddings remain distances here, where the log has outlines with mitred corners. A file with a
+`variation` gives another mission for every seed, so it is not accepted for a flown variant.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 """The first is libyaml: ten times faster."""
 LARGEST, DEPTH = 20_000_000, 100
 CORNERS = 64
-"""A circle of an area stands for a polygon around it with so many corners."""
+"""Number of corners of the polygon that encloses the circle of an area."""
 
 
 def read(path: Path) -> m.Mission:
-    """The mission in a file; BadInput if it does not fit."""
+    """The mission in a file; BadInput if it is invalid."""
     try:
         kept = path.stat()
-        if not S_ISREG(kept.st_mode):  # a pipe would be waited for
+        if not S_ISREG(kept.st_mode):  # reading a pipe would block
             raise BadInput("not a regular file", where=str(path), expected="a mission file")
         if kept.st_size > LARGEST:
             raise BadInput("too large", where=str(path), expected=f"at most {LARGEST} bytes")
@@ -48,7 +48,7 @@ def read(path: Path) -> m.Mission:
 
 
 def _refuse_deep(text: str) -> None:
-    """Raise ValueError for what would take all of the stack, before anything is built of it."""
+    """Raise ValueError for nesting that would exhaust the stack, before parsing."""
     depth = 0
     for event in yaml.parse(text, Loader=LOADER):
         if isinstance(event, yaml.CollectionStartEvent):
@@ -113,19 +113,19 @@ class _Reader:
         )
 
     def fix(self, data: Node) -> Fix:
-        """Where vehicles merge."""
+        """The fix at which vehicles merge."""
         who = frozenset(one.whole for one in data["vehicles"])
         place, apart_ms = self.point(data["fix"]["position"]), _ms(data.get("separation_s", 20))
         return Fix(data["fix"]["name"].text, *place, who, apart_ms, data["entry_m"].real)
 
     def site(self, data: Node) -> Site:
-        """A landing site; without an altitude its ground is the terrain."""
+        """A landing site; its ground defaults to the terrain."""
         place = data["position"]
         ground = place.get("alt_m", self.terrain_m).real
         return Site(data["name"].text, *self.point(place), ground, data["radius_m"].real)
 
     def point(self, data: Node) -> m.Point:
-        """A place in metres, in degrees, or as a pair of metres."""
+        """A position in metres, in degrees, or as a pair of metres."""
         if isinstance(data.data, list):
             return m.pair(data)
         if data.has("latitude_deg"):
@@ -162,7 +162,7 @@ class _Reader:
         return m.Vehicle(data["id"].whole, protected, data["speed_m_s"].real, bank, cameras, ground)
 
     def ground(self, data: Node) -> float:
-        """How high the ground is under a place: that of the first site there, else the terrain."""
+        """Ground height at a place: of the first site there, otherwise the terrain."""
         place = self.point(data)
         for one in self.root.get("landing_sites", []):
             site = self.site(one)
@@ -226,7 +226,7 @@ class _Reader:
 
 
 def _ms(data: Node) -> int:
-    """Seconds as milliseconds; not negative."""
+    """Seconds as milliseconds; non-negative."""
     if data.real < 0:
         raise data.wrong("0 or more")
     return round(data.real * 1000)

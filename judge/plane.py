@@ -1,8 +1,8 @@
-"""Exact geometry in the plane, on the rationals that doubles are.
+"""Exact geometry in the plane, on the rationals that doubles represent.
 
-Points are pairs of floats or of fractions. The sign of a determinant is taken from doubles where
-its error bound allows (Shewchuk 1997: |error| < (3 + 16 u) u (|a| + |b|) with u = 2^-53, for a
-determinant a - b of differences), else from fractions. Point in polygon is by winding number.
+Points are pairs of floats or of fractions. The sign of a determinant is computed in doubles where
+its error bound permits (Shewchuk 1997: |error| < (3 + 16 u) u (|a| + |b|) with u = 2^-53, for a
+determinant a - b of differences), otherwise in fractions. Point in polygon is by winding number.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ Pair = tuple[Any, Any]
 ERROR = 4e-16
 """Above (3 + 16 u) u = 3.33e-16."""
 LEAST = 1e-280
-"""Below this products may lose digits to underflow, so the fractions decide."""
+"""Below this, products may lose digits to underflow, so fractions decide."""
 
 
 def turn(a: Pair, b: Pair, c: Pair) -> int:
@@ -34,7 +34,7 @@ def turn(a: Pair, b: Pair, c: Pair) -> int:
 
 
 def on_segment(p: Pair, a: Pair, b: Pair) -> bool:
-    """p lies on the closed segment a-b."""
+    """Whether p lies on the closed segment a-b."""
     if not (min(a[0], b[0]) <= p[0] <= max(a[0], b[0])):
         return False
     if not (min(a[1], b[1]) <= p[1] <= max(a[1], b[1])):
@@ -43,7 +43,7 @@ def on_segment(p: Pair, a: Pair, b: Pair) -> bool:
 
 
 def meet(p: Pair, q: Pair, a: Pair, b: Pair) -> bool:
-    """The closed segments p-q and a-b have a point in common."""
+    """Whether the closed segments p-q and a-b have a point in common."""
     for k in (0, 1):
         if max(p[k], q[k]) < min(a[k], b[k]) or max(a[k], b[k]) < min(p[k], q[k]):
             return False
@@ -55,7 +55,7 @@ def meet(p: Pair, q: Pair, a: Pair, b: Pair) -> bool:
 
 
 def winding(ring: Sequence[Pair], p: Pair) -> int | None:
-    """How often the ring winds around p; None on the boundary."""
+    """Winding number of the ring around p; None on the boundary."""
     number = 0
     a = ring[-1]
     for b in ring:
@@ -80,7 +80,7 @@ def winding(ring: Sequence[Pair], p: Pair) -> int | None:
 
 
 def fault_of_ring(ring: Sequence[Pair]) -> str:
-    """Why these corners are no simple polygon; empty if they are."""
+    """Why these corners are not a simple polygon; empty if they are."""
     n = len(ring)
     if n < 3:
         return f"{n} corners"
@@ -107,7 +107,7 @@ def fault_of_ring(ring: Sequence[Pair]) -> str:
 
 
 def squared_distance(p: Pair, a: Pair, b: Pair) -> Fraction:
-    """Square of the distance of a point from a closed segment, exact."""
+    """Squared distance of a point from a closed segment, exact."""
     (px, py), (ax, ay), (bx, by) = (tuple(map(Fraction, x)) for x in (p, a, b))
     ux, uy, wx, wy = bx - ax, by - ay, px - ax, py - ay
     length = ux * ux + uy * uy
@@ -117,7 +117,7 @@ def squared_distance(p: Pair, a: Pair, b: Pair) -> Fraction:
 
 
 def squared_gap(p: Pair, q: Pair, a: Pair, b: Pair) -> Fraction:
-    """Square of the distance between two closed segments, exact."""
+    """Squared distance between two closed segments, exact."""
     if meet(p, q, a, b):
         return Fraction(0)
     return min(

@@ -1,12 +1,12 @@
-"""G1, order and timing: does what was done fit one way to resolve every `+`? And who did it?
+"""G1, order, timing and eligibility: whether the flown tasks fit one resolution of every `+`.
 
 A task runs from its first Active to its last Complete. By definition, on composites:
-- `.`: every task of an operand starts at or after the latest end of the operand before it;
+- `.`: every task of an operand starts at or after the latest end of the previous operand;
 - `~`: at or after its earliest start;
 - `+`: exactly one operand; no task of another one starts;
-- timing: each task lies in the innermost window that bounds it. A relative window on `.` (`~`) counts
-  from the latest end (earliest start) of the operand before, and leaves the first operand alone.
-Of several ways the best counts.
+- timing: each task lies in the innermost window that applies to it. A relative window on `.` (`~`) counts
+  from the latest end (earliest start) of the previous operand, and does not apply to the first operand.
+Of several resolutions the best one counts.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, doubted, second
 from cratous.spec.errors import BadInput
 
 WAYS = 2000
-"""So many ways to resolve `+` are looked at."""
+"""Maximum number of resolutions of `+` that are examined."""
 
 
 @dataclass
 class Deed:
-    """What the log says was done about a task. active: who, from when, to when (None: never)."""
+    """Logged execution of a task. active: vehicle, start, end (None: never)."""
 
     active: list[tuple[int, int, int | None]] = field(default_factory=list)
     complete_ms: int | None = None
@@ -36,13 +36,13 @@ class Deed:
 
     @property
     def start_ms(self) -> int | None:
-        """When it was begun first."""
+        """Time of its first start [ms]."""
         return self.active[0][1] if self.active else None
 
 
 @dataclass(frozen=True)
 class Found:
-    """One constraint on a way: what it says, and whether it was kept. parts: of `Row`."""
+    """One constraint of a resolution: its text, and its verdict. parts: of `Row`."""
 
     kind: str
     text: str
@@ -53,7 +53,7 @@ class Found:
 
 
 def deeds(mission: Mission, log: Log) -> dict[int, Deed]:
-    """By task, from the phases that were logged."""
+    """Executions by task, from the logged phases."""
     found: dict[int, Deed] = {}
     for said in log.progress:
         deed = found.setdefault(said.task, Deed())
@@ -76,10 +76,10 @@ def deeds(mission: Mission, log: Log) -> dict[int, Deed]:
 
 
 def asked(mission: Mission, done: dict[int, Deed], end_ms: int | None) -> Term | None:
-    """The relations over the tasks that take part in the end; None if there are none.
+    """The relations over the tasks that take part at the end; None if there are none.
 
-    A task that was removed takes part if it had been done before, and if it is asked for again, were it
-    after the end.
+    A removed task takes part if it had been done before, or if it is requested again, even after
+    the end.
     """
     text = mission.relations.strip()
     whole = parse(text) if text else all_of(sorted(mission.tasks))
@@ -107,9 +107,9 @@ def _refuse_strangers(mission: Mission, term: Term) -> None:
 
 
 def ways(term: Term, started: set[int]) -> Iterator[tuple[Term, tuple[Found, ...]]]:
-    """The term with every `+` resolved, and what that says about the choice.
+    """The term with every `+` resolved, with the constraints on the choice.
 
-    An operand that leaves out a started task is looked at only if every one does.
+    An operand that lacks a started task is examined only if every operand lacks one.
     """
     if not term.operator:
         yield term, ()
@@ -132,13 +132,13 @@ def ways(term: Term, started: set[int]) -> Iterator[tuple[Term, tuple[Found, ...
     one_of = Found("choice", str(term), verdict, note)
     for operand in fitting or term.operands:
         for one, found in ways(operand, started):
-            # the window of a + bounds all tasks of its choice, whatever stands in it
+            # the window of a + applies to all tasks of the chosen operand
             outer = Window(False, term.window.first, term.window.last) if term.window else None
             yield bounded(one, outer), (one_of, *found)
 
 
 class _Way:
-    """One way, held against the times of its tasks."""
+    """One resolution, checked against the times of its tasks."""
 
     def __init__(self, done: dict[int, Deed]) -> None:
         self.done = done
@@ -153,7 +153,7 @@ class _Way:
         return deed.complete_ms if deed else None
 
     def look(self, term: Term, bound: Bound | None) -> None:
-        """All constraints of a term; bound: the innermost window around it."""
+        """Check all constraints of a term; bound: the innermost window around it."""
         window = term.window
         relative = counts_from_before(term)
         if window is not None and not relative:
@@ -175,7 +175,7 @@ class _Way:
             before = operand
 
     def _moment(self, operator: str, before: Term) -> int | None:
-        """When the operand before had ended, or had begun; None if it never did."""
+        """Time at which the previous operand had ended, or had begun; None if never."""
         tasks = before.tasks()
         if operator == ".":
             ends = [self.end(t) for t in tasks]
@@ -227,9 +227,10 @@ class _Way:
 def best_way(
     term: Term, done: dict[int, Deed], served: set[int], planned: frozenset[int] = frozenset()
 ) -> tuple[Term, list[Found], bool]:
-    """The way that fits best: its term, its constraints, and whether all ways were looked at.
+    """The best-fitting resolution: its term, its constraints, and whether all resolutions were
+    examined.
 
-    Of ways that fit alike it is the one most like the last plan, `planned`.
+    Of equally good ones it is the one closest to the last plan, `planned`.
     """
     started = {t for t, deed in done.items() if deed.active}
     order = (HOLDS, UNKNOWN, VIOLATED)

@@ -1,4 +1,4 @@
-"""Searches: what the logged footprints covered, of cameras that suit the task."""
+"""Searches: coverage by logged footprints of suitable cameras."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from cratous.judge.work import Flight, nearest_m
 
 SHARE = 0.99
 SPACING_M = 10.0
-"""A line's share is that of points this far apart, so half of it more or less unseen is not decided."""
+"""Sampling distance of the monitor on lines [m]: half of it, seen or unseen, is not decided."""
 COARSER = 1.01
-"""A footprint counts up to this many times the ground sample distance that is asked for."""
+"""A footprint counts up to this multiple of the required ground sample distance."""
 
 
 def searched(flight: Flight, task: Task) -> tuple[str, str]:
-    """Verdict and note on a search."""
+    """Verdict and note for a search."""
     judge = {"line_search": _line, "point_search": _point}.get(task.kind, _area)
     verdict, note = judge(flight, task)
     if verdict == VIOLATED:
@@ -52,15 +52,15 @@ def _looks(flight: Flight, task: Task) -> list[tuple[Look, list[Point]]]:
 
 
 def _shows(flight: Flight, task: Task, look: Look, corners: list[Point]) -> bool:
-    """Whether the image shows the ground as the task asks, from where the vehicle truly was."""
+    """Whether the image shows the ground as required, from the vehicle's true position."""
     here = _place(flight, look)
     ground_m = flight.mission.terrain_m if look.centre is None else look.centre[2]
-    # where nobody knows the place, the gap in the track keeps the task from being said to be served
+    # if the position is unknown, the gap in the track already prevents `holds`
     return here is None or as_asked(here, ground_m, corners, task.views_deg)
 
 
 def _place(flight: Flight, look: Look) -> tuple[float, float, float] | None:
-    """Where the vehicle was at a look, on a leg that is known; None if no such position is."""
+    """Position of the vehicle at a footprint, on a known leg; None if there is none."""
     track = flight.tracks.get(look.vehicle)
     index = track.from_index(look.time_ms) if track else 0
     if track is None or index >= len(track.states):
@@ -77,7 +77,7 @@ def _place(flight: Flight, look: Look) -> tuple[float, float, float] | None:
 
 
 def _suits(flight: Flight, task: Task, look: Look) -> bool:
-    """Whether the camera sees the wavelength, and finely enough, as far as that is known."""
+    """Whether the camera sees the wavelength with sufficient resolution, as far as known."""
     vehicle = flight.mission.vehicles.get(look.vehicle)
     camera = (
         next((c for c in vehicle.cameras if c.payload == look.payload), None) if vehicle else None
@@ -99,7 +99,7 @@ def _suits(flight: Flight, task: Task, look: Look) -> bool:
 
 
 def _slant_m(flight: Flight, look: Look) -> float | None:
-    """From the aircraft to the place below the middle of its view [m]."""
+    """Distance from the aircraft to the ground point at the centre of its view [m]."""
     here = _place(flight, look)
     if here is None or look.centre is None:
         return None
@@ -132,7 +132,7 @@ def _line(flight: Flight, task: Task) -> tuple[str, str]:
     sure, may, whole = line_seen(prints, task.points)
     if whole == 0:
         return UNKNOWN, "the line has no length"
-    # all but a millimetre at each end of a footprint is all
+    # gaps of a millimetre at each end of a footprint do not count
     close = 4 * ACCURACY_M * (len(task.points) + 1)
     if whole - sure <= close:
         sure = whole
@@ -165,7 +165,7 @@ def _point(flight: Flight, task: Task) -> tuple[str, str]:
     if task.duration_ms:
         seen, most = (_stayed_ms(flight, x) for x in (times, perhaps))
         note += f", for {seen / 1000:g} of {task.duration_ms / 1000:g} s"
-        # two footprints are a heartbeat apart: at both ends of the dwell one period is not decided
+        # footprints are a heartbeat apart: one period at each end of the dwell is undecided
         room = 2 * flight.mission.heartbeat_ms
         if most + room < task.duration_ms:
             return VIOLATED, note
@@ -182,6 +182,6 @@ def _point(flight: Flight, task: Task) -> tuple[str, str]:
 
 
 def _stayed_ms(flight: Flight, times: list[int]) -> int:
-    """How long something was seen, with no look in between missing."""
+    """Total time during which it was seen, without a missing footprint in between [ms]."""
     period = flight.mission.heartbeat_ms
     return sum(b - a for a, b in pairwise(times) if b - a <= period)

@@ -1,15 +1,17 @@
-"""G2: is well clear ever lost between a protected vehicle and another aircraft? Exact, between samples.
+"""G2: whether well clear between a protected vehicle and another aircraft is ever lost. Exact,
+between samples too.
 
-Well clear (modified tau) is lost at an instant if, of the relative position s and velocity v,
+Well clear (modified tau) is lost at an instant if, for the relative position s and velocity v,
 - horizontally |s| <= DTHR; or s.v < 0, the closest approach on straight flight is within DTHR, and
   0 <= (DTHR^2 - |s|^2) / (s.v) <= TTHR; and
 - vertically |h| <= ZTHR; or 0 <= -h / h' <= TCOA.
 
 On a leg v is constant. With q(t) = |s + t v|^2 and d(t) = (s + t v).v = q'(t) / 2, the horizontal
-condition holds from the lower root of q + TTHR d - DTHR^2 to the upper root of q - DTHR^2, if the course
-comes within DTHR at all, and never else: before the closest approach d < 0, so (DTHR^2 - q) / d <= TTHR says
-q + TTHR d <= DTHR^2, which |s| <= DTHR implies there. Whether the vertical condition's interval,
-whose ends are rational, meets that one is decided by signs at those ends: no root is taken.
+condition holds from the lower root of q + TTHR d - DTHR^2 to the upper root of q - DTHR^2 if the
+course comes within DTHR, and never otherwise: before the closest approach d < 0, so (DTHR^2 - q) /
+d <= TTHR means q + TTHR d <= DTHR^2, which |s| <= DTHR implies there. Whether the vertical
+condition's interval, whose ends are rational, meets that one is decided by signs at those ends: no
+root is computed.
 """
 
 from __future__ import annotations
@@ -26,16 +28,16 @@ from cratous.judge.tracks import Track
 from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, doubted, seconds
 
 ROUND = 2.0**-50
-"""More than the relative rounding of a difference of differences, with its terms' sizes."""
+"""Upper bound of the relative rounding error of a difference of differences."""
 SUMS = 1e-14
-"""More than the relative rounding of a sum of a few such products."""
+"""Upper bound of the relative rounding error of a sum of a few such products."""
 NMAC = (152.4, 30.48)
-"""Near mid-air collision: 500 ft and 100 ft. Told, not judged: the mission says what is well clear."""
+"""Near mid-air collision: 500 ft and 100 ft. Reported, not judged: the mission defines well clear."""
 
 
 @dataclass
 class Pair:
-    """What was seen of two aircraft."""
+    """Observations of two aircraft."""
 
     checks: int = 0
     covered_ms: int = 0
@@ -47,7 +49,8 @@ class Pair:
 
 
 def clear_by_far(a0: State, a1: State, b0: State, b1: State, volume: Volume) -> bool:
-    """Certainly never lost on the leg, by doubles with room for their rounding.
+    """Whether well clear is certainly never lost on the leg, in doubles with allowance for
+    rounding.
 
     A loss needs |s| <= DTHR + TTHR |v| at an instant: from q + TTHR d <= DTHR^2 and |d| <= |s| |v|.
     """
@@ -71,9 +74,10 @@ def clear_by_far(a0: State, a1: State, b0: State, b1: State, volume: Volume) -> 
 
 
 def clear_by_course(a0: State, a1: State, b0: State, b1: State, volume: Volume) -> bool:
-    """Certainly never lost on the leg, as `lost_within` decides it, by doubles with room for their rounding.
+    """Whether well clear is certainly never lost on the leg by `lost_within`, in doubles with
+    allowance for rounding.
 
-    The course passes outside of DTHR; or at the beginning they are outside of DTHR and part; or at the end
+    The course passes outside DTHR; or at the start they are outside DTHR and diverge; or at the end
     `soon` is still above 0 and falls, so that its lower root is later.
     """
     h = (a1.time_ms - a0.time_ms) / 1000
@@ -102,13 +106,13 @@ def clear_by_course(a0: State, a1: State, b0: State, b1: State, volume: Volume) 
 
 
 def _of_products(a: float, b: float, c: float, d: float, slip: float) -> tuple[float, float]:
-    """a b + c d, and more than that may be off where each of the four is off by at most `slip`."""
+    """a b + c d, and an upper bound of its error if each of the four has an error of at most `slip`."""
     size = abs(a) + abs(b) + abs(c) + abs(d) + slip
     return a * b + c * d, 2 * slip * size + ROUND * (abs(a * b) + abs(c * d)) + 1e-200
 
 
 def lost_on_leg(a0: State, a1: State, b0: State, b1: State, volume: Volume) -> bool:
-    """Whether well clear is lost at an instant of the leg, its ends included. Exact."""
+    """Whether well clear is lost at an instant of the leg, including its ends. Exact."""
     span = Fraction(a1.time_ms - a0.time_ms, 1000)
     s = [Fraction(a0[k]) - Fraction(b0[k]) for k in (1, 2, 3)]
     v = [(Fraction(a1[k]) - Fraction(b1[k]) - s[k - 1]) / span for k in (1, 2, 3)]
@@ -132,7 +136,7 @@ def lost_within(s: list[Fraction], v: list[Fraction], span: Fraction, volume: Vo
     def apart(t: Fraction) -> Fraction:
         return vv * t * t + 2 * sv * t + ss - dd
 
-    # the instants that count are those from the lower root of `soon` to the upper root of `apart`
+    # the horizontal condition holds from the lower root of `soon` to the upper root of `apart`
     def soon(t: Fraction) -> Fraction:
         return apart(t) + tthr * (sv + vv * t)
 
@@ -144,7 +148,7 @@ def lost_within(s: list[Fraction], v: list[Fraction], span: Fraction, volume: Vo
 def _vertical(
     sz: Fraction, vz: Fraction, zthr: Fraction, tcoa: Fraction, span: Fraction
 ) -> tuple[Fraction, Fraction] | None:
-    """The instants of the leg at which the vertical condition holds: one interval, or none."""
+    """The interval of the leg in which the vertical condition holds; None if it never does."""
     zero = Fraction(0)
     if vz == 0:
         return (zero, span) if abs(sz) <= zthr else None
@@ -155,8 +159,9 @@ def _vertical(
 
 
 def rows(mission: Mission, flown: dict[int, Track]) -> Iterator[Row]:
-    """One row for each protected vehicle and each other aircraft, of the mission or of the log. Of a leg of one of ours
-    whose both ends are on the ground nothing is asked."""
+    """One row for each protected vehicle and each other aircraft, of the mission or of the log.
+    Legs of mission vehicles with both ends on the ground are not checked.
+    """
     protected = mission.protected
     for own in protected:
         others = [i for i in sorted(flown) if i != own and not (i in protected and i < own)]
@@ -197,11 +202,13 @@ def _row(own: int, other: int, flown: dict[int, Track], mission: Mission) -> Row
 
 
 def _watch(one: Track, two: Track, volume: Volume, grounds: set[int]) -> Pair:
-    """Every leg that both have flown from the same instant to the same instant, but those that begin at an instant of grounds."""
+    """Check every leg that both have flown over the same time span, except those that begin at
+    times in `grounds`.
+    """
     pair = Pair()
     place = {time: k for k, time in enumerate(two.times)}
     a, b = one.states, two.states
-    measured = -1  # up to which state of one, as the end of the leg before
+    measured = -1  # index of the last measured state of `one`
     for i in range(len(a) - 1):
         j = place.get(a[i].time_ms)
         if j is None:
@@ -230,13 +237,13 @@ def _watch(one: Track, two: Track, volume: Volume, grounds: set[int]) -> Pair:
 
 
 def _lost_at(a: State, b: State, volume: Volume) -> bool:
-    """Lost by the two positions alone, whatever the velocities."""
+    """Whether well clear is lost by the two positions alone, for any velocities."""
     s = [Fraction(a[k]) - Fraction(b[k]) for k in (1, 2, 3)]
     return lost_within(s, [Fraction(0)] * 3, Fraction(0), volume)
 
 
 def _unmatched(one: Track, two: Track, pair: Pair) -> str:
-    """Why the two were not held against each other all the time that both were in the air."""
+    """Why the two were not compared throughout the time that both were in the air."""
     if not one.times or not two.times:
         return ""
     first, last = max(one.times[0], two.times[0]), min(one.times[-1], two.times[-1])

@@ -1,12 +1,12 @@
-"""G3: is every task that the mission asks for served? By positions and footprints; no excuses.
+"""G3: whether every requested task is served, by positions and footprints; without excuses.
 
-A task is served when the log says that it was flown to its end (TaskProgress Complete) and, while the log
-says that it was being flown (Active), by that vehicle:
-- must_fly: the way came within 50 m of the point (horizontally);
+A task is served if the log reports it as flown to its end (TaskProgress Complete) and if, while it is reported as being
+flown (Active), by that vehicle:
+- must_fly: the path came within 50 m of the point (horizontally);
 - loiter: it stayed within 50 m of the loiter's reach for the duration;
 - line_search: footprints covered 99 % of the line; area_search, pattern_search: of the area;
-- point_search: a footprint held the point, for the duration if one is asked for; and nobody who did it came
-  nearer than the standoff.
+- point_search: a footprint contained the point, for the duration if one is required; and no vehicle
+  that performed it came closer than the standoff.
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ from cratous.judge.work import Flight, nearest_m
 CAPTURE_M = 50.0
 GRAVITY = 9.80665
 WIDER = 1.1
-"""A loiter without a radius is as wide as this many times the vehicle's tightest turn."""
+"""Radius of a loiter without one, as a multiple of the vehicle's minimum turn radius."""
 
 Service = tuple[str, str, int | None]
-"""Verdict, note, and when it was complete [ms]."""
+"""Verdict, note, and time of completion [ms]."""
 
 
 def served(flight: Flight) -> dict[int, Service]:
-    """By task: verdict, note, and when it was complete. For all tasks, asked for or not."""
+    """By task: verdict, note, and time of completion. For all tasks, requested or not."""
     return {
         task: _served(flight, flight.mission.tasks[task]) for task in sorted(flight.mission.tasks)
     }
 
 
 def rows(flight: Flight, found: dict[int, Service]) -> Iterator[Row]:
-    """One row for each task that is asked for in the way that fits best, and one for the end."""
+    """One row for each task requested by the best-fitting resolution, and one for the end."""
     term = asked(flight.mission, flight.done, flight.log.end_ms)
     if term is not None:
         good = {t for t, (verdict, *_) in found.items() if verdict == HOLDS}
@@ -89,7 +89,7 @@ def _flown(flight: Flight, task: Task) -> tuple[str, str]:
 
 
 def reach_m(mission: Mission, task: Task, vehicle: int) -> float:
-    """How far from its centre a loiter reaches."""
+    """How far a loiter reaches from its centre [m]."""
     radius = task.radius_m
     flyer = mission.vehicles.get(vehicle)
     if radius == 0 and flyer is not None and flyer.bank_rad > 0:
@@ -109,14 +109,14 @@ def _loitered(flight: Flight, task: Task) -> tuple[str, str]:
     if not vehicles or spent == 0:
         return VIOLATED, note
     lacking = task.duration_ms - spent
-    # begin and end are whole milliseconds of a logged way
+    # start and end of a logged path are whole milliseconds
     if lacking <= 2:
         return HOLDS, note
     return (UNKNOWN if lacking <= flight.mission.step_ms else VIOLATED), note
 
 
 def _share_within(centre: Point, reach: float, a: Point, b: Point) -> float:
-    """The share of a leg that is within a disc."""
+    """The fraction of a leg within a disc."""
     x, y = a[0] - centre[0], a[1] - centre[1]
     u, v = b[0] - a[0], b[1] - a[1]
     uu, xu, over = u * u + v * v, x * u + y * v, x * x + y * y - reach * reach

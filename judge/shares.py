@@ -1,6 +1,6 @@
-"""How much of a line or an area lies where zones forbid flight: a note beside a search that was not served.
+"""Fraction of a line or an area where zones forbid flight: noted on a search that was not served.
 
-By points that are spread evenly over it, each held against each zone as any place of a flight is.
+Estimated from evenly spread points, each checked against each zone like any position of a flight.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from cratous.judge.work import Flight
 from cratous.judge.zones import Fence
 
 POINTS = 2_000
-"""About so many points are asked."""
+"""Approximate number of points."""
 
 
 def forbidden_note(flight: Flight, task: Task) -> str:
-    """The share at the altitude at which the task was begun, and the zones; empty if there is none."""
+    """The fraction at the altitude at which the task was begun, and the zones; empty if it is zero."""
     spans = flight.spans(task.id)
     if task.kind == "point_search" or not spans or flight.log.end_ms is None:
         return ""
@@ -52,7 +52,7 @@ def _breaks(fence: Fence, state: State) -> bool:
 
 
 def _points(task: Task) -> Iterator[Point]:
-    """Points of a line, or those of a grid over an area."""
+    """Points along a line, or of a grid over an area."""
     if task.kind == "line_search":
         whole = sum(math.dist(p, q) for p, q in pairwise(task.points))
         step = max(whole / POINTS, 1e-3)

@@ -1,8 +1,10 @@
-"""G4 of a vehicle that starts on the ground: did it leave it under ICAROUS, out of a roll that was said?
+"""G4 for a vehicle that starts on the ground: whether it took off under ICAROUS, in a reported
+roll.
 
-By where it was, by who commanded it, and by what its ICAROUS said (`TakeOffState`). Modes follow one another as `AFTER` has
-it. On the ground it moves only while ICAROUS has it, and is faster than before only while it is said to roll. It leaves the
-ground while it is said to roll, once. Of a leg that was not logged whole nothing is said to be wrong.
+Judged by position, commander, and the reports of its ICAROUS (`TakeOffState`). Modes follow one
+another as in `AFTER`. On the ground it moves only while ICAROUS commands, and accelerates only
+while a roll is reported. It lifts off once, while a roll is reported. Legs that were not logged
+completely are not judged.
 """
 
 from __future__ import annotations
@@ -25,7 +27,7 @@ AFTER = {
     UP: set[str](),
 }
 NOTICED = 2
-"""So many heartbeats after it is off the ground at the latest it has been said."""
+"""Maximum delay of a report after lift-off, in heartbeats."""
 Fault = tuple[int, str]
 
 
@@ -62,7 +64,7 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
 
 
 def _changes(said: Sequence[Leaves]) -> list[Leaves]:
-    """Those that say another mode than the one before."""
+    """Reports with a mode different from the previous one."""
     found = list[Leaves]()
     for one in said:
         if one.mode != (found[-1].mode if found else STANDING):
@@ -71,7 +73,7 @@ def _changes(said: Sequence[Leaves]) -> list[Leaves]:
 
 
 def _said(mission: Mission, said: Sequence[Leaves]) -> Iterator[Fault]:
-    """What was said that cannot be."""
+    """Reports that are impossible."""
     mode = STANDING
     for one in said:
         silent_ms = one.time_ms - one.heard_ms
@@ -88,14 +90,14 @@ def _mode(said: Sequence[Leaves], at_ms: int) -> str:
 
 
 def _logged(mission: Mission, before: State, after: State) -> bool:
-    """Whether a leg was logged as it was flown."""
+    """Whether a leg was logged as flown."""
     return after.time_ms - before.time_ms <= mission.step_ms
 
 
 def _rolled(
     mission: Mission, states: Sequence[State], said: Sequence[Leaves], gates: Sequence[Gate]
 ) -> Iterator[Fault]:
-    """What was wrong on the ground."""
+    """Faults on the ground."""
     fast = 0.0 if states and states[0].time_ms == 0 else math.inf
     for before, after in pairwise(states):
         if not _logged(mission, before, after):
@@ -113,7 +115,7 @@ def _rolled(
 def _off(
     mission: Mission, vehicle: int, states: Sequence[State], said: Sequence[Leaves]
 ) -> Iterator[Fault]:
-    """What was wrong as it left the ground, and afterwards."""
+    """Faults at lift-off, and afterwards."""
     off_ms = states[0].time_ms
     begins = is_at(mission, vehicle, states[0]) or off_ms == 0
     if begins and all(_logged(mission, *leg) for leg in pairwise(states[:2])):

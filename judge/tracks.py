@@ -1,7 +1,7 @@
-"""The flown way of each aircraft: straight legs between the logged states, and what spoils them.
+"""The flown path of each aircraft: straight legs between logged states, and its flaws.
 
-A leg is taken to be straight. Whoever logs also says the velocity of the coming leg, so that can be
-looked at: where it does not lead to the next position, the way in between is not known.
+A leg is assumed to be straight. A logged state also has the velocity of the next leg, so this can
+be checked: if it does not lead to the next position, the path in between is unknown.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from cratous.judge.mission import Mission
 from cratous.judge.verdict import seconds
 
 APART_M = 1e-3
-"""A leg may end this far from where its velocity leads to [m]."""
+"""Tolerance between a leg's end and the position given by its velocity [m]."""
 
 
 class Flaw(NamedTuple):
-    """From when to when the way is not known, and why."""
+    """Time span in which the path is unknown, and why."""
 
     first_ms: int
     last_ms: int
@@ -31,9 +31,9 @@ class Flaw(NamedTuple):
 
 @dataclass
 class Track:
-    """States in the order of time, and where the way is not known.
+    """States in time order, and where the path is unknown.
 
-    unknown: when the legs begin of which only the ends are known.
+    unknown: start times of legs of which only the ends are known.
     """
 
     states: list[State]
@@ -42,7 +42,7 @@ class Track:
     unknown: set[int] = field(default_factory=set)
 
     def legs(self, first: int = 0) -> Iterator[tuple[State, State]]:
-        """All legs from this state on; where only its ends are known, each end as a leg to itself."""
+        """All legs from this state on; if only its ends are known, each end as a leg of its own."""
         states = self.states[first:]
         if len(states) == 1:
             yield states[0], states[0]
@@ -55,11 +55,11 @@ class Track:
 
     @property
     def doubt(self) -> str:
-        """Why the way is not known throughout; empty if it is."""
+        """Why the path is not known throughout; empty if it is."""
         return self.flaws[0].why if self.flaws else ""
 
     def doubt_before(self, time_ms: int | None) -> str:
-        """Why the way is not known throughout up to an instant; None: to the end."""
+        """Why the path is not known throughout up to an instant; None: to the end."""
         if time_ms is None:
             return self.doubt
         return next((flaw.why for flaw in self.flaws if flaw.first_ms < time_ms), "")
@@ -70,7 +70,7 @@ class Track:
 
 
 def tracks(mission: Mission, log: Log) -> dict[int, Track]:
-    """Of every aircraft that the mission or the log knows."""
+    """The track of every aircraft of the mission or the log."""
     names = {*mission.vehicles, *(t.id for t in mission.traffic), *log.states}
     return {name: _track(name, mission, log) for name in sorted(names)}
 
@@ -107,7 +107,7 @@ def _track(name: int, mission: Mission, log: Log) -> Track:
 
 
 def _span(name: int, mission: Mission, log: Log) -> tuple[int | None, int | None]:
-    """From when to when an aircraft has to be seen."""
+    """The time span in which an aircraft has to be logged."""
     if name in mission.vehicles:
         return 0, log.end_ms
     for traffic in mission.traffic:
@@ -120,7 +120,7 @@ def _span(name: int, mission: Mission, log: Log) -> tuple[int | None, int | None
 
 
 def _ends(track: Track, name: int, begin: int | None, end: int | None, step_ms: int) -> None:
-    # an aircraft that comes or goes between two steps is first and last seen at a step
+    # an aircraft that appears or disappears between two steps is first and last seen at a step
     if begin is not None and track.times[0] - begin >= max(1, step_ms if begin else 1):
         text = f"no position of {name} before {seconds(track.times[0])}"
         track.flaws.append(Flaw(begin, track.times[0], text))

@@ -1,4 +1,4 @@
-"""What the judge says: rows, each on one thing that the mission asks for."""
+"""The judge's result: rows, each on one subject that the mission requires."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ GUARANTEES = {
 
 @dataclass(frozen=True)
 class Row:
-    """One verdict. subject: what it is on, as a key that a monitor's row can be held against.
+    """One verdict. subject: key that can be matched with a monitor's row.
 
-    at_ms: when it was violated first; checks: how many single decisions stand behind it; parts: of a row
-    on order or timing, each (in the words of a report, verdict).
+    at_ms: time of the first violation; checks: number of decisions behind it; parts: for order or
+    timing, pairs (words of a report, verdict).
     """
 
     guarantee: str
@@ -33,7 +33,7 @@ class Row:
 
 
 def worst(verdicts: list[str]) -> str:
-    """Violated before unknown before holds; nothing at all is unknown."""
+    """Violated before unknown before holds; unknown if there is none."""
     for verdict in (VIOLATED, UNKNOWN):
         if verdict in verdicts:
             return verdict
@@ -41,12 +41,12 @@ def worst(verdicts: list[str]) -> str:
 
 
 def doubted(row: Row, reason: str) -> Row:
-    """The row where something is missing: what seemed to hold is unknown."""
+    """The row with missing data: `holds` becomes unknown."""
     if not reason or row.verdict != HOLDS:
         return row
     return replace(row, verdict=UNKNOWN, note=f"{reason}; else: {row.note}")
 
 
 def seconds(ms: float) -> str:
-    """An instant in words."""
+    """A time in words."""
     return f"{ms / 1000:.2f} s"

@@ -1,7 +1,9 @@
-"""Whether an image shows the ground as a task asks: neither near the horizon nor far from the view asked for.
+"""Whether an image shows the ground as a task requires: not close to the horizon, and near the
+required view angle.
 
-The four corners of an image are equally far from its middle, as angles: the middle of its view is the direction in
-which the unit vectors to the corners add up. So it follows from where an aircraft was and what it says to have seen.
+The four corners of an image have equal angular distance from its centre: the view direction is that
+of the sum of the unit vectors to the corners. So it follows from the aircraft's position and its
+reported footprint.
 """
 
 from __future__ import annotations
@@ -13,15 +15,15 @@ from cratous.judge.fields import Node
 
 Point = tuple[float, float]
 FLATTEST_DEG = 5.0
-"""What is looked at more flatly is not seen."""
+"""Minimum depression angle of anything that counts as seen [deg]."""
 OFF_VIEW_DEG = 30.0
-"""The middle of an image may be this much higher or lower than a view that is asked for."""
+"""Maximum deviation in elevation of the image centre from a required view [deg]."""
 LEEWAY_DEG = 0.05
-"""Angles are not told apart better: places come as degrees, to about a millimetre, and the Earth is round."""
+"""Accuracy of angles [deg]: positions in degrees are accurate to about a millimetre, and the Earth is round."""
 
 
 def in_log(data: Node) -> tuple[float, ...]:
-    """How far down each view that will do looks, of a task in a log's mission [deg]; none: any will do."""
+    """Depression angle of each permitted view of a task in a log's mission [deg]; empty: any."""
     if not data.has("view"):
         return ()
     views = [data["view"], *(data.get("views", []) if data.has("views") else ())]
@@ -29,7 +31,7 @@ def in_log(data: Node) -> tuple[float, ...]:
 
 
 def in_file(data: Node) -> tuple[float, ...]:
-    """The same of a task in a mission file."""
+    """The same for a task in a mission file."""
     views = data["views"] if data.has("views") else [data["view"]] if data.has("view") else []
     return tuple(abs(view["elevation_deg"].real) for view in views)
 
@@ -38,7 +40,7 @@ def as_asked(
     here: tuple[float, float, float], ground_m: float, corners: Sequence[Point],
     views_deg: Sequence[float],
 ) -> bool:  # fmt: skip
-    """Whether an image with these corners on the ground counts, seen from a place (north, east, altitude) [m]."""
+    """Whether an image with these ground corners counts, seen from a position (north, east, altitude) [m]."""
     down_m = here[2] - ground_m
     if down_m <= 0:
         return False

@@ -1,4 +1,4 @@
-"""Who was at which task from when to when, on which way, and whether that is known."""
+"""Which vehicle was at which task when, on which path, and whether that is known."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from cratous.judge.tracks import Track
 from cratous.judge.verdict import seconds
 
 SAME_M = 0.1
-"""Where a vehicle is and where it says to be may differ by this [m]."""
+"""Tolerance between a vehicle's true and reported position [m]."""
 
 
 @dataclass
 class Flight:
-    """All that service is judged by. done: what the log says was done, by task."""
+    """Everything by which service is judged. done: logged execution by task."""
 
     mission: Mission
     log: Log
@@ -27,7 +27,7 @@ class Flight:
     done: dict[int, Deed]
 
     def spans(self, task: int) -> list[tuple[int, int, int]]:
-        """Who was at the task from when to when."""
+        """The vehicles at the task, with start and end."""
         end = self.log.end_ms
         found = []
         for vehicle, start, stop in self.done.get(task, Deed()).active:
@@ -37,7 +37,7 @@ class Flight:
         return found
 
     def legs(self, task: int) -> Iterator[tuple[Point, Point, float]]:
-        """The legs flown while at the task, cut to it, with their times [ms]."""
+        """The legs flown while at the task, clipped to it, with their duration [ms]."""
         for vehicle, start, stop in self.spans(task):
             track = self.tracks.get(vehicle)
             if track is None:
@@ -66,12 +66,12 @@ class Flight:
                 yield ends[0], ends[1], last - first
 
     def doubt(self, task: int) -> str:
-        """Why what was done about the task is not known; empty if it is."""
+        """Why the execution of the task is not known; empty if it is."""
         deed = self.done.get(task)
         return self.way_doubt(task) or (deed.fault if deed else "")
 
     def way_doubt(self, task: int) -> str:
-        """Why the way of those who did it is not known; empty if it is."""
+        """Why the path of its vehicles is not known; empty if it is."""
         for vehicle, start, stop in self.spans(task):
             track = self.tracks.get(vehicle)
             if track is None or not track.states:
@@ -87,7 +87,7 @@ class Flight:
         return ""
 
     def _where_it_says(self, vehicle: int, time_ms: int) -> bool:
-        """Whether what it says of its place with a footprint is where it is: the frames agree."""
+        """Whether the position reported with a footprint is the true one, so that the frames agree."""
         said = self.log.places.get((vehicle, time_ms))
         if said is None:
             return True
@@ -99,7 +99,7 @@ class Flight:
 
 
 def nearest_m(flight: Flight, task: Task, point: Point) -> float:
-    """How near to a point those came who did a task, while they did it [m]."""
+    """Closest distance to a point of the vehicles that performed a task, while doing so [m]."""
     found = math.inf
     for a, b, _ in flight.legs(task.id):
         found = min(found, _distance(point, a, b))

@@ -1,8 +1,9 @@
 """G1, zones: every flown leg of every protected vehicle against every zone, exactly.
 
-A keep-out forbids its polygon with the boundary from floor to ceiling, both included; a keep-in
-allows what is strictly inside of its polygon and strictly between. A leg breaks a zone if one of its points
-does: the part of it at forbidden altitudes is held against the polygon, on rationals.
+A keep-out forbids its polygon including the boundary, from floor to ceiling inclusive; a keep-in
+permits only the interior of its polygon, strictly between floor and ceiling. A leg violates a zone
+if one of its points does: the part at forbidden altitudes is checked against the polygon, on
+rationals.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ class _Edge(NamedTuple):
 
 
 class Fence:
-    """A zone, prepared; `breaks(p, q)` asks one leg."""
+    """A zone prepared for checks; `breaks(p, q)` checks one leg."""
 
     def __init__(self, zone: Zone) -> None:
         self.zone = zone
@@ -59,7 +60,7 @@ class Fence:
         if not (zone.floor_m < low and high < zone.ceiling_m):
             return True
         a, b = (p.north_m, p.east_m), (q.north_m, q.east_m)
-        # who was inside at the end of the last leg is so at the beginning of this one
+        # inside at the end of the last leg means inside at the start of this one
         if self._inside_at != a and not winding(zone.ring, a):
             return True
         if self._near_boundary(a, b):
@@ -128,10 +129,10 @@ def _row(vehicle: int, zone: Zone, track: Track) -> Row:
     item = f"zone: {kind} {zone.id}, flight of vehicle {vehicle}"
     # what becomes known between two states is known at the second
     first = track.from_index(zone.from_ms)
-    # nobody flies after the last state: what becomes known with it binds no way
+    # no leg follows the last state: what becomes known with it applies to no path
     if first >= len(track.states) - (zone.from_ms > 0):
         if track.states and not track.doubt:
-            # what was decided: the whole flight was before it
+            # the one check: the whole flight was before it
             note = "the zone did not become known in flight"
             return Row("G1", subject, item, HOLDS, note, checks=1)
         return Row("G1", subject, item, UNKNOWN, track.doubt or "no position was logged")
@@ -139,7 +140,7 @@ def _row(vehicle: int, zone: Zone, track: Track) -> Row:
     checks = 0
     for before, after in track.legs(first):
         if zone.over(before.time_ms):
-            break  # a leg that begins before the end is held to the zone, as a whole
+            break  # a leg that begins before the zone ends is checked as a whole
         checks += 1
         if fence.breaks(before, after):
             note = f"broken on the leg from {seconds(before.time_ms)}"

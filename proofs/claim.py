@@ -1,4 +1,4 @@
-"""What a file of a theorem imports: `Claim`. How it works is in `cratous.proofs.engine`."""
+"""What a theorem file imports: `Claim`. See `cratous.proofs.engine` for its implementation."""
 
 from cratous.proofs.engine.claim import Claim
 

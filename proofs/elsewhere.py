@@ -1,9 +1,8 @@
-"""Answers that other machines gave: they say what looks proved, and prove nothing here.
+"""Solver answers from other machines: they indicate what is proved, and prove nothing here.
 
-A worker proves a theorem of the same files and tells each answer of its solver. These are kept in a
-folder of their own, beside what this machine has asked itself, and are looked at only where nothing
-is written and nothing is vouched for. A theorem that needs one of them is *said to be proved elsewhere*;
-one that is not proved with them is asked here as if nobody had said anything.
+A worker proves a theorem of the same files and returns each answer of its solver. These answers are kept in a
+separate folder and are used only where nothing is written and nothing is vouched for. A theorem that needs one of
+them is *said to be proved elsewhere*; one that is not proved with them is decided here without them.
 """
 
 from __future__ import annotations
@@ -28,33 +27,33 @@ from cratous.spec.errors import BadInput
 
 KEY = re.compile("[0-9a-f]{64}")
 LOOK_S = 1.0
-"""Seconds after which a process that proves for others looks whether somebody still waits."""
+"""Seconds between two checks whether the parent process still exists."""
 
 
 class Told(Cache):
-    """A cache that tells what was taken from it and put into it: `answers`, by question and budget."""
+    """A cache that records what was read from it and written to it: `answers`, by question and budget."""
 
     def __init__(self, folder: Path | None) -> None:
         super().__init__(folder)
         self.answers: dict[tuple[str, int], Answer] = {}
 
     def get(self, key: str, rlimit: int) -> Answer | None:
-        """The kept answer, if there is one."""
+        """The stored answer, or None."""
         found = super().get(key, rlimit)
         if found is not None:
             self.answers[key, rlimit] = found
         return found
 
     def put(self, key: str, rlimit: int, answer: Answer) -> None:
-        """Keep an answer."""
+        """Store an answer."""
         self.answers[key, rlimit] = answer
         super().put(key, rlimit, answer)
 
 
 class Beside(TimedCache):
-    """This machine's answers, and where it has none those of others; what is put is this machine's.
+    """This machine's answers, supplemented by those of other machines; new answers go to this machine's cache.
 
-    taken: how many of the others were given. An `unknown` of theirs is none: it is asked here.
+    taken: the number of answers used from others. Their `unknown` is ignored: the question is asked here.
     """
 
     def __init__(self, own: Path | None, others: Path) -> None:
@@ -74,16 +73,16 @@ class Beside(TimedCache):
 
 
 def answered(name: str, home: Home, folder: Path | None) -> dict[str, Any]:
-    """Prove a theorem for others: `proved`, and all `answers` on the way, as plain data.
+    """Prove a theorem for another machine: `proved`, and all `answers` on the way, as plain data.
 
-    folder: where this machine keeps its own answers. Raises what stating the theorem raises.
+    folder: this machine's own cache. Raises what stating the theorem raises.
     """
     solver_memory.keep()
     asked = partial(_answered, name, home_folder(home), folder, os.getpid())
     try:
-        # the statement must come out as where it is asked for, so it is made in a fresh process
+        # a fresh process, so that the statement is the same as on the machine that asks
         return worker_processes.call(asked)
-    except worker_processes.Ended:  # a question did not end
+    except worker_processes.Ended:  # the process of a question was ended
         return {"proved": False, "answers": []}
 
 
@@ -96,16 +95,16 @@ def _answered(name: str, theorems: Path, folder: Path | None, parent: int) -> di
 
 
 def _end_with(parent: int) -> None:
-    """Nobody waits for this process once its parent is gone."""
+    """End this process once its parent is gone, since nobody waits for the result."""
     while os.getppid() == parent:
         time.sleep(LOOK_S)
     os._exit(1)
 
 
 def kept(result: Any, folder: Path, who: str) -> bool:
-    """Keep the answers that came from elsewhere, beside this machine's own; whether all looked proved there.
+    """Store answers from another machine in `folder`; returns whether the theorem was proved there.
 
-    Raises BadInput, who said it, if it is not what `answered` gives.
+    Raises BadInput, naming `who`, if the result does not have the form that `answered` returns.
     """
     cache = Cache(folder)
     try:
@@ -126,7 +125,7 @@ def kept(result: Any, folder: Path, who: str) -> bool:
 def said_proved(
     names: Iterable[str], home: Home, cache: Beside, *, jobs: int, tell: Callable[[str], None]
 ) -> list[str]:
-    """The theorems that are proved if what others said is true, and not by this machine alone."""
+    """The theorems that are proved only with answers from other machines."""
     lean: set[str] = set()
 
     def hear(progress: ledger.Progress) -> None:
@@ -136,13 +135,13 @@ def said_proved(
 
     ledger.prove_theorems(
         names, folder=home_folder(home), jobs=jobs, cache=cache, tell=hear,
-        write=lambda *_: cache.taken,  # in the theorem's own process, where its answers were taken
+        write=lambda *_: cache.taken,  # in the theorem's own process, where the answers were used
     )  # fmt: skip
     return sorted(lean)
 
 
 def sources(home: Home) -> Iterator[Path]:
-    """The files that a proof of this home rests on beside the product's own, in order."""
+    """The files that a proof of this home depends on beside the product's own, in order."""
     from cratous.core.kernel.sources import ROOT
 
     yield from sorted((ROOT / "proofs").rglob("*.py"))

@@ -1,10 +1,11 @@
-"""What `cratous prove` finds of a product or package: theorems, and all that forbids to vouch for it.
+"""The result of `cratous prove` for a product or package: theorems, and whatever prevents vouching for it.
 
-The command and its self-test judge by the same functions, so what the one refuses the other does.
+The command and its self-test use the same functions, so both refuse the same.
 """
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,7 +17,7 @@ from cratous.core.ledger.status import Grounds
 from cratous.proofs import ledger
 from cratous.proofs.engine.cache import Cache
 from cratous.proofs.ledger.proof_recall import Recall
-from cratous.proofs.phases import COMPARING, COMPILING, STATEMENTS, THEOREMS, Phases
+from cratous.proofs.phases import COMPARING, COMPILING, GOALS, STATEMENTS, THEOREMS, Phases
 from cratous.proofs.running.compiling import compile_ahead
 from cratous.proofs.running.theorem import Function
 from cratous.proofs.statements import definitions
@@ -26,11 +27,11 @@ from cratous.proofs.statements.status_evidence import grounds
 
 @dataclass(frozen=True)
 class Judgement:
-    """What came of proving these theorems.
+    """The result of proving these theorems.
 
-    structural: what no proof could be bound to, what is outside of the subset included; unmeant: kernels
-    whose definition is none; both with their places. grounds: what the status of each kernel rests on.
-    These are only looked for where all theorems are judged. statements: by theorem, what it says.
+    structural: items to which no proof can be bound, including code outside of the subset; unmeant: kernels without a
+    proper definition; both with their places. grounds: the evidence for each kernel's status. These are only
+    determined where all theorems are judged. statements: by theorem, its claim as text.
     """
 
     inventory: ledger.Inventory
@@ -41,23 +42,23 @@ class Judgement:
 
     @property
     def problems(self) -> list[str]:
-        """Everything that is wrong beside theorems that are not proved."""
+        """All problems other than theorems that are not proved."""
         return [*self.structural, *self.unmeant]
 
     @property
     def binds(self) -> bool:
-        """A ledger may be written of it."""
+        """Whether a ledger may be written from it."""
         return not self.structural and not self.unmeant
 
     @property
     def holds(self) -> bool:
-        """Everything is proved and nothing is wrong: the command ends with 0."""
+        """Whether everything is proved and there are no problems: the command then exits with 0."""
         return not self.problems and all(t.proved for t in self.inventory.theorems)
 
 
 class Memory(NamedTuple):
-    """What is remembered from run to run: proofs, theorems as they were stated, and the folder in which the
-    relations of theorems are kept; write: what is made of each theorem's claim beside, and told."""
+    """Caches kept between runs: solver answers, proved theorems, and the folder with the relations between theorems;
+    write: computes something from each theorem's claim, passed to the listener."""
 
     cache: Cache | None = None
     recall: Recall | None = None
@@ -70,7 +71,7 @@ NOTHING = Memory()
 
 @dataclass
 class _Ahead:
-    """Hears how far the theorems are; when all are done their kernels are compiled, then compared."""
+    """A progress listener; after the last theorem it compiles the kernels, before they are compared."""
 
     left: int
     tell: ledger.Listener | None
@@ -103,11 +104,10 @@ def judge(
     machine: bool = True,
     phases: Phases | None = None,
 ) -> Judgement:
-    """Prove these theorems of a home, and look at its kernels and definitions.
+    """Prove these theorems of a home, and check its kernels and definitions.
 
-    whole: they are all that it has; memory: what is remembered from run to run;
-    machine: compare kernels with their machine code too; phases: told which part has ended.
-    Raises BadInput for a theorem that cannot be stated.
+    whole: they are all theorems of the home; memory: caches kept between runs; machine: compare kernels with their
+    machine code too; phases: told which part has ended. Raises BadInput for a theorem that cannot be stated.
     """
     wanted, parts = list(names), phases or Phases()
     inventory = ledger.prove_all(
@@ -122,7 +122,7 @@ def judge(
     )
     parts.ended(COMPARING)
     findings = [str(finding) for finding in inventory.findings]
-    # what is outside of the subset is not read any further
+    # code outside of the subset is not analysed further
     kept, stated = Kept(memory.relations, home), [t.name for t in inventory.theorems]
     read = {} if findings else kept.all(stated, jobs or ledger.jobs_default())
     parts.ended(STATEMENTS)
@@ -144,6 +144,10 @@ def judge(
         read,
         {theorem.name: theorem.uses for theorem in theorems},
         frozenset(t.name for t in theorems if not t.proved or (t.ran and t.ran.doubles)),
+        assuming=frozenset(t.name for t in theorems if t.assumptions),
     )
+    ask = functools.partial(kept.decided, jobs=jobs or ledger.jobs_default())
+    proofs = definitions.with_decided(entries, home, proofs, ask)
+    parts.ended(GOALS)
     unmeant = tuple(definitions.problems(entries, home, proofs))
     return Judgement(inventory, structural, unmeant, grounds(entries, home, proofs), statements)

@@ -1,4 +1,4 @@
-"""Where the time of a run of the prover goes, part by part."""
+"""The time that each part of a run of the prover takes."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ THEOREMS = "stating theorems, solving and running them"
 COMPILING = "compiling the readings"
 COMPARING = "comparing the readings"
 STATEMENTS = "reading what they relate"
+GOALS = "what their goals decide"
 SECOND = "cvc5"
 REST = "the rest"
 
 
 class TimedCache(Cache):
-    """Answers by question, which knows how long the solver took for those that are found anew."""
+    """A solver cache that also sums the solver's time for new answers."""
 
     def __init__(self, folder: Path | None) -> None:
         super().__init__(folder)
@@ -30,7 +31,7 @@ class TimedCache(Cache):
         return float(self._spent.value)
 
     def put(self, key: str, rlimit: int, answer: Answer) -> None:
-        """Keep an answer."""
+        """Store an answer."""
         with self._spent.get_lock():
             self._spent.value += answer.seconds
         super().put(key, rlimit, answer)
@@ -44,7 +45,7 @@ class Phases:
     since: float = field(default_factory=time.monotonic)
 
     def ended(self, part: str) -> None:
-        """What was done since the last part ended was this one."""
+        """Add the time since the last call to this part."""
         now = time.monotonic()
         self.seconds[part] = self.seconds.get(part, 0.0) + now - self.since
         self.since = now

@@ -1,12 +1,11 @@
 """The second solver: cvc5 on every obligation, as exported SMT-LIB text and nothing else.
 
-Each obligation is read by cvc5 under its exact logic and, if that gives no answer, for polynomials
-by cylindrical coverings alone, and under ALL, in another process with 5 s of CPU each. A
-theorem is `confirmed` if cvc5 finds every obligation unsatisfiable, `contradicted` if it finds one
-satisfiable that z3 proved, else `no answer`. The verdicts are kept in `proofs/recheck.json` by the
-hash of the obligation, for the proof inventory; who asks all again asks first in the way that
-answered last. Answers are stored one by one as they come, so a run that was stopped goes on where
-it was; where there was no answer, cvc5 is asked again.
+Each obligation is read by cvc5 under its exact logic and, if that gives no answer, for polynomials by cylindrical
+coverings alone, and under ALL, in another process with 5 s of CPU each. A theorem is `confirmed` if cvc5 finds every
+obligation unsatisfiable, `contradicted` if it finds one satisfiable that z3 proved, else `no answer`. The verdicts
+are kept in `proofs/recheck.json` by the hash of the obligation, for the proof inventory; a complete re-check starts
+with the configuration that answered last time. Answers are stored one by one, so an interrupted run continues where
+it stopped; obligations without an answer are put to cvc5 again.
 """
 
 from __future__ import annotations
@@ -38,7 +37,7 @@ CONFIRMED, NO_ANSWER, CONTRADICTED = "confirmed", "no answer", "contradicted"
 
 @dataclass(frozen=True)
 class Check:
-    """What cvc5 said of one obligation: verdict, the logic that answered, CPU seconds."""
+    """cvc5's result for one obligation: verdict, the logic that answered, CPU seconds."""
 
     theorem: str
     number: int
@@ -84,13 +83,13 @@ def version() -> str:
 
 
 def _named(way: Way) -> str:
-    """A way of asking, as `Check.logic` names it."""
+    """The name of a solver configuration in `Check.logic`."""
     return " ".join([way[0], *way[1]])
 
 
 @dataclass
 class _Job:
-    """One obligation on its way through the solver."""
+    """One obligation to be checked, and the configurations to try."""
 
     theorem: str
     number: int
@@ -100,7 +99,7 @@ class _Job:
     ways: list[Way] = field(default_factory=list)
 
     def first(self, logic: str) -> None:
-        """Ask first in this way, as `Check.logic` names it, if it is one of them."""
+        """Try the configuration with this `Check.logic` name first, if it is among them."""
         self.ways.sort(key=lambda way: _named(way) != logic)
 
     def check(self, verdict: str, logic: str, seconds: float) -> Check:
@@ -119,7 +118,7 @@ def _proved(theorem: prover.Theorem) -> list[_Job]:
 
 
 def _jobs(theorem: prover.Theorem, folder: Path, known: Container[str]) -> list[_Job]:
-    """What was proved; only where something is not known is the theorem stated and exported."""
+    """The proved obligations; the theorem is stated and exported only where some are not known."""
     found = _proved(theorem)
     new = [job for job in found if job.key not in known]
     if not new:
@@ -134,15 +133,14 @@ def _jobs(theorem: prover.Theorem, folder: Path, known: Container[str]) -> list[
 def written(
     theorem: prover.Theorem, claim: Claim, sentence: str, *, known: Container[str]
 ) -> list[_Job]:
-    """What is to be asked of a theorem whose claim is at hand, as `recheck` would find it; known: keys with a
-    verdict."""
+    """The jobs for a theorem whose claim is at hand, as `recheck` would find them; known: keys that have a verdict."""
     found = _proved(theorem)
     _write([job for job in found if job.key not in known], claim, sentence)
     return found
 
 
 def _write(jobs: Iterable[_Job], claim: Claim, sentence: str) -> None:
-    """The text of these obligations, and the ways of asking it."""
+    """Set the SMT-LIB text and the configurations of these jobs."""
     seen: Seen = {}
     for job in jobs:
         obligation = claim.obligations[job.number - 1]
@@ -156,7 +154,7 @@ def _write(jobs: Iterable[_Job], claim: Claim, sentence: str) -> None:
 
 
 def _ask(job: _Job, asker: Asker) -> tuple[str, str, float]:
-    """One obligation, each way of asking with its whole budget."""
+    """Check one obligation, each configuration with its full budget."""
     spent = 0.0
     for way in job.ways:
         answer, seconds = asker.ask(job.smt, way)
@@ -168,7 +166,7 @@ def _ask(job: _Job, asker: Asker) -> tuple[str, str, float]:
 
 
 def _stored(job: _Job, store: Store, solver: str, asker: Asker) -> tuple[str, str, float]:
-    """What the store has, or cvc5's answer; that there was none in this time is stored too."""
+    """The stored answer, or cvc5's; that there was none within the time limit is stored too."""
     key = digest(["cvc5", solver, job.key])
     none = digest(
         [
@@ -185,14 +183,14 @@ def _stored(job: _Job, store: Store, solver: str, asker: Asker) -> tuple[str, st
     try:
         verdict, logic, seconds = _ask(job, asker)
     except second_solver.Stopped:
-        return NO_ANSWER, "", 0.0  # kept nowhere: its time was not used up
+        return NO_ANSWER, "", 0.0  # not stored: the time limit was not reached
     found = {"verdict": verdict, "logic": logic}
     store.put(none if verdict == NO_ANSWER else key, found)
     return verdict, logic, seconds
 
 
 def _worker(jobs: list[_Job], taken: Any, out: Connection, store: Store, solver: str) -> None:
-    """Take what is next until nothing is left, so that no worker waits for another's long ones."""
+    """Take the next job until none is left, so that no worker waits for the long jobs of another."""
     asker = Asker()
     while True:
         with taken.get_lock():
@@ -205,14 +203,14 @@ def _worker(jobs: list[_Job], taken: Any, out: Connection, store: Store, solver:
 
 
 def _said(record: dict[str, Any] | None) -> dict[str, dict[str, Any]]:
-    """The verdicts of a record, if they are this solver's."""
+    """The verdicts of a record, if they are from this version of the solver."""
     if record is None or record.get("solver") != version():
         return {}
     return dict(record["obligations"])
 
 
 def writer(record: dict[str, Any], *, again: bool) -> Callable[[prover.Theorem, Claim, str], Any]:
-    """`written` for what a re-check with this record would ask."""
+    """`written`, for the obligations that a re-check with this record would ask."""
     return partial(written, known=frozenset() if again else frozenset(_said(record)))
 
 
@@ -229,10 +227,10 @@ def recheck(
 ) -> Recheck:
     """Put every proved obligation to cvc5.
 
-    tell: called with each check, how many are done, and of how many. record: verdicts as `read`
-    gives them; what this version of the solver has a verdict on there is not asked again, or, with
-    `again`, is asked first in the way that answered then. store: where answers are kept between
-    runs; by default nowhere. texts: what `written` has made of theorems while they were proved.
+    tell: called with each check, the number done, and the total. record: verdicts as `read` returns them; what this
+    version of the solver has a verdict on there is not asked again, or, with `again`, is asked first with the
+    configuration that answered then. store: where answers are kept between runs; by default nowhere. texts: the
+    results of `written` while the theorems were proved.
     """
     if of_the_user() <= second_solver.CPU_SECONDS:
         raise BadInput(
@@ -295,7 +293,7 @@ def recheck(
 
 
 def text(found: Recheck, theorems: Iterable[prover.Theorem]) -> str:
-    """The verdicts by hash of the obligation, with z3's effort: the file beside the proofs."""
+    """The verdicts by hash of the obligation, with z3's effort, as the text of `proofs/recheck.json`."""
     spent = {theorem.name: theorem.rlimit for theorem in theorems}
     obligations: dict[str, dict[str, Any]] = {}
     for check in found.checks:
@@ -320,9 +318,9 @@ def write(
     *,
     whole: bool = True,
 ) -> None:
-    """Write the verdicts; those on a part of the theorems (not whole) replace only these.
+    """Write the verdicts; those of a part of the theorems (not `whole`) replace only these.
 
-    Raises BadInput where a part by one version of the solver would stand beside those of another.
+    Raises BadInput where results of two versions of the solver would be mixed.
     """
     new = text(found, theorems)
     if not whole and path.is_file():

@@ -1,4 +1,4 @@
-"""cvc5 as a solver that stands alone: it is given SMT-LIB text, in a process of its own, and nothing else."""
+"""cvc5 as an independent solver: it is given SMT-LIB text only, in a process of its own."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ CPU_SECONDS = 5
 
 
 class Stopped(RuntimeError):
-    """The process that was asked did not end by the limit that it was given here."""
+    """The answering process was ended by something other than CPU_SECONDS."""
 
 
 Way = tuple[str, dict[str, str]]
-"""How it is asked: the logic, and options."""
+"""A configuration: the logic, and options."""
 
 
 def solve(text: str, logic: str, options: dict[str, str] | None = None) -> str:
@@ -44,7 +44,7 @@ def solve(text: str, logic: str, options: dict[str, str] | None = None) -> str:
         if command.isNull():
             return answer
         if command.getCommandName() == "set-info":
-            # the expected status is for readers; a solver is not to be told
+            # the expected status is for readers; the solver does not get it
             continue
         said = str(command.invoke(solver, symbols)).strip()
         if said in ("sat", "unsat", "unknown"):
@@ -54,8 +54,8 @@ def solve(text: str, logic: str, options: dict[str, str] | None = None) -> str:
 
 
 def _answer(questions: Connection, asking: Connection) -> None:
-    """Answer until nobody asks; the system ends this process when a question takes too long."""
-    asking.close()  # the other end, so that only who asks holds it open
+    """Answer questions until the connection closes; the system ends this process when a question takes too long."""
+    asking.close()  # close this copy of the other end, so that only the asking process holds it open
     while True:
         try:
             text, way = questions.recv()
@@ -70,16 +70,16 @@ def _answer(questions: Connection, asking: Connection) -> None:
 
 
 class Asker:
-    """Puts questions to cvc5 one after the other; a process that was ended is begun anew for the next."""
+    """Puts questions to cvc5 one after the other; a process that was ended is restarted for the next."""
 
     def __init__(self) -> None:
         self._pipe: Connection | None = None
         self._process: Any = None
 
     def ask(self, text: str, way: Way, *, again: bool = True) -> tuple[str, float]:
-        """sat, unsat or unknown, and the CPU seconds that it took.
+        """sat, unsat or unknown, and the CPU seconds used.
 
-        Raises Stopped where something else than CPU_SECONDS ended the question.
+        Raises Stopped where something other than CPU_SECONDS ended the question.
         """
         if self._pipe is None:
             fork = multiprocessing.get_context("fork")
@@ -93,7 +93,7 @@ class Asker:
         except (EOFError, OSError):
             code = self.end()
             if code == -signal.SIGKILL and again:
-                # all of its questions together: a new process has its time anew
+                # the limit covers all of its questions together: a new process starts from zero
                 return self.ask(text, way, again=False)
             if code == -signal.SIGKILL or of_the_user() < CPU_SECONDS:
                 raise Stopped(what_ended(code, CPU_SECONDS)) from None
@@ -101,7 +101,7 @@ class Asker:
         return answer
 
     def end(self) -> int | None:
-        """Nobody asks any more; the exit code of the process that was asked."""
+        """Stop the process that answers; returns its exit code."""
         if self._pipe is None:
             return None
         self._pipe.close()

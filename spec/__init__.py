@@ -1,4 +1,4 @@
-"""What must hold: definitions, grammar and plain data types. Imports nothing of ours."""
+"""What must hold: definitions, grammar and plain data types. Imports no other package of this project."""
 
 if __name__ != "cratous.spec":
     raise ImportError(

@@ -1,7 +1,7 @@
-"""What is meant by a road that leads across a circle.
+"""When a road crosses a circle.
 
-Source: the cordon task of IMPACT, whose standoff distance is the radius about its place; what its message leaves
-open is settled here. Metres.
+Source: the cordon task of IMPACT, whose standoff distance is the radius about its location; what its message leaves
+open is defined here. Metres.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from cratous.spec.geofence import Point, along, squared_distance
 def leads_across_at(
     middle: Point, a: Point, b: Point, radius: float, inner: float, outer: float
 ) -> bool:
-    """The straight road a-b is inside of the circle at the parameter `inner` and outside of it at `outer`.
+    """The straight road a-b is inside the circle at the parameter `inner` and outside it at `outer`.
 
-    Whether it leads out or in, and how often, is one: nobody comes across the circle on any other road.
+    The direction and number of crossings do not matter.
     """
     on_it = inner >= 0 and inner <= 1 and outer >= 0 and outer <= 1
     near = squared_distance(middle, along(a, b, inner))

@@ -1,10 +1,10 @@
-"""The errors that users see: each says what, where, what was expected and what was got."""
+"""The errors that users see: each states what happened, where, and what was expected and found."""
 
 from __future__ import annotations
 
 
 class CratousError(Exception):
-    """Base of all errors that a user can act on. `exit_code` is what the command line returns."""
+    """Base of all errors that a user can act on. `exit_code` is the exit code of the command line."""
 
     exit_code = 2
 
@@ -12,7 +12,7 @@ class CratousError(Exception):
 class BadInput(CratousError):
     """Input that cannot be used.
 
-    where: file (and line) or text it stands in; item: path inside it, e.g. `vehicles[1].id`.
+    where: the file (and line) or text that contains it; item: path inside it, e.g. `vehicles[1].id`.
     """
 
     def __init__(
@@ -53,13 +53,13 @@ class NoPlan(CratousError):
 
 
 class Refused(CratousError):
-    """The product refuses to act, e.g. because a kernel's proof does not match its source."""
+    """The product refuses to act, for example because a kernel's proof does not match its source."""
 
     exit_code = 2
 
 
 class NotInstalled(CratousError):
-    """A library of an optional part of the product is not there; `extra` is what brings it."""
+    """A library of an optional part of the product is missing; `extra` names the extra that installs it."""
 
     def __init__(self, library: str, extra: str) -> None:
         self.library, self.extra = library, extra

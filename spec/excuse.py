@@ -1,11 +1,10 @@
-"""What it means that a loss could not be avoided.
+"""When a loss counts as unavoidable.
 
-A manoeuvre is a way that the ownship could fly from now on: straight pieces, one after another. It
-is refused if at some instant of some piece the volume of another aircraft is violated, and not by a
-hair; it is free if all of it could be looked at and at no instant a volume is violated; else it is
-open. There is a way out if some manoeuvre is free, and none if there are manoeuvres and every one of
-them is refused; anything else is undecided, and so is what two judges answer differently. A loss is
-excused only where there was no way out at any instant at which it could still have been avoided.
+A manoeuvre is a path that the ownship could fly from now on, in straight segments. It is refused if at some instant
+of some segment the volume of another aircraft is violated by a margin; it is free if all of it could be examined and no
+volume is violated at any instant; otherwise it is open. There is a way out if some manoeuvre is free, and none if
+there are manoeuvres and every one of them is refused; anything else is undecided, as is a case on which two judges
+differ. A loss is excused only if there was no way out at any instant at which it could still have been avoided.
 """
 
 from typing import NamedTuple
@@ -19,17 +18,19 @@ class Flown(NamedTuple):
 
 
 def lost_at(violated: bool, t: float, piece: float) -> bool:
-    """Violated t seconds after the begin of a piece, while it is flown."""
+    """Violated t seconds after the beginning of a segment, while it is flown."""
     return t >= 0 and t <= piece and violated
 
 
 def flown_step(flown: Flown, known: bool, lost: bool, surely: bool) -> Flown:
-    """A piece more: whether the other aircraft is known then, the volume lost, and not by a hair."""
+    """Add a segment. known: the other aircraft's state is known; lost: the volume is lost; surely: it is lost by a
+    margin.
+    """
     return Flown(flown.refused or (known and lost and surely), flown.open or not known or lost)
 
 
 def judged(flown: Flown) -> int:
-    """-1 refused, 0 open, 1 free."""
+    """Verdict on a manoeuvre: -1 refused, 0 open, 1 free."""
     if flown.refused:
         return -1
     if flown.open:
@@ -38,7 +39,7 @@ def judged(flown: Flown) -> int:
 
 
 class Tried(NamedTuple):
-    """Manoeuvres so far: whether one is free, whether one is open, whether there is any."""
+    """Manoeuvres so far: whether one is free, whether one is open, whether there are any."""
 
     free: bool
     open: bool
@@ -46,7 +47,7 @@ class Tried(NamedTuple):
 
 
 def tried_step(tried: Tried, manoeuvre: int) -> Tried:
-    """A manoeuvre more; what is neither free nor refused is open."""
+    """Add a manoeuvre; a verdict that is neither free nor refused counts as open."""
     if manoeuvre == 1:
         return Tried(True, tried.open, True)
     if manoeuvre == -1:
@@ -55,7 +56,7 @@ def tried_step(tried: Tried, manoeuvre: int) -> Tried:
 
 
 def answer(tried: Tried) -> int:
-    """1 there is a way out, -1 there is none, 0 undecided."""
+    """1: there is a way out; -1: there is none; 0: undecided."""
     if tried.free:
         return 1
     if tried.some and not tried.open:
@@ -64,7 +65,7 @@ def answer(tried: Tried) -> int:
 
 
 def agreed(one: int, other: int, said: int) -> bool:
-    """What both answer is said; a yes and a no, or anything else, is undecided."""
+    """The common answer of both judges if it is 1 or -1; otherwise undecided (0)."""
     if one == 1 and other == 1:
         return said == 1
     if one == -1 and other == -1:
@@ -73,5 +74,5 @@ def agreed(one: int, other: int, said: int) -> bool:
 
 
 def excuses(answer_: int) -> bool:
-    """Only that there was no way out excuses."""
+    """A loss is excused only by the answer that there was no way out."""
     return answer_ == -1

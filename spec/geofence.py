@@ -1,19 +1,18 @@
-"""What it means to be on an edge, inside a polygon, near a boundary, within a zone; the topology.
+"""Definitions for edges, polygons, boundaries and zones; the topology.
 
-A *polygon* is a simple closed chain of edges: at least three different vertices, and no two edges
-with a point in common but the vertex that neighbours share. Its *boundary* is the union of its
-closed edges. A point off the boundary is *inside* iff the open ray from it towards +x meets the
-chain an odd number of times, each edge counted without its upper end. That the parity belongs to
-the point's side and not to the ray is proved: it does not change along any leg that misses the
-boundary, and it changes where a leg passes through one edge (Jordan). Points of a segment are
-written p + t (q - p), 0 <= t <= 1.
+A *polygon* is a simple closed chain of edges: at least three different vertices, and no two edges with a point in
+common but the vertex that neighbours share. Its *boundary* is the union of its closed edges. A point off the boundary
+is *inside* iff the open ray from it towards +x meets the chain an odd number of times, each edge counted without its
+upper end. That the parity belongs to the point's side and not to the ray is proved: it does not change along any leg
+that misses the boundary, and it changes where a leg passes through one edge (Jordan). Points of a segment are written
+p + t (q - p), 0 <= t <= 1.
 
-Every region is a pair of sets: its *open* part, without, and its *closed* part, with the boundary.
-A *place* says in which of the two a point is: 1 in both, 0 in the closed one alone (boundary),
--1 in neither (outside). A layer of altitudes is open or closed with its floor and ceiling. An
-intersection takes both parts of both regions, a union those of either; taking a region away adds
-the complement, whose open part is what is outside of the closed one. A keep-out forbids its closed
-part, a keep-in allows its open part: so a boundary is never allowed.
+Every region is a pair of sets: its *open* part, without the boundary, and its *closed* part, with it. A *place* says
+to which of the two a point belongs: 1 both, 0 the closed one alone (boundary), -1 neither (outside). A layer of
+altitudes is open or closed together with its floor and ceiling. An intersection takes both parts of both regions, a
+union those of either; subtracting a region intersects with its complement, whose open part is the outside of the
+region's closed part. A keep-out forbids its closed part, a keep-in allows its open part: so a boundary is never
+allowed.
 
 Distances are Euclidean, to the nearest point of the closed edge or boundary, and stated in squares.
 """
@@ -29,7 +28,7 @@ class Point(NamedTuple):
 
 
 class Count(NamedTuple):
-    """What a pass over the edges has found: is the point on one, and how many the ray meets."""
+    """The result of a pass over the edges: whether the point is on one, and how many the ray meets."""
 
     on: bool
     crossings: int
@@ -46,12 +45,14 @@ def turn(a: Point, b: Point, c: Point) -> float:
 
 
 def swept(a: Point, b: Point) -> float:
-    """Twice the area between the edge a-b and the y axis: positive on the way up on its right."""
+    """Twice the signed area between the edge a-b and the y axis: positive for an upward edge to the right of the
+    axis.
+    """
     return (a.x + b.x) * (b.y - a.y)
 
 
 def swept_by_triangle(a: Point, b: Point, c: Point) -> float:
-    """Twice the signed area of a triangle: what its sides sweep, in order (Green)."""
+    """Twice the signed area of a triangle: the sum over its edges in order (Green)."""
     return swept(a, b) + swept(b, c) + swept(c, a)
 
 
@@ -107,7 +108,7 @@ def square_point_left_of(
 
 
 def every_step(so_far: bool, here: bool) -> bool:
-    """One more place has been looked at: does it hold in all so far?"""
+    """One more item has been checked: does the condition hold for all so far?"""
     return so_far and here
 
 
@@ -135,17 +136,17 @@ def altitude_in_keep_in(alt: float, floor: float, ceiling: float) -> bool:
 
 
 def enters_keep_out_at(place: int, meets: bool, alt: float, floor: float, ceiling: float) -> bool:
-    """A leg that has this altitude somewhere is in a keep-out there, or may be.
+    """A leg that has this altitude at some point is, or may be, in a keep-out there.
 
-    place: of its first point among the zone's places, altitude apart; meets: it meets the zone's
-    boundary. THERE IS an altitude of the leg at which it is not clear of the zone.
+    place: the horizontal place of its first point with respect to the zone; meets: it meets the zone's boundary.
+    THERE IS an altitude of the leg at which it is not clear of the zone.
     """
     clear = not in_closed(place) and not meets
     return not clear and altitude_in_keep_out(alt, floor, ceiling)
 
 
 def leaves_keep_in_at(place: int, meets: bool, alt: float, floor: float, ceiling: float) -> bool:
-    """A leg that has this altitude somewhere is not strictly within a keep-in there, or may be not.
+    """A leg that has this altitude at some point is not, or may not be, strictly within a keep-in there.
 
     Arguments as for `enters_keep_out_at`. THERE IS an altitude at which it is not within.
     """
@@ -154,7 +155,7 @@ def leaves_keep_in_at(place: int, meets: bool, alt: float, floor: float, ceiling
 
 
 def any_step(found: bool, here: bool) -> bool:
-    """One more place has been looked at: was it found in any so far?"""
+    """One more item has been checked: does the condition hold for any so far?"""
     return found or here
 
 
@@ -186,7 +187,7 @@ def legs_within_at(p: Point, q: Point, a: Point, b: Point, d: float, s: float, t
 
 
 def foot_at(p: Point, a: Point, b: Point, t: float) -> bool:
-    """The line a-b at parameter t is perpendicular below p."""
+    """The point of the line a-b at parameter t is the foot of the perpendicular from p."""
     m = along(a, b, t)
     return (p.x - m.x) * (b.x - a.x) + (p.y - m.y) * (b.y - a.y) == 0
 
@@ -201,7 +202,7 @@ def sign(value: float) -> int:
 
 
 class Found(NamedTuple):
-    """What a pass over the edges has found: one nearer than the buffer? one no farther?"""
+    """The result of a pass over the edges: whether one is nearer than the buffer, and whether one is no farther."""
 
     nearer: bool
     within: bool
@@ -213,7 +214,9 @@ def found_step(found: Found, nearer: bool, within: bool) -> Found:
 
 
 def against(found: Found) -> int:
-    """-1: a point of the boundary is nearer than the buffer; 0: none, but one is just so near."""
+    """-1: a point of the boundary is nearer than the buffer; 0: none is nearer, but one is at the buffer distance; 1:
+    all are farther.
+    """
     if found.nearer:
         return -1
     if found.within:
@@ -222,7 +225,7 @@ def against(found: Found) -> int:
 
 
 class Least(NamedTuple):
-    """The least number that a pass has met, if any."""
+    """The least number found in a pass, if any."""
 
     any: bool
     value: float
@@ -236,17 +239,17 @@ def least_step(least: Least, here: float) -> Least:
 
 
 def in_open(place: int) -> bool:
-    """A point of this place belongs to the region's open part."""
+    """A point with this place belongs to the region's open part."""
     return place > 0
 
 
 def in_closed(place: int) -> bool:
-    """A point of this place belongs to the region's closed part."""
+    """A point with this place belongs to the region's closed part."""
     return place >= 0
 
 
 class Parts(NamedTuple):
-    """To which parts of a region a point belongs."""
+    """The parts of a region to which a point belongs."""
 
     open: bool
     closed: bool
@@ -272,12 +275,12 @@ def in_closed_layer(alt: float, floor: float, ceiling: float) -> bool:
 
 
 def intersection(one: bool, other: bool) -> bool:
-    """A part of an intersection, from the same parts of both regions."""
+    """One part (open or closed) of an intersection, from the same parts of both regions."""
     return one and other
 
 
 def union(one: bool, other: bool) -> bool:
-    """A part of a union, from the same parts of both regions."""
+    """One part (open or closed) of a union, from the same parts of both regions."""
     return one or other
 
 
@@ -292,17 +295,19 @@ def union_step(parts: Parts, open_: bool, closed: bool) -> Parts:
 
 
 def complement(other_part: bool) -> bool:
-    """A part of a complement, from the other part of the region."""
+    """One part of a complement, from the other part of the region."""
     return not other_part
 
 
 def widened(part: bool, near: bool) -> bool:
-    """A part of a widened region: in it, or so near to it (open: nearer; closed: no farther)."""
+    """One part of a region widened by a distance: in it, or near it (open: nearer; closed: no farther)."""
     return part or near
 
 
 def narrowed(part: bool, near: bool) -> bool:
-    """A part of a narrowed region: in it, and not so near (open: no farther; closed: nearer)."""
+    """One part of a region narrowed by a distance: in it, and not near its boundary (open: no farther; closed:
+    nearer).
+    """
     return part and not near
 
 
@@ -312,9 +317,9 @@ def altitude(p_alt: float, q_alt: float, t: float) -> float:
 
 
 def share_a_point(p: Point, q: Point, a: Point, b: Point, s: float, t: float, shared: bool) -> bool:
-    """Two edges of a chain have this point in common, which those of a simple one must not have.
+    """Two edges of a chain have this point in common, which those of a simple chain must not have.
 
-    shared: p-q ends where a-b begins, and so the point s = 1, t = 0 is no fault.
+    shared: p-q ends where a-b begins, so that the common point s = 1, t = 0 is permitted.
     """
     if shared and s == 1 and t == 0:
         return False
@@ -322,7 +327,8 @@ def share_a_point(p: Point, q: Point, a: Point, b: Point, s: float, t: float, sh
 
 
 def part_seen(part: float, unseen: float, whole: float) -> bool:
-    """A part of the whole has been seen that is at least 99 hundredths of it. THERE IS such a part: what
-    was seen is the whole without what was not."""
+    """At least 99 per cent of the whole has been seen; the part seen is the whole less the part not seen. THERE IS
+    such a part.
+    """
     seen = part + unseen <= whole
     return seen and 100 * part >= 99 * whole

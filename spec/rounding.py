@@ -1,8 +1,8 @@
-"""What is assumed of arithmetic on doubles, and what an error bound means.
+"""Assumptions about arithmetic on doubles, and the meaning of an error bound.
 
-The model of one operation (IEEE 754, binary64, round to nearest): its result is `rounded` from the
-real result of the operation on its operands, sums without an underflow term; and rounding
-`keeps_order`. Results that overflow are outside of it: the filter decides nothing there.
+The model of one operation (IEEE 754, binary64, round to nearest): its result is `rounded` from the real result of the
+operation on its operands, sums without an underflow term; and rounding `keeps_order`. Results that overflow are
+outside the model: the filter decides nothing there.
 """
 
 
@@ -12,17 +12,17 @@ def rounded(result: float, real: float, unit: float, tiny: float) -> bool:
 
 
 def keeps_order(less: float, more: float, less_rounded: float, more_rounded: float) -> bool:
-    """Rounding does not turn two numbers round."""
+    """Rounding preserves the order of two numbers."""
     return less > more or less_rounded <= more_rounded
 
 
 def near(value: float, real: float, size: float, bound: float) -> bool:
-    """A computed value stands for a real one within a bound, and is at most its size."""
+    """A computed value is within a bound of a real one, and its magnitude is at most `size`."""
     return abs(value - real) <= bound and abs(value) <= size
 
 
 def stands_for(high: float, low: float, real: float, left_out: float) -> bool:
-    """A pair of doubles stands for a real number that lies no farther from their sum."""
+    """A pair of doubles represents a real number that is within `left_out` of their sum."""
     return abs(real - (high + low)) <= left_out
 
 
@@ -37,7 +37,7 @@ def surely_negative(real: float, value: float, bound: float) -> bool:
 
 
 def outward_margin(value: float, share: float, least: float) -> float:
-    """A share of the magnitude, and something for underflow."""
+    """A share of the magnitude, plus a constant for underflow."""
     if value < 0:
         return least - share * value
     return least + share * value

@@ -1,13 +1,12 @@
-"""What it means that times of tasks satisfy a constraint. Milliseconds after mission start.
+"""When times of tasks satisfy a constraint. Milliseconds after mission start.
 
-A task runs at every instant from its start to its end, both included. The definitions speak of
-instants; the kernels (`core.schedule.rows`) of starts and ends. A definition takes the instants that it
-quantifies over as its first arguments, and its docstring says how they are quantified; instants
-are integers. All of them use comparisons, `and`, `or`, `not` and `if` alone, so they can be run
-on numbers and on symbolic values alike.
+A task runs at every instant from its start to its end, both included. The definitions refer to instants; the kernels
+(`core.schedule.rows`) to starts and ends. A definition takes the instants that it quantifies over as its first
+arguments, and its docstring states how they are quantified; instants are integers. All of them use only comparisons,
+`and`, `or`, `not` and `if`, so that they can be run on numbers and on symbolic values alike.
 
-All times and bounds lie strictly between -2**61 and 2**61 (`TIME_LIMIT_MS`): the range for which
-the kernels are proved, where the sum of two stays in 64 bits.
+All times and bounds lie strictly between -2**61 and 2**61 (`TIME_LIMIT_MS`): the range for which the kernels are
+proved, in which the sum of two stays within 64 bits.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ from cratous.spec.constraint_rows import (
 )
 
 TIME_LIMIT_MS = 2**61
-"""No time and no bound reaches this: 73 million years. It is the premise of the proofs."""
+"""All times and bounds are below this (73 million years). It is the premise of the proofs."""
 
 
 def runs_at(t: int, start: int, end: int) -> bool:
@@ -43,10 +42,10 @@ def not_after(t: int, start: int, end: int, bound: int) -> bool:
 
 
 def row_holds(t: int, kind: int, start: int, end: int, ref: int, lo: int, hi: int) -> bool:
-    """At the instant t the task does not run outside what the row allows.
+    """At the instant t the task does not run outside the times that the row permits.
 
-    FOR ALL t: the row holds. Premise: start <= end (see `interval_is_ordered`), for otherwise the
-    task runs at no instant and every row would hold. An unknown kind never holds.
+    FOR ALL t: the row holds. Premise: start <= end (see `interval_is_ordered`), for otherwise the task runs at no
+    instant and every row would hold. An unknown kind never holds.
     """
     if kind == AFTER_END:
         return not_before(t, start, end, ref + lo)
@@ -82,7 +81,7 @@ def vehicle_is_eligible(k: int, mask: int, bit: int) -> bool:
 def all_rows_hold(
     t: int, u: int, kind: int, start: int, end: int, ref: int, lo: int, hi: int
 ) -> bool:
-    """One row and the interval of its task are as they must be, seen at the instants t and u.
+    """One row and the interval of its task are valid, considered at the instants t and u.
 
     FOR ALL rows THERE IS a t such that FOR ALL u: the whole schedule holds.
     """
@@ -90,7 +89,7 @@ def all_rows_hold(
 
 
 class Timed(NamedTuple):
-    """A row with the interval of its task, what it refers to and its limits."""
+    """A row with the interval of its task, its reference time and its bounds."""
 
     kind: int
     start: int
@@ -122,7 +121,8 @@ def earlier_of(t: int, best: int, value: int) -> bool:
 
 
 def flown_as_asked(n: int, ok: bool, least: int, most: int, times: int) -> bool:
-    """All tasks so far, and one more, are done as often as is asked for: there is an n-th time where
-    it has to be done n times, and none where it may not be done so often. FOR ALL n >= 1."""
+    """All tasks so far, and one more, are done as often as required: an n-th time exists if the task must be done n
+    times, and does not if it may not be done that often. FOR ALL n >= 1.
+    """
     there = n <= times
     return ok and (there or n > least) and (n <= most or not there)

@@ -1,4 +1,4 @@
-"""When a task of a flight counts as served, given that not all of the flight was seen."""
+"""When a task of a flight counts as served, given that only part of the flight was observed."""
 
 from typing import NamedTuple
 
@@ -6,9 +6,10 @@ NOT_SERVED, SERVED, NOT_KNOWN = 0, 1, 2
 
 
 class Watched(NamedTuple):
-    """What was seen of a task. ended: it was flown to its end; over: the flight has ended; unseen: part of
-    what counts was not seen; short: too little of a search was seen; near: it came within its standoff;
-    missed: what its place asks for was not seen."""
+    """Observations of a task. ended: it was flown to its end; over: the flight has ended; unseen: part of what counts
+    was not observed; short: too little of a search was seen; near: the vehicle came within its standoff distance;
+    missed: what its location requires was not seen.
+    """
 
     ended: bool
     over: bool
@@ -19,11 +20,11 @@ class Watched(NamedTuple):
 
 
 def served_if(ends: bool, helped: bool, harmed: bool, seen: Watched) -> bool:
-    """The task is served, if what was not seen, or is still to come, is like this: the task ends; what
-    it lacks is done; it comes within its standoff. What is to come of a task can matter until it or
-    the flight has ended; a search is seen by its own footprints alone.
+    """The task is served under assumptions on what was not observed or is still to come. ends: the task ends; helped:
+    what it lacks is done; harmed: the vehicle comes within the standoff distance. What is still to come can matter
+    until the task or the flight has ended; a search is served only by its own footprints.
 
-    It is served for certain if this holds FOR ALL ends, helped and harmed; not served if it does for none.
+    It is certainly served if this holds FOR ALL ends, helped and harmed; certainly not served if for none.
     """
     to_come = not seen.ended and not seen.over
     ended = seen.ended or (to_come and ends)

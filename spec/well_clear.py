@@ -1,10 +1,10 @@
-"""What well clear means. Relative state is ownship minus intruder: s [m], v [m/s].
+"""Definition of well clear. Relative state is ownship minus intruder: s [m], v [m/s].
 
-Horizontal volume (modified tau, Munoz et al., "A Family of Well-Clear Boundary Models for the
-Integration of UAS in the NAS", AIAA 2014; DO-365 uses the same): violated when the two are within
-DTHR, or when they converge, would pass within DTHR, and tau_mod = (DTHR^2 - |s|^2) / (s.v) is at
-most TTHR. Vertical volume: within ZTHR, or co-altitude is at most TCOA away. Sets are closed.
-The definitions divide and speak of positions at instants; the kernels do neither.
+Horizontal volume (modified tau, Munoz et al., "A Family of Well-Clear Boundary Models for the Integration of UAS in
+the NAS", AIAA 2014; DO-365 uses the same): violated when the two are within DTHR, or when they converge, would pass
+within DTHR, and tau_mod = (DTHR^2 - |s|^2) / (s.v) is at most TTHR. Vertical volume: within ZTHR, or at most TCOA
+before co-altitude. Sets are closed. The definitions divide and refer to positions at instants; the kernels do
+neither.
 """
 
 from math import sqrt
@@ -19,7 +19,7 @@ class Plane(NamedTuple):
 
 
 class StandardThresholds(NamedTuple):
-    """Thresholds of the standard's volume in space: DTHR, ZTHR [m]; TTHR, TCOA [s]."""
+    """Thresholds of the standard volume: DTHR, ZTHR [m]; TTHR, TCOA [s]."""
 
     dthr_m: float
     zthr_m: float
@@ -28,7 +28,7 @@ class StandardThresholds(NamedTuple):
 
 
 class Thresholds(NamedTuple):
-    """Thresholds of a volume in space with either vertical lead: DTHR, ZTHR [m]; TTHR, TCOA, VMOD [s]."""
+    """Thresholds of a volume with either vertical lead time: DTHR, ZTHR [m]; TTHR, TCOA, VMOD [s]."""
 
     dthr_m: float
     zthr_m: float
@@ -58,7 +58,7 @@ def converging(s: Plane, v: Plane) -> bool:
 
 
 def time_of_closest_approach(s: Plane, v: Plane) -> float:
-    """tcpa [s]: when the distance is least; for v not zero."""
+    """tcpa [s]: the time at which the distance is least; for v not zero."""
     return -dot(s, v) / dot(v, v)
 
 
@@ -129,12 +129,14 @@ def parabola(a: float, b: float, c: float, t: float) -> float:
 
 # -- other volumes --------------------------------------------------------------------------
 def tau(s: Plane, v: Plane) -> float:
-    """Plain tau [s], range over closing speed times range: for a converging pair."""
+    """Plain tau [s], range over closing rate, written as range^2 over range times closing rate; for a converging
+    pair.
+    """
     return dot(s, s) / -dot(s, v)
 
 
 def time_of_entry(s: Plane, v: Plane, dthr: float) -> float:
-    """tep [s]: half the chord through the circle before the closest approach.
+    """tep [s]: time of the entry into the circle of radius dthr, half a chord before the closest approach.
 
     For v not zero and a course that comes within dthr.
     """
@@ -151,7 +153,7 @@ def passes_within(s: Plane, v: Plane, dthr: float) -> bool:
 
 
 def soon(time: float, limit: float) -> bool:
-    """A time is not past and at most so far away."""
+    """A time is not past and at most `limit` ahead."""
     return time >= 0 and time <= limit
 
 
@@ -174,7 +176,7 @@ def horizontal_violation_tep(s: Plane, v: Plane, dthr: float, tthr: float) -> bo
 
 
 def horizontal_violation_tau(s: Plane, v: Plane, dthr: float, tthr: float) -> bool:
-    """As `horizontal_violation`, with plain tau: known for not being convex in time."""
+    """As `horizontal_violation`, with plain tau, which is known not to be convex in time."""
     if within(s, dthr):
         return True
     if not passes_within(s, v, dthr):
@@ -198,7 +200,7 @@ def within_at(s: Plane, v: Plane, radius: float, t: float) -> bool:
 
 
 def vertical_violation_vmod(sz: float, vz: float, zthr: float, vmod: float) -> bool:
-    """The vertical volume with VMOD: within ZTHR now, or closing and so within vmod seconds."""
+    """The vertical volume with VMOD: within ZTHR now, or converging and within ZTHR in at most vmod seconds."""
     if -zthr <= sz and sz <= zthr:
         return True
     if vz == 0:
@@ -211,7 +213,7 @@ def vertical_violation_vmod(sz: float, vz: float, zthr: float, vmod: float) -> b
 
 
 def layer_violation(sz: float, vz: float, zthr: float, tcoa: float, vmod: float) -> bool:
-    """The vertical volume with either lead: TCOA to co-altitude, VMOD to the layer.
+    """The vertical volume with either lead time: TCOA to co-altitude, VMOD to the layer.
 
     With vmod 0 it is `vertical_violation`, with tcoa 0 `vertical_violation_vmod`.
     """
@@ -221,7 +223,7 @@ def layer_violation(sz: float, vz: float, zthr: float, tcoa: float, vmod: float)
 def layer_violation_at(
     sz: float, vz: float, zthr: float, tcoa: float, vmod: float, t: float
 ) -> bool:
-    """The vertical volume with either lead after t seconds of straight flight."""
+    """The vertical volume with either lead time after t seconds of straight flight."""
     return layer_violation(sz + t * vz, vz, zthr, tcoa, vmod)
 
 
@@ -231,7 +233,7 @@ def cylinder_violation(s: Plane, sz: float, radius: float, half_height: float) -
 
 
 def cylinder_conflict(s: Plane, sz: float, radius: float, half_height: float) -> bool:
-    """Inside an open cylinder, as DAIDALUS's CD3D reads it: touching it is no conflict."""
+    """Inside an open cylinder, as in DAIDALUS's CD3D: touching it is no conflict."""
     return dot(s, s) < radius * radius and -half_height < sz and sz < half_height
 
 
@@ -250,7 +252,7 @@ def violation_taumod_at(
     thresholds: Thresholds,
     t: float,
 ) -> bool:
-    """Well clear by tau_mod, with either vertical lead, is lost after t seconds."""
+    """Well clear by tau_mod, with either vertical lead time, is lost after t seconds."""
     dthr, zthr, tthr, tcoa, vmod = thresholds
     vertical = layer_violation_at(sz, vz, zthr, tcoa, vmod, t)
     return vertical and horizontal_violation_at(s, v, dthr, tthr, t)

@@ -14,13 +14,10 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
-from cratous.core.readings import tiered
 from cratous.services.cli import progress
 
 # what is told of work that takes long has tests of its own (tests/cli/test_waiting.py)
 progress.PATIENCE_S = 3600.0
-# one process runs hundreds of commands, and what is compiled is kept: to load it pays at once
-tiered.MUCH = tiered.SOON
 # a machine under load is no reason to fail; CI draws the same cases every time
 settings.register_profile("default", deadline=None)
 settings.register_profile("ci", deadline=None, derandomize=True)

@@ -6,9 +6,9 @@
     lmcp.types["afrl.cmasi.AirVehicleState"], lmcp.enums["AltitudeType"].AGL
     lmcp.to_json(state), lmcp.xml.read_file(path), lmcp.binary.pack(state)
 
-A type is named by its full name (`afrl.cmasi.Task`), by series (`CMASI/Task`) or, where that is
-unique, by its short name (`Task`); a short name that several series have means the one that comes
-first in `model.SERIES`. Models load on first use, one series at a time.
+A type is identified by its full name (`afrl.cmasi.Task`), by series (`CMASI/Task`) or, where that is
+unique, by its short name (`Task`); a short name in several series means the first of them in
+`model.SERIES`. Models load on first use, one series at a time.
 """
 
 from __future__ import annotations

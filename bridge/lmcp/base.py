@@ -1,4 +1,4 @@
-"""What every LMCP object and enum can do: equality by value, copies, checks, a short repr.
+"""Common behaviour of LMCP objects and enums: equality by value, copies, checks, a short repr.
 
 The classes themselves are made in `lmcp.objects`.
 """
@@ -26,17 +26,17 @@ class LmcpEnum(IntEnum):
 
 
 class LmcpObject:
-    """Base of every message and part of a message."""
+    """Base of every message and of every object within a message."""
 
     __slots__ = ("_raw",)
     _raw: tuple[
         bytes, str
-    ]  # only of the lazy classes of `lmcp.lazy_messages`: the message, and where
+    ]  # only of the lazy classes of `lmcp.lazy_messages`: the message and its source
     series: ClassVar[str] = ""
     type_name: ClassVar[str] = ""  # as in `CMASI/AirVehicleState`
     type_id: ClassVar[int] = 0
     all_names: ClassVar[tuple[str, ...]] = ()  # full names: its own, then those of its bases
-    fields: ClassVar[tuple[model.Field, ...]] = ()  # oldest ancestor first: the wire's order
+    fields: ClassVar[tuple[model.Field, ...]] = ()  # oldest ancestor first: the order on the wire
     names: ClassVar[tuple[str, ...]] = ()
     values_of: ClassVar[Any] = staticmethod(lambda _obj: ())  # all values, in that order
     _makers: ClassVar[tuple[tuple[str, Callable[[], Any] | None, Any], ...]] = ()
@@ -44,14 +44,14 @@ class LmcpObject:
     _restore: ClassVar[Any] = None  # `objects.again`: it knows the classes by their names
 
     def __init__(self, **given: Any) -> None:
-        if len(given) < len(self._makers):  # else each is given, or one that there is not
+        if len(given) < len(self._makers):  # otherwise all are given, or an unknown one
             for name, make, constant in self._makers:
                 if name not in given:
                     setattr(self, name, constant if make is None else make())
         self._set(given)
 
     def _set(self, given: dict[str, Any]) -> None:
-        """Fields by name, each value checked; BadInput with the nearest names for one that there is not."""
+        """Set fields by name, each value checked; BadInput with the nearest names for an unknown one."""
         for name, value in given.items():
             check = self._checks.get(name)
             if check is None:
@@ -69,7 +69,7 @@ class LmcpObject:
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        """Only what differs from the default, so that long messages stay readable."""
+        """Only the fields that differ from the default, so that long messages stay readable."""
         plain = type(self)()
         shown = [
             f"{name}={getattr(self, name)!r}"
@@ -79,7 +79,7 @@ class LmcpObject:
         return f"{type(self).__name__}({', '.join(shown)})"
 
     def __rich_repr__(self) -> Iterator[tuple[str, Any, Any]]:
-        """What `rich` prints, over several lines where it is long."""
+        """The representation for `rich`, over several lines where it is long."""
         plain = type(self)()
         for name in self.names:
             yield name, getattr(self, name), getattr(plain, name)
@@ -88,15 +88,15 @@ class LmcpObject:
         return self._restore, (self.type_name, self.values_of(self))
 
     def raw_message(self) -> bytes | None:
-        """The bytes of the whole message, if it was read lazily and not looked into; else None."""
+        """The bytes of the whole message, if it was read lazily and no field was read yet; else None."""
         return None
 
     def complete(self: Self) -> Self:
-        """Itself; what was read lazily is read wholly."""
+        """The object itself; if it was read lazily, all fields are read now."""
         return self
 
     def copy(self: Self, **changes: Any) -> Self:
-        """A deep copy, with some fields changed; only these are checked."""
+        """A deep copy, with some fields changed; only the changed fields are checked."""
         kept = [(n, _copied(getattr(self, n))) for n in self.names if n not in changes]
         made = object.__new__(type(self))
         for name, value in kept:
@@ -105,7 +105,7 @@ class LmcpObject:
         return made
 
     def checked(self: Self, where: str = "") -> Self:
-        """Itself, after all its values are found (or made) to be of their types; else BadInput."""
+        """The object itself, after all its values are checked (or converted) to their types; else BadInput."""
         for name, check in self._checks.items():
             try:
                 value = check(getattr(self, name))
@@ -119,13 +119,13 @@ class LmcpObject:
 
 
 def within(err: BadInput, item: str) -> BadInput:
-    """The same error, with `item` put before the path of the part it speaks of."""
+    """The same error, with `item` prepended to the path of the affected part."""
     path = item if not err.item else f"{item}{'' if err.item[0] == '[' else '.'}{err.item}"
     return BadInput(err.what, where=err.where, item=path, expected=err.expected, got=err.got)
 
 
 def unknown_field(cls: type[LmcpObject], name: str, where: str = "") -> BadInput:
-    """The error for a field that a class does not have, with the nearest names it does have."""
+    """The error for a field that a class does not have, with the nearest names that it does have."""
     from difflib import get_close_matches
 
     by_lower = {n.lower(): n for n in cls.names}

@@ -1,10 +1,9 @@
 """LMCP in binary: big endian, every object with its own type, a checksum at the end.
 
-`LMCP`, uint32 size of the root object, the object, uint32 sum of all bytes before it (0 stands for
-"not computed" and is accepted). An object is one byte 0 for null, or 1, series id (int64), type
-id (uint32), version (uint16) and all fields, oldest ancestor first. Where other implementations
-read a byte string in different ways (a bool of 2, an enum value that does not exist, a wrong class
-in a field, bytes behind the end) this one refuses it.
+`LMCP`, uint32 size of the root object, the object, uint32 sum of all bytes before it (0 stands for "not computed" and
+is accepted). An object is one byte 0 for null, or 1, series id (int64), type id (uint32), version (uint16) and all
+fields, oldest ancestor first. Byte strings that other implementations read in different ways (a bool of 2, an enum
+value that does not exist, a wrong class in a field, bytes after the end) are refused here.
 """
 
 from __future__ import annotations
@@ -43,7 +42,7 @@ _readers, _writers = compiled.tables(LmcpObject, False)
 def pack(obj: LmcpObject) -> bytes:
     """The whole message of an object; BadInput if a value does not fit its field.
 
-    What `lazy` gave and nobody has looked into is passed on as it came.
+    A message from `lazy` whose fields were not read is passed on unchanged.
     """
     raw = obj.raw_message()
     if raw is not None:
@@ -63,10 +62,9 @@ def pack(obj: LmcpObject) -> bytes:
 def unpack(data: bytes, where: str = "message") -> Any:
     """The object of exactly one message.
 
-    Raises BadInput, with the byte and the path of the field, for anything that is not one: a wrong
-    tag, length or checksum, a longer message than MAX_MESSAGE, more levels than MAX_DEPTH, more
-    elements of arrays (but of numbers) than MAX_ELEMENTS, unknown series, types and versions, wrong
-    values, text that is not UTF-8.
+    Raises BadInput, with the byte and the path of the field, for anything else: a wrong tag, length or checksum, a
+    message longer than MAX_MESSAGE, more levels than MAX_DEPTH, more than MAX_ELEMENTS array elements (other than
+    numbers), unknown series, types and versions, wrong values, text that is not UTF-8.
     """
     data = bytes(data)
     _checked(data, where)
@@ -82,12 +80,12 @@ def unpack(data: bytes, where: str = "message") -> Any:
 
 
 def lazy(data: bytes, where: str = "message") -> Any:
-    """As `unpack`, but the fields are read when one is first asked for.
+    """Like `unpack`, but fields are read on first access.
 
-    Length, checksum, and that the type is known are checked at once; anything else that is wrong
-    raises its BadInput at the first access to a field (of the numbers in front, which are read by
-    themselves: to another field; `complete()` reads all). The object is of its class (isinstance,
-    topics) from the start. While only such numbers were read, `pack` gives the message as it came.
+    Length, checksum, and that the type is known are checked at once; any other error raises BadInput at the first
+    access to a field (other than the leading numbers, which are read separately; `complete()` reads all). The object
+    has its class (isinstance, topics) from the start. While only leading numbers were read, `pack` returns the
+    message unchanged.
     """
     data = bytes(data)
     _checked(data, where)
@@ -95,7 +93,7 @@ def lazy(data: bytes, where: str = "message") -> Any:
     cls = _lazy_classes.get(head)
     if cls is None:
         if len(data) < _AT + 15 + 4 or head[0] != 1:
-            return careful.read(data, _AT, len(data) - 4, where)  # says what is wrong
+            return careful.read(data, _AT, len(data) - 4, where)  # raises the error
         try:
             found = careful.class_of(*careful.OBJECT_HEAD.unpack(head)[1:])
         except BadInput:
@@ -128,11 +126,11 @@ model.when_removed(lambda _series: _lazy_classes.clear())
 
 
 def received(data: bytes, where: str = "message") -> tuple[Any, bytes, list[str]]:
-    """What a client sent: the object, its message as it should be, and what was not right with it.
+    """Reads a message from a client: the object, its message in correct form, and notes on irregularities.
 
-    As `unpack`, but two habits of clients that UxAS lets pass are let pass and noted: pylmcp
-    (OpenUxAS's own Python client) leaves the null flag of the object out of the length, and sends
-    a zone without a type. The checksum must stand for the very bytes. Raises BadInput.
+    Like `unpack`, but two irregularities of clients that UxAS accepts are accepted and noted: pylmcp (OpenUxAS's own
+    Python client) leaves the null flag of the object out of the length, and sends a zone without a type. The checksum
+    must be that of the bytes as received. Raises BadInput.
     """
     notes: list[str] = []
     if len(data) >= _LEAST and _HEAD.unpack_from(data) == (TAG, len(data) - 13):
@@ -153,7 +151,7 @@ def received(data: bytes, where: str = "message") -> tuple[Any, bytes, list[str]
 
 
 def split(data: bytes, where: str = "messages") -> Iterator[bytes]:
-    """The messages of bytes in which whole messages stand one behind the other."""
+    """Splits bytes that contain complete messages one after the other."""
     at = 0
     while at < len(data):
         if len(data) - at < _LEAST:

@@ -1,8 +1,8 @@
-"""LMCP objects in binary, field by field: the reference reading, which says what is wrong where.
+"""LMCP objects in binary, field by field: the reference implementation, which reports what is wrong and where.
 
-`lmcp.compiled` does the same much faster and comes here for whatever it does not take, so that
-there is one place for each error. Where other implementations read a byte string in different ways
-(a bool of 2, an enum value that does not exist, a wrong class in a field) this one refuses it.
+`lmcp.compiled` does the same much faster and falls back to this module for anything it does not accept, so that each
+error has one place. Byte strings that other implementations read in different ways (a bool of 2, an enum value that
+does not exist, a wrong class in a field) are refused.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ CODES = {
 OBJECT_HEAD = struct.Struct(">BqIH")
 _SMALL_COUNT, _LARGE_COUNT = struct.Struct(">H"), struct.Struct(">I")
 MAX_DEPTH = 64
-# 0 where an enum begins with 1: "not set", as clients of UxAS send it; UxAS does not look
+# 0 where an enum begins with 1: "not set", as sent by clients of UxAS, which does not check it
 UNSET = {"CMASI/ZoneAvoidanceType": "Physical"}
-MAX_ELEMENTS = 1_000_000  # of arrays of anything but numbers, in one message together
+MAX_ELEMENTS = 1_000_000  # total in one message, of arrays other than of numbers
 
 
 def pack(obj: LmcpObject) -> bytearray:
@@ -41,7 +41,7 @@ def pack(obj: LmcpObject) -> bytearray:
     out = bytearray()
     for field, value in zip(obj.fields, obj.values_of(obj), strict=True):
         if field.array == 0 and isinstance(value, list):
-            _count(field, value)  # before all that is in it is looked at
+            _count(field, value)  # before the elements are checked
     try:
         _pack_object(obj.copy().checked(), out, 0)
     except RecursionError:
@@ -50,9 +50,9 @@ def pack(obj: LmcpObject) -> bytearray:
 
 
 def read(data: bytes, at: int, end: int, where: str, notes: list[str] | None = None) -> Any:
-    """The object that takes exactly data[at:end]; BadInput with the byte and the field's path.
+    """The object that occupies exactly data[at:end]; BadInput with the byte and the field's path.
 
-    notes: a 0 for an enum of UNSET is taken for what stands there, and noted here.
+    notes: if given, a 0 for an enum in UNSET is replaced by the value there, and noted.
     """
     reader = _Reader(data, at, end, notes)
     try:
@@ -137,15 +137,15 @@ def _one(kind: str) -> struct.Struct:
 
 
 class _Reader:
-    """A place in the bytes of one message."""
+    """A position in the bytes of one message."""
 
     def __init__(self, data: bytes, at: int, end: int, notes: list[str] | None = None) -> None:
         self.data, self.at, self.end, self.notes = data, at, end, notes
         self.left = MAX_ELEMENTS
-        self.began = at  # of what was read last: where an error is
+        self.began = at  # start of what was read last, for error messages
 
     def take(self, size: int) -> int:
-        """Step over `size` bytes and give where they start."""
+        """Advance by `size` bytes; returns their position."""
         start = self.began = self.at
         if start + size > self.end:
             raise BadInput(
@@ -234,7 +234,7 @@ class _Reader:
 
 
 def class_of(series_id: int, type_id: int, version: int) -> type[Any]:
-    """The class of an object header; BadInput for what no model knows, and other versions."""
+    """The class of an object header; BadInput for an unknown type or another version."""
     return _class_of(series_id, type_id, version)
 
 

@@ -1,10 +1,10 @@
 """LMCP objects in binary, fast: one reading and one writing function generated for each class.
 
-A generated function takes neighbouring fields of fixed size in one `struct` call, looks up enums,
-booleans and the classes of nested objects in dictionaries, and checks the type of every value that
-it writes. It judges nothing itself: whatever it does not take raises, and the message goes through
-`lmcp.careful`, which says what is wrong (or converts it, as the constructor would). So both accept
-the same messages; `tests/bridge/test_lmcp_compiled.py` holds them together.
+A generated function takes adjacent fields of fixed size in one `struct` call, looks up enums, booleans and the
+classes of nested objects in dictionaries, and checks the type of every value that it writes. It diagnoses nothing
+itself: anything it does not accept raises, and the message goes through `lmcp.careful`, which reports the error (or
+converts the value, as the constructor would). So both accept the same messages, which
+`tests/bridge/test_lmcp_compiled.py` checks.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ Writes = Callable[[Any, Callable[[bytes], None], int], None]
 HEAD_SIZE = OBJECT_HEAD.size
 
 
-# Elements that the message being read may still have. Two threads would share it, and then at worst
-# read a message carefully that could have been read fast.
+# Elements that the message being read may still have. If two threads share it, the worst that happens is
+# that a message is read by the careful functions without need.
 left = [MAX_ELEMENTS]
 
 
 class NotFast(Exception):
-    """The careful functions must look at this message."""
+    """The careful functions must process this message."""
 
 
-# What a generated function may raise on bytes or values that are not as they should be.
+# Exceptions that a generated function may raise for irregular bytes or values.
 GIVES_UP = (
     NotFast, struct.error, KeyError, IndexError, UnicodeError, OverflowError, TypeError,
     AttributeError, BadInput, RecursionError,
@@ -56,7 +56,7 @@ def _write_null(_obj: None, put: Callable[[bytes], None], _depth: int) -> None:
 
 
 class Readers(dict[bytes, Reads]):
-    """From an object's header to what reads it, for classes that a field may hold."""
+    """From an object's header to its reading function, for the classes that a field may hold."""
 
     def __init__(self, base: type, nullable: bool) -> None:
         self.base, self.nullable = base, nullable
@@ -74,7 +74,7 @@ class Readers(dict[bytes, Reads]):
 
 
 class Writers(dict[type, Writes]):
-    """From an object's class to what writes it, for classes that a field may hold."""
+    """From an object's class to its writing function, for the classes that a field may hold."""
 
     def __init__(self, base: type, nullable: bool) -> None:
         self.base = base
@@ -93,7 +93,7 @@ _tables: dict[tuple[type, bool], tuple[Readers, Writers]] = {}
 
 
 def functions(cls: Any) -> tuple[Reads, Writes]:
-    """(what reads the fields behind the header, what writes header and fields) of a class."""
+    """(reader of the fields after the header, writer of header and fields) of a class."""
     found = _made.get(cls)
     if found is None:
         real = cls.__dict__.get("real_class")  # of a class of `lmcp.lazy_messages`
@@ -114,9 +114,9 @@ Fills = Callable[[Any, bytes, int, int], int]
 
 
 def fillers(cls: Any) -> tuple[Fills, Fills, frozenset[str], int]:
-    """What reads fields into an object that is there: (obj, data, at, depth) -> end.
+    """Readers that fill an existing object: (obj, data, at, depth) -> end.
 
-    All fields; those in front that have fixed places; the names of the latter, and their size.
+    One for all fields; one for the leading fields at fixed positions; the names of the latter, and their size.
     """
     return _Maker(cls).fillers()
 
@@ -140,7 +140,7 @@ _PYTHON = {"bool": "bool", "string": "str", "char": "str", "real32": "float", "r
 
 
 class _Maker:
-    """Writes the two functions of one class as source, and compiles them."""
+    """Generates the source of the two functions of one class, and compiles them."""
 
     def __init__(self, cls: Any) -> None:
         self.cls = cls
@@ -231,12 +231,12 @@ class _Maker:
         self.write.append(f"{value} = o.{name}")
 
     def count_field(self, large: bool, name: str, value: str) -> None:
-        """A length or count, at the end of the group before it."""
+        """Add a length or count at the end of the preceding group."""
         self.group.append(("I" if large else "H", name, value, ""))
         self.flush()
 
     def flush(self) -> None:
-        """Emit the group of fields of fixed size that stand next to each other."""
+        """Emit the group of adjacent fields of fixed size."""
         head = "" if self.space.get("begun") else "15s"
         self.space["begun"] = True
         if self.checks:
@@ -257,7 +257,7 @@ class _Maker:
             targets = " ".join(part for _, target, _, made in self.group for part in (target, made))
             names = frozenset(n for n in self.cls.names if re.search(rf"\bo\.{n}\b", targets))
             if any(f.array is not None for f in self.cls.fields if f.name in names):
-                names = frozenset()  # a list can be changed by whoever has read it
+                names = frozenset()  # a list read by somebody could be changed
             self.front = list(self.read), names, form.size
         pack = self.name("P", struct.Struct(f">{head}{codes}").pack)
         values = ", ".join(value for _, _, value, _ in self.group)
@@ -289,7 +289,7 @@ class _Maker:
         return self.name("R", readers), self.name("W", writers)
 
     def fixed_array(self, field: model.Field) -> None:
-        """An array of numbers with no count: its elements are part of the group."""
+        """An array of numbers of fixed length: its elements are part of the group."""
         value = self.name("v")
         self.write_value(field.name, value)
         size, kind = field.array or 0, _PYTHON.get(field.kind, "int").upper()

@@ -1,4 +1,4 @@
-"""What a type of message is, in words: docstrings of classes, and `cratous lmcp describe`."""
+"""Descriptions of message types in words: docstrings of classes, and `cratous lmcp describe`."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def default_text(field: model.Field, enum_first: str = "") -> str:
 
 
 def field_line(field: model.Field) -> str:
-    """One field: type, unit, default, and what else the model says."""
+    """One field: type, unit, default, and further properties in the model."""
     first = ""
     if field.kind == "enum":
         series, _, short = field.type.partition("/")

@@ -1,4 +1,4 @@
-"""What differs between two messages, or between two versions of a series."""
+"""Differences between two messages, or between two versions of a series."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cratous.bridge.lmcp.objects import LmcpObject
 
 @dataclass(frozen=True)
 class Difference:
-    """One place in which they differ: its path, and what stands there on either side."""
+    """One difference: its path, and the value on either side."""
 
     path: str
     first: str
@@ -46,7 +46,7 @@ def of_objects(first: Any, second: Any, path: str = "") -> Iterator[Difference]:
 
 def _same(first: Any, second: Any) -> bool:
     if isinstance(first, float) and isinstance(second, float):
-        # two NaNs are the same; 0.0 and -0.0 are not, on the wire
+        # two NaNs count as equal; 0.0 and -0.0 do not, since they differ on the wire
         return repr(first) == repr(second)
     return type(first) is type(second) and bool(first == second)
 
@@ -57,7 +57,7 @@ def _text(value: Any) -> str:
 
 
 def of_series(first: model.Series, second: model.Series) -> Iterator[Difference]:
-    """What a message of one series would mean, or be refused for, under the other."""
+    """The differences of two series by which a message of one is misread or refused under the other."""
     for part in ("name", "version", "namespace"):
         yield from _differs(part, getattr(first, part), getattr(second, part))
     for name in (*first.enums, *(n for n in second.enums if n not in first.enums)):

@@ -1,18 +1,18 @@
-"""Messages from bytes in any of the forms in which people keep them, and back.
+"""Messages from bytes in any of the forms in which they are stored, and back.
 
     for found in forms.read(data, "capture.bin"): found.where, found.address, found.object
 
 | form | is |
 |---|---|
-| `binary` | LMCP messages one behind the other |
+| `binary` | LMCP messages one after the other |
 | `envelope` | one message with address and attributes, as in a ZeroMQ part |
 | `frames` | a stream of sentinel frames |
 | `hex` | any of these in hexadecimal, blanks and line ends ignored |
 | `xml` | an LMCP object, or a root that holds several |
-| `json` | our JSON form: one object, a list of objects, or one a line |
+| `json` | our JSON form: one object, a list of objects, or one per line |
 
-What is gzipped is unpacked first. A message that is wrong does not hide the others of a stream: it
-is found as the error that it is.
+Gzipped data are unpacked first. A malformed message does not hide the others of a stream: it is
+returned as an error in its place.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _ENVELOPE = re.compile(rb"[^$\0]{1,4096}\$[^$\0]{1,4096}\$LMCP")
 
 @dataclass(frozen=True)
 class Found:
-    """One message: where it stood, its object or what is wrong with it, its envelope if any."""
+    """One message: its place, its object or the error, its envelope if any."""
 
     where: str
     object: Any
@@ -47,7 +47,7 @@ class Found:
 
 
 def form_of(data: bytes, where: str = "input") -> str:
-    """The form of these bytes; raises BadInput if they are of none."""
+    """The form of these bytes; raises BadInput if it is none of them."""
     start = data[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
     if data.startswith(binary.TAG):
         return "binary"
@@ -70,7 +70,7 @@ def form_of(data: bytes, where: str = "input") -> str:
 
 
 def read(data: bytes, where: str = "input", form: str = "auto") -> Iterator[Found]:
-    """Every message of these bytes; raises BadInput where nothing further can be told apart."""
+    """Every message of these bytes; raises BadInput where no further messages can be separated."""
     data = _unzipped(data, where)
     form = form_of(data, where) if form == "auto" else form
     if form == "hex":
@@ -150,7 +150,7 @@ def _json(data: bytes, where: str) -> Iterator[Found]:
     try:
         whole = json_of(text, where)
     except BadInput:
-        whole = None  # one object a line, or wrong: the lines say which
+        whole = None  # one object per line, or malformed: reading by lines tells
     if whole is not None:
         parts = whole if isinstance(whole, list) else [whole]
         for number, part in enumerate(parts, 1):
@@ -171,8 +171,8 @@ def _found(read_one: Callable[[Any, str], Any], part: Any, where: str) -> Found:
 def write(obj: LmcpObject, form: str, around: envelope.AddressedMessage | None = None) -> bytes:
     """An object in one of OUTPUTS, text forms with a line end.
 
-    `envelope` and `frames` take the address and attributes of `around`, or else those of a message
-    addressed to its type, from entity 0 and service 0.
+    `envelope` and `frames` take the address and attributes of `around`, or else those of a message addressed to its
+    type, from entity 0 and service 0.
     """
     if form == "json":
         return jsonform.to_json(obj).encode() + b"\n"

@@ -1,8 +1,8 @@
-"""Write what is generated from the models: the stubs of the classes and the JSON Schema.
+"""Writes the files generated from the models: the stubs of the classes and the JSON Schema.
 
     python -m cratous.bridge.lmcp.generate [--check]
 
-`--check` writes nothing and fails if a file is not what it would write.
+`--check` writes nothing and fails if a file differs from what it would write.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def files() -> dict[Path, str]:
     """The text of every generated file."""
     found = {MESSAGES / f"{s.lower()}.pyi": stubs.stub(s) for s in model.SERIES}
     found[SCHEMA] = json.dumps(schema.schema(), ensure_ascii=False, separators=(",", ":")) + "\n"
-    found[SCHEMA] = found[SCHEMA].replace('},"', '},\n"')  # readable differences
+    found[SCHEMA] = found[SCHEMA].replace('},"', '},\n"')  # for readable diffs
     return found
 
 

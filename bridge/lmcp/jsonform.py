@@ -1,8 +1,8 @@
-"""The canonical JSON form of LMCP objects: the log's form, so it is fast and deterministic.
+"""The canonical JSON form of LMCP objects, used by the log: fast and deterministic.
 
-`{"$type": "CMASI/AirVehicleState", "ID": 400, ...}`: all fields, in the order of the wire, no
-blanks, enums by name, shortest digits that give back the same double. JSON has no numbers for
-not-a-number and the infinities: they stand as "NaN", "Infinity" and "-Infinity".
+`{"$type": "CMASI/AirVehicleState", "ID": 400, ...}`: all fields, in the order of the wire, no blanks, enums by name,
+the shortest digits that give back the same double. JSON has no numbers for not-a-number and the infinities: they are
+written as "NaN", "Infinity" and "-Infinity".
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from cratous.bridge.lmcp.objects import (
     unknown_field,
     within,
 )
+from cratous.bridge.lmcp.plain_text import plain_object
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import json_of
 
@@ -82,7 +83,7 @@ def _spell_non_finite(value: Any) -> Any:
 
 
 def to_data(obj: LmcpObject) -> dict[str, Any]:
-    """The data that the text of `to_json` holds; of an object that was read from bytes, whose fields are of their types."""
+    """The data encoded by `to_json`; for an object read from bytes, whose fields have their types."""
     cls: Any = type(obj)
     reals, others, keys = _plan(cls)
     values = [cls.type_name, *cls.values_of(obj)]
@@ -103,7 +104,7 @@ def _data(value: Any) -> Any:
 
 
 def to_json(obj: LmcpObject) -> str:
-    """One line of canonical JSON; BadInput if a field holds a value that is not of its type."""
+    """One line of canonical JSON; BadInput if a field holds a value of another type."""
     try:
         return _encode(to_dict(obj))
     except RecursionError:
@@ -113,12 +114,16 @@ def to_json(obj: LmcpObject) -> str:
 
 
 def from_json(text: str | bytes, where: str = "") -> Any:
-    """The object of a JSON text; BadInput (with `where`) for anything that is not one."""
+    """The object of a JSON text; BadInput (with `where`) for any other text."""
+    if type(text) is str:
+        plain = plain_object(text)
+        if plain is not None:
+            return plain
     return from_dict(json_of(text, where), where)
 
 
 def from_dict(data: Any, where: str = "") -> Any:
-    """The object of a dictionary in the JSON form; fields that are missing keep the default."""
+    """The object of a dictionary in the JSON form; missing fields keep their default."""
     try:
         return _object(data, 0)
     except BadInput as err:
@@ -134,7 +139,7 @@ def _object(data: Any, depth: int) -> LmcpObject:
     if depth > _MAX_DEPTH:
         raise BadInput("nested too deeply", expected=f"at most {_MAX_DEPTH} levels")
     cls, names, read = _readers.get(data["$type"]) or _reader(data["$type"])
-    if tuple(data) == names:  # all fields in the order of the wire, as they are written
+    if tuple(data) == names:  # all fields in the order of the wire, as we write them
         return read(cls.__new__(cls), data.values(), depth)
     kinds = _kinds(cls)
     values = {}
@@ -160,8 +165,8 @@ when_removed(lambda _series: _readers.clear())
 
 
 def _reader(type_name: str) -> Reader:
-    """A class, the names of an object that is whole, and what fills a new one with their values: a function of its class,
-    so that of most values nothing but their type is looked at."""
+    """For a type: its class, the field names of a complete object, and a generated function that fills a new object
+    with its values, checking only the type of most of them."""
     cls: Any = types[type_name]
     scope: dict[str, Any] = {"given": partial(_given, cls), "listed": partial(_listed, cls)}
     named = "".join(f", v{i}" for i in range(len(cls.fields)))
@@ -173,7 +178,7 @@ def _reader(type_name: str) -> Reader:
         is_list = field.array is not None and field.kind in ("struct", "any")
         other = f"{'listed' if is_list else 'given'}({i}, v{i}, depth)"
         kept = f"{value} if {fits} else {other}" if fits else other
-        plain = field.name.isidentifier() and not iskeyword(field.name)  # a model may be anybody's
+        plain = field.name.isidentifier() and not iskeyword(field.name)  # models may be foreign
         lines.append(
             f"    obj.{field.name} = {kept}"
             if plain
@@ -185,7 +190,7 @@ def _reader(type_name: str) -> Reader:
 
 
 def _fits(field: Any, i: int) -> tuple[str, str]:
-    """A condition on a value, and what it is then kept as; empty if there is none."""
+    """A condition on a value, and the expression to store if it holds; empty strings if there is none."""
     kind, name = field.kind, f"v{i}"
     if field.array is not None or kind in ("struct", "any", "char"):
         return "", name
@@ -200,7 +205,7 @@ def _fits(field: Any, i: int) -> tuple[str, str]:
 
 
 def _given(cls: Any, i: int, value: Any, depth: int) -> Any:
-    """A value of a field as it is kept; BadInput, with the field, for one that is none."""
+    """The value of a field in its stored form; BadInput, naming the field, if it is invalid."""
     field = cls.fields[i]
     try:
         plain = type(value) in _NUMBERS and field.kind not in _NESTED
@@ -210,7 +215,7 @@ def _given(cls: Any, i: int, value: Any, depth: int) -> Any:
 
 
 def _listed(cls: Any, i: int, value: Any, depth: int) -> Any:
-    """The same of a list of objects."""
+    """The same for a list of objects."""
     field = cls.fields[i]
     if type(value) is not list or field.array:
         return _given(cls, i, value, depth)

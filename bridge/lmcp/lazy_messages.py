@@ -1,10 +1,9 @@
-"""Messages whose fields are read when one is first asked for.
+"""Messages whose fields are read on first access.
 
-The lazy class of a message class is a subclass with the same slots and none of them filled, so an
-access falls through to `__getattr__`. The numbers in front of a message, which have fixed places,
-are read by themselves, as nobody can change an object through them; any other field has all of them
-read, and turns the object into an ordinary one by giving it its real class. Whoever only passes a
-message on pays for its checksum alone.
+The lazy class of a message class is a subclass with the same slots, all unset, so an access falls through to
+`__getattr__`. The leading numbers of a message, which have fixed positions, are read separately, as they are
+immutable; an access to any other field reads all of them, and turns the object into an ordinary one by giving it its
+real class. A message that is only passed on costs no more than its checksum.
 """
 
 from __future__ import annotations
@@ -39,7 +38,7 @@ def class_of(cls: type[LmcpObject], fill: Fill) -> Any:
             try:
                 fill(self, reader, data, where)
             except BaseException:
-                for name in cls.names:  # as if nobody had looked
+                for name in cls.names:  # as if no field had been read
                     if hasattr(self, name):
                         delattr(self, name)
                 object.__setattr__(self, "__class__", made)

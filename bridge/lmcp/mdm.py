@@ -5,10 +5,10 @@
 
 `<MDM>` holds SeriesName (at most 8 ASCII characters), Namespace (with `/`), Version (uint16), an
 EnumList and a StructList. An enum entry without Value has its index; a struct without ID gets the
-next number in file order, from one above the largest that is given. A type is a primitive, a name
-of its own series or `SERIES/Name` (or Series="SERIES"), with `[]` or `[n]` behind it for arrays.
-Default is null for structs, and without meaning for arrays; an empty attribute is none. Every mistake is an error with file and line. The DTD is not read.
-Format: LmcpGen (MDM.DTD).
+next number in file order, from one above the largest given. A type is a primitive, a name
+of its own series or `SERIES/Name` (or Series="SERIES"), followed by `[]` or `[n]` for arrays.
+Default is null for structs, and ignored for arrays; an empty attribute counts as absent. Every
+mistake is an error with file and line. The DTD is not read. Format: LmcpGen (MDM.DTD).
 """
 
 from __future__ import annotations
@@ -44,15 +44,15 @@ _TAKEN = re.compile(
 
 
 def load(*paths: str | Path) -> tuple[str, ...]:
-    """Read MDM files and make their series known, together; the names of those that are new.
+    """Read MDM files and register their series together; returns the names of those that are new.
 
-    Raises BadInput (file and line) for a mistake, and for a series that is known differently.
+    Raises BadInput (file and line) for a mistake, and for a series that is already known with another content.
     """
     return model.add(read_all(paths))
 
 
 def read_all(paths: Iterable[str | Path]) -> list[model.Series]:
-    """The models of several files that may refer to each other; nothing is made known."""
+    """The models of several files that may refer to each other; nothing is registered."""
     files = [(bytes_of(Path(path), expected="an MDM file"), str(path)) for path in paths]
     drafts = [_Draft(data, where) for data, where in files]
     names = {draft.name: draft for draft in drafts}
@@ -66,7 +66,7 @@ def parse(data: bytes | str, where: str = "MDM") -> dict[str, Any]:
 
 
 class _Draft:
-    """One file: its names are known, its fields are not yet resolved."""
+    """One file whose names are known, but whose fields are not resolved yet."""
 
     def __init__(self, data: bytes | str, where: str) -> None:
         self.where = where
@@ -123,7 +123,7 @@ class _Draft:
         return found
 
     def nothing_else(self, element: Any, attributes: set[str]) -> None:
-        """No attribute and no text that would be passed over."""
+        """Refuse attributes and text that would otherwise be ignored."""
         for name in element.keys():  # noqa: SIM118 (an lxml element, not a dictionary)
             if name not in attributes:
                 expected = " or ".join(sorted(attributes)) or "none"
@@ -290,7 +290,7 @@ class _Draft:
         return number
 
     def inherited_names(self, structs: list[dict[str, Any]], drafts: dict[str, _Draft]) -> None:
-        """No struct extends itself, and none names a field as an ancestor does."""
+        """Refuse a struct that extends itself, or has a field with the name of an inherited one."""
         for struct in structs:
             element = self.structs[struct["name"]]
             own = {f["name"] for f in struct["fields"]}
@@ -333,7 +333,7 @@ def _children(draft: _Draft, parent: Any, allowed: str) -> dict[str, Any]:
 
 
 def dumps(data: dict[str, Any]) -> str:
-    """The text of a model's JSON file, one line a field, as the files of `spec/lmcp` have it."""
+    """The text of a model's JSON file, one line per field, like the files of `spec/lmcp`."""
 
     def compact(value: Any) -> str:
         return json.dumps(value, ensure_ascii=False)

@@ -1,8 +1,8 @@
 """The LMCP message models: the product's own, and those that are loaded at run time.
 
-A model says which enums and structs a series has; every field has a primitive type, or names an
-enum or a struct as `SERIES/Name`. `LmcpObject` as a type means any struct. The product's own are
-read from `spec/lmcp/<SERIES>.json` one series at a time; `lmcp.mdm` adds others from MDM files.
+A model lists the enums and structs of a series; every field has a primitive type, or names an enum or a struct as
+`SERIES/Name`. `LmcpObject` as a type means any struct. The product's own are read from `spec/lmcp/<SERIES>.json` one
+series at a time; `lmcp.mdm` adds others from MDM files.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Any
 import cratous.spec
 from cratous.spec.errors import BadInput
 
-# The order decides which type a short name means that several series have (TaskProgress).
+# The order decides which type a short name in several series means (TaskProgress).
 SERIES = (
     "CRATOUS",
     "CMASI",
@@ -46,9 +46,9 @@ _NO_DEFAULT = object()
 class Field:
     """One field: `kind` is the primitive's own name, or "enum", "struct" or "any".
 
-    array: None for one value, 0 for a variable array, n for exactly n elements. `large` arrays
-    have a 32-bit count on the wire. `default` is None also for a struct that starts as null.
-    `max_length` is what the model says of an array's length; no implementation holds to it.
+    array: None for one value, 0 for a variable array, n for exactly n elements. `large` arrays have a 32-bit count on
+    the wire. `default` is None also for a struct that is initially null. `max_length` is the model's limit of an
+    array's length; no implementation enforces it.
     """
 
     name: str
@@ -125,10 +125,10 @@ def known() -> tuple[str, ...]:
 
 
 def add(models: Iterable[Series]) -> tuple[str, ...]:
-    """Make series known, together (they may refer to each other); the names that are new.
+    """Register series together (they may refer to each other); returns the names that are new.
 
-    A series that is known already must be the same. Raises BadInput, and then adds none, for one
-    that differs or that refers to a type that does not exist.
+    A series that is known already must be the same. Raises BadInput, and then adds none, for one that differs or that
+    refers to a type that does not exist.
     """
     fresh: dict[str, Series] = {}
     for one in models:
@@ -160,7 +160,7 @@ def add(models: Iterable[Series]) -> tuple[str, ...]:
 
 
 def remove(series: str) -> None:
-    """Forget a series that was added; classes made from it stay valid, but are no longer found."""
+    """Remove a series that was added; classes made from it stay valid, but are no longer found."""
     if _added.pop(series, None) is None:
         raise BadInput("not a series that was added", item=series)
     for cached in (load, series_with, resolve):
@@ -173,7 +173,7 @@ _when_removed: list[Callable[[str], None]] = []
 
 
 def when_removed(forget: Callable[[str], None]) -> None:
-    """Have `forget(series)` called when a series is removed, by what keeps something of it."""
+    """Register a callback `forget(series)` for when a series is removed, to clear caches."""
     _when_removed.append(forget)
 
 
@@ -202,7 +202,7 @@ def _refers_to_what_exists(one: Series, everything: dict[str, Series]) -> None:
 
 @cache
 def load(series: str) -> Series:
-    """The model of one series; BadInput for a name that no model has."""
+    """The model of one series; BadInput for an unknown name."""
     if series in _added:
         return _added[series]
     if series not in SERIES:
@@ -213,7 +213,7 @@ def load(series: str) -> Series:
 
 
 def from_dict(data: dict[str, Any]) -> Series:
-    """The model that a file of `spec/lmcp` holds; its form is not checked (`lmcp.mdm` does)."""
+    """The model in a file of `spec/lmcp`; its form is not checked (`lmcp.mdm` does)."""
     structs = {
         s["name"]: Struct(
             s["name"],

@@ -1,10 +1,9 @@
 """LMCP objects: a real Python class for each struct, made from its model on first use.
 
-Classes inherit as the structs do, so `isinstance(task, lmcp.types["afrl.cmasi.Task"])` works.
-Fields are slots; numbers are int or float, enums IntEnum members, arrays lists, structs objects
-or None. The constructor takes fields by name, checks them and refuses names it does not know;
-later assignments are not checked until the object is written out. An object that has been
-published on the bus is a value: copy it before changing it.
+Classes inherit as the structs do, so `isinstance(task, lmcp.types["afrl.cmasi.Task"])` works. Fields are slots;
+numbers are int or float, enums IntEnum members, arrays lists, structs objects or None. The constructor takes fields
+by name, checks them and refuses unknown names; later assignments are not checked until the object is written out. An
+object that has been published on the bus must not be changed: copy it first.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ def _wrong(expected: str, got: Any) -> BadInput:
 
 
 def real(value: Any) -> float:
-    """A number as float; bool, text and other things are refused."""
+    """A number as float; bool, text and other types are refused."""
     if type(value) is float:
         return value
     if isinstance(value, (bool, str, bytes)) or not hasattr(value, "__float__"):
@@ -38,7 +37,7 @@ def real(value: Any) -> float:
 def real32(value: Any) -> float:
     """A number that fits 32 bits; kept as given, rounded to 32 bits only on the wire."""
     number = real(value)
-    # Half a step above the largest real32, where rounding to nearest would overflow.
+    # Half a unit above the largest real32, where rounding to nearest would overflow.
     if abs(number) >= 3.4028235677973366e38 and not math.isinf(number):
         raise _wrong("a number within real32", value)
     return number
@@ -61,7 +60,7 @@ def _integer(kind: str) -> Check:
 
 def _boolean(value: Any) -> bool:
     if type(value) is not bool:
-        if type(value).__name__ in ("bool_", "bool"):  # numpy's own
+        if type(value).__name__ in ("bool_", "bool"):  # numpy's own types
             return bool(value)
         raise _wrong("true or false", value)
     return value
@@ -144,7 +143,7 @@ _PRIMITIVES: dict[str, tuple[Check, Any]] = {
 
 
 def element_check(field: model.Field) -> Check:
-    """What one value, or one element of the array, must be."""
+    """The check of one value, or one element of the array."""
     if field.kind == "enum":
         return _enum(field.type)
     if field.kind in ("struct", "any"):
@@ -154,7 +153,7 @@ def element_check(field: model.Field) -> Check:
 
 
 def _maker(field: model.Field) -> tuple[str, Callable[[], Any] | None, Any]:
-    """(name, None, the constant default) or (name, what makes a fresh default, None)."""
+    """(name, None, the constant default) or (name, factory of a fresh default, None)."""
     if field.kind == "enum":
         members = enums[field.type]
         constant: Any = members[field.default] if field.has_default else next(iter(members))
@@ -171,7 +170,7 @@ def _maker(field: model.Field) -> tuple[str, Callable[[], Any] | None, Any]:
 
 
 def _class(series: str, name: str) -> type[LmcpObject]:
-    """The one class of a struct."""
+    """The only class of a struct, made on first use."""
     found = _classes.get((series, name))
     if found is None:
         found = _classes[series, name] = _make_class(series, name)
@@ -227,7 +226,7 @@ def _make_enum_class(series: str, name: str) -> Any:
     loaded = model.load(series)
     if name not in loaded.enums:
         raise BadInput("not an enum", item=f"{series}/{name}", expected="an enum's name")
-    make: Any = LmcpEnum  # the functional form makes a subclass
+    make: Any = LmcpEnum  # the functional form creates a subclass
     module = f"cratous.bridge.lmcp.messages.{series.lower()}"
     made = make(name, loaded.enums[name], module=module)
     made.__doc__ = f"{loaded.full_name(name)}: {', '.join(loaded.enums[name])}."
@@ -235,7 +234,7 @@ def _make_enum_class(series: str, name: str) -> Any:
 
 
 class _Registry(Mapping[str, Any]):
-    """Types by full name, `SERIES/Name` or short name; they are made when first asked for."""
+    """Types by full name, `SERIES/Name` or short name; made on first access."""
 
     def __init__(self, make: Callable[[str, str], Any], part: str) -> None:
         self._make, self._part = make, part
@@ -285,7 +284,7 @@ enums: Mapping[str, Any] = _enums
 
 
 def members_of(series: str) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """`__getattr__` and `__dir__` of the module that holds a series' classes and enums."""
+    """`__getattr__` and `__dir__` of the module with a series' classes and enums."""
 
     def get(name: str) -> Any:
         loaded = model.load(series)
@@ -313,7 +312,7 @@ model.when_removed(_forget)
 
 
 def again(name: str, values: tuple[Any, ...]) -> LmcpObject:
-    """An object from all its values as they are; what pickle calls."""
+    """An object from all its values, unchecked; called by pickle."""
     cls = types[name]
     obj: LmcpObject = object.__new__(cls)
     for field, value in zip(cls.names, values, strict=True):
@@ -322,10 +321,10 @@ def again(name: str, values: tuple[Any, ...]) -> LmcpObject:
 
 
 def new(name: str, **fields: Any) -> Any:
-    """A new object of the named type; the other fields have their defaults."""
+    """A new object of the named type; fields not given have their defaults."""
     return types[name](**fields)
 
 
 def full_names(obj: LmcpObject) -> tuple[str, ...]:
-    """The object's full type name, then those of its bases: the bus' topics."""
+    """The object's full type name, then those of its bases: the topics on the bus."""
     return obj.all_names

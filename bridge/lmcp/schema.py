@@ -1,9 +1,9 @@
 """The JSON Schema of our JSON form of LMCP, made from the models.
 
-`spec/lmcp/lmcp.schema.json` is the published one, of all series of the product; `cratous lmcp
-schema` prints it, or that of some types, also of loaded series. The schema says what `from_json`
-takes: `$type` must be there, a field that is missing has its default, others are refused. It
-cannot say that a text has at most 65535 bytes in UTF-8.
+`spec/lmcp/lmcp.schema.json` is the published one, of all series of the product; `cratous lmcp schema` prints it, or
+that of some types, also of loaded series. The schema describes what `from_json` accepts: `$type` is required, a
+missing field has its default, unknown fields are refused. It cannot express that a text has at most 65535 bytes in
+UTF-8.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _NULL = {"type": "null"}
 
 
 def schema(names: Iterable[str] = ()) -> dict[str, Any]:
-    """The schema of objects of the named types (in any of the three ways); of all without names."""
+    """The schema of objects of the named types (in any of the three ways); of all types if none is named."""
     chosen = [types[name].type_name for name in names] or [types[n].type_name for n in types]
     defs: dict[str, Any] = {"real": _REAL}
     for name in chosen:

@@ -1,8 +1,8 @@
 """Typing stubs of the message classes, so that editors complete fields and mypy checks them.
 
-The classes are made from the models when they are first used; the stubs `messages/<series>.pyi`
-are written from the same models by `python -m cratous.bridge.lmcp.generate`, and a test holds them
-up to date. `cratous lmcp describe --stubs` prints those of any series, also of a loaded one.
+The classes are made from the models on first use; the stubs `messages/<series>.pyi` are written from the same models
+by `python -m cratous.bridge.lmcp.generate`, and a test checks that they are up to date. `cratous lmcp describe
+--stubs` prints those of any series, also of a loaded one.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
-"""LMCP in XML: reading (in any order of fields, strictly checked); writing is in `xml_writing`.
+"""LMCP in XML: reading (fields in any order, strictly checked); writing is in `xml_writing`.
 
-`<Name Series="CMASI"> <Field>...</Field> ... </Name>`. Elements of primitive and enum arrays stand
-in tags of their type (`<int64>1</int64>`; another width of integer is accepted), structs in tags of theirs, null as `<null/>`, enums by
-name. A field that is missing keeps its default. A field that is given twice: the last one counts
-and a note says so, and the same for a field that the type does not have: OpenUxAS's own files do
-both. `strict` makes the second an error. No entities, no network.
+`<Name Series="CMASI"> <Field>...</Field> ... </Name>`. Elements of primitive and enum arrays are in tags of their
+type (`<int64>1</int64>`; another width of integer is accepted), structs in tags of theirs, null as `<null/>`, enums
+by name. A missing field keeps its default. If a field is given twice, the last one counts, with a note; a field that
+the type does not have is ignored with a note: OpenUxAS's own files do both. `strict` makes the second an error. No
+entities, no network.
 """
 
 from __future__ import annotations
@@ -45,12 +45,12 @@ _TAGS |= {kind: {"real32", "real64"} for kind in ("real32", "real64")}
 
 
 class LmcpNote(UserWarning):
-    """Something in an XML file that is legal but that its author may not have meant."""
+    """Something in an XML file that is legal but may not be what its author intended."""
 
 
 @dataclass(frozen=True)
 class _Source:
-    """Where an element stands, and what to do with what is odd about it."""
+    """The place of an element, and how irregularities are handled."""
 
     where: str
     notes: list[str]
@@ -72,24 +72,24 @@ def read_file(
     strict: bool = False,
     finite: bool = True,
 ) -> list[Any]:
-    """The objects of an XML file: of its root, or of the children of a root that is no struct.
+    """The objects of an XML file: of its root, or of the children of a root that is not a struct.
 
-    Notes go to `notes`, or become LmcpNote warnings. BadInput for anything that is not right;
-    also for NaN and the infinities, unless `finite` is False.
+    Notes go to `notes`, or become LmcpNote warnings. Raises BadInput for any error; also for NaN and the infinities,
+    unless `finite` is False.
     """
     where = str(path)
     return loads(bytes_of(Path(path)), where, notes, strict=strict, finite=finite)
 
 
 def read_messages(path: str | Path, notes: list[str]) -> list[Any]:
-    """The objects of a message file of UxAS, whose reader takes what `read_file` refuses.
+    """The objects of a message file of UxAS, whose reader accepts some of what `read_file` refuses.
 
-    A value that is left empty is the field's default, `<F><KIND>v</KIND></F>` is the value v of an
-    enumeration, a file may hold one object after the other, and `xml_text.mended` says what else;
-    each case is noted. Lines that begin with `#` say nothing. All else is refused as in `read_file`.
+    An empty value is the field's default, `<F><KIND>v</KIND></F>` is the value v of an enumeration, a file may hold
+    several objects one after the other, and `xml_text.mended` lists the rest; each case is noted. Lines that begin
+    with `#` are ignored. All else is refused as in `read_file`.
     """
     data = bytes_of(Path(path))
-    data = _HASH_LINE.sub(b"", data)  # the line's end stays: places keep their line numbers
+    data = _HASH_LINE.sub(b"", data)  # the line end is kept: line numbers stay the same
     data = mended(data, str(path), notes)
     head = re.match(rb"\s*(?:<\?xml[^>]*\?>)?", data)
     body = data[head.end() :] if head else data
@@ -306,12 +306,12 @@ def _primitive(field: model.Field, element: Any, source: _Source) -> Any:
         if not _REAL.match(text) and (source.finite or text not in _NON_FINITE):
             raise wrong("a number")
         value = float(text)
-        if source.finite and value - value != 0:  # too large for a double
+        if source.finite and value - value != 0:  # overflows a double
             raise wrong("a number within real64")
         if field.kind == "real64" or value != value:
             return value
         try:
-            # The field's own precision, so that a file means what it means to the other tools.
+            # Rounded to the field's own precision, so that a file has the same meaning for other tools.
             return float(_struct.unpack(">f", _struct.pack(">f", value))[0])
         except OverflowError:
             raise wrong("a number within real32") from None

@@ -1,8 +1,7 @@
-"""XML text to elements; and text that is no XML, but that the original's reader takes.
+"""XML text to elements; and repair of malformed XML that the original's reader accepts.
 
-Two such things are found in files that OpenUxAS ships: comments with `--` inside, and a message file
-whose last end tag is missing. Nothing else is mended, what is mended changes no element and no line
-number, and each case is a note.
+Two cases occur in files that OpenUxAS ships: comments with `--` inside, and a message file whose last end tag is
+missing. Nothing else is repaired; a repair changes no element and no line number, and each is noted.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ def parse(text: str | bytes, where: str = "text") -> Any:
         remove_pis=True,
     )
     data = text.encode("utf-8") if isinstance(text, str) else text
-    if isinstance(text, str):  # a declared encoding no longer holds for text that is decoded
+    if isinstance(text, str):  # a declared encoding no longer applies to decoded text
         data = re.sub(rb"\A(<\?xml[^>]*?)\s+encoding=(\"[^\"]*\"|'[^']*')", rb"\1", data)
     at_most(len(data), DOCUMENT_BYTES, "the XML is too long", where)
     at_most(data.count(b"<"), TAGS, "too many elements", where, "tags")
@@ -54,7 +53,7 @@ def parse(text: str | bytes, where: str = "text") -> Any:
 
 
 def mended(data: bytes, where: str, notes: list[str]) -> bytes:
-    """The text as XML if it can be mended; as it is if it is XML already, or cannot be mended."""
+    """The text repaired to XML if possible; unchanged if it is XML already, or cannot be repaired."""
     try:
         parse(data, where)
         return data
@@ -78,13 +77,13 @@ def mended(data: bytes, where: str, notes: list[str]) -> bytes:
     try:
         parse(bytes(text), where)
     except BadInput:
-        return data  # so that the error is told of what stands in the file
+        return data  # unchanged, so that the error refers to the file's content
     notes.extend(found)
     return bytes(text)
 
 
 def _hidden(data: bytes) -> Iterator[tuple[int, int]]:
-    """From where to where what is in the text is no tag: comments, character data, instructions."""
+    """Spans of the text in which there are no tags: comments, character data, instructions."""
     at = data.find(b"<")
     while at >= 0:
         end = at + 1
@@ -100,12 +99,12 @@ def _hidden(data: bytes) -> Iterator[tuple[int, int]]:
 
 
 def _blank(text: bytearray, start: int, end: int) -> None:
-    """Blanks in place of a part; its line ends stay."""
+    """Replace a part with blanks; its line ends are kept."""
     text[start:end] = re.sub(rb"[^\r\n]", b" ", bytes(text[start:end]))
 
 
 def _left_open(text: bytes) -> list[bytes]:
-    """The names of the elements without an end tag, outermost first; none if tags do not nest."""
+    """The names of the elements without an end tag, outermost first; none if tags are not properly nested."""
     names: list[bytes] = []
     for end, name, empty in _TAG.findall(text):
         if end:

@@ -1,8 +1,9 @@
-"""Captures of the CRATOUS protocol as lines, whoever took them: pcap of TCP and UDP, recorded sessions, text.
+"""Reads captures of the CRATOUS protocol as lines: pcap of TCP and UDP, recorded sessions, text.
 
-pcap: as `tcpdump -w` writes it (not pcapng), of Ethernet, loopback, `any` and raw IP, IPv4 alone; a TCP segment that comes
-again or out of order is put in its place, and bytes that were not captured are told. Session: a JSON object a line, of which those with `ev` send or write and a
-text `data` count. Text: a line each, after `> ` (to UxAS) or `< ` (to ICAROUS) if that is known.
+pcap: as `tcpdump -w` writes it (not pcapng), of Ethernet, loopback, `any` and raw IP, IPv4 only; TCP segments that
+are repeated or out of order are put in their place, and bytes that were not captured are reported. Session: one JSON
+object per line; those with `ev` send or write and a text `data` are used. Text: one line each, after `> ` (to UxAS)
+or `< ` (to ICAROUS) if the direction is known.
 """
 
 from __future__ import annotations
@@ -21,25 +22,25 @@ PCAP = {
     b"\xd4\xc3\xb2\xa1": ("<", 1e-6), b"\xa1\xb2\xc3\xd4": (">", 1e-6),
     b"\x4d\x3c\xb2\xa1": ("<", 1e-9), b"\xa1\xb2\x3c\x4d": (">", 1e-9),
 }  # fmt: skip
-"""First bytes of a pcap file: byte order, and what a fraction of a second counts [s]."""
+"""First bytes of a pcap file: byte order, and the unit of a time's fraction [s]."""
 _LINK_BYTES = {1: 14, 113: 16, 276: 20, 101: 0, 0: 4, 12: 0}
 """Bytes before IP, by link type: Ethernet, Linux cooked (two), raw, BSD loopback."""
 _TCP, _UDP = 6, 17
 _LEFT_OUT = re.compile(r"\A<[^<>]*>")
-"""What stands for a secret in a recorded session."""
+"""The placeholder of a secret in a recorded session."""
 _SECRET = re.compile(rb"[0-9a-fA-F]{%d}" % SECRET_LENGTH)
 MOST_FLOWS = 1000
 MOST_HELD = 1000
-"""Segments of one flow that wait for an earlier one."""
+"""The most segments of one flow that wait for an earlier one."""
 MOST_PENDING = 65_536
-"""More than this without a newline is told as it is."""
+"""The most bytes held without a newline; more are given out as they are."""
 
 
 class Heard(NamedTuple):
     """One captured line without its newline, or the handshake text in its place.
 
-    at_s: time of capture [s], None if the capture has no times. who: sender and receiver as captured.
-    missing: number of bytes not captured after `text`, which is cut off.
+    at_s: time of capture [s], None if the capture has no times. who: sender and receiver as captured. missing: number
+    of bytes not captured after `text`, which is truncated.
     """
 
     at_s: float | None
@@ -50,7 +51,7 @@ class Heard(NamedTuple):
 
 @dataclass
 class _Flow:
-    """One way of a connection: what has come of a line, and TCP's next number with the segments beyond it."""
+    """One direction of a connection: the incomplete line, and TCP's next number with the segments beyond it."""
 
     begun: bool = False
     pending: bytes = b""
@@ -59,7 +60,8 @@ class _Flow:
     held: dict[int, bytes] = field(default_factory=dict)
 
     def lines(self, data: bytes) -> Iterator[bytes]:
-        """The lines that are whole now; parts of the compatible handshake, which have no newline, are such too."""
+        """The lines completed by these bytes; parts of the compatible handshake, which have no newline, count as
+        lines."""
         self.pending += data
         while not self.begun:
             known = next((t for t in (HELLO, ACCEPT) if self.pending.startswith(t)), None)
@@ -77,17 +79,18 @@ class _Flow:
             self.pending = b""
 
     def segment(self, number: int, data: bytes) -> Iterator[tuple[int, bytes]]:
-        """What follows now that a segment with this number has come: bytes, and how many before them are missing."""
+        """The data that follow once the segment with this number has arrived, each with the number of bytes missing
+        before."""
         if self.following is None:
             self.first = self.following = number
         if data:
             self.held.setdefault(number, data)
         yield 0, self._joined()
-        if len(self.held) > MOST_HELD:  # what is missing has not been captured
+        if len(self.held) > MOST_HELD:  # the missing bytes were not captured
             yield from self._onward()
 
     def rest(self) -> Iterator[tuple[int, bytes]]:
-        """The same of what waits at the end of the capture."""
+        """The same for the segments that still wait at the end of the capture."""
         while self.held:
             yield from self._onward()
 
@@ -109,7 +112,7 @@ class _Flow:
         return found
 
     def told(self, at_s: float, who: str, parts: Iterable[tuple[int, bytes]]) -> Iterator[Heard]:
-        """The lines of parts of which some may be missing before."""
+        """The lines of parts before which bytes may be missing."""
         for missing, data in parts:
             if missing:
                 yield Heard(at_s, who, self.pending, missing)
@@ -158,7 +161,7 @@ def _seconds(said: object) -> float | None:
 
 
 def _unfinished(flows: Iterable[tuple[str, _Flow]]) -> Iterator[Heard]:
-    """What has no newline at the end of the capture."""
+    """The incomplete lines at the end of the capture."""
     return (Heard(None, who, flow.pending) for who, flow in flows if flow.pending)
 
 
@@ -195,7 +198,7 @@ def _pcap(data: bytes, where: str) -> Iterator[Heard]:
         if found.who not in flows and len(flows) >= MOST_FLOWS:
             raise BadInput("too many connections", where=where, expected=f"{MOST_FLOWS} at most")
         flow = flows.setdefault(found.who, _Flow())
-        if found.begins and flow.first not in (None, found.number):  # the port is used again
+        if found.begins and flow.first not in (None, found.number):  # the port is reused
             yield from _ended(found.who, flow, at_s - first_s)
             flow = flows[found.who] = _Flow()
         if found.tcp:
@@ -208,7 +211,7 @@ def _pcap(data: bytes, where: str) -> Iterator[Heard]:
 
 
 def _ended(who: str, flow: _Flow, at_s: float) -> Iterator[Heard]:
-    """What is left of a connection at its end."""
+    """The remaining data of a connection at its end."""
     yield from flow.told(at_s, who, flow.rest())
     yield from _unfinished([(who, flow)])
 
@@ -222,7 +225,7 @@ class _Packet(NamedTuple):
 
 
 def _payload(ip: bytes) -> _Packet | None:
-    """What an IPv4 packet carries; None for one that is none of TCP or UDP, or a fragment."""
+    """The payload of an IPv4 packet; None for a fragment, or a packet other than TCP or UDP."""
     if len(ip) < 20 or ip[0] >> 4 != 4 or ip[0] & 15 < 5 or int.from_bytes(ip[6:8], "big") & 0x3FFF:
         return None
     head, total, kind = 4 * (ip[0] & 15), int.from_bytes(ip[2:4], "big"), ip[9]
@@ -235,5 +238,5 @@ def _payload(ip: bytes) -> _Packet | None:
     if kind == _UDP:
         return _Packet(who, False, False, 0, body[8:])
     begins = bool(body[13] & 2)
-    number += begins  # SYN counts as one
+    number += begins  # SYN counts as one byte
     return _Packet(who, True, begins, number % 2**32, body[4 * (body[12] >> 4) :])

@@ -1,15 +1,16 @@
 """Lines of v2 as datagrams that vehicles send each other, where no connection keeps their order.
 
-A datagram is one packet, as a connection of v2 has them, with what stands for the connection:
+A datagram is one packet, as in a connection of v2, with fields that replace the connection:
 
     CRATOUS-2D,SESSION,SEQUENCE,TIME,VEHICLE,HEARD,CRC,MAC,LINE
 
 SESSION: 16 random hexadecimal digits, new at each start of the sender; SEQUENCE: from 1 in each session; TIME: the
-sender's clock [ms]; VEHICLE: the sender; HEARD: the sessions that it hears, with `+` between them, or `-`; CRC and MAC
-as of a connection, the MAC by the sender's direct key. A sender is believed once it says that it hears the receiver's
-own session: so nothing that was recorded before the receiver's start is. Within a session a number is accepted at most once,
-by a window of 64 (`core.authority.replay_window`). A session of a sender that does not begin before what was believed of it
-is the one from then on, and the older ones are over. Nothing is encrypted, and whoever has the direct key of a vehicle can speak for it.
+sender's clock [ms]; VEHICLE: the sender; HEARD: the sessions that it hears, joined by `+`, or `-`; CRC and MAC
+as in a connection, the MAC by the sender's direct key. A sender is accepted once it reports that it hears the
+receiver's own session; this excludes anything recorded before the receiver's start. Within a session a number is
+accepted at most once, by a window of 64 (`core.authority.replay_window`). When a new session of a sender is accepted,
+which must not begin before what was accepted from it, older ones end. Nothing is encrypted, and anyone who has the
+direct key of a vehicle can speak for it.
 """
 
 from __future__ import annotations
@@ -27,13 +28,13 @@ from cratous.core.authority.timeliness import lasted
 
 NAME = b"CRATOUS-2D"
 MOST_BYTES = 1400
-"""No datagram is longer, so that none is sent in pieces."""
+"""The longest datagram, so that none is fragmented."""
 MOST_VEHICLES = 20
-"""So many vehicles at most have a direct link with each other: what they hear has to fit a datagram."""
+"""The most vehicles with a direct link to each other: the sessions that they hear have to fit a datagram."""
 MOST_SESSIONS = 64
-"""A sender may be started so often while the receiver runs."""
+"""How often a sender may be started while the receiver runs."""
 AHEAD = 100_000
-"""A number may be so far above the greatest one: on this link packets may be lost for long."""
+"""The most by which a number may exceed the greatest one so far: on this link packets may be lost for long."""
 REPEATED = "datagram that came before, is older than the window, or far ahead"
 STRANGER = "datagram of a vehicle without a direct key here"
 NOT_HEARD = "datagram of one that does not hear this session"
@@ -63,8 +64,8 @@ class Refused(NamedTuple):
 
 @dataclass
 class _Sender:
-    """Another vehicle: windows of the sessions that were believed, the newest last; time_ms: the latest that was;
-    candidate: a session that has its key but does not hear this vehicle yet, or was recorded."""
+    """Another vehicle: windows of the accepted sessions, the newest last; time_ms: the latest accepted time;
+    candidate: a session with its key that does not hear this vehicle yet, or may be a recording."""
 
     windows: dict[bytes, Window] = field(default_factory=dict)
     time_ms: int = 0
@@ -72,7 +73,7 @@ class _Sender:
 
     @property
     def heard(self) -> list[bytes]:
-        """The sessions that are told to be heard."""
+        """The sessions reported as heard."""
         return [*list(self.windows)[-1:], *([self.candidate] if self.candidate else [])]
 
 
@@ -125,16 +126,14 @@ class Datagrams:
     def _believed(
         self, other: _Sender, session: bytes, sequence: int, time_ms: int, heard: bytes
     ) -> Refused | None:
-        """Why a genuine datagram is none of now, or was there already; else it counts as having come."""
+        """Why a genuine datagram is out of date or a repetition; None once it is recorded as received."""
         what = f"number {sequence} of session {session.decode()}"
         if self.session not in heard.split(b"+"):
             if session not in other.windows:
-                other.candidate = (
-                    session  # it may be recorded: it is told of it, and shows itself by answering
-                )
+                other.candidate = session  # maybe a recording: reported as heard, it must answer
             return Refused(NOT_HEARD, what)
         if session not in other.windows:
-            # a session that was held back on the way is none of now either
+            # a session that was delayed on the way is out of date too
             if len(other.windows) >= MOST_SESSIONS or not lasted(other.time_ms, time_ms, 0):
                 return Refused(OVER, what)
             other.windows[session] = Window(AHEAD)

@@ -1,11 +1,11 @@
-"""The dialects of the text protocol that need no keys, and how the thesis's lines are laid out.
+"""The dialects of the text protocol that need no keys, and the line format of the thesis.
 
 `cratous` is ours. `original` is that of the programs whose sources are public: ours without HELLO, HBEAT, AGAIN,
-NOCMD, OTHER, OVELO, epochs and the numbers of route requests. `thesis` is that of the thesis on CRATOUS: a line begins with a tag of exactly five letters, the
-first field follows at once, labels are read in capitals and in small letters, a whole number may stand without
-`.0`, and waypoints count from 1. The thesis gives the tags WAYPT, GEOFN, POSTN, ATTUD, OBJCT, COMND, WPRCH and
-WPREQ and the fields of WAYPT; other fields and words are here those of the original's programs, and tags of six
-letters lose the last one.
+NOCMD, OTHER, OVELO, epochs and the numbers of route requests. `thesis` is that of the thesis on CRATOUS: a line
+begins with a tag of exactly five letters, the first field follows at once, labels are read in capitals and in small
+letters, an integer may have no `.0`, and waypoints count from 1. The thesis gives the tags WAYPT, GEOFN, POSTN,
+ATTUD, OBJCT, COMND, WPRCH and WPREQ and the fields of WAYPT; other fields and words are taken from the original's
+programs, and tags of six letters lose the last one.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from cratous.bridge.text_protocol.messages import (
 
 
 class Dialect(Enum):
-    """Whose lines are written and read."""
+    """The dialect in which lines are written and read."""
 
     CRATOUS = "cratous"
     ORIGINAL = "original"
@@ -31,18 +31,19 @@ class Dialect(Enum):
 
     @property
     def ours(self) -> bool:
-        """True if the peer knows HELLO, HBEAT, AGAIN, NOCMD, EPOCH, OTHER, OVELO, epochs, and is asked for ways."""
+        """True if the peer knows HELLO, HBEAT, AGAIN, NOCMD, EPOCH, OTHER, OVELO and epochs, and can be asked for
+        routes."""
         return self is Dialect.CRATOUS
 
     @property
     def part_waypoints(self) -> int | None:
-        """Most waypoints that a peer can hold, where a longer plan goes to it in parts."""
+        """The most waypoints that a peer can hold; a longer plan is sent to it in parts."""
         return ORIGINAL_LIMITS.waypoints if self is Dialect.ORIGINAL else None
 
 
 TAG_LETTERS = 5
 WAYPOINT_ORDER = ("total", "index", "lat", "long", "alt", "speed")
-"""As the thesis's example has the fields of WAYPT."""
+"""The order of the fields of WAYPT in the thesis's example."""
 _COUNTS_WAYPOINTS = {Waypoint: "index", WaypointReached: "id", GoToWaypoint: "id"}
 
 
@@ -65,7 +66,7 @@ for _layout in THESIS_LAYOUTS:
     _form = ("type",) if _layout.form else ()
     _own = (*_form, *(field.label.lower() for field in _layout.fields))
     _LABELS[_layout.tag] = (*_LABELS.get(_layout.tag, ()), *_own)
-assert len(_LABELS) == len(_TAGS)  # five letters are enough to tell them apart
+assert len(_LABELS) == len(_TAGS)  # five letters distinguish them all
 
 LAYOUTS_OF: dict[Dialect, tuple[Layout, ...]] = {
     Dialect.CRATOUS: LAYOUTS,
@@ -79,12 +80,12 @@ LAYOUT_IN: dict[Dialect, dict[type[Message], Layout]] = {
 
 
 def has_comma_after_tag(line: str) -> bool:
-    """True for a line that begins with a tag and a comma, as all dialects but the thesis's have it."""
+    """True for a line that begins with a tag and a comma, as in all dialects but the thesis's."""
     tag, comma, _ = line.partition(",")
     return bool(comma) and tag in _TAGS
 
 
 def has_label_after_tag(line: str) -> bool:
-    """True for a line that begins with a tag of five letters and a label of its message, as the thesis has it."""
+    """True for a line that begins with a tag of five letters and a label of its message, as in the thesis's dialect."""
     labels = _LABELS.get(line[:TAG_LETTERS])
     return labels is not None and line[TAG_LETTERS:].lower().startswith(labels)

@@ -1,4 +1,4 @@
-"""What a line of the text protocol says, as an engineer would say it: one sentence a message, and what is around it in v2."""
+"""Explains lines of the text protocol: one English sentence per message, and the packet around it in v2."""
 
 from __future__ import annotations
 
@@ -161,7 +161,7 @@ def told(text: bytes) -> tuple[bool, str]:
 
 
 def _line(text: bytes) -> tuple[bool, str]:
-    """As read by the dialect and in the direction in which it is right."""
+    """Explained in the dialect and direction in which the line is valid."""
     wrong = ""
     thesis = has_label_after_tag(text.decode("ascii", "replace"))
     dialect = Dialect.THESIS if thesis else Dialect.CRATOUS
@@ -171,5 +171,5 @@ def _line(text: bytes) -> tuple[bool, str]:
             if isinstance(record, Message):
                 return True, f"{record.tag:<6} {sentence(record)}"
             if isinstance(record, WireError):
-                wrong = str(record).partition(", ")[2]  # each line is the first of its parser
+                wrong = str(record).partition(", ")[2]  # each line is line 1 of its own parser
     return False, f"WRONG: {wrong or 'not a line of the protocol: ' + ascii(text[:60])[1:]}"

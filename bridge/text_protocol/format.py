@@ -1,8 +1,8 @@
 """Messages to lines: the exact order of fields and the number formats of the originals.
 
-`%f` has six decimals; latitudes and longitudes have nine in our dialect (0.1 mm instead of
-0.1 m), which the originals read as well, and six in the others. Integers end in `.0`; in the thesis's
-dialect they do not, and zeros at the end of decimals are left out, as in its example.
+`%f` has six decimals; latitudes and longitudes have nine in our dialect (0.1 mm instead of 0.1 m), which the
+originals read as well, and six in the others. Integers end in `.0`; in the thesis's dialect they do not, and trailing
+zeros of decimals are omitted, as in its example.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from cratous.spec.errors import BadInput
 
 # Numbers beyond this have more digits than any of the protocol's quantities can need.
 LARGEST_NUMBER = 10**15
-# What the words are called on our side: without the underscores of the wire.
+# Our names of the words: without the underscores of the wire.
 WRAPPED = {"_KEEPIN_", "_KEEPOUT_", "_TRAFFIC_", "_OBSTACLE_", "_ACTIVE_", "_PASSIVE_"}
 
 
@@ -46,9 +46,9 @@ def may_go(message: Message, direction: Direction) -> bool:
 def encode(
     message: Message, *, dialect: Dialect = Dialect.CRATOUS, limits: Limits = ORIGINAL_LIMITS
 ) -> bytes:
-    """The line of a message, newline included; BadInput if a value cannot stand on the wire.
+    """The line of a message, newline included; BadInput if a value cannot be encoded.
 
-    dialect: as a peer of that dialect writes it; in the others than ours there are no epochs and no numbers of requests.
+    dialect: in which it is written; in dialects other than ours there are no epochs and no request numbers.
     """
     layout = LAYOUT_IN[dialect][type(message)]
     parts = [f"type{layout.form}"] if layout.form else []
@@ -100,7 +100,7 @@ def _text(
             raise wrong(f"an integer from {field.low} to {high}")
         if dialect is Dialect.THESIS:
             return f"{value + field.first}"
-        # The original leaves out the .0 only here; fences of ten vertices break it there.
+        # The original omits the .0 only here, and thereby misreads its own zones of ten vertices.
         bare = field.kind is Kind.BARE and not isinstance(message, FenceVertex)
         keepin = isinstance(message, FenceVertex) and message.fence == "KEEPIN"
         if bare or (field.kind is Kind.BARE and dialect is Dialect.ORIGINAL and keepin):

@@ -1,8 +1,8 @@
-"""The handshake that opens a CRATOUS connection, as two machines that take bytes in any pieces.
+"""The handshake that opens a CRATOUS connection, as two state machines that accept bytes in any segmentation.
 
 1. server: `ICAROUS-UxAS_LMCP`; 2. client: 64 hexadecimal characters; 3. server: `ok ` or `error`.
-No newlines. Messages may follow at once, glued to the last step; `rest` holds them. The secret
-only tells a wrong program from the right one: it travels in clear and is no security measure.
+No newlines. Messages may follow immediately after the last step; `rest` holds them. The secret
+only tells a wrong program from the right one: it is sent in clear text and is no security measure.
 """
 
 from __future__ import annotations
@@ -20,12 +20,11 @@ SECRET_LENGTH = 64
 # A constant of this product; not a security measure, see above.
 DEFAULT_SECRET = "c7a705" + "0a11ce5afe" * 5 + "facade42"
 SECRET_VARIABLE = "CRATOUS_BRIDGE_SECRET"
-"""The variable of the environment that holds another secret than the product's."""
+"""The environment variable for a secret other than the product's."""
 
 
 def secret_of_environment() -> str:
-    """The handshake secret from the environment, else the default; BadInput (which does not show it) if it is
-    malformed."""
+    """The handshake secret from the environment, else the default; BadInput (without showing it) if it is malformed."""
     text = os.environ.get(SECRET_VARIABLE, DEFAULT_SECRET)
     if not is_secret(text):
         raise BadInput(
@@ -56,11 +55,11 @@ class Handshake:
             raise ValueError(f"a secret is {SECRET_LENGTH} hexadecimal characters")
 
     def start(self) -> bytes:
-        """The bytes to send at once."""
+        """The bytes to send first."""
         return b""
 
     def feed(self, data: bytes) -> bytes:
-        """Process bytes from the other end; the bytes to send now."""
+        """Process bytes from the other end; returns the bytes to send now."""
         self.rest += data
         return b"" if self.done or self.failed else self._step()
 
@@ -68,7 +67,7 @@ class Handshake:
         raise NotImplementedError
 
     def _expect(self, wanted: bytes) -> bool:
-        """True when `wanted` stands at the front, whole, and is taken; fails on another text."""
+        """Consume `wanted` at the front once it is complete, and return True; another text is a failure."""
         got = self.rest[: len(wanted)]
         if not wanted.startswith(got):
             self.failed = f"expected {wanted.decode('ascii')!r}, got {ascii(got)[1:]}"

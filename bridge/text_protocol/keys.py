@@ -1,4 +1,4 @@
-"""Keys of the authenticated dialect: one for each vehicle, from a file or the environment, never shown."""
+"""Keys of the authenticated dialect: one per vehicle, from a file or the environment, never shown."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from cratous.bridge.text_protocol.handshake import SECRET_LENGTH, is_secret
 from cratous.spec.errors import BadInput
 
 KEY_VARIABLE = "CRATOUS_BRIDGE_KEY_{}"
-"""The variable of the environment with the key of a vehicle."""
+"""The environment variable with the key of a vehicle."""
 DIRECT_VARIABLE = "CRATOUS_DIRECT_KEY_{}"
-"""The variable of the environment with the direct key of a vehicle, by which the others believe it without UxAS."""
+"""The environment variable with the direct key of a vehicle, by which other vehicles authenticate it without UxAS."""
 WITHOUT = (
     """, there or in a folder of keys; without keys: --plain, and Dialect="cratous" at UxAS's end"""
 )
-"""What else to write where nothing says that there are to be keys."""
+"""The hint for messages where no setting says that keys are to be used."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Keys:
     by_vehicle: Mapping[int, bytes] = field(repr=False)
 
     def of(self, vehicle_id: int) -> Keys:
-        """The key of this vehicle alone, for its ICAROUS."""
+        """The key of this vehicle only, for its ICAROUS."""
         return Keys({vehicle_id: self.by_vehicle[vehicle_id]})
 
     def environment(self, variable: str = KEY_VARIABLE) -> dict[str, str]:
@@ -43,7 +43,7 @@ def without_keys(environment: Mapping[str, str]) -> dict[str, str]:
 
 
 def new_keys(vehicle_ids: Iterable[int]) -> Keys:
-    """A fresh random key for each vehicle, from the operating system's generator."""
+    """A new random key for each vehicle, from the operating system's generator."""
     return Keys({number: secrets.token_bytes(SECRET_LENGTH // 2) for number in vehicle_ids})
 
 
@@ -53,18 +53,19 @@ def keys_of(vehicle_ids: Iterable[int], folder: Path | None) -> Keys:
 
 
 def direct_keys_of(vehicle_ids: Iterable[int], folder: Path | None) -> Keys:
-    """The direct keys of these vehicles, of the files `vehicle_ID.direct` or the environment; BadInput if one is missing."""
+    """The direct keys of these vehicles, from the files `vehicle_ID.direct` or the environment; BadInput if one is
+    missing."""
     return Keys({number: _key(number, folder, "direct", "") for number in vehicle_ids})
 
 
 def key_of(vehicle_id: int, folder: Path | None) -> bytes:
-    """The key of a vehicle: of the file `vehicle_ID.key` of a folder, or of the environment where no folder
-    is said. BadInput if there is none, or it is no key; it is never shown."""
+    """The key of a vehicle: from the file `vehicle_ID.key` of a folder, or from the environment if no folder is
+    given. BadInput if it is missing or malformed; the key is never shown."""
     return _key(vehicle_id, folder, "key", WITHOUT)
 
 
 def _key(vehicle_id: int, folder: Path | None, kind: str, plain: str) -> bytes:
-    """kind: ending of the file; plain: what else to write where there is no folder."""
+    """kind: suffix of the file name; plain: the hint where no folder is given."""
     direct = kind == "direct"
     if folder is None:
         item = (DIRECT_VARIABLE if direct else KEY_VARIABLE).format(vehicle_id)

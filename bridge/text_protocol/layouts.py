@@ -1,7 +1,7 @@
-"""How each message is laid out on its line, as data that the writer and the parser share.
+"""The layout of each message's line, as data shared by the writer and the parser.
 
-A line is `TAG,` then fields `label` `value` `,` and a newline; `LAYOUTS` holds, per message, the
-fields in the order in which they are sent.
+A line is `TAG,` then fields `label` `value` `,` and a newline; `LAYOUTS` holds, per message, the fields in the order
+in which they are sent.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ class Kind(Enum):
 
     REAL = "%f"
     DEGREES = "%f of a latitude or longitude"
-    COUNT = "%d.0"  # the .0 keeps the original's parser from reading the field before
+    COUNT = "%d.0"  # the .0 keeps the original's parser from misreading the previous field
     BARE = "%d"  # read with or without .0
     WORD = "one of the words"
     TEXT = "letters, digits and _"
@@ -35,7 +35,7 @@ class FieldLayout:
     low: int | None = None
     high: str = ""  # the name of the limit in Limits
     optional: bool = False
-    first: int = 0  # what stands on the wire for 0
+    first: int = 0  # the number on the wire for 0
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Layout:
     message: type[messages.Message]
     fields: tuple[FieldLayout, ...]
     form: str = ""
-    both: bool = False  # goes the other way as well, in our dialect
+    both: bool = False  # sent in the other direction as well, in our dialect
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class Limits:
 
 
 TEXT = re.compile(r"[A-Za-z0-9_]{1,40}")
-"""What a value of Kind.TEXT may be."""
+"""The permitted values of Kind.TEXT."""
 ORIGINAL_LIMITS = Limits()
 WIDE_LIMITS = Limits(100_000, 100_000, 100_000, 99_999, 99_999)
 
@@ -94,7 +94,7 @@ _PLACE = (_deg("lat", "lat_deg"), _deg("long", "long_deg"))
 _VELOCITY = (_real("north", "north_mps"), _real("east", "east_mps"), _real("down", "down_mps"))
 _REQUEST = _count("request", "request", 0, optional=True)
 OURS_ALONE = ("epoch", "request")
-"""Labels of optional fields that peers of other dialects than ours are not told."""
+"""Labels of optional fields that are not sent to peers of other dialects than ours."""
 _DOWN, _UP = messages.Direction.DOWN, messages.Direction.UP
 
 LAYOUTS: tuple[Layout, ...] = (

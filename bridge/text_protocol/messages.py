@@ -1,11 +1,11 @@
 """The messages of the CRATOUS text protocol, as values.
 
-Angles are degrees, lengths metres, speeds metres per second, times seconds, as on the wire;
-`down_mps` is positive downward, always.
+Angles are in degrees, lengths in metres, speeds in metres per second, times in seconds, as on the wire; `down_mps` is
+always positive downward.
 
-Three things are of our own dialect: HELLO (which vehicle a connection speaks for, so that the
-order of accepting does not matter), HBEAT (ICAROUS is alive) and `epoch` on SETMOD (the authority
-that the sender believes in). Original peers skip unknown fields and unknown tags.
+Additions of our own dialect: HELLO (which vehicle a connection speaks for, so that the order of accepting does not
+matter), HBEAT (ICAROUS is alive), `epoch` on SETMOD (the authority that the sender assumes), and what is marked
+below. Original peers skip unknown fields and unknown tags.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ class Message:
 
 @dataclass(frozen=True)
 class Waypoint(Message):
-    """WAYPT: one waypoint of the plan; `index` starts at 0. `total`: the number of all waypoints of the
-    plan; from the original a running count."""
+    """WAYPT: one waypoint of the plan; `index` starts at 0. `total`: the number of waypoints of the plan; from the
+    original a running count."""
 
     tag: ClassVar[str] = "WAYPT"
     total: int
@@ -75,7 +75,7 @@ class StartMission(Message):
 
 @dataclass(frozen=True)
 class SoftReset(Message):
-    """COMND RESET_SFT: start again from here, with the waypoints that are left."""
+    """COMND RESET_SFT: restart from here, with the remaining waypoints."""
 
     tag: ClassVar[str] = "COMND"
     lat_deg: float | None = None
@@ -85,42 +85,42 @@ class SoftReset(Message):
 
 @dataclass(frozen=True)
 class HardReset(Message):
-    """COMND RESET_HRD: forget the fences and the count of waypoints."""
+    """COMND RESET_HRD: discard the zones and the count of waypoints."""
 
     tag: ClassVar[str] = "COMND"
 
 
 @dataclass(frozen=True)
 class ForgetFences(Message):
-    """COMND FORGET_GEOFN (our dialect): no zone is in force any more; the plan stays."""
+    """COMND FORGET_GEOFN (our dialect): no zone is in force any longer; the plan stays."""
 
     tag: ClassVar[str] = "COMND"
 
 
 @dataclass(frozen=True)
 class ForgetWaypoints(Message):
-    """COMND FORGET_WAYPT (our dialect): there is no plan any more; the zones stay."""
+    """COMND FORGET_WAYPT (our dialect): there is no plan any longer; the zones stay."""
 
     tag: ClassVar[str] = "COMND"
 
 
 @dataclass(frozen=True)
 class StopMission(Message):
-    """COMND STOP_MISSION (our dialect): the mission is over; nothing is flown of it any more until another START_MISSION."""
+    """COMND STOP_MISSION (our dialect): the mission is over and is not flown until another START_MISSION."""
 
     tag: ClassVar[str] = "COMND"
 
 
 @dataclass(frozen=True)
 class UxasPlans(Message):
-    """COMND UXAS_PLANS (our dialect): UxAS plans live: ICAROUS may ask it for ways by WPREQ."""
+    """COMND UXAS_PLANS (our dialect): UxAS plans in flight: ICAROUS may ask it for routes by WPREQ."""
 
     tag: ClassVar[str] = "COMND"
 
 
 @dataclass(frozen=True)
 class IcarousPlans(Message):
-    """COMND ICAROUS_PLANS (our dialect): live planning is ICAROUS's own again, as it is without a word."""
+    """COMND ICAROUS_PLANS (our dialect): ICAROUS plans in flight again, which is the default."""
 
     tag: ClassVar[str] = "COMND"
 
@@ -146,7 +146,7 @@ class OwnPosition(Message):
 
 @dataclass(frozen=True)
 class Attitude(Message):
-    """ATTUD."""
+    """ATTUD: attitude of the vehicle."""
 
     tag: ClassVar[str] = "ATTUD"
     roll_deg: float
@@ -156,7 +156,7 @@ class Attitude(Message):
 
 @dataclass(frozen=True)
 class Traffic(Message):
-    """OBJCT: another aircraft (TRAFFIC) or a thing (OBSTACLE)."""
+    """OBJCT: another aircraft (TRAFFIC) or an object (OBSTACLE)."""
 
     tag: ClassVar[str] = "OBJCT"
     what: str
@@ -179,8 +179,8 @@ class WaypointReached(Message):
 
 @dataclass(frozen=True)
 class WayOfAnother(Message):
-    """OTHER (our dialect): one waypoint of the way that another of UxAS's vehicles flies; `index` starts at 0.
-    `total`: the number of all of them; 0, with the index and the place 0 too: it flies no way that is known."""
+    """OTHER (our dialect): one waypoint of the route flown by another of UxAS's vehicles; `index` starts at 0.
+    `total`: their number; 0, with index and position 0 too: no route of it is known."""
 
     tag: ClassVar[str] = "OTHER"
     vehicle_id: int
@@ -193,7 +193,7 @@ class WayOfAnother(Message):
 
 @dataclass(frozen=True)
 class VelocityOfAnother(Message):
-    """OVELO (our dialect): another of UxAS's vehicles is steered by its ICAROUS, to this velocity."""
+    """OVELO (our dialect): another of UxAS's vehicles is steered by its ICAROUS, at this velocity."""
 
     tag: ClassVar[str] = "OVELO"
     vehicle_id: int
@@ -204,8 +204,8 @@ class VelocityOfAnother(Message):
 
 @dataclass(frozen=True)
 class RouteRequest(Message):
-    """WPREQ: plan a route with the planner GRID, ASTAR, RRT or SPLINE. request (our dialect): a number that the
-    lines of the answer bear too. In our dialect ICAROUS asks UxAS as well: then UxAS's own planner plans."""
+    """WPREQ: plan a route with the planner GRID, ASTAR, RRT or SPLINE. request (our dialect): a number that the lines
+    of the answer repeat. In our dialect ICAROUS may ask UxAS too, whose own planner then plans."""
 
     tag: ClassVar[str] = "WPREQ"
     planner: str
@@ -223,8 +223,8 @@ class RouteRequest(Message):
 
 @dataclass(frozen=True)
 class EpochTold(Message):
-    """EPOCH (our dialect): to an instance that says a mode of an epoch that is over: who commands its vehicle, UXAS
-    or ICAROUS, and the greatest epoch that was given."""
+    """EPOCH (our dialect): to an instance that sends a mode of a past epoch: who commands its vehicle, UXAS or
+    ICAROUS, and the latest epoch."""
 
     tag: ClassVar[str] = "EPOCH"
     owner: str
@@ -244,7 +244,7 @@ class SetMode(Message):
 
 @dataclass(frozen=True)
 class SetVelocity(Message):
-    """SETVEL: fly this velocity; zero north and east mean stay here."""
+    """SETVEL: fly this velocity; zero north and east means stay here."""
 
     tag: ClassVar[str] = "SETVEL"
     north_mps: float
@@ -254,7 +254,7 @@ class SetVelocity(Message):
 
 @dataclass(frozen=True)
 class SetPosition(Message):
-    """SETPOS: go to this place and stay."""
+    """SETPOS: fly to this position and stay."""
 
     tag: ClassVar[str] = "SETPOS"
     lat_deg: float
@@ -264,7 +264,7 @@ class SetPosition(Message):
 
 @dataclass(frozen=True)
 class GoToWaypoint(Message):
-    """GOTOWP: go on with this waypoint; from the original the number is noise."""
+    """GOTOWP: continue with this waypoint; from the original the number is meaningless."""
 
     tag: ClassVar[str] = "GOTOWP"
     index: int
@@ -280,7 +280,7 @@ class RouteStart(Message):
 
 @dataclass(frozen=True)
 class RoutePoint(Message):
-    """RPRSP WP: one point of the route; speed 0 means the nominal one."""
+    """RPRSP WP: one point of the route; speed 0 means the nominal speed."""
 
     tag: ClassVar[str] = "RPRSP"
     lat_deg: float
@@ -292,7 +292,7 @@ class RoutePoint(Message):
 
 @dataclass(frozen=True)
 class RouteEnd(Message):
-    """RPRSP ED: the route is complete; one without points says that there is none."""
+    """RPRSP ED: the route is complete; a response without points means that there is no route."""
 
     tag: ClassVar[str] = "RPRSP"
     request: int | None = None
@@ -317,10 +317,10 @@ class Hello(Message):
 
 @dataclass(frozen=True)
 class LinesMissing(Message):
-    """AGAIN (our dialect): lines of a plan (WAYPT) or zone (GEOFN) have not come, please again.
+    """AGAIN (our dialect): lines of a plan (WAYPT) or zone (GEOFN) are missing and requested again.
 
-    number: of the zone, 0 for the plan; total: its lines, 0 if not known; first, last: the first and last
-    that is missing, by index or vertex; last 0 for a zone of which nothing is known: all of it.
+    number: of the zone, 0 for the plan; total: number of its lines, 0 if not known; first, last: the first and last
+    missing one, by index or vertex; last 0 for a zone of which nothing is known: all of it.
     """
 
     tag: ClassVar[str] = "AGAIN"
@@ -333,9 +333,9 @@ class LinesMissing(Message):
 
 @dataclass(frozen=True)
 class NotKnown(Message):
-    """NOCMD (our dialect): the answer to a COMND of a kind that ICAROUS does not know.
+    """NOCMD (our dialect): the answer to a COMND of a type that ICAROUS does not know.
 
-    kind: as it came, with anything but letters, digits and _ shown as _, of at most 40 characters.
+    kind: the type as received, with characters other than letters, digits and _ replaced by _, at most 40 characters.
     """
 
     tag: ClassVar[str] = "NOCMD"

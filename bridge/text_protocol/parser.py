@@ -1,11 +1,10 @@
-"""Lines to messages, from bytes that arrive in any pieces.
+"""Parses lines to messages, from bytes in any segmentation.
 
-The parser never raises on input: `feed` gives messages, `Skipped` for what is legal but not for
-us, and `WireError` values. It refuses what the original reads otherwise than it is written (a
-label inside a longer one, a label twice, an integer without `.0`, a tag that only begins like a
-known one), for two ends that understand one line differently are worse than a line lost by name.
-Memory is bounded: a line longer than `max_line` bytes is an error and is dropped up to the next
-newline.
+The parser never raises on input: `feed` returns messages, `Skipped` for what is legal but not known here, and
+`WireError` values. It refuses lines that the original would read differently from how they are written (a label
+inside a longer one, a label twice, an integer without `.0`, a tag that only begins like a known one), since two ends
+that understand one line differently are worse than a line reported as lost. Memory is bounded: a line longer than
+`max_line` bytes is an error and is dropped up to the next newline.
 """
 
 from __future__ import annotations
@@ -46,7 +45,7 @@ _PRINTABLE = re.compile(rb"[\x20-\x7e]*\Z")
 class WireError:
     """A refused line: its number and the column (both from 1) of the error.
 
-    kind: of an unknown COMND, its type; tag: of a v2 packet, the tag of its line.
+    kind: the type of an unknown COMND; tag: for a v2 packet, the tag of its line.
     """
 
     line: int
@@ -77,7 +76,7 @@ Record = Message | WireError | Skipped
 
 
 class _Bad(Exception):
-    """Inside this module only: what is wrong with the line at hand."""
+    """Internal: the error in the current line."""
 
     def __init__(self, column: int, what: str, expected: str, got: str, kind: str = "") -> None:
         super().__init__(what)
@@ -86,8 +85,8 @@ class _Bad(Exception):
 
 
 def _labels_of(layout: Layout, thesis: bool) -> list[tuple[str, str]]:
-    """The labels of a message, the longest first: as it is compared (in small letters where those of the
-    line are, as the thesis's may be capitals), and as the layout has it."""
+    """The labels of a message, the longest first: as compared (lower-case if labels are, since the thesis's may be
+    capitals), and as in the layout."""
     labels = [*(field.label for field in layout.fields), *(["type"] if layout.form else [])]
     return [(x.lower() if thesis else x, x) for x in sorted(labels, key=len, reverse=True)]
 
@@ -95,9 +94,9 @@ def _labels_of(layout: Layout, thesis: bool) -> list[tuple[str, str]]:
 class StreamParser:
     """Parses the bytes that come from one peer.
 
-    direction: the way the messages go. original_peer: accept a `vertIndex` without `.0` also
-    where the original's own client misreads it. limits: largest counts. dialect: of the peer; what it
-    has that the others have not is read in each but the thesis's, whose lines begin otherwise.
+    direction: of the messages. original_peer: accept a `vertIndex` without `.0` also where the original's own client
+    misreads it. limits: largest counts. dialect: of the peer; additions of one dialect are accepted in every other
+    but the thesis's, whose lines begin differently.
     """
 
     def __init__(
@@ -118,7 +117,7 @@ class StreamParser:
                 self._labels[layout.message] = _labels_of(layout, self._thesis)
         self._limits, self._max_line, self._original_peer = limits, max_line, original_peer
         ours = [one for layouts in self._layouts.values() for one in layouts]
-        self._plain = {} if self._thesis else plain_lines(ours, limits)
+        self._plain = {} if self._thesis else plain_lines(tuple(ours), limits)
         self._pending = bytearray()
         self._dropping = False
         self._line = 1
@@ -212,7 +211,7 @@ class StreamParser:
         return self._fill(layout, pieces, places)
 
     def _form(self, layouts: list[Layout], pieces: list[str], places: list[int]) -> Layout:
-        """The form that the `type` field of a COMND or RPRSP names."""
+        """The form of a COMND or RPRSP that its `type` field selects."""
         forms = {"type" + layout.form: layout for layout in layouts}
         for piece, place in zip(pieces, places, strict=False):
             if (piece[:4].lower() if self._thesis else piece[:4]) == "type":
@@ -255,7 +254,7 @@ class StreamParser:
         return [layout.message(**values), *skipped]
 
     def _bare_vertex(self, texts: dict[str, tuple[str, int]]) -> None:
-        """The original reads a bare vertIndex after a two-digit totalvert as another number."""
+        """Refuse a bare vertIndex that the original, after a two-digit totalvert, reads as another number."""
         text, column = texts.get("vertIndex", ("", 0))
         total = texts.get("totalvert", ("", 0))[0]
         bare_is_right = self._original_peer or self._thesis

@@ -1,20 +1,22 @@
-"""Lines as our writer and the originals write them, read at once: all fields, in order, numbers in full.
+"""Fast reading of lines in the form that our writer and the originals produce: all fields, in order, numbers in full.
 
-That is how nearly all lines come, those of each heartbeat among them. Any other line gives None here, one that is refused
-too, and is read by `parser`, which says what is wrong; what is read here it reads as the same message.
+Nearly all lines have this form, including those of each heartbeat. For any other line, including a malformed one, the
+result is None, and `parser` reads it and reports errors; both give the same message for a line read here.
 """
 
 from __future__ import annotations
 
+import functools
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from cratous.bridge.text_protocol.layouts import FieldLayout, Kind, Layout, Limits
 from cratous.bridge.text_protocol.messages import Message
 
 TAG_BYTES = 5
-"""So many bytes tell the tags apart."""
+"""The number of bytes that distinguish the tags."""
 _REAL, _COUNT = rb"(-?[0-9]{1,14}\.[0-9]{1,12})", rb"([0-9]{1,14})\.0"
 _KINDS = {
     Kind.REAL: (_REAL, float),
@@ -24,25 +26,31 @@ _KINDS = {
 }
 
 
+MOST_KNOWN = 512
+"""The most lines cached with their messages: the same line goes to every vehicle at a heartbeat."""
+
+
 class Plain(NamedTuple):
-    """How one message is read. read: the whole line; values: of each field; within: which value lies from where to
-    where, else the line is not plain."""
+    """How one message is read. read: pattern of the whole line; values: conversion of each field; within: index and
+    bounds of values, outside of which the line is not plain; known: cache of recent lines."""
 
     read: re.Pattern[bytes]
     message: type[Message]
     names: tuple[str, ...]
     values: tuple[Callable[[bytes], Any], ...]
     within: tuple[tuple[int, float, float], ...]
+    known: dict[bytes, Message]
 
 
-def plain_lines(layouts: Iterable[Layout], limits: Limits) -> dict[bytes, Plain]:
-    """By the first bytes of their tag: the messages of one form, each of whose fields is always there."""
+@functools.cache
+def plain_lines(layouts: tuple[Layout, ...], limits: Limits) -> Mapping[bytes, Plain]:
+    """Messages with a single form and no optional fields, by the first bytes of their tag."""
     found = {}
     for layout in layouts:
         fields = layout.fields
         if not layout.form and not any(f.optional or f.kind is Kind.TEXT for f in fields):
             found[layout.tag.encode()[:TAG_BYTES]] = _plain(layout, limits)
-    return found
+    return MappingProxyType(found)
 
 
 def _plain(layout: Layout, limits: Limits) -> Plain:
@@ -58,7 +66,7 @@ def _plain(layout: Layout, limits: Limits) -> Plain:
     ]
     names = tuple(field.attribute for field in layout.fields)
     read = re.compile(pattern + rb"\r?")
-    return Plain(read, layout.message, names, tuple(values), tuple(within))
+    return Plain(read, layout.message, names, tuple(values), tuple(within), {})
 
 
 def _field(field: FieldLayout) -> tuple[bytes, Callable[[bytes], Any]]:
@@ -77,12 +85,20 @@ def _bounds(field: FieldLayout, limits: Limits) -> tuple[float, float]:
 
 
 def message_of(plain: Plain, data: bytes, start: int, end: int) -> Message | None:
-    """The message of the line from start to end of data, without its newline; None if it is not plain."""
-    match = plain.read.fullmatch(data, start, end)
+    """The message of the line data[start:end], without its newline; None if it is not plain."""
+    line = bytes(data[start:end])
+    known = plain.known.get(line)
+    if known is not None:
+        return known
+    match = plain.read.fullmatch(line)
     if match is None:
         return None
     values = [value(text) for value, text in zip(plain.values, match.groups(), strict=True)]
     for k, low, high in plain.within:
         if not low <= values[k] <= high:
             return None
-    return plain.message(**dict(zip(plain.names, values, strict=True)))
+    message = plain.message(**dict(zip(plain.names, values, strict=True)))
+    if len(plain.known) >= MOST_KNOWN:
+        plain.known.clear()
+    plain.known[line] = message
+    return message

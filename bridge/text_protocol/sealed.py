@@ -1,16 +1,17 @@
-"""The dialect v2: both ends prove that they have the vehicle's key, and each line is numbered and sealed.
+"""The dialect v2: both ends prove that they have the vehicle's key, and each line is numbered and authenticated.
 
-Opening, a line each:
+Opening, one line each:
+
 1. UxAS: `CRATOUS-2,NONCE`; 2. ICAROUS: `CRATOUS-2,VEHICLE,NONCE,PROOF`; 3. UxAS: `ok,PROOF` or `error,REASON`.
-A proof is the HMAC-SHA256 of who proves, the vehicle and both nonces (16 random bytes each) by the key. Then
-each line of the text protocol travels as a packet
+A proof is the HMAC-SHA256, by the key, of the prover, the vehicle and both nonces (16 random bytes each). Then
+each line of the text protocol is sent as a packet
 
     SEQUENCE,TIME,VEHICLE,ACK,CRC,MAC,LINE
 
-SEQUENCE: from 1 in each direction; TIME: the sender's clock [ms], which does not go back; ACK: the greatest
-SEQUENCE that the sender has accepted of the other end; CRC: CRC-32 of numbers and line, which tells one that was
-damaged from one that was forged; MAC: HMAC-SHA256 by a key that is of this connection and direction alone, so a
-packet of another connection, direction or vehicle is none here. Nothing is encrypted.
+SEQUENCE: from 1 in each direction; TIME: the sender's monotonic clock [ms]; ACK: the greatest SEQUENCE that the
+sender has accepted from the other end; CRC: CRC-32 of numbers and line, which distinguishes damaged packets from
+forged ones; MAC: HMAC-SHA256 by a key that belongs to this connection and direction only, so a packet of another
+connection, direction or vehicle is not accepted. Nothing is encrypted.
 """
 
 from __future__ import annotations
@@ -30,9 +31,9 @@ from cratous.core.authority.timeliness import lasted
 
 NAME = b"CRATOUS-2"
 WINDOW = 1024
-"""A packet's number may be so far above the last one's: more than that was not lost but made up."""
+"""The most by which a packet's number may exceed the last one's; a greater number is taken for a forgery."""
 MOST_UNACKNOWLEDGED = 100_000
-"""So many packets may be on their way without a word that they have come."""
+"""The most packets sent without acknowledgement."""
 MOST_LINE, MOST_TAG = MAX_LINE + 256, 6
 REPLAYED, FORGED, DAMAGED = (
     "packet number that came before or is far ahead",
@@ -50,7 +51,7 @@ _PACKET = re.compile(
 
 
 def proof(key: bytes, who: str, vehicle_id: int, nonces: tuple[bytes, bytes]) -> bytes:
-    """HMAC-SHA256 over the speaker (`who`), the vehicle and both nonces, as hexadecimal digits."""
+    """HMAC-SHA256 over the prover (`who`), the vehicle and both nonces, as hexadecimal digits."""
     text = b",".join((NAME, who.encode(), b"%d" % vehicle_id, *nonces))
     return hmac.new(key, text, "sha256").hexdigest().encode()
 
@@ -61,7 +62,7 @@ def direction_keys(key: bytes, vehicle_id: int, nonces: tuple[bytes, bytes]) -> 
 
 
 def line_in(packet: bytes) -> bytes | None:
-    """The line of a packet without its newline; only the checksum is verified, None if that is wrong."""
+    """The line of a packet without its newline; only the checksum is verified, None if it is wrong."""
     match = _PACKET.match(packet)
     if match is None:
         return None
@@ -117,7 +118,7 @@ class Seal:
         )
 
     def feed(self, data: bytes) -> tuple[bytes, list[WireError]]:
-        """The lines of all packets completed by these bytes, and the packets that are refused."""
+        """The lines of all packets completed by these bytes, and errors for the packets that are refused."""
         *packets, self._pending = (self._pending + data).split(b"\n")
         lines, wrong = list[bytes](), list[WireError]()
         for packet in packets:
@@ -133,7 +134,7 @@ class Seal:
         return b"".join(lines), wrong
 
     def _open(self, packet: bytes) -> bytes | tuple[str, str, str]:
-        """The line; or what is wrong, what was expected, and what came."""
+        """The line of a packet; or what is wrong, what was expected, and what was received."""
         match = _PACKET.match(packet)
         if match is None:
             return DAMAGED, "a packet of v2", ascii(packet[:40])[1:]
@@ -157,7 +158,7 @@ class Seal:
 
 
 def _tag(packet: bytes) -> str:
-    """The tag of the line in a packet that is refused; empty where there is none."""
+    """The tag of the line in a refused packet; empty if there is none."""
     match = _PACKET.match(packet)
     tag = packet[match.end() :].partition(b",")[0] if match else b""
     return tag.decode() if tag.isalpha() and len(tag) <= MOST_TAG else ""
@@ -175,7 +176,8 @@ def mac_of(key: bytes, head: bytes, body: bytes) -> bytes:
 
 @dataclass
 class SealedHandshake(Handshake):
-    """Handshake of dialect v2, both ends. keys: by vehicle; seal: set when it is done; nonce: source of random bytes."""
+    """Handshake of dialect v2, both ends. keys: by vehicle; seal: set when it is complete; nonce: source of random
+    bytes."""
 
     keys: Mapping[int, bytes] = field(default_factory=dict, repr=False)
     nonce: Nonce = os.urandom
@@ -183,7 +185,7 @@ class SealedHandshake(Handshake):
     _own: bytes = b""
 
     def _line(self) -> bytes | None:
-        """The next line, None if it is not there yet."""
+        """The next line, None if it is not complete yet."""
         line, newline, rest = self.rest.partition(b"\n")
         if newline:
             self.rest = rest
@@ -238,7 +240,7 @@ class SealedClient(SealedHandshake):
         line = self._line()
         begins = (self.rest if line is None else line)[:20]
         if not self._theirs and not NAME.startswith(begins[: len(NAME)]):
-            # what a UxAS says in another dialect has no newline, and nothing comes after it
+            # a UxAS of another dialect sends a greeting without newline, and nothing after it
             self.failed = f"the other end does not speak v2: it begins with {ascii(begins)[1:]}"
             return b""
         if line is None:

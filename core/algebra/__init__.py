@@ -1,1 +1,1 @@
-"""Terms of the process algebra as data: which tasks of one are done, and whether as it permits."""
+"""Process-algebra terms as data: which tasks of a term are done, and whether as it permits."""

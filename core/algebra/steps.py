@@ -1,8 +1,7 @@
 """What a term of the process algebra permits, operator by operator. Integers, milliseconds.
 
-Definitions: `spec.algebra.operators`, where the codes of operators (0 a task, 1 `.`, 2 `~`, 3 `|`, 4 `+`) and
-of timings (0 none, 1 absolute, 2 relative) stand too. `core.algebra.terms` goes through a term with
-these.
+Definitions and codes of operators (0 a task, 1 `.`, 2 `~`, 3 `|`, 4 `+`) and of timings (0 none, 1 absolute, 2
+relative): `spec.algebra.operators`. `core.algebra.terms` applies these kernels to a whole term.
 """
 
 from typing import NamedTuple
@@ -11,7 +10,7 @@ from cratous.core.kernel import fold, kernel
 
 
 class Ran(NamedTuple):
-    """What ran of a term: whether anything did, its earliest start and its latest end [ms]."""
+    """What ran of a term: whether any task did, the earliest start and the latest end [ms]."""
 
     some: bool
     start: int
@@ -19,15 +18,16 @@ class Ran(NamedTuple):
 
 
 class Window(NamedTuple):
-    """A span of time, both ends included [ms]; empty where it ends before it begins."""
+    """A time interval, both ends included [ms]; empty if it ends before it begins."""
 
     first: int
     last: int
 
 
 class Part(NamedTuple):
-    """An operand. fits: it has all tasks of the whole term that were begun; allowed: it was done as it
-    permits; whole: all of it was done."""
+    """An operand. fits: it contains all tasks of the whole term that were begun; allowed: it was done as it permits;
+    whole: all of it was done.
+    """
 
     fits: bool
     allowed: bool
@@ -53,13 +53,13 @@ class Held(NamedTuple):
 
 @kernel(implements="algebra.operators.stands_in_one_of")
 def tasks_with(one: int, other: int) -> int:
-    """The tasks of two terms together; sets of tasks as masks, a bit for each task."""
+    """The union of the tasks of two terms, as bit masks (one bit per task)."""
     return one | other
 
 
 @kernel(implements="algebra.operators.none_beside")
 def operand_fits(whole: int, part: int, begun: int) -> bool:
-    """True iff all tasks of the whole term that were begun stand in the part; masks, a bit a task."""
+    """True iff all tasks of the whole term that were begun are in the part; bit masks, one bit per task."""
     return (whole & begun) | part == part
 
 
@@ -75,10 +75,10 @@ def ran_with(one: Ran, other: Ran) -> Ran:
 
 @kernel(implements="algebra.operators.lets_begin")
 def in_order(op: int, before_whole: bool, before: Ran, later: Ran) -> bool:
-    """True iff an operand waited for the one before it, as the operator asks.
+    """True iff an operand waited for the one before it, as the operator requires.
 
-    op: code of the operator; before_whole: the operand before is done whole; before, later: what ran
-    of each [ms]. An operand of which nothing ran waits for nothing.
+    op: code of the operator; before_whole: the operand before is done whole; before, later: what ran of each [ms]. An
+    operand of which nothing ran waits for nothing.
     """
     if not later.some:
         return True
@@ -93,10 +93,10 @@ def in_order(op: int, before_whole: bool, before: Ran, later: Ran) -> bool:
 def window_of(
     outer: Window, op: int, timing: int, first: bool, before: Ran, bounds: Window
 ) -> Window:
-    """When tasks of an operand may run that nothing within it bounds [ms].
+    """The window in which tasks of an operand may run that have no timing constraint within it [ms].
 
-    outer: the same of the term itself; op, timing, bounds: codes and bounds of the term; first: it is
-    the first operand; before: what ran of the operand before it.
+    outer: the same window of the term itself; op, timing, bounds: codes and bounds of the term; first: it is the
+    first operand; before: what ran of the operand before it.
     """
     if timing == 0:
         return outer
@@ -113,7 +113,7 @@ def window_of(
 
 @kernel(implements="algebra.operators.task_is_held")
 def task_held(needed: bool, ran: Ran, window: Window) -> bool:
-    """True iff a task ran within its window, or did not run and need not [ms]."""
+    """True iff a task ran within its window [ms], or did not run and is not needed."""
     if not ran.some:
         return not needed
     return ran.start <= ran.end and window.first <= ran.start and ran.end <= window.last
@@ -121,9 +121,9 @@ def task_held(needed: bool, ran: Ran, window: Window) -> bool:
 
 @kernel(implements="algebra.operators.allowed_with")
 def operand_added(so_far: Operands, part: Part, op: int) -> Operands:
-    """Add an operand to what is known of a term. op: code of the operator.
+    """Add an operand to the state of a term. op: code of the operator.
 
-    `+`: one operand that fits is enough; else each has to be as it permits, in the operator's order.
+    For `+`, one operand that fits is enough; otherwise each has to be done as it permits, in the operator's order.
     """
     if op == 4:
         allowed = (so_far.allowed and not so_far.first) or (part.fits and part.allowed)
@@ -137,7 +137,7 @@ def operand_added(so_far: Operands, part: Part, op: int) -> Operands:
 
 @kernel(supports="operands_held")
 def operands_result(so_far: Operands) -> Held:
-    """What is known of the term after its last operand."""
+    """The state of the term after its last operand."""
     return Held(so_far.allowed, so_far.whole)
 
 

@@ -1,9 +1,9 @@
-"""Going through a term of the process algebra, from its tasks to the whole, with the proved kernels.
+"""Evaluation of a process-algebra term, from its tasks to the whole, with the proved kernels.
 
-A term is data here: its nodes in postfix order, operands before their operator. What a node's tasks are
-and when they ran goes up (`tasks_with`, `ran_with`); when tasks may run that nothing bounds yet goes down
-(`window_of`); whether a node was done as it permits goes up again (`task_held`, `operands_held`). No branch
-is enumerated: of a `+` every operand is judged once, however many choices there are.
+A term is data here: its nodes in postfix order, operands before their operator. The tasks of a node and when they ran
+are passed upwards (`tasks_with`, `ran_with`); the window of tasks without a timing constraint downwards
+(`window_of`); whether a node was done as it permits upwards again (`task_held`, `operands_held`). No branch is
+enumerated: every operand of a `+` is evaluated once, however many choices there are.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ TIME_LIMIT_MS = 2**61
 """Every time and bound lies within this: the range of the proofs."""
 ANY_TIME = Window(-TIME_LIMIT_MS, TIME_LIMIT_MS)
 MASK_BITS = 62
-"""So many tasks go into one mask; a term with more has several."""
+"""Number of tasks in one mask; a term with more tasks has several masks."""
 NO_RUN = Ran(False, 0, 0)
 
 
@@ -55,7 +55,7 @@ class Node(NamedTuple):
 
 
 def operands_of(nodes: Sequence[Node]) -> tuple[tuple[int, ...], ...]:
-    """For each node the places of its operands. Raises BadInput for what is not exactly one term."""
+    """For each node the indices of its operands. Raises BadInput unless the nodes are exactly one term."""
     found: list[tuple[int, ...]] = []
     open_terms: list[int] = []
     for place, node in enumerate(nodes):
@@ -83,7 +83,7 @@ def operands_of(nodes: Sequence[Node]) -> tuple[tuple[int, ...], ...]:
 
 
 def untimed(nodes: Sequence[Node]) -> tuple[Node, ...]:
-    """The same term without its timings."""
+    """The same term without timings."""
     return tuple(Node(n.op, n.arity, n.task, 0, 0, 0) for n in nodes)
 
 
@@ -93,12 +93,12 @@ def untimed(nodes: Sequence[Node]) -> tuple[Node, ...]:
     )
 )  # fmt: skip
 def term_parts(nodes: Sequence[Node], times: Times, needed: bool) -> tuple[Part, ...]:
-    """What is known of each node, the whole term last.
+    """The evaluated parts of all nodes, the whole term last.
 
-    times: when each task ran that was begun, (start, end) [ms]; needed: every task of the branch has
-    to be done, else a part of it may. A node's `allowed` is judged under the timings around it, its
-    `fits` in the `+` whose operand it is (else it is true). Raises BadInput for nodes that are not one
-    term, and for times outside of the proofs' range.
+    times: when each task ran that was begun, (start, end) [ms]; needed: every task of the branch has to be done, else
+    a part of it suffices. A node's `allowed` is evaluated under the timings around it, its `fits` in the `+` whose
+    operand it is (true for other nodes). Raises BadInput for nodes that are not one term, and for times outside the
+    proofs' range.
     """
     _in_range(nodes, times)
     inside = operands_of(nodes)
@@ -140,7 +140,7 @@ def _in_range(nodes: Sequence[Node], times: Times) -> None:
 
 
 def _places(nodes: Sequence[Node]) -> dict[int, int]:
-    """The tasks of a term, each with its place among them."""
+    """The index of each task of a term."""
     found: dict[int, int] = {}
     for node in nodes:
         if node.op == TASK:
@@ -149,7 +149,7 @@ def _places(nodes: Sequence[Node]) -> dict[int, int]:
 
 
 def _of(places: Mapping[int, int], tasks: Iterable[int]) -> list[int]:
-    """A set of tasks of a term as masks; a task has the bit of its place among them."""
+    """A set of tasks of a term as masks; the bit of a task is its index."""
     masks = [0] * (len(places) // MASK_BITS + 1)
     for task in tasks:
         if task in places:
@@ -161,7 +161,7 @@ def _of(places: Mapping[int, int], tasks: Iterable[int]) -> list[int]:
 def _masks(
     nodes: Sequence[Node], inside: Sequence[tuple[int, ...]], places: Mapping[int, int]
 ) -> list[list[int]]:
-    """The tasks that stand in each node."""
+    """The tasks of each node, as masks."""
     masks: list[list[int]] = []
     for node, operands in zip(nodes, inside, strict=True):
         own = _of(places, () if operands else (node.task,))
@@ -174,7 +174,7 @@ def _masks(
 def _windows(
     nodes: Sequence[Node], inside: Sequence[tuple[int, ...]], ran: Sequence[Ran]
 ) -> list[Window]:
-    """When tasks of each node may run that nothing bounds in it; for a task, when it may run."""
+    """For each node, the window in which its tasks without timing constraint may run; for a task, when it may run."""
     windows = [ANY_TIME] * len(nodes)
     for place in reversed(range(len(nodes))):
         node, outer = nodes[place], windows[place]
@@ -189,24 +189,24 @@ def _windows(
 
 
 def done_as_permitted(nodes: Sequence[Node], times: Times, needed: bool) -> bool:
-    """Whether what ran is what the term permits; needed: and all that one branch asks for.
+    """Whether the tasks that ran are permitted by the term; needed: and are all tasks that one branch requires.
 
-    Tasks that do not stand in the term say nothing.
+    Tasks that are not in the term are ignored.
     """
     return term_parts(nodes, times, needed)[-1].allowed
 
 
 def may_be_done(nodes: Sequence[Node], done: frozenset[int], needed: bool) -> bool:
-    """Whether just these tasks of a term may be done, at some times; needed: they are one whole branch.
+    """Whether exactly these tasks of a term may be done, at some times; needed: they are one whole branch.
 
-    All at one instant and without timings, the order in time is kept by whatever waits for what is done.
+    With all tasks at one instant and without timings, order in time holds for every task whose predecessors are done.
     """
     return done_as_permitted(untimed(nodes), dict.fromkeys(done, (0, 0)), needed)
 
 
 def kept_operands(nodes: Sequence[Node], parts: Sequence[Part]) -> dict[int, int] | None:
-    """Of each `+` on the kept branch, by its place, which operand is kept: the first that fits and was done
-    as it permits. None if the term was not.
+    """For each `+` on the kept branch, by its index, the operand that is kept: the first that fits and was done as it
+    permits. None if the term was not.
     """
     if not parts[-1].allowed:
         return None

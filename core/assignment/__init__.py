@@ -1,1 +1,1 @@
-"""The assignment of tasks to vehicles: kernels of its steps, and the search that calls them."""
+"""Assignment of tasks to vehicles: the kernels of its steps, and the search that calls them."""

@@ -1,9 +1,9 @@
-"""Good assignments quickly: a first leaf like that of UxAS, and annealing of the order of tasks.
+"""Fast heuristic assignments: a first leaf as in UxAS, and simulated annealing of the order of tasks.
 
-A solution is an order of all tasks with a vehicle and an option each; its times are the earliest
-ones. Moves take a task (or a few) out and put it elsewhere. The numbers come from a counter with a
-seed, so that a result depends on seed and step count alone. Nothing is claimed of the result but
-its times, which whoever uses it checks with the proved kernels.
+A solution is an order of all tasks with a vehicle and an option each; its times are the earliest ones. Moves take out
+one or a few tasks and insert them elsewhere. Random numbers come from a seeded counter, so that a result depends only
+on the seed and the number of steps. Nothing is claimed of the result except its times, which the caller checks with
+the proved kernels.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from cratous.core.assignment.steps import earliest_start, weighted
 
 
 def put_all(to: np.ndarray, values: np.ndarray) -> None:
-    """Fill an array with the values of another one of its size.
+    """Fill an array with the values of another one of the same size.
 
-    No slices: what their compiled form says when sizes differ takes the compiler seconds.
+    Without slices: their compiled size-mismatch error costs seconds of compile time.
     """
     for k in range(to.size):
         to[k] = values[k]
@@ -28,10 +28,10 @@ def decode(
     order: np.ndarray, who: np.ndarray, how: np.ndarray, times: Times, at: np.ndarray,
     i: Instance, stop: int,
 ) -> int:  # fmt: skip
-    """The cost of a solution, with its times; 2**60 if the order or a way does not exist.
+    """The cost of a solution, with its times; 2**60 if the order or a leg does not exist.
 
-    A latest end that is missed costs 1000 for each ms, so that a search can find its way back.
-    Gives up where the cost reaches `stop`. at [V]: the last option of each vehicle.
+    Each millisecond beyond a latest end costs 1000, so that a search can recover. Stops where the cost reaches
+    `stop`. at [V]: the last option of each vehicle.
     """
     starts, ends, free = times.starts, times.ends, times.free
     travel, added, duration, ready = i.travel, i.added, i.duration, i.ready
@@ -93,7 +93,8 @@ def decode(
 
 
 def leaf(order: np.ndarray, who: np.ndarray, how: np.ndarray, i: Instance) -> int:
-    """The first leaf: always the child of least cost so far, then of the earliest end. Nodes.
+    """Build the first leaf: always the child of least cost so far, then of the earliest end. Returns the number of
+    nodes.
 
     -1: it ends in a state from which some task cannot be done.
     """
@@ -163,10 +164,10 @@ def anneal(
     order: np.ndarray, who: np.ndarray, how: np.ndarray, steps: int, seed: int, hot: float,
     i: Instance,
 ) -> int:  # fmt: skip
-    """Improve a solution in place for so many steps; the cost of the best, which is left there.
+    """Improve a solution in place for `steps` steps; returns the cost of the best, which is left in the arrays.
 
-    hot: first temperature, as a share of the cost. One step takes a task out, or exchanges the
-    places of two, and is kept by the rule of threshold accepting.
+    hot: initial temperature, as a share of the cost. One step takes a task out, or exchanges the positions of two,
+    and is accepted by threshold accepting.
     """
     task, may = i.task, i.may
     n, vehicles, options = order.size, i.ready.size, i.duration.size
@@ -174,7 +175,7 @@ def anneal(
     times = Times(np.zeros(n, np.int64), np.zeros(n, np.int64), free)
     trial, trial_who, trial_how = order.copy(), who.copy(), how.copy()
     best_order, best_who, best_how = order.copy(), who.copy(), how.copy()
-    # no literal: for one the compiler would make `decode` once more
+    # not a literal: the compiler would compile `decode` a second time for it
     now = decode(order, who, how, times, at, i, int(1 << 60))  # noqa: RUF046
     best = now
     share = 6 * vehicles
@@ -192,19 +193,19 @@ def anneal(
         put_all(trial_who, who)
         put_all(trial_how, how)
         if pick < 40:
-            # exchange the vehicles of two tasks, and their places or not
+            # exchange the vehicles of two tasks, and possibly their positions
             ja, jb = trial[a], trial[b]
             if pick < 20:
                 trial[a], trial[b] = jb, ja
             trial_who[ja], trial_who[jb] = trial_who[jb], trial_who[ja]
         elif pick < 80:
-            # the same place, another vehicle or option
+            # the same position, another vehicle or option
             j = trial[a]
             trial_who[j] = ((x >> 34) & 0x3FF) % vehicles
             if task[other] == j:
                 trial_how[j] = other
         else:
-            # take one out and put it in at b, with a vehicle and option of some luck
+            # take one out and insert it at b, with a random vehicle and option
             j = trial[a]
             if a < b:
                 for k in range(a, b):

@@ -1,8 +1,7 @@
-"""Search a plain instance for as long as there is time: first leaf, annealing, refutation.
+"""Anytime search of a plain instance: first leaf, annealing, refutation.
 
-The bound that is returned is proved by the refutation whose origins are returned with it. All
-results depend on the seed and the limits alone; only `stop`, if it looks at a clock, can make a
-difference, and then only to how far the search gets.
+The returned bound is proved by the refutation whose origins are returned with it. All results depend only on the seed
+and the limits, except that `stop`, if it reads a clock, determines how far the search gets.
 """
 
 from __future__ import annotations
@@ -37,11 +36,10 @@ NONE = 1 << 60
 
 @dataclass
 class Proof:
-    """What shows that no solution of an instance costs less than `bound`.
+    """Evidence that no solution of an instance costs less than `bound`.
 
-    kind: `tables` (the tables over sets give it), `layers` (a refutation of `limit` by `origins`),
-    `chains` (all chains below it were listed, in `limit` nodes),
-    or `estimate` (the first state's bound).
+    kind: `tables` (from the tables over sets), `layers` (a refutation of `limit` by `origins`), `chains` (all chains
+    below it were listed, in `limit` nodes), or `estimate` (the first state's bound).
     """
 
     kind: str
@@ -63,7 +61,7 @@ def greedy(instance: Instance) -> tuple[int, Moves | None]:
 def improve(
     instance: Instance, moves: Moves, steps: int, seed: int, hot: float = 0.15
 ) -> tuple[int, Moves]:
-    """(cost, moves) of the best that annealing finds in so many steps from these moves.
+    """(cost, moves) of the best solution that annealing finds from these moves in `steps` steps.
 
     The cost is NONE if even that misses a latest end.
     """
@@ -81,9 +79,9 @@ def improve(
 def rebuilt(
     instance: Instance, moves: Moves, rounds: int, seed: int, hot: float = 0.01
 ) -> tuple[int, Moves]:
-    """(cost, moves) of the best that so many rounds of taking out and putting in again find.
+    """(cost, moves) of the best solution after `rounds` rounds of removal and reinsertion.
 
-    The cost is NONE if even that misses a latest end, or nothing could be put in again.
+    The cost is NONE if even that misses a latest end, or nothing could be reinserted.
     """
     i, n = instance, instance.tasks
     order = np.array([i.task[o] for _, o in moves], np.int64)
@@ -130,7 +128,7 @@ def timed(instance: Instance, moves: Moves) -> list[tuple[int, int, int, int, in
 
 
 def estimate(instance: Instance, ahead: Ahead | None = None) -> int:
-    """A bound that takes no search: the first state's, or above 62 tasks `rough_bound`."""
+    """A bound without a search: the first state's, or above 62 tasks `rough_bound`."""
     i = instance
     if i.tasks > TASKS_MAX:
         return rough_bound(i)
@@ -139,7 +137,7 @@ def estimate(instance: Instance, ahead: Ahead | None = None) -> int:
 
 
 def rough_bound(instance: Instance) -> int:
-    """The longest path through the rows, and the least work of all tasks shared by all vehicles."""
+    """A bound from the longest path through the rows and the least work of all tasks shared by all vehicles."""
     i = instance
     head, least, tail = machine_for_pass(i, heads)(i, shortest(i, i.may))
     work, legs = machine_for(i, least_work)(i)
@@ -159,7 +157,7 @@ def settle_bound(
 ) -> tuple[int, Moves | None, Proof, Outcome | None]:
     """The optimum below `limit` as far as `width` allows: (cost, moves or None, proof, search).
 
-    moves None: nothing below the limit was found; the proof's bound says what is certain.
+    moves None: nothing below the limit was found; the proof's bound is what is certain.
     """
     if instance.tasks > TASKS_MAX:
         return limit, None, Proof("estimate", estimate(instance)), None

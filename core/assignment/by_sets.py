@@ -1,9 +1,9 @@
-"""The optimum where order rows bind no times: tasks are dealt out set by set.
+"""The optimum if order rows do not bind times: tasks are distributed set by set.
 
-Without waiting a vehicle's last end depends on its own tasks alone, so the least cost follows from
-tables over sets of tasks: the shortest time for a set (`latest_tables` with one far latest end),
-and the best deal of a set among the vehicles from v on. An order that the rows of all tasks allow
-has to exist for the chains that come out; where it does not, the value is a bound only.
+Without waiting, a vehicle's last end depends only on its own tasks, so the least cost follows from tables over sets
+of tasks: the shortest time for a set (`latest_tables` with one far latest end), and the best distribution of a set
+among the vehicles from v on. The resulting chains need an order that the rows of all tasks allow; without one, the
+value is only a bound.
 """
 
 from __future__ import annotations
@@ -20,12 +20,13 @@ from cratous.core.kernel import driver
 HORIZON = 1073741823
 """The latest end from which times are counted back [ms]."""
 SETS_TASKS = 16
-"""Three to this power deals are looked at for each vehicle."""
+"""Limit on tasks: three to this power distributions are examined for each vehicle."""
 
 
 def best_deals(start: np.ndarray, ready: np.ndarray, team: int, value: np.ndarray) -> None:
-    """value [V + 1, 2**n]: the least cost of doing a set with vehicles v.. (latest end, or their
-    sum if `team`)."""
+    """value [V + 1, 2**n]: the least cost of doing a set with vehicles from v on (latest end, or their sum if
+    `team`).
+    """
     vehicles, sets = start.shape
     far = 1 << 40
     value[vehicles, :] = far
@@ -66,7 +67,7 @@ def is_sets(instance: Instance) -> bool:
 def by_sets(
     instance: Instance, ahead: Ahead | None = None
 ) -> tuple[int, tuple[tuple[int, int], ...] | None]:
-    """(least cost over all deals of the tasks, moves in an order that the rows allow or None)."""
+    """(least cost over all distributions of the tasks, moves in an order that the rows allow or None)."""
     i = instance
     ahead = look_ahead(i) if ahead is None else ahead
     n, kinds = i.tasks, len(ahead.leader)
@@ -76,7 +77,7 @@ def by_sets(
     due = np.full(n, HORIZON, np.int64)
     relaxed = i._replace(need=before, release=i.release * 0, due=due)
     machine_for(i, latest_tables)(relaxed, ahead.kind_of, ahead.leader, latest, start)
-    # a shared table lets any option be flown: sets that a vehicle may not do are struck out here
+    # a shared table permits every option: sets that a vehicle may not do are excluded here
     sets = np.arange(1 << n)
     for v in range(i.vehicles):
         start[v, (sets & ~int(ahead.able[v])) != 0] = -HORIZON
@@ -89,7 +90,7 @@ def by_sets(
 
 
 def all_before(instance: Instance) -> np.ndarray:
-    """Per task the mask of all tasks that must come before it, however far."""
+    """For each task the mask of all its direct and indirect predecessors."""
     i = instance
     before = i.need.copy()
     for r in range(i.ref_kind.size):
@@ -109,7 +110,7 @@ def _chains(
     i: Instance, ahead: Ahead, latest: np.ndarray, start: np.ndarray, value: np.ndarray,
     before: np.ndarray,
 ) -> list[list[int]]:  # fmt: skip
-    """Per vehicle its options in order, read off the tables."""
+    """The options of each vehicle in order, read from the tables."""
     left, chains = (1 << i.tasks) - 1, []
     team = int(i.weight[1])
     for v in range(i.vehicles):

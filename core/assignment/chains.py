@@ -1,13 +1,13 @@
-"""All chains of an instance that could still cost less than a limit, one after the other.
+"""Enumeration of all chains of an instance that could still cost less than a limit.
 
-For problems with upper limits between tasks or with whole laps: there earlier is not always better,
-so nothing is left out for being covered. Depth first, the least bound first. The instance is the
-problem without those limits, so its bounds hold for the problem; whoever asks (`chains_below`) is
-given each complete list of moves, says what it costs, and from which of its moves on nothing can
-come of it (a schedule of the first moves alone that breaks, breaks with more behind it as well).
+For problems with upper limits between tasks or with whole laps: there, earlier is not always better, so no state is
+pruned by dominance. Depth first, least bound first. The instance is the problem without those limits, so its bounds
+are valid for the problem; the caller (`chains_below`) gets each complete list of moves and returns its cost, and the
+number of first moves that already rule it out (a schedule that is infeasible for the first moves alone stays
+infeasible with more moves).
 
-Chains are listed in one order only: by start where tasks start in the order of assignment; else a
-move may not follow one of a later vehicle that did not make it possible.
+Each set of chains is listed in one order only: by start if tasks start in the order of assignment; otherwise a move
+may not follow one of a later vehicle that did not make it possible.
 """
 
 from __future__ import annotations
@@ -28,8 +28,9 @@ from cratous.core.kernel import driver
 
 Moves = tuple[tuple[int, int], ...]
 Judge = Callable[[Moves, int], tuple[int, int]]
-"""(moves, limit) -> (their cost, or the limit if it is not below it; how many of the first moves
-are enough for that)."""
+"""(moves, limit) -> (their cost, or the limit if it is not below it; how many of the first moves suffice for that
+result).
+"""
 LEAF, EMPTY, TIRED = 1, 0, 2
 
 
@@ -39,9 +40,8 @@ def descend(
 ) -> int:  # fmt: skip
     """Go on to the next complete list of moves: 1 found, 0 there is none, 2 the budget is spent.
 
-    stack [n + 1, S]: states; kids [n, V K, 3]: per depth (bound, vehicle, option), sorted; count,
-    turn [n]: how many, and which is next; control: depth, nodes, and whether the children of this
-    depth are made.
+    stack [n + 1, S]: states; kids [n, V K, 3]: per depth (bound, vehicle, option), sorted; count, turn [n]: how many,
+    and which is next; control: depth, nodes, and whether the children of this depth have been generated.
     """
     i = search.instance
     may, task, twin, waits = i.may, i.task, i.twin, i.waits
@@ -66,7 +66,7 @@ def descend(
                     if waits and u != v and state[1 + v] == options and state[1 + u] == options:
                         continue
                     if waits == 0 and d > 0:
-                        # this move was possible before the last one: then it stood before it
+                        # this move was possible before the last one, so it is listed before it
                         w = kids[d - 1, turn[d - 1] - 1, 1]
                         if v < w:
                             done = stack[d - 1][0]
@@ -116,7 +116,7 @@ def descend(
 
 @dataclass(frozen=True)
 class Listed:
-    """What came of it. moves: the best below the limit, or None; complete: all were looked at."""
+    """The result. moves: the best below the limit, or None; complete: all lists were examined."""
 
     cost: int
     moves: Moves | None
@@ -134,9 +134,9 @@ def chains_below(
     stop: Callable[[int], bool] | None = None,
     ahead: Ahead | None = None,
 ) -> Listed:
-    """The best moves that cost less than `limit` by `judge`, within so many nodes.
+    """The best moves that cost less than `limit` by `judge`, within `nodes` nodes.
 
-    stop: asked now and then, with the nodes so far; True ends the search.
+    stop: called periodically with the number of nodes so far; True ends the search.
     """
     i, n = instance, instance.tasks
     ahead = look_ahead(i) if ahead is None else ahead
@@ -160,15 +160,15 @@ def chains_below(
         moves = tuple(
             (int(kids[d, turn[d] - 1, 1]), int(kids[d, turn[d] - 1, 2])) for d in range(n)
         )
-        # a judged list costs as much as many nodes
+        # judging a list costs as much as many nodes
         control[1] += LEAF_NODES
         cost, enough = judge(moves, limit)
         if cost < limit:
             limit, best = cost, moves
         elif 0 < enough <= n:
-            # the children beside the last of these moves are still to do
+            # siblings of the last of these moves remain
             control[0], control[2] = enough - 1, 1
 
 
 LEAF_NODES = 200
-"""What a list of moves that is judged counts as, in nodes."""
+"""Cost of judging one list of moves, in nodes."""

@@ -1,12 +1,11 @@
 """The earliest schedule of given chains: arrivals, waiting in whole laps, and constraint rows.
 
-Every rule is an *edge* (one start is at least another start plus a time), a latest start, or a
-*choice* between edges: of which member of a group the earliest start or the latest end is, and
-whether a wait that is no whole number of laps becomes longer or shorter. Under given edges starts
-only rise (`raised`), so what stands when nothing rises any more is the componentwise earliest
-schedule, and there is none if a start rises past its latest, or round a circle. Where a choice is
-broken, both sides are tried, so the result is the best of the earliest schedules of all choices.
-What was found is put to the proved kernels (`schedule_holds`, `chain_holds`) before it is given.
+Every rule is an *edge* (one start is at least another start plus a time), a latest start, or a *choice* between
+edges: which member of a group has the earliest start or the latest end, and whether a wait that is not a whole number
+of laps becomes longer or shorter. Under given edges starts only increase (`raised`), so the fixed point is the
+componentwise earliest schedule, and there is none if a start exceeds its latest, or increases around a cycle. Where a
+choice is violated, both alternatives are tried, so the result is the best of the earliest schedules of all choices.
+The result is checked by the proved kernels (`schedule_holds`, `chain_holds`) before it is returned.
 """
 
 from __future__ import annotations
@@ -23,16 +22,15 @@ from cratous.spec import constraint_rows as kinds
 from cratous.spec.constraint_rows import Row
 
 CHOICES_MAX = 2_000
-"""Choices that are tried for one schedule."""
+"""Maximum number of choices tried for one schedule."""
 
 
 class Visit(NamedTuple):
     """One task in a chain. Times in ms.
 
-    previous: index of the visit that the vehicle makes before, or -1; ready_ms: when a vehicle
-    without a previous visit sets off; travel_ms, duration_ms; lap_ms: shortest lap of the hold;
-    lap_max_ms: longest lap (0: the vehicle cannot hold there); fixed_ms: the start, if the task
-    has already been flown.
+    previous: index of the vehicle's preceding visit, or -1; ready_ms: when a vehicle without a preceding visit
+    departs; travel_ms, duration_ms; lap_ms: shortest lap of the hold; lap_max_ms: longest lap (0: the vehicle cannot
+    hold there); fixed_ms: the start, if the task has already been flown.
     """
 
     task_id: int
@@ -57,14 +55,14 @@ class Times:
 
 @dataclass(frozen=True)
 class Unmet(Refusal):
-    """No schedule was found: a row that cannot be met. sure: all choices were tried, so there is none."""
+    """No schedule was found: a row that cannot be satisfied. sure: all choices were tried, so there is none."""
 
     violated: Row
     sure: bool = True
 
 
 def next_wait_ms(wait_ms: int, lap_ms: int, lap_max_ms: int) -> int | None:
-    """The shortest possible wait of at least wait_ms: a whole number of equal laps; None: none."""
+    """The shortest possible wait of at least wait_ms, a whole number of equal laps; None if impossible."""
     if wait_ms <= 0:
         return 0
     if lap_max_ms <= 0:
@@ -96,7 +94,7 @@ def rows_hold(rows: Sequence[Row], starts: dict[int, int], ends: dict[int, int])
 
 
 class _Edge(NamedTuple):
-    """The start of `to` is at least that of the visit it is filed under plus `apart` ms."""
+    """The start of `to` is at least that of the visit under which the edge is stored, plus `apart` ms."""
 
     to: int
     apart: int
@@ -104,13 +102,13 @@ class _Edge(NamedTuple):
 
 
 class _Choice(NamedTuple):
-    """A row with a group of several: one of these edges (from, edge) must hold."""
+    """A row with a group of several tasks: one of these edges (from, edge) must hold."""
 
     edges: tuple[tuple[int, _Edge], ...]
 
 
 class _System:
-    """The edges, latest starts and choices of some chains, and the raising of starts under them."""
+    """The edges, latest starts and choices of some chains, and the propagation of starts under them."""
 
     def __init__(self, visits: Sequence[Visit], rows: Sequence[Row], partial: bool) -> None:
         self.visits = visits
@@ -174,7 +172,7 @@ class _System:
             self.choices.append(_Choice(tuple(edges)))
 
     def raise_all(self, start: list[int], moved: Sequence[int]) -> Row | None:
-        """Raise starts until all edges hold, from the visits that have moved; a row if they cannot."""
+        """Increase starts until all edges hold, beginning at the visits that have moved; a row if they cannot."""
         waiting, queued = deque(moved), [False] * len(start)
         rises, cause = [0] * len(start), [Edge0] * len(start)
         for k in moved:
@@ -202,7 +200,7 @@ class _System:
         return None
 
     def _circle(self, cause: list[tuple[int, Row | None]], k: int) -> bool:
-        """Whether the causes of a rise lead round a circle."""
+        """Whether the causes of an increase form a cycle."""
         seen = set()
         while k >= 0 and k not in seen:
             seen.add(k)
@@ -210,7 +208,7 @@ class _System:
         return k >= 0
 
     def _blame(self, cause: list[tuple[int, Row | None]], k: int) -> Row:
-        """The nearest row among the causes of a rise."""
+        """The nearest row among the causes of an increase."""
         at, seen = k, set()
         while at >= 0 and at not in seen:
             seen.add(at)
@@ -220,7 +218,9 @@ class _System:
         return _unnamed(self.visits[k])
 
     def ways_out(self, start: list[int]) -> list[tuple[int, _Edge]] | None:
-        """The edges of which one has to be added, by how little they raise; None: all is well."""
+        """The edges of which one has to be added, in order of the increase they cause; None if no
+        choice is violated.
+        """
         for choice in self.choices:
             if all(start[edge.to] < start[k] + edge.apart for k, edge in choice.edges):
                 return sorted(choice.edges, key=lambda c: start[c[0]] + c[1].apart - start[c[1].to])
@@ -233,7 +233,7 @@ class _System:
                 continue
             way = visit.travel_ms
             if visit.previous < 0:
-                # the way out that shortens the wait is closed: the vehicle sets off when ready
+                # the alternative with the shorter wait is excluded: the vehicle departs when ready
                 return [(-1, _Edge(k, visit.ready_ms + way + laps * visit.lap_ms, None))]
             way += self.visits[visit.previous].duration_ms
             longer = _Edge(k, way + laps * visit.lap_ms, None)
@@ -242,7 +242,7 @@ class _System:
         return None
 
     def arrival(self, start: list[int], k: int) -> int:
-        """When the vehicle is there [ms]."""
+        """The arrival time [ms]."""
         visit = self.visits[k]
         if visit.fixed_ms is not None:
             return visit.fixed_ms
@@ -264,14 +264,14 @@ Cost = Callable[[list[int]], int]
 
 
 def latest_end(visits: Sequence[Visit]) -> Cost:
-    """The cost that counts the latest end."""
+    """The cost function that is the latest end."""
     return lambda start: max(
         (s + v.duration_ms for s, v in zip(start, visits, strict=True)), default=0
     )
 
 
 class _Best:
-    """Depth first through the choices; the best schedule below the limit."""
+    """Depth-first search through the choices; keeps the best schedule below the limit."""
 
     def __init__(self, system: _System, cost: Cost, limit: int, effort: int) -> None:
         self.system, self.cost, self.limit, self.effort = system, cost, limit, effort
@@ -279,7 +279,7 @@ class _Best:
         self.violated: Row | None = None
 
     def search(self, start: list[int], moved: Sequence[int]) -> None:
-        """Try all ways out from here; `start` is changed."""
+        """Try all alternatives from here; `start` is changed."""
         todo: list[tuple[list[int], Sequence[int], int, tuple[int, _Edge] | None]]
         todo = [(start, moved, 0, None)]
         added: list[int] = []
@@ -322,11 +322,11 @@ def earliest(
     limit: int = 1 << 62,
     effort: int = CHOICES_MAX,
 ) -> Times | Unmet:
-    """The best schedule of the chains under the rows, or what cannot be met.
+    """The best schedule of the chains under the rows, or a row that cannot be satisfied.
 
-    Visits must stand in the order of flight within a chain. cost: of the starts, never falling with
-    them (the latest end if None); limit: only schedules that cost less count; effort: choices that
-    are tried. A row about an unknown task cannot be met.
+    Visits must be in the order of flight within a chain. cost: a function of the starts that does not decrease in
+    them (the latest end if None); limit: only schedules that cost less count; effort: number of choices to try. A row
+    about an unknown task cannot be satisfied.
     """
     system = _System(visits, rows, False)
     best = _Best(system, cost or latest_end(visits), limit, effort)
@@ -347,7 +347,7 @@ def _times(system: _System, best: _Best) -> Times:
 
 
 def keeps(times: Times, visits: Sequence[Visit], rows: Sequence[Row]) -> bool:
-    """Whether these times of the visits keep all rows, and each chain can be flown at them."""
+    """Whether these times of the visits satisfy all rows, and each chain can be flown at them."""
     starts = {visit.task_id: s for s, visit in zip(times.start_ms, visits, strict=True)}
     ends = {visit.task_id: e for e, visit in zip(times.end_ms, visits, strict=True)}
     chains = list(_legs(times, visits))
@@ -357,7 +357,7 @@ def keeps(times: Times, visits: Sequence[Visit], rows: Sequence[Row]) -> bool:
 
 
 def _legs(times: Times, visits: Sequence[Visit]) -> Iterator[list[tuple[int, int, int, int]]]:
-    """Of each chain the (travel, start, end, duration) of its visits; what is flown stands as it is."""
+    """For each chain the (travel, start, end, duration) of its visits; visits already flown keep their times."""
     next_of = {visit.previous: k for k, visit in enumerate(visits) if visit.previous >= 0}
     for first, visit in enumerate(visits):
         if visit.previous >= 0:
@@ -377,9 +377,9 @@ def _none_below(limit: int) -> Row:
 
 
 def least_starts(visits: Sequence[Visit], rows: Sequence[Row]) -> list[int] | None:
-    """Starts before which no task can start in any schedule of the chains, whatever is chosen.
+    """Lower bounds of the starts of all tasks in any schedule of the chains, whatever is chosen.
 
-    Rows about unknown tasks say nothing. None: there is no schedule.
+    Rows about unknown tasks are ignored. None: there is no schedule.
     """
     system = _System(visits, rows, True)
     start = list(system.first)

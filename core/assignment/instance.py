@@ -1,9 +1,9 @@
-"""An assignment problem without alternatives as arrays: what the compiled searches read.
+"""An assignment problem without alternatives as arrays: the input of the compiled searches.
 
-Vehicles, options and tasks are numbered from 0; all times are integer ms. An instance is *plain*:
-its rows bound starts from below (kinds 1, 2, 5) or single ends from above (kind 6), and a vehicle
-may wait for any time. Whatever is earlier in a plain instance stays earlier, on which dominance
-rests. Everything else is searched by `core.assignment.problem`.
+Vehicles, options and tasks are numbered from 0; all times are integer ms. An instance is *plain*: its rows bound
+starts from below (kinds 1, 2, 5) or single ends from above (kind 6), and a vehicle may wait for any time. In a plain
+instance, an earlier state stays earlier, which dominance relies on. All other problems are searched by
+`core.assignment.problem`.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ import numpy as np
 from cratous.spec.constraint_rows import AFTER_END, AFTER_START, NOT_AFTER, NOT_BEFORE, Row
 
 FAR = 1 << 40
-"""No way there [ms]; every real time of an instance is far below (`TIME_MAX_MS`)."""
+"""No route [ms]; every real time of an instance is far below (`TIME_MAX_MS`)."""
 TIME_MAX_MS = 1 << 38
 """Sums of times in an instance stay below this: eight years."""
 TABLE_MAX_MS = 1 << 29
-"""Tables hold 32 bits: they are made where all times stay below this, six days."""
+"""Tables have 32-bit entries: they are built if all times stay below this (six days)."""
 TASKS_MAX = 62
 
 
@@ -58,23 +58,24 @@ class Instance(NamedTuple):
 
     @property
     def vehicles(self) -> int:
-        """How many vehicles."""
+        """The number of vehicles."""
         return int(self.may.shape[0])
 
     @property
     def tasks(self) -> int:
-        """How many tasks, all of which are to be done."""
+        """The number of tasks, all of which have to be done."""
         return int(self.release.shape[0])
 
 
 def is_plain(rows: Sequence[Row]) -> bool:
-    """Whether rows bound starts from below and single ends from above only."""
+    """Whether rows only bound starts from below and single ends from above."""
     return all(row.kind in (AFTER_END, AFTER_START, NOT_BEFORE, NOT_AFTER) for row in rows)
 
 
 class Fleet(NamedTuple):
-    """When vehicles are ready [V, ms], what they may do and what their legs take and cost, as arrays of
-    `Instance` or what makes them."""
+    """When vehicles are ready [V, ms], which options they may do, and what their legs take and cost, as arrays of
+    `Instance` or their source.
+    """
 
     ready: Sequence[int]
     may: Any
@@ -162,7 +163,7 @@ def _mask(group: Sequence[int]) -> int:
 
 
 def horizon(i: Instance) -> int:
-    """No schedule without needless waiting ends later than this [ms]."""
+    """Upper bound of the end of any schedule without needless waiting [ms]."""
     ways = i.travel[i.travel < FAR]
     longest = int(ways.max()) if ways.size else 0
     lags = int(i.row_lo.sum()) if i.row_lo.size else 0

@@ -1,12 +1,12 @@
-"""Large neighbourhoods: strings of near tasks are taken out of their chains and put in again.
+"""Large-neighbourhood search: strings of adjacent tasks are removed from their chains and reinserted.
 
-What is taken out (at most 14 tasks, in strings of at most 10) is put back one by one where it costs
-least: the places of all vehicles and options are ranked by how much later the task behind would
-start, and the best three are timed in full (`time_chains`). A result is kept by the rule of threshold accepting. Everything that is found
-is timed and checked like any other solution.
+The removed tasks (at most 14, in strings of at most 10) are reinserted one by one where this costs least: the
+positions of all vehicles and options are ranked by the delay of the following task, and the best three are timed in
+full (`time_chains`). A result is accepted by threshold accepting. Everything found is timed and checked like any
+other solution.
 
-Source of the removal of strings: J. Christiaens, G. Vanden Berghe, "Slack Induction by String
-Removals for Vehicle Routing Problems", Transportation Science 54(2), 2020.
+Source of string removal: J. Christiaens, G. Vanden Berghe, "Slack Induction by String Removals for Vehicle Routing
+Problems", Transportation Science 54(2), 2020.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from cratous.core.assignment.steps import earliest_start, weighted
 def time_chains(
     chains: ChainArrays, times: Times, order: np.ndarray, next_of: np.ndarray, i: Instance
 ) -> int:
-    """The cost of chains, of some tasks alone maybe, with times and order; 2**60: they block.
+    """The cost of chains, possibly of some tasks only, with times and order; 2**60: they block each other.
 
-    Rows about tasks that are in no chain say nothing. Always the task that can start first comes
-    next. next_of [V]: scratch. A latest end that is missed costs 1000 for each ms.
+    Rows about tasks that are in no chain are ignored. The task that can start first comes next. next_of [V]: scratch.
+    Each millisecond beyond a latest end costs 1000.
     """
     chain, length, how, there = chains.chain, chains.length, chains.how, chains.there
     starts, ends, free = times.starts, times.ends, times.free
@@ -110,10 +110,9 @@ def rebuild(
     order: np.ndarray, who: np.ndarray, how: np.ndarray, rounds: int, seed: int, hot: float,
     near: np.ndarray, i: Instance,
 ) -> int:  # fmt: skip
-    """Take out and put in again for so many rounds; the cost of the best, which is left in place.
+    """Remove and reinsert tasks for `rounds` rounds; returns the cost of the best, which is left in the arrays.
 
-    near [n, n]: for each task all tasks, the nearest first; hot: first temperature, as a share of
-    the cost.
+    near [n, n]: for each task all tasks, the nearest first; hot: initial temperature, as a share of the cost.
     """
     travel, added, duration, ready = i.travel, i.added, i.duration, i.ready
     release, due, ref_kind, member_first = i.release, i.due, i.ref_kind, i.member_first
@@ -150,7 +149,7 @@ def rebuild(
         x ^= x << 13
         x ^= (x >> 7) & np.int64(0x01FFFFFFFFFFFFFF)
         x ^= x << 17
-        # take out: strings of the chains that pass the nearest tasks of one
+        # remove strings of the chains that pass the tasks nearest to one
         seed_task = (x & 0xFFFF) % n
         strings = 1 + ((x >> 16) & 0xFF) % 3
         count = 0
@@ -181,7 +180,7 @@ def rebuild(
             for p in range(first, length[v] - long):
                 chain[v, p] = chain[v, p + long]
             length[v] -= long
-        # in which order they come back: as it falls, or the longest first
+        # order of reinsertion: random, or the longest first
         x ^= x << 13
         x ^= (x >> 7) & np.int64(0x01FFFFFFFFFFFFFF)
         x ^= x << 17
@@ -211,7 +210,7 @@ def rebuild(
                         for m in range(member_first[r], member_first[r + 1]):
                             if there[member[m]]:
                                 ref = max(ref, ends[member[m]] + row_lo[place])
-            # the first start of what has to follow: a later end puts that off
+            # the first start of a successor, which a later end delays
             follows = 1 << 60
             for k in range(n):
                 if there[k] == 0 or waits == 0:
@@ -276,7 +275,7 @@ def rebuild(
             there[j] = 1
             least, pick = 1 << 60, -1
             for t in range(4):
-                # the last turn puts in what was best
+                # the last round restores the best solution
                 u = t
                 if t == 3:
                     if pick < 0:

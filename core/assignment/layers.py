@@ -1,8 +1,8 @@
-"""Refuting a cost for a plain instance, layer by layer; and finding what is below it on the way.
+"""Refuting a cost for a plain instance, layer by layer, and finding solutions below it on the way.
 
-`refute(instance, limit)` ends in one of three ways: a solution below the limit is found (the best
-there is, if nothing was left out), or none exists, or states had to be left out for want of room;
-then the least of their bounds is what is still known.
+`refute(instance, limit)` has one of three results: a solution below the limit (the best one, if no state was
+dropped); no such solution exists; or states had to be dropped for lack of memory, and the least of their bounds is
+what is still known.
 """
 
 from __future__ import annotations
@@ -36,24 +36,23 @@ from cratous.core.assignment.tables import CELLS_MAX, latest_tables
 from cratous.core.kernel import driver
 
 EFFORT = 2_000_000
-"""Steps spent on one question to `deals`."""
+"""Maximum number of steps for one question to `deals`."""
 DEALS_TASKS = 20
 LATEST = (1 << 30) - 1
-"""No task of an instance with tables ends as late as this [ms] (`TABLE_MAX_MS`); tables hold 32 bits."""
+"""Upper bound of the end of any task in an instance with tables [ms] (`TABLE_MAX_MS`); tables have 32-bit entries."""
 CHUNK = 32
-"""Rows of a layer that are expanded before anybody is asked whether to stop."""
+"""Rows of a layer expanded between two calls of `stop`."""
 ROOM_BYTES = 50_000_000
-"""What the states of one layer may take."""
+"""Memory limit of the states of one layer."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a refutation gave.
+    """The result of a refutation.
 
-    moves: (vehicle, option) in order of the best completion found, or None; cost: of it; known: no
-    completion that is not listed costs less than this (the limit, if nothing was left out);
-    layers: states kept, and the origins of the states of each layer; counts: nodes, pruned by
-    bound, by dealing, covered.
+    moves: (vehicle, option) in order of the best completion found, or None; cost: of it; known: no completion that is
+    not listed costs less than this (the limit, if no state was dropped); layers: states kept, and the origins of the
+    states of each layer; counts: nodes, pruned by bound, by dealing, covered.
     """
 
     cost: int
@@ -66,7 +65,7 @@ class Outcome:
 
 
 def look_ahead(instance: Instance) -> Ahead:
-    """Shortest ways, heads and tails, and which vehicles share a table."""
+    """Shortest routes, heads and tails, and which vehicles share a table."""
     i = instance
     reach = shortest(i, i.may)
     head, least, tail = machine_for_pass(i, heads)(i, reach)
@@ -94,7 +93,7 @@ def look_ahead(instance: Instance) -> Ahead:
 
 
 def shortest(instance: Instance, may: np.ndarray) -> np.ndarray:
-    """The shortest ways with any stops at options that `may` allows, asked of every stop."""
+    """The shortest routes with any stops at options that `may` allows, checked for every stop."""
     i = instance
     known = _FOUND.of(i.travel, i.duration, may) if is_small(i) else None
     if known is not None:
@@ -108,25 +107,27 @@ def shortest(instance: Instance, may: np.ndarray) -> np.ndarray:
 
 
 class _Found:
-    """The shortest ways found last, by all that they depend on: a planner asks many questions about the same ways."""
+    """Cache of the latest shortest routes, keyed by everything they depend on: a planner asks many questions about
+    the same routes.
+    """
 
     def __init__(self, most: int) -> None:
         self._most = most
         self._ways: dict[tuple[Any, ...], np.ndarray] = {}
 
     def of(self, *given: np.ndarray) -> np.ndarray | None:
-        """Those of the same travel, durations and options, if they are known."""
+        """The stored routes for this travel, durations and options; None if there are none."""
         found = self._ways.get(_key(given))
         return None if found is None else found.copy()
 
     def put(self, given: tuple[np.ndarray, ...], ways: np.ndarray) -> None:
-        """Those that were found and hold; the oldest go."""
+        """Store routes that were computed and checked; the oldest are dropped."""
         while len(self._ways) >= self._most:
             del self._ways[next(iter(self._ways))]
         self._ways[_key(given)] = ways.copy()
 
     def forget_all(self) -> None:
-        """None is known any more."""
+        """Clear the cache."""
         self._ways.clear()
 
 
@@ -138,12 +139,14 @@ _FOUND = _Found(64)
 
 
 def forget() -> None:
-    """What is found from here on follows from the questions from here on, and so does how often a kernel is asked."""
+    """Clear the cache, so that results, and the number of kernel calls, depend only on the questions asked from now
+    on.
+    """
     _FOUND.forget_all()
 
 
 def tables(instance: Instance, ahead: Ahead, limit: int) -> Tables:
-    """Latest departures if everything is to end so that the cost is below the limit."""
+    """Latest departures for everything to end so that the cost is below the limit."""
     i, due = instance, instance.due.copy()
     if i.weight[0] > 0:
         due = np.minimum(due, (limit - 1) // int(i.weight[0]) - ahead.tail)
@@ -165,7 +168,7 @@ def tables(instance: Instance, ahead: Ahead, limit: int) -> Tables:
 
 
 def search_below(instance: Instance, ahead: Ahead, limit: int) -> Search:
-    """The search for what costs less than the limit."""
+    """The search for solutions that cost less than the limit."""
     looked = tables(instance, ahead, limit)
     return Search(instance._replace(due=looked.due), ahead, looked, looked.used, EFFORT)
 
@@ -187,7 +190,7 @@ def refute(
 ) -> Outcome:
     """Whether anything costs less than `limit`; at most `width` states are kept of a layer.
 
-    stop: asked now and then, with the nodes so far; True ends the search.
+    stop: called periodically with the number of nodes so far; True ends the search.
     """
     i = instance
     ahead = look_ahead(i) if ahead is None else ahead
@@ -221,7 +224,7 @@ def refute(
                 table = np.empty(1 << (2 * room - 1).bit_length(), np.int64)
                 machine_for(i, rehash)(into, kept, table, chain, i.vehicles)
         if first < len(layer) or halted:
-            # children of the states from here on are lost
+            # children of the states from here on are dropped
             known = min(known, int(ranks[min(first, len(layer) - 1) :].min()))
         alive = np.flatnonzero(rank[:kept] >= 0)
         if len(alive) > width:
@@ -258,7 +261,7 @@ def _longer(array: np.ndarray, room: int) -> np.ndarray:
 
 
 def replay(instance: Instance, moves: tuple[tuple[int, int], ...]) -> list[np.ndarray]:
-    """The states along a list of moves, the first one included; ValueError for one that cannot be."""
+    """The states along a list of moves, including the first; ValueError for an impossible move."""
     i, state = instance, first_state(instance)
     states = [state]
     for v, o in moves:

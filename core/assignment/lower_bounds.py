@@ -1,10 +1,9 @@
-"""The steps by which lower bounds of an assignment are summed up, each a kernel, and their loops.
+"""The steps by which lower bounds of an assignment are added up, each a kernel, and their loops.
 
-What any completion spends at least: of every task that is left the shortest leg to it and the
-shortest duration, by whatever vehicle, option and place before; what has to follow a task; the way
-with stops. Loops call these kernels and nothing else, so the bounds are admissible by induction over
-what they run over (theorems `assignment_least_*`). Definitions: `spec.assignment.bounds`. Integers,
-milliseconds.
+The least that any completion spends: for every remaining task the shortest leg to it and its shortest duration, over
+all vehicles, options and preceding places; the tasks that have to follow; routes with stops. The loops call only
+these kernels, so the bounds are admissible by induction over the loop (theorems `assignment_least_*`). Definitions:
+`spec.assignment.bounds`. Integers, milliseconds.
 """
 
 from __future__ import annotations
@@ -43,7 +42,7 @@ def add_least(total: int, is_open: bool, least: int) -> int:
     restates="the bounds of a search count on ways that no stop makes shorter",
 )
 def no_shortcut(direct: int, first: int, stay: int, second: int) -> bool:
-    """True iff a way with a stop is no shorter than what is said of the way without one.
+    """True iff a route with a stop takes no less time than stated for the direct route.
 
     direct: without; first, second: before and after the stop; stay: the stop. All in ms.
     """
@@ -61,7 +60,7 @@ def tail_step(tail: int, lag: int, least: int, after: int) -> int:
 
 
 def least_until(work: int, free: np.ndarray) -> int:
-    """An instant before which the vehicles cannot have done the work; -1: nothing is known."""
+    """An instant before which the vehicles cannot have done the work [ms]; -1: unknown."""
     vehicles = free.size
     until = 1 << 40
     for v in range(vehicles):
@@ -71,7 +70,7 @@ def least_until(work: int, free: np.ndarray) -> int:
                 total += free[w]
                 count += 1
         until = min(until, (total + count - 1) // count)
-    # one instant sooner the work does not fit: only then it is a bound
+    # the work must not fit one instant sooner: only then it is a bound
     room = 0
     for v in range(vehicles):
         room = room_step(room, until - 1, free[v])
@@ -101,8 +100,9 @@ def shortest_ways(travel: np.ndarray, duration: np.ndarray, may: np.ndarray) -> 
 
 
 def ways_hold(reach: np.ndarray, travel: np.ndarray, duration: np.ndarray, may: np.ndarray) -> bool:
-    """Whether no way, with whatever stops, is shorter than `reach` says: asked of every way that a
-    vehicle may take and of every stop, which is all that the induction over a chain needs."""
+    """Whether no route, with whatever stops, is shorter than `reach` states: checked for every leg that a vehicle may
+    fly and for every stop, which is all that the induction over a chain needs.
+    """
     vehicles, options = may.shape
     for v in range(vehicles):
         for a in range(options + 1):
@@ -122,7 +122,7 @@ def ways_hold(reach: np.ndarray, travel: np.ndarray, duration: np.ndarray, may: 
 
 
 def nearest_ways(reach: np.ndarray, may: np.ndarray) -> np.ndarray:
-    """[K + 1, K]: the least of a table [V, K + 1, K] over the vehicles that may do the option."""
+    """[K + 1, K]: the minimum of a table [V, K + 1, K] over the vehicles that may do the option."""
     vehicles, options = may.shape
     nearest = np.full((options + 1, options), 1 << 40, np.int64)
     for v in range(vehicles):
@@ -217,7 +217,7 @@ def heads(i: Instance, reach: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.nd
 
 
 def least_work(i: Instance) -> tuple[int, int]:
-    """What all tasks take at least, together: leg and duration [ms]; and what their legs cost."""
+    """The least that all tasks take together: legs and durations [ms]; and the least cost of their legs."""
     travel, added, duration, task, may = i.travel, i.added, i.duration, i.task, i.may
     vehicles, options = may.shape
     n = i.release.size

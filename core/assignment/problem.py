@@ -1,6 +1,6 @@
-"""What the search of a mission's assignment says in indices: who flies which option, and when.
+"""The result of a mission's assignment search in indices: who flies which option, and when.
 
-Vehicles and options (candidates) are numbered as the mission has them; times in integer ms.
+Vehicles and options (candidates) are numbered as in the mission; times in integer ms.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import NamedTuple
 from cratous.spec.constraint_rows import AFTER_END, AFTER_START, Row
 
 START = -1
-"""In place of a candidate: from where the vehicle is."""
+"""In place of a candidate: the vehicle's start."""
 
 
 class Fixed(NamedTuple):
@@ -36,7 +36,7 @@ class Placed(NamedTuple):
 
 @dataclass(frozen=True)
 class Branch:
-    """One choice of `+`: its tasks, and its rows about those that are not flown."""
+    """One resolution of `+`: its tasks, and its rows about those that are not flown yet."""
 
     tasks: tuple[int, ...]
     rows: tuple[Row, ...]
@@ -44,8 +44,9 @@ class Branch:
 
 @dataclass(frozen=True)
 class Assignment:
-    """What was found. status: `optimal` only with a certificate, else `feasible`; bound: nothing
-    costs less, as far as was proved; digest: of the certificate."""
+    """The result of the search. status: `optimal` only with a certificate, else `feasible`; bound: the proved lower
+    bound of the cost; digest: of the certificate.
+    """
 
     branch: Branch
     placed: tuple[Placed, ...]
@@ -62,5 +63,5 @@ class Assignment:
 
 
 def without_order(rows: Sequence[Row]) -> tuple[Row, ...]:
-    """The rows under the weaker reading `order`: plain precedence binds no times."""
+    """The rows under the weaker semantics `order`: plain precedence does not bind times."""
     return tuple(row for row in rows if not (row.kind in (AFTER_END, AFTER_START) and row.lo == 0))

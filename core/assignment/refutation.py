@@ -1,11 +1,10 @@
-"""Refuting a cost: all states of a plain instance from which less could still be reached.
+"""Refuting a cost: all states of a plain instance from which a lower cost could still be reached.
 
-A state is what matters for what comes after: the tasks done, where each vehicle is and when it is
-free, the references of rows that are still open, and the instant before which no later task
-starts (tasks are added in the order of their starts, later ones wait if they must). Layer by layer,
-a child is left out if a bound says that it cannot be completed below the limit, or if a state of
-its layer is nowhere later (`covers_step`). If no state is left out for want of room, then what the
-last layer holds is the optimum, or nothing is below the limit.
+A state contains what matters for the continuation: the tasks done, where each vehicle is and when it is free, the
+references of rows that are still open, and the instant before which no later task starts (tasks are added in the
+order of their starts; later ones wait if they must). Layer by layer, a child is pruned if a bound shows that it
+cannot be completed below the limit, or if another state of its layer is nowhere later (`covers_step`). If no state is
+dropped for lack of memory, the last layer contains the optimum, or nothing is below the limit.
 """
 
 from __future__ import annotations
@@ -30,10 +29,10 @@ from cratous.core.schedule.rows import later
 
 
 def place(state: np.ndarray, child: np.ndarray, v: int, o: int, i: Instance, floors: int) -> bool:
-    """Write into `child` the state after vehicle v does option o next; False: it cannot.
+    """Write into `child` the state after vehicle v does option o next; False if it cannot.
 
-    A state: done, V x last option (K: none), V x free, floor, added, R references. A reference
-    that no task left reads is 0; one of which nothing is done is -1.
+    A state: done, V x last option (K: none), V x free, floor, added, R references. A reference that no remaining task
+    reads is 0; one of which nothing is done is -1.
     """
     travel, ref_kind, ref_group = i.travel, i.ref_kind, i.ref_group
     vehicles = travel.shape[0]
@@ -78,7 +77,7 @@ def place(state: np.ndarray, child: np.ndarray, v: int, o: int, i: Instance, flo
 
 
 def cost_now(state: np.ndarray, vehicles: int, options: int, weight: np.ndarray) -> int:
-    """The cost of what is done: it never falls."""
+    """The cost of the tasks done; it does not decrease along a chain of states."""
     last = 0
     team = 0
     for v in range(vehicles):
@@ -89,7 +88,7 @@ def cost_now(state: np.ndarray, vehicles: int, options: int, weight: np.ndarray)
 
 
 def bound(state: np.ndarray, i: Instance, ahead: Ahead) -> int:
-    """No completion of the state costs less. 2**60: there is none."""
+    """A lower bound of the cost of all completions of the state. 2**60: there is none."""
     vehicles, options = i.may.shape
     n, due, weight = i.release.size, i.due, i.weight
     to_task, to_task_added = ahead.to_task, ahead.to_task_added
@@ -143,7 +142,7 @@ def covered_by(one: np.ndarray, other: np.ndarray, vehicles: int) -> bool:
 
 
 def key_of(state: np.ndarray, vehicles: int, size: int) -> Any:
-    """A hash of what must be equal for one state to cover another, below size (a power of 2)."""
+    """A hash of the parts that must be equal for one state to cover another, below size (a power of 2)."""
     mixed = np.int64(1469598103934665603)
     for c in range(1 + vehicles):
         mixed = (mixed ^ state[c]) * np.int64(1099511628211)
@@ -157,8 +156,8 @@ def expand(
 ) -> tuple[int, int]:  # fmt: skip
     """The children of parents[first:count] that could cost less than `limit`: (how many, next row).
 
-    layer: filled up to `kept`. Stops before a row whose children might not fit into it. counts:
-    nodes, pruned by bound, by dealing, covered.
+    layer: filled up to `kept`. Stops before a row whose children might not fit into it. counts: nodes, pruned by
+    bound, by dealing, covered.
     """
     i, into, origin, rank = search.instance, layer.states, layer.origin, layer.rank
     table, chain = layer.table, layer.chain
@@ -177,7 +176,7 @@ def expand(
             for v in range(vehicles):
                 if may[v, o] == 0:
                     continue
-                # a vehicle that is as good as one before it, and as unused, waits its turn
+                # of equally capable unused vehicles, the first is used first
                 if twin[v] != v and state[1 + v] == options and state[1 + twin[v]] == options:
                     continue
                 if not place(state, child, v, o, i, i.waits):
@@ -218,7 +217,7 @@ def expand(
 def rehash(
     into: np.ndarray, kept: int, table: np.ndarray, chain: np.ndarray, vehicles: int
 ) -> None:
-    """Make the hash table of the states anew, after it has grown."""
+    """Rebuild the hash table of the states after it has grown."""
     table[:] = -1
     for k in range(kept):
         place_in = key_of(into[k], vehicles, table.size)
@@ -232,10 +231,9 @@ def closed(
 ) -> int:  # fmt: skip
     """Whether a layer lists all children of `parents` that could cost less than `limit`.
 
-    origin [m, 3] says how each state of the layer comes from a parent; the states are made anew
-    into `into`. A child may be missing only if a state of the layer covers it, or a bound or the
-    dealing of tasks rules it out. -1: yes; else the number of a parent with a missing child, or
-    -2 - k if entry k is no possible move.
+    origin [m, 3] gives how each state of the layer comes from a parent; the states are recomputed into `into`. A
+    child may be missing only if a state of the layer covers it, or a bound or the dealing of tasks rules it out. -1:
+    yes; else the number of a parent with a missing child, or -2 - k if entry k is not a possible move.
     """
     i = search.instance
     may, twin, n = i.may, i.twin, i.release.size

@@ -1,8 +1,8 @@
-"""Checking a refutation from its origins alone: the states are made anew and every gap is asked for.
+"""Checking a refutation from its origins alone: the states are recomputed and every omission is checked.
 
-What is trusted is not the search but this: from the first state on, every child of every state is
-listed, covered by a listed state, or ruled out by a bound; so whatever costs less than the limit
-ends in a listed last state. The steps are the proved kernels of `core.assignment.steps`.
+The search itself is not trusted. What is checked: from the first state on, every child of every state is listed,
+covered by a listed state, or ruled out by a bound; so whatever costs less than the limit ends in a listed last state.
+The steps are the proved kernels of `core.assignment.steps`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from cratous.core.kernel import driver
 
 @driver(checked_by=REFUTES)
 def least_cost(instance: Instance, limit: int, origins: Sequence[np.ndarray]) -> tuple[int, str]:
-    """(no completion costs less than this, what is wrong): the first counts if the second is ""."""
+    """(no completion costs less than this, the fault found): the first is valid only if the second is ""."""
     i = instance
     search = search_below(i, look_ahead(i), limit)
     layer = first_state(i)[None, :]

@@ -1,11 +1,10 @@
-"""Neighbourhoods repaired by the exact search: windows of a few chains are dealt out anew, as well as it goes.
+"""Neighbourhoods repaired by the exact search: windows of a few chains are reassigned optimally.
 
-Two or three vehicles, and of each a few tasks in a row, are taken out; what each flies before stays
-and what it flies after is one task that comes last, on whichever of these vehicles. That is a
-problem of a dozen tasks, which `refute` solves to the end: either something better comes out or
-nothing in this neighbourhood is better. Rows about tasks outside count with their present times. A
-result is kept only if all chains, timed anew (`time_chains`), cost less, so nothing is claimed that
-is not checked like any other solution.
+From two or three vehicles, a few consecutive tasks each are removed; what each flies before stays fixed, and what it
+flies after becomes one task that comes last, on any of these vehicles. This is a problem of a dozen tasks, which
+`refute` solves to the end: either something better is found or nothing in this neighbourhood is better. Rows about
+tasks outside use their present times. A result is kept only if all chains, timed anew (`time_chains`), cost less, so
+it is checked like any other solution.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ from cratous.core.kernel import driver
 from cratous.spec.constraint_rows import AFTER_END, NOT_AFTER, NOT_BEFORE, Row
 
 WINDOW, WIDTH = 8, 1_000
-"""Tasks that are taken out, and states that are kept of a layer of the small search."""
+"""Tasks that are removed, and states that are kept of a layer of the small search."""
 Moves = tuple[tuple[int, int], ...]
 
 
@@ -41,8 +40,9 @@ class Chains(NamedTuple):
 
 
 class Small(NamedTuple):
-    """The problem of a neighbourhood: the vehicles, its tasks (those of the windows first, then what
-    comes after them) as tuples of tasks, and per option of it the real one."""
+    """The problem of a neighbourhood: the vehicles, its tasks (those of the windows first, then what follows them) as
+    tuples of tasks, and for each of its options the original one.
+    """
 
     of: Instance
     vehicles: tuple[int, ...]
@@ -67,14 +67,15 @@ def timed_chains(i: Instance, of: list[list[int]], how: np.ndarray) -> Chains | 
 
 
 def smooth(i: Instance, now: Chains) -> int:
-    """The cost, and a little of the sum of last ends, so that chains beside the longest count too."""
+    """The cost plus a small share of the sum of last ends, so that chains other than the longest count too."""
     share = 6 * i.vehicles
     return now.cost * share + sum(int(now.ends[tasks[-1]]) for tasks in now.of if tasks)
 
 
 def neighbourhood(i: Instance, now: Chains, windows: dict[int, tuple[int, int]]) -> Small | None:
-    """The small problem of windows (first, last + 1) of some vehicles; None where a row has a form
-    that it does not cover."""
+    """The small problem of windows (first, last + 1) of some vehicles; None if a row has a form that it does not
+    support.
+    """
     picked = tuple(sorted(windows))
     groups: list[tuple[int, ...]] = [
         (j,) for v in picked for j in now.of[v][windows[v][0] : windows[v][1]]
@@ -90,7 +91,7 @@ def neighbourhood(i: Instance, now: Chains, windows: dict[int, tuple[int, int]])
             options += [(g, o) for o, of in inside.items() if of == g]
     last = {g: int(now.how[group[-1]]) for g, group in enumerate(groups) if len(group) > 1}
     tail = len(groups) - sum(1 for v in picked if now.of[v][windows[v][1] :])
-    # how long after the start of its group a task starts, if nobody waits
+    # how long after the start of its group a task starts without waiting
     offset: dict[int, int] = {}
     long: dict[int, int] = {}
     for g, group in enumerate(groups):
@@ -137,7 +138,7 @@ def neighbourhood(i: Instance, now: Chains, windows: dict[int, tuple[int, int]])
 def _rows(
     i: Instance, now: Chains, whose: dict[int, int], offset: dict[int, int], long: dict[int, int]
 ) -> list[Row] | None:
-    """What binds the groups: releases, latest ends, and rows between them and with what is outside."""
+    """The constraints of the groups: releases, latest ends, and rows between them and with tasks outside."""
     rows = []
     for j in range(i.tasks):
         mine = whose.get(j)
@@ -154,7 +155,7 @@ def _rows(
             for m in (int(x) for x in i.member[i.member_first[r] : i.member_first[r + 1]]):
                 other = whose.get(m)
                 if mine is None and other is not None and i.waits:
-                    # who is outside keeps its start
+                    # tasks outside keep their starts
                     over = long[other] - offset[m] - int(i.duration[now.how[m]])
                     by = int(now.starts[j]) - lag + over
                     rows.append(Row(NOT_AFTER, other, (), 0, by, ""))
@@ -168,7 +169,7 @@ def _rows(
 
 
 def _windows(i: Instance, now: Chains, rng: random.Random) -> dict[int, tuple[int, int]]:
-    """The windows of one neighbourhood: the vehicle that ends last and another, or any."""
+    """The windows of one neighbourhood: of the vehicle that ends last and another, or of any."""
     busy = [v for v in range(i.vehicles) if now.of[v]]
     end = {v: int(now.ends[now.of[v][-1]]) for v in busy}
     worst = max(busy, key=lambda v: (end[v], v))
@@ -178,7 +179,7 @@ def _windows(i: Instance, now: Chains, rng: random.Random) -> dict[int, tuple[in
     if rng.random() < 0.7 or not picked:
         picked.append(worst)
     each = WINDOW // len(picked)
-    # the windows of different vehicles lie about the same instant
+    # the windows of different vehicles are at about the same time
     at_ms = rng.uniform(0, max(end.values()))
     windows = {}
     for v in picked:
@@ -198,9 +199,9 @@ def repaired(
     seed: int,
     stop: Callable[[int], bool] | None = None,
 ) -> tuple[int, Moves, int]:
-    """(cost, moves, nodes) after so many neighbourhoods were searched to the end.
+    """(cost, moves, nodes) after `rounds` neighbourhoods were searched to the end.
 
-    The moves may be the ones that came in; 2**60 if these already block each other or are late.
+    The moves may be the given ones; 2**60 if these already block each other or are late.
     """
     of: list[list[int]] = [[] for _ in range(i.vehicles)]
     how = np.zeros(i.tasks, np.int64)
@@ -235,7 +236,7 @@ def repaired(
 
 
 def _legs(i: Instance, now: Chains, windows: dict[int, tuple[int, int]]) -> int:
-    """What the legs into the windows and out of them cost now."""
+    """The present cost of the legs into the windows and out of them."""
     total = 0
     for v, (first, last) in windows.items():
         tasks = now.of[v]
@@ -248,7 +249,7 @@ def _legs(i: Instance, now: Chains, windows: dict[int, tuple[int, int]]) -> int:
 def _applied(
     i: Instance, now: Chains, windows: dict[int, tuple[int, int]], small: Small, moves: Moves
 ) -> Chains | None:
-    """The chains with the windows as the small search has dealt them out."""
+    """The chains with the windows as reassigned by the small search."""
     of, how = [list(tasks) for tasks in now.of], now.how.copy()
     for v in small.vehicles:
         del of[v][windows[v][0] :]

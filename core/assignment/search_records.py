@@ -1,6 +1,6 @@
-"""What the compiled searches read beside the instance: records of arrays, as they stand in memory.
+"""Records of arrays that the compiled searches read beside the instance.
 
-Machine code takes a record as it takes its fields one by one.
+Machine code takes a record as its fields one by one.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ REFUTES = (
 
 
 class Ahead(NamedTuple):
-    """What the search looks ahead with; the same for every limit, but for the tables [ms].
+    """Look-ahead data of the search; apart from the tables independent of the limit [ms].
 
-    to_task [V, K + 1, n]: least time from a stop to a task's end; apart [n, n]: from one task's end
-    to another's; to_task_added, apart_added: likewise of what legs cost; least, head, tail [n]:
-    shortest duration, earliest start, least time after the end; able [V]: masks of the tasks that a
-    vehicle may do; kind_of [V]: which vehicles share a table; leader: a vehicle of each kind.
+    to_task [V, K + 1, n]: least time from a stop to a task's end; apart [n, n]: from one task's end to another's;
+    to_task_added, apart_added: likewise of what legs cost; least, head, tail [n]: shortest duration, earliest start,
+    least time after the end; able [V]: masks of the tasks that a vehicle may do; kind_of [V]: which vehicles share a
+    table; leader: a vehicle of each kind.
     """
 
     to_task: np.ndarray
@@ -54,9 +54,9 @@ class Tables(NamedTuple):
 
 
 class Search(NamedTuple):
-    """One search below a limit: the instance with the latest ends for it, and how to look ahead.
+    """One search below a limit: the instance with the latest ends for it, and its look-ahead data.
 
-    deals: whether tables are asked; effort: steps spent on one question to `deals`.
+    deals: whether tables are used; effort: steps spent on one question to `deals`.
     """
 
     instance: Instance
@@ -78,7 +78,7 @@ class Layer(NamedTuple):
 
 
 class Times(NamedTuple):
-    """When tasks start and end [n], and vehicles are free [V + 1, at the end the sum of last ends]."""
+    """When tasks start and end [n], and when vehicles are free [V + 1, the last entry is the sum of last ends]."""
 
     starts: np.ndarray
     ends: np.ndarray
@@ -86,8 +86,9 @@ class Times(NamedTuple):
 
 
 class ChainArrays(NamedTuple):
-    """Which tasks each vehicle does in which order: chain [V, n], length [V]; how [n]: by which option;
-    there [n]: 1 for tasks in chains."""
+    """Which tasks each vehicle does in which order: chain [V, n], length [V]; how [n]: by which option; there [n]: 1
+    for tasks in chains.
+    """
 
     chain: np.ndarray
     length: np.ndarray

@@ -1,8 +1,7 @@
-"""What chains of an instance cost under all rules: upper limits between tasks, whole laps, what is flown.
+"""The cost of chains of an instance under all rules: upper limits between tasks, whole laps, tasks already flown.
 
-The compiled searches know the instance without those rules. Here a complete list of moves gets its
-best times (`core.assignment.earliest_times`), or is refused together with how many of its first moves are enough
-for that.
+The compiled searches use the instance without those rules. Here a complete list of moves gets its best times
+(`core.assignment.earliest_times`), or is refused together with the number of its first moves that suffice for that.
 """
 
 from __future__ import annotations
@@ -26,9 +25,9 @@ ANY_WAIT_MS = 1 << 40
 class Settler:
     """The rules of one branch beyond its instance.
 
-    tasks: ids by the instance's numbers; rows: all that bind times; laps: per option (shortest,
-    longest time of one lap, None for any wait); done: (task id, start, end) of what is flown;
-    unsure: how often the choices of a schedule were too many to try them all.
+    tasks: ids by the instance's numbers; rows: all that constrain times; laps: per option (shortest, longest time of
+    one lap, None for any wait); done: (task id, start, end) of tasks already flown; unsure: how often the choices of
+    a schedule were too many to try them all.
     """
 
     instance: Instance
@@ -40,7 +39,7 @@ class Settler:
     unsure: int = 0
 
     def visits(self, moves: Sequence[tuple[int, int]]) -> list[Visit]:
-        """What is flown, then the moves, as visits in chains."""
+        """The tasks already flown, then the moves, as visits in chains."""
         i = self.instance
         made = [Visit(t, -1, 0, end - start, 0, 0, 0, start) for t, start, end in self.done]
         last, at = [-1] * i.vehicles, [i.duration.size] * i.vehicles
@@ -57,7 +56,7 @@ class Settler:
         return made
 
     def legs(self, moves: Sequence[tuple[int, int]]) -> int:
-        """What the legs of the moves cost, apart from their times."""
+        """The cost of the legs of the moves, apart from their times."""
         at, sum_of = [self.instance.duration.size] * self.instance.vehicles, 0
         for v, o in moves:
             sum_of += int(self.instance.added[v, at[v], o])
@@ -92,7 +91,7 @@ class Settler:
         return cost(list(times.start_ms)), found
 
     def judge(self, moves: Moves, limit: int) -> tuple[int, int]:
-        """What `chains_below` asks: the cost, or the limit and how many moves are enough for it."""
+        """The judge for `chains_below`: the cost, or the limit and how many moves suffice for it."""
         cost, found = self.settle(moves, limit)
         if found is not None:
             return cost, 0
@@ -108,7 +107,7 @@ class Settler:
         return limit, high
 
     def _hopeless(self, moves: Moves, limit: int) -> bool:
-        """Whether nothing that begins with these moves costs less than the limit, for certain."""
+        """Whether certainly nothing that begins with these moves costs less than the limit."""
         i, visits = self.instance, self.visits(moves)
         assert self.ahead is not None
         start = least_starts(visits, self.rows)

@@ -1,8 +1,8 @@
-"""The steps of an assignment search, each a kernel: when a task starts, what covers what, what fits.
+"""The steps of an assignment search, each a kernel: start times, dominance, capacity.
 
 Integers, milliseconds after mission start. Definitions: `spec.assignment.search`. The compiled searches
 (`core.assignment.refutation`, `core.assignment.tables`) and the checker of certificates
-(`core.assignment.refutation_check`) call these very functions.
+(`core.assignment.refutation_check`) call these same functions.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from cratous.core.kernel import fold, kernel
 def earliest_start(free: int, travel: int, floor: int, ref: int) -> int:
     """The earliest instant at which a vehicle can start a task [ms].
 
-    free: when it is free; travel: its way to the task; floor: no task placed later starts before;
-    ref: what order and timing rows demand. All in ms.
+    free: when it is free; travel: its leg to the task; floor: no task placed later starts before; ref: what order and
+    timing rows demand. All in ms.
     """
     return max(max(free + travel, floor), ref)
 
 
 @kernel(implements="assignment.search.leaves_in_time")
 def latest_departure(due: int, after: int, release: int, duration: int, travel: int) -> int:
-    """The latest departure [ms] from which a task, and then all that follows it, is in time.
+    """The latest departure [ms] from which a task, and then all that follows it, is on time.
 
-    due: the task's latest end; after: latest departure from the task for what follows; release:
-    its earliest start; duration, travel: of the task and of the way to it. -2**60: there is none.
+    due: the task's latest end; after: latest departure from the task for what follows; release: its earliest start;
+    duration, travel: of the task and of the leg to it. -2**60: there is none.
     """
     end = min(due, after)
     if release + duration > end:
@@ -37,7 +37,7 @@ def latest_departure(due: int, after: int, release: int, duration: int, travel: 
 
 @kernel(implements="assignment.search.work_is_done")
 def room_step(room: int, until: int, free: int) -> int:
-    """Add one vehicle to the room for work until an instant: what is left of its time, if any.
+    """Add one vehicle's remaining time, if any, to the capacity for work until an instant.
 
     room: of the vehicles so far [ms]; until: the instant; free: when the vehicle is free [ms].
     """
@@ -46,7 +46,7 @@ def room_step(room: int, until: int, free: int) -> int:
 
 @kernel(implements="assignment.search.all_is_done")
 def lacks_room(room: int, work: int) -> bool:
-    """True iff the work [ms] does not fit into the room [ms]."""
+    """True iff the work [ms] exceeds the capacity `room` [ms]."""
     return room < work
 
 
@@ -54,21 +54,21 @@ def lacks_room(room: int, work: int) -> bool:
 def soonest_end(soonest: int, head: int, least: int) -> int:
     """The earliest end of a task [ms].
 
-    soonest: when any vehicle can be through with it; head: its earliest start by the rows; least:
-    its shortest duration. All in ms.
+    soonest: when any vehicle can have finished it; head: its earliest start by the rows; least: its shortest
+    duration. All in ms.
     """
     return max(soonest, head + least)
 
 
 @kernel(implements="assignment.search.all_may_leave_at")
 def keeps_step(ok: bool, free: int, latest: int) -> bool:
-    """Add one vehicle to whether all leave in time: it is free at `free`, must leave by `latest`."""
+    """Whether all vehicles, with one more, leave in time: it is free at `free`, must leave by `latest`."""
     return ok and free <= latest
 
 
 @kernel(implements="assignment.search.is_covered_step")
 def covers_step(ok: bool, mine: int, other: int) -> bool:
-    """Add one time to whether a state is nowhere later than another: `mine` against `other` [ms]."""
+    """Whether a state is nowhere later than another, with one more time: `mine` against `other` [ms]."""
     return ok and mine <= other
 
 
@@ -98,10 +98,10 @@ class Chain(NamedTuple):
 
 @kernel(implements="assignment.search.chain_step")
 def chain_step(chain: Chain, travel: int, start: int, end: int, duration: int) -> Chain:
-    """Add one task to a chain: the vehicle is there by its start, and it takes its duration.
+    """Add one task to a chain: the vehicle has arrived by its start, and it takes its full duration.
 
-    travel: way from the task before (for the first: from mission start, with the time until the
-    vehicle is ready); start, end: of the task; duration: of the task. All in ms.
+    travel: leg from the task before (for the first: from mission start, with the time until the vehicle is ready);
+    start, end: of the task; duration: of the task. All in ms.
     """
     ok = chain.ok and start >= chain.free + travel and end == start + duration
     return Chain(ok, end)
@@ -136,7 +136,7 @@ def opened(done: int, need: int) -> bool:
 
 @kernel(implements="assignment.search.is_flown_in_laps")
 def wait_holds(wait: int, laps: int, lap: int, lap_max: int) -> bool:
-    """True iff a vehicle can wait so long: not at all, or in so many laps of a circle.
+    """True iff a vehicle can wait this long: not at all, or in a number of laps of a circle.
 
     wait: [ms]; laps: how many; lap, lap_max: shortest and longest time of one lap [ms], >= 0.
     """

@@ -1,9 +1,9 @@
-"""Latest departures for every set of tasks: what look-ahead the search has.
+"""Latest departures for every set of tasks: the look-ahead of the search.
 
-`latest[g, k, S]`: the latest instant at which a vehicle (of the kind g) can leave option k and
-still do all tasks of S, alone and in an order that the rows allow, each between its earliest start
-and its latest end. A state can be completed only if the tasks left can be dealt out so that every
-vehicle leaves in time: `deals`. By induction over S from the kernel `latest_departure`.
+`latest[g, k, S]`: the latest instant at which a vehicle (of kind g) can leave option k and still do all tasks of S,
+alone and in an order that the rows allow, each between its earliest start and its latest end. A state can be
+completed only if the remaining tasks can be distributed so that every vehicle leaves in time: `deals`. By induction
+over S from the kernel `latest_departure`.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from cratous.core.assignment.search_records import Search
 from cratous.core.assignment.steps import keeps_step, latest_departure
 
 CELLS_MAX = 48_000_000
-"""No table has more cells than this (4 bytes each)."""
+"""Maximum number of cells of a table (4 bytes each)."""
 
 
 def latest_tables(
@@ -23,10 +23,9 @@ def latest_tables(
 ) -> None:
     """Fill latest [kinds, K, 2**n] and start [V, 2**n].
 
-    kind_of: [V] which vehicles share a table; leader: [kinds] a vehicle of each kind, whose ways
-    between options are those of all of them. i.travel: shortest ways through any options, so that
-    whoever is late for some tasks is late for more. A shared table lets any option be flown: which
-    vehicle may is asked in `start` and in `deals`.
+    kind_of: [V] which vehicles share a table; leader: [kinds] a vehicle of each kind, whose legs between options are
+    those of all of them. i.travel: shortest routes through any options, so that a vehicle late for some tasks is late
+    for more. A shared table permits every option: which vehicle may fly it is checked in `start` and in `deals`.
     """
     travel, duration, task, may = i.travel, i.duration, i.task, i.may
     need, release, due = i.need, i.release, i.due
@@ -81,12 +80,11 @@ def latest_tables(
 
 
 def deals(left: int, state: np.ndarray, search: Search, scratch: np.ndarray) -> bool:
-    """Whether the tasks left can be dealt out so that every vehicle leaves in time.
+    """Whether the remaining tasks can be distributed so that every vehicle leaves in time.
 
-    state: as in `core.assignment.refutation`: of each vehicle its last option (K: none yet) and when
-    it is free; scratch: [4, 64]. Tasks are dealt one by one, those with the least room first; a
-    vehicle that is late for some is late for more. Gives up after `search.effort` steps with True,
-    which prunes nothing.
+    state: as in `core.assignment.refutation`: of each vehicle its last option (K: none yet) and when it is free;
+    scratch: [4, 64]. Tasks are assigned one by one, those with the least slack first; a vehicle that is late for some
+    is late for more. Stops after `search.effort` steps with True, which prunes nothing.
     """
     able, kind_of = search.ahead.able, search.ahead.kind_of
     latest, start = search.tables.latest, search.tables.start

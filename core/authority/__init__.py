@@ -1,1 +1,1 @@
-"""Who commands a vehicle: the actuator gate, messages in time, right of way."""
+"""Who commands a vehicle: the actuator gate, timeliness of messages, right of way."""

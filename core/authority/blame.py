@@ -1,4 +1,5 @@
-"""Which entry of a list stood at an instant, and which came first by then: who commanded, what broke first.
+"""Which entry of a list was in force at an instant, and which was the first by then: who commanded, what failed
+first.
 
 Definitions: `spec.authority.blame`. Integers, milliseconds.
 """
@@ -9,7 +10,7 @@ from cratous.core.kernel import fold, kernel
 
 
 class Stood(NamedTuple):
-    """When the entry that stands was told [ms], and its place in the list, -1 if none stands."""
+    """The time of the entry in force [ms], and its index in the list, -1 if there is none."""
 
     since: int
     place: int
@@ -17,7 +18,7 @@ class Stood(NamedTuple):
 
 @kernel(supports="stood_at")
 def stood_step(stood: Stood, time: int, place: int, at: int) -> Stood:
-    """An entry more. time: when it was told [ms]; place: its number in the list; at: the instant [ms]."""
+    """Add an entry. time: of the entry [ms]; place: its index in the list; at: the instant [ms]."""
     if time > at or time < stood.since:
         return stood
     return Stood(time, place)
@@ -32,7 +33,7 @@ stood_at = fold(
 
 
 class Broke(NamedTuple):
-    """When the first entry by the instant was [ms], and its place in the list, -1 if none was."""
+    """The time of the first entry by the instant [ms], and its index in the list, -1 if there is none."""
 
     since: int
     place: int
@@ -40,7 +41,7 @@ class Broke(NamedTuple):
 
 @kernel(supports="broke_first")
 def broke_step(broke: Broke, since: int, place: int, at: int) -> Broke:
-    """An entry more. since: when it was [ms]; place: its number in the list; at: the instant [ms]."""
+    """Add an entry. since: its time [ms]; place: its index in the list; at: the instant [ms]."""
     if since > at or since >= broke.since:
         return broke
     return Broke(since, place)

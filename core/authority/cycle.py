@@ -1,8 +1,8 @@
-"""The cycle of one vehicle's ICAROUS: monitor, avoid, hand back. Transition kernels.
+"""The authority cycle of one vehicle's ICAROUS: monitor, avoid, hand back. Transition kernels.
 
-In MONITOR (0) UxAS flies and the way ahead is watched; in AVOID (1) ICAROUS has taken over; in
-HANDBACK (2) it goes on commanding and offers control. At each heartbeat the instance first takes
-notice of its gate, then either watches or flies. Definitions: `spec.authority.cycle`.
+In MONITOR (0) UxAS flies and the path ahead is monitored; in AVOID (1) ICAROUS has taken over; in HANDBACK (2) it
+goes on commanding and offers control. At each heartbeat the instance first reads its gate, then either monitors or
+flies. Definitions: `spec.authority.cycle`.
 """
 
 from typing import NamedTuple
@@ -26,8 +26,7 @@ class Cycle(NamedTuple):
 
 
 class Cycled(NamedTuple):
-    """The cycle afterwards, and what is done with authority: 0 nothing, 1 offer it, 2 withdraw the
-    offer, 3 take over."""
+    """The cycle afterwards, and the act on authority: 0 nothing, 1 offer it, 2 withdraw the offer, 3 take over."""
 
     cycle: Cycle
     act: int
@@ -47,8 +46,9 @@ def cycle_begun(cycle: Cycle, commands: bool, now: int) -> Cycle:
 
 @kernel(implements="authority.cycle.is_after_watch", nonnegative=("soon",))
 def cycle_watched(cycle: Cycle, foreseen: bool, now: int, soon: int) -> Cycled:
-    """UxAS flies. foreseen: a conflict is, on which ICAROUS must act; now: [ms]; soon: a takeover
-    less than this after a handback is a relapse [ms], >= 0."""
+    """UxAS flies. foreseen: a conflict is predicted on which ICAROUS must act; now: [ms]; soon: a takeover less than
+    this after a handback is a relapse [ms], >= 0.
+    """
     if cycle.mode != 0 or not foreseen:
         return Cycled(cycle, 0)
     relapses = 0
@@ -76,10 +76,10 @@ def patience(relapses: int, least: int) -> int:
 
 @kernel(implements="authority.cycle.is_after_flight", nonnegative=("bound", "least"))
 def cycle_flown(cycle: Cycle, free: bool, heard: int, now: int, bound: int, least: int) -> Cycled:
-    """ICAROUS flies. free: the way back is, now.
+    """ICAROUS flies. free: the way back is free of predicted conflict now.
 
-    heard: when UxAS was last heard [ms]; now: [ms]; bound: how long it may be silent [ms], >= 0;
-    least: as for `patience`.
+    heard: when UxAS was last heard [ms]; now: [ms]; bound: how long it may be silent [ms], >= 0; least: as for
+    `patience`.
     """
     if cycle.mode == 0:
         return Cycled(cycle, 0)
@@ -100,7 +100,7 @@ def cycle_flown(cycle: Cycle, free: bool, heard: int, now: int, bound: int, leas
 
 @kernel(implements="authority.cycle.is_after_wish")
 def gate_wished(gate: Gate, act: int) -> Gate:
-    """The gate after what an instance does with authority. act: as in `Cycled`."""
+    """The gate after an instance's act on authority. act: as in `Cycled`."""
     if act == 1:
         return gate_offer(gate)
     if act == 2 or act == 3:

@@ -1,9 +1,9 @@
 """The actuator gate of one vehicle: who may command it, and which commands are stale.
 
-Owner 0 is UxAS, owner 1 is ICAROUS. Each change of authority starts a new epoch; a command
-carries the epoch in which it was made and is dropped in any other. ICAROUS may take over at any
-time; it keeps control after it has offered it back until the first UxAS command of the new epoch
-arrives, so at no time is the vehicle commanded by nobody. Definitions: `spec.authority.gate`.
+Owner 0 is UxAS, owner 1 is ICAROUS. Each change of authority starts a new epoch; a command carries the epoch in which
+it was made and is dropped in any other. ICAROUS may take over at any time; after it has offered control back, it
+keeps it until the first UxAS command of the new epoch arrives, so that the vehicle is never without a commander.
+Definitions: `spec.authority.gate`.
 """
 
 from typing import NamedTuple
@@ -40,7 +40,7 @@ def gate_offer(gate: Gate) -> Gate:
     restates="which epochs there have been; that none of the others reaches the actuators is proved of it",
 )
 def epoch_given(gate: Gate, epoch: int) -> bool:
-    """True iff the gate is in this epoch or has been; the others are forged or an error."""
+    """True iff the gate is or has been in this epoch; any other is forged or an error."""
     return epoch >= 0 and epoch <= gate.epoch
 
 
@@ -67,7 +67,7 @@ def gate_after(gate: Gate, sender: int, epoch: int) -> Gate:
 
 @kernel(implements="authority.gate.one_gives_way")
 def gives_way(own_id: int, intruder_id: int, intruder_cooperates: bool) -> bool:
-    """True iff the ownship must manoeuvre first: always, unless the other is ours and has to."""
+    """True iff the ownship must manoeuvre first: always, unless the intruder cooperates and has to."""
     if not intruder_cooperates:
         return True
     return own_id > intruder_id
@@ -77,8 +77,8 @@ def gives_way(own_id: int, intruder_id: int, intruder_cooperates: bool) -> bool:
 def handback(offered: bool, free: bool, lasted: bool, linked: bool) -> int:
     """What ICAROUS, in command, does with its authority: 0 keep it, 1 offer it, 2 withdraw the offer.
 
-    offered: an offer is open; free: the way back is free of predicted conflict; lasted: it has been
-    for as long as it must; linked: UxAS has been heard.
+    offered: an offer is open; free: the way back is free of predicted conflict; lasted: it has been free for the
+    required time; linked: UxAS has been heard.
     """
     if offered:
         if free:

@@ -1,8 +1,8 @@
 """The UxAS end of the bridge to one vehicle's ICAROUS, as transition kernels.
 
-ICAROUS says by SETMOD lines, each with the epoch that it began, who commands; the vehicle reports how
-its gate stands. A line is believed only if the gate says the same. The service keeps one `LinkEnd` for
-each vehicle, tells the kernels what came, and does what they answer. Definitions: `spec.authority.link_end`.
+ICAROUS announces by SETMOD lines, each with the epoch that it began, who commands; the vehicle reports the state of
+its gate. A line is accepted only if the gate agrees. The service keeps one `LinkEnd` per vehicle, passes events to
+the kernels, and carries out their answers. Definitions: `spec.authority.link_end`.
 """
 
 from typing import NamedTuple
@@ -13,8 +13,9 @@ from cratous.core.kernel import kernel
 
 
 class LinkEnd(NamedTuple):
-    """active: by the last accepted mode ICAROUS commands; epoch: the one of that mode; alive: the
-    instance is being heard."""
+    """active: by the last accepted mode ICAROUS commands; epoch: the one of that mode; alive: messages from the
+    instance are being received.
+    """
 
     active: bool
     epoch: int
@@ -30,12 +31,11 @@ class Linked(NamedTuple):
 
 @kernel(implements="authority.link_end.is_after_mode")
 def link_mode(end: LinkEnd, gate: Gate, active: bool, epoch: int) -> Linked:
-    """A SETMOD has come.
+    """A SETMOD has arrived.
 
-    gate: as the vehicle has reported it last; active: the line says that ICAROUS commands, else that it
-    offers control; epoch: the one that began with it. act: 0 nothing, 1 suspend what UxAS flies, 2 take
-    the vehicle back, also where its takeover was never heard of, 3 report a mode that is overtaken,
-    4 refuse a mode that cannot be true.
+    gate: as the vehicle has reported it last; active: the line says that ICAROUS commands, else that it offers
+    control; epoch: the one that began with it. act: 0 nothing, 1 suspend what UxAS flies, 2 take the vehicle back,
+    also if its takeover was never heard of, 3 report a mode that is superseded, 4 refuse a mode that cannot be true.
     """
     if epoch == end.epoch and active == end.active:
         return Linked(end, 0)
@@ -56,11 +56,11 @@ def link_mode(end: LinkEnd, gate: Gate, active: bool, epoch: int) -> Linked:
 
 @kernel(implements="authority.link_end.is_after_sign", nonnegative=("bound",))
 def link_sign(end: LinkEnd, event: int, heard: int, now: int, bound: int) -> Linked:
-    """A sign of life, or none.
+    """A sign of life, or its absence.
 
-    event: 1 a message has come, 2 the connection has ended, 3 time has passed; heard: when the last
-    message came [ms]; now: the present [ms]; bound: how old it may be [ms]. act: 0 nothing, 1 say that
-    it is heard again, 2 say that the link is lost, 3 say that it has fallen silent.
+    event: 1 a message has arrived, 2 the connection has ended, 3 time has passed; heard: when the last message came
+    [ms]; now: the present [ms]; bound: how old it may be [ms]. act: 0 nothing, 1 report that it is heard again, 2
+    report that the link is lost, 3 report that it has fallen silent.
     """
     if event == 1:
         if end.alive:
@@ -88,5 +88,5 @@ def suspended_after(suspended: bool, act: int) -> bool:
     restates="the rule of telling; that UxAS commands only what it believes to command is proved of it",
 )
 def track_is_told(suspended: bool, changed: bool) -> bool:
-    """True iff UxAS commands its track now: it flies the vehicle, and the track is another one."""
+    """True iff UxAS commands its track now: it flies the vehicle, and the track has changed."""
     return changed and not suspended

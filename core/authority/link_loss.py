@@ -1,10 +1,10 @@
-"""What one vehicle does by itself while UxAS is not heard. Transition kernels.
+"""Flight of one vehicle while UxAS is not heard. Transition kernels.
 
-LINKED (0): UxAS is heard. FINISH (1): the known way is flown to its end. LOITER (2): a circle is flown.
-RETURN (3): a way to a named place is flown. OVER (4): what was chosen is flown to its end, and a circle is
-flown there. LAND (5): a way to a landing site is flown. FINAL (6): its last descent is flown, to the ground. LANDED (7):
-the vehicle is on the ground. At each heartbeat the instance first asks what it is in, then takes the vehicle over or flies it
-(`core.authority.cycle`). Definitions: `spec.authority.link_loss`.
+LINKED (0): UxAS is heard. FINISH (1): the known path is flown to its end. LOITER (2): a circle is flown. RETURN (3):
+a path to a named place is flown. OVER (4): the chosen path has been flown to its end, and a circle is flown there.
+LAND (5): a path to a landing site is flown. FINAL (6): the final descent to the ground is flown. LANDED (7): the
+vehicle is on the ground. At each heartbeat the instance first determines its mode, then takes the vehicle over or
+flies it (`core.authority.cycle`). Definitions: `spec.authority.link_loss`.
 """
 
 from typing import NamedTuple
@@ -16,15 +16,16 @@ LINKED, FINISH, LOITER, RETURN, OVER, LAND, FINAL, LANDED = 0, 1, 2, 3, 4, 5, 6,
 
 
 class Loss(NamedTuple):
-    """mode: see above; since_ms: since when [ms]."""
+    """mode: see above; since_ms: when it began [ms]."""
 
     mode: int
     since_ms: int
 
 
 class LossStep(NamedTuple):
-    """The mode afterwards, and what is new: 0 nothing, 1 what is chosen begins, 2 nothing permits it and a circle is
-    flown, 3 it has been flown to its end, 4 UxAS is heard again, 5 the last descent begins, 6 the ground is reached."""
+    """The mode afterwards, and the event: 0 nothing, 1 the chosen mode begins, 2 it is not permitted and a circle is
+    flown, 3 it has been flown to its end, 4 UxAS is heard again, 5 the final descent begins, 6 the ground is reached.
+    """
 
     loss: Loss
     act: int
@@ -36,9 +37,9 @@ def loss_step(
 ) -> LossStep:
     """A heartbeat of the instance.
 
-    chosen: what the mission wants without the link, 1 to 3 or 5; heard: when UxAS was last heard [ms]; now: [ms];
-    bound: how long it may be silent [ms], >= 0; permitted: the way of what is chosen is, from here; ended: the
-    vehicle is at the end of what it flies.
+    chosen: the mission's choice without the link, 1 to 3 or 5; heard: when UxAS was last heard [ms]; now: [ms];
+    bound: how long it may be silent [ms], >= 0; permitted: the path of the chosen mode is permitted from here; ended:
+    the vehicle is at the end of what it flies.
     """
     if loss.mode == 7:
         return LossStep(loss, 0)
@@ -74,7 +75,7 @@ def loss_step(
     restates="why ICAROUS has a vehicle; that it has it within a heartbeat of a loss is proved of it",
 )
 def loss_takes(loss: Loss, foreseen: bool) -> bool:
-    """True iff ICAROUS has to have the vehicle. foreseen: a conflict is, on which it must act."""
+    """True iff ICAROUS has to command the vehicle. foreseen: a conflict is predicted on which it must act."""
     return foreseen or loss.mode != 0
 
 

@@ -1,7 +1,7 @@
-"""Whether a packet is new, or one that was sent again by somebody who has recorded it.
+"""Replay protection: whether a packet is new, or a recorded one sent again.
 
-Definitions: `spec.authority.replay`. That a packet is genuine is the business of its authentication code; a
-genuine one is still refused here when its number was accepted before.
+Definitions: `spec.authority.replay`. Whether a packet is genuine is decided by its authentication code; a genuine one
+is still refused here if its number was accepted before.
 """
 
 from cratous.core.kernel import kernel

@@ -1,20 +1,21 @@
-"""Whether a packet is new where packets may overtake each other: a window of 64 numbers, see `spec.authority.replay_window`.
+"""Replay protection for packets that may overtake each other: a window of 64 numbers, see
+`spec.authority.replay_window`.
 
-On a connection that keeps their order a mark is enough (`core.authority.replay`), and refuses more.
+On a connection that preserves order a mark suffices (`core.authority.replay`), and refuses more.
 """
 
 from cratous.core.kernel import kernel
 
 WIDTH = 64
-"""As the definition has it; a kernel sees nothing but its arguments, so the number stands in it, too."""
+"""As in the definition; a kernel sees nothing but its arguments, so the number is also written in it."""
 
 
 @kernel(implements="authority.replay_window.is_fresh", nonnegative=("mark", "last", "ahead"))
 def packet_is_fresh(mark: int, last: int, sequence: int, ahead: int) -> bool:
     """True iff the packet may be accepted.
 
-    mark: the greatest number accepted so far; last: the greatest one that leaves the packet's remainder by 64; 0 for
-    none; sequence: the packet's number, from 1; ahead: by how much it may be above the mark.
+    mark: the greatest number accepted so far; last: the greatest one with the packet's remainder by 64; 0 for none;
+    sequence: the packet's number, from 1; ahead: by how much it may be above the mark.
     """
     old = mark - sequence >= 64
     return last < sequence and not old and sequence - mark <= ahead
@@ -33,7 +34,7 @@ def window_mark_after(mark: int, last: int, sequence: int, ahead: int) -> int:
 
 @kernel(implements="authority.replay_window.is_kept_after", nonnegative=("mark", "last", "ahead"))
 def window_last_after(mark: int, last: int, sequence: int, ahead: int) -> int:
-    """The greatest number accepted of the packet's remainder, after it has come, accepted or not.
+    """The greatest number accepted with the packet's remainder, after it has come, accepted or not.
 
     mark, last, sequence, ahead: as of `packet_is_fresh`.
     """
@@ -43,7 +44,7 @@ def window_last_after(mark: int, last: int, sequence: int, ahead: int) -> int:
 
 
 class Window:
-    """What is kept of one sender: the mark, and the last number accepted of each remainder."""
+    """The state kept of one sender: the mark, and the last number accepted of each remainder."""
 
     def __init__(self, ahead: int) -> None:
         """ahead: by how much a number may be above the mark."""
@@ -51,7 +52,7 @@ class Window:
         self._last = [0] * WIDTH
 
     def take(self, sequence: int) -> bool:
-        """Whether a packet of this number is accepted; from now on it is not again."""
+        """Whether a packet of this number is accepted; once accepted, it is refused from then on."""
         place = sequence % WIDTH
         args = self.mark, self._last[place], sequence, self._ahead
         fresh = packet_is_fresh(*args)

@@ -1,7 +1,7 @@
-"""When the ownship must act on a predicted loss of well clear, and not wait any longer.
+"""When the ownship must act on a predicted loss of well clear rather than wait.
 
-Definition: `spec.authority.right_of_way`. How near is too near (`last_s`, `hard_s`) is derived, with the
-vehicle's turn rate, in `services.icarous.traffic_monitor`.
+Definition: `spec.authority.right_of_way`. The thresholds `last_s` and `hard_s` are derived from the vehicle's turn
+rate in `services.icarous.traffic_monitor`.
 """
 
 from cratous.core.kernel import kernel
@@ -19,10 +19,10 @@ def must_act(
 ) -> bool:
     """True iff the ownship must act now on a loss that is predicted in first_s seconds.
 
-    first_s: the predicted loss [s]; last_s: nearer than this also the one with the right of way
-    acts [s]; hard_s: nearer than this nobody waits for a turning intruder to fly straight [s];
-    persist_s: how long a prediction has to persist [s]; persists: it has; in_turn: the intruder
-    turns; has_to_give_way: the right of way is the intruder's.
+    first_s: time to the predicted loss [s]; last_s: at or below this even the one with the right of way acts [s];
+    hard_s: at or below this nobody waits for a turning intruder to fly straight [s]; persist_s: how long a prediction
+    has to persist [s]; persists: it has; in_turn: the intruder turns; has_to_give_way: the right of way is the
+    intruder's.
     """
     if in_turn and not persists:
         return first_s <= hard_s

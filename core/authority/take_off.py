@@ -1,8 +1,9 @@
-"""How one vehicle that starts on the ground leaves it. Transition kernels.
+"""Take-off of one vehicle that starts on the ground. Transition kernels.
 
-STANDING (0): on the ground, at a stand or braking to one. ROLLING (1): faster and faster along the ground. CLIMBING (2):
-off the ground, on the way up. UP (3): that is over, or the vehicle started in the air. At each heartbeat the instance first
-asks what it is in, then takes the vehicle over or flies it (`core.authority.cycle`). Definitions: `spec.authority.take_off`.
+STANDING (0): on the ground, at a standstill or braking. ROLLING (1): accelerating on the ground. CLIMBING (2):
+airborne, on the climb path. UP (3): take-off is over, or the vehicle started in the air. At each heartbeat the
+instance first determines its mode, then takes the vehicle over or flies it (`core.authority.cycle`). Definitions:
+`spec.authority.take_off`.
 """
 
 from typing import NamedTuple
@@ -14,15 +15,16 @@ STANDING, ROLLING, CLIMBING, UP = 0, 1, 2, 3
 
 
 class Departure(NamedTuple):
-    """mode: see above; since_ms: since when [ms]."""
+    """mode: see above; since_ms: when it began [ms]."""
 
     mode: int
     since_ms: int
 
 
 class DepartureStep(NamedTuple):
-    """The mode afterwards, and what is new: 0 nothing, 1 the roll begins, 2 it is broken off, 3 the vehicle is off the
-    ground, 4 it is at the end of its way up, 5 that way is left."""
+    """The mode afterwards, and the event: 0 nothing, 1 the roll begins, 2 it is aborted, 3 the vehicle is airborne, 4
+    it is at the end of the climb path, 5 that path is left.
+    """
 
     departure: Departure
     act: int
@@ -40,8 +42,8 @@ def departure_step(
 ) -> DepartureStep:
     """A heartbeat of the instance.
 
-    heard: when UxAS was last heard [ms]; now: [ms]; bound: how long it may be silent [ms], >= 0; permitted: the way up
-    is, from here; airborne: the vehicle is off the ground; ended: it is at the end of the way.
+    heard: when UxAS was last heard [ms]; now: [ms]; bound: how long it may be silent [ms], >= 0; permitted: the climb
+    path is permitted from here; airborne: the vehicle is off the ground; ended: it is at the end of the path.
     """
     may = permitted and in_time(heard, now, bound)
     if departure.mode == 3:
@@ -68,7 +70,7 @@ def departure_step(
     restates="why ICAROUS has a vehicle; that it has it until it is up is proved of it",
 )
 def departure_takes(departure: Departure, foreseen: bool) -> bool:
-    """True iff ICAROUS has to have the vehicle. foreseen: a conflict is, on which it must act."""
+    """True iff ICAROUS has to command the vehicle. foreseen: a conflict is predicted on which it must act."""
     return foreseen or departure.mode != 3
 
 
@@ -77,5 +79,5 @@ def departure_takes(departure: Departure, foreseen: bool) -> bool:
     restates="when a vehicle may go back; that nothing is offered before it is up is proved of it",
 )
 def departure_lets_go(departure: Departure, free: bool) -> bool:
-    """True iff the vehicle may go to UxAS. free: the way there is free of predicted conflict."""
+    """True iff the vehicle may go to UxAS. free: the way back is free of predicted conflict."""
     return free and departure.mode == 3

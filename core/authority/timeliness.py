@@ -1,7 +1,7 @@
-"""Whether messages come in time, a state has lasted, a start is too early. Integers, milliseconds.
+"""Whether messages come in time, a condition has lasted, a start is too early. Integers, milliseconds.
 
-Definitions: `spec.authority.timeliness`. What is done about it (a link counts as lost, a threat counts, an
-offer is made, a task begins) is the services' business; when, is decided here.
+Definitions: `spec.authority.timeliness`. The consequences (a link counts as lost, a threat counts, an offer is made,
+a task begins) are up to the services; the timing is decided here.
 """
 
 from typing import NamedTuple
@@ -20,10 +20,9 @@ def in_time(last: int, now: int, bound: int) -> bool:
 
 @kernel(implements="authority.timeliness.lasted", nonnegative=("least",))
 def lasted(since: int, now: int, least: int) -> bool:
-    """True iff what has been so since then has been so during the last `least` milliseconds.
+    """True iff a condition that has been true since then was true during the last `least` milliseconds.
 
-    since: from when on without a break [ms]; now: the present, not before it [ms]; least: how long
-    [ms], >= 0.
+    since: from when on without a break [ms]; now: the present, not before it [ms]; least: how long [ms], >= 0.
     """
     return now - since >= least
 
@@ -32,13 +31,13 @@ def lasted(since: int, now: int, least: int) -> bool:
 def too_early(at: int, planned: int, margin: int) -> bool:
     """True iff the planned time is more than the margin ahead of the instant `at` [ms].
 
-    margin: how much too early is not too early [ms], >= 0.
+    margin: how early is still permitted [ms], >= 0.
     """
     return at + margin < planned
 
 
 class Beats(NamedTuple):
-    """When the last heartbeat came [ms]; and whether each so far came in time."""
+    """When the last heartbeat came [ms], and whether each so far came in time."""
 
     last: int
     ok: bool

@@ -1,17 +1,17 @@
-"""How far the flown way may be off the predicted one, from speed, turn and turn rate.
+"""How far the flown path may deviate from the predicted one, from speed, turn angle and turn rate.
 
-A predicted turn is made of pieces with one heading each, the mean. The vehicle's heading is, at any instant of
-a piece, between those at its two ends, but where between is the autopilot's: one that turns at the
-beginning of each of its steps is ahead by up to a step. So a piece of T s in which the heading turns by r adds at most
-v T r / 2 to the distance, and a turn by theta at most v T theta / 2: it grows with the heading turned,
-and stays as it is on the straight way after the turn. Where the speed changes in the turn the radius v^2 / (g tan
-bank) does too, which adds the difference of the radii for each radian. A prediction that is made anew in the turn
-owes only what is still to be turned, so one that was kept clear by this margin remains so.
+A predicted turn consists of segments with one heading each, the mean. At any instant of a segment the vehicle's
+heading is between those at its two ends, but where between depends on the autopilot: one that turns at the beginning
+of each of its steps is ahead by up to a step. So a segment of T s in which the heading turns by r adds at most v T r
+/ 2 to the deviation, and a turn by theta at most v T theta / 2: it grows with the heading turned, and stays constant
+on the straight path after the turn. If the speed changes in the turn, so does the radius v^2 / (g tan bank), which
+adds the difference of the radii for each radian. A prediction made anew during the turn has only the rest of the turn
+as its deviation, so one that was kept clear by this margin remains so.
 
-No theorem says so: it is argued as above, of an autopilot that turns at the full rate from the first step on, as that of
-`cratous run` does, and flown at random in tests. One that has to roll first, as in `cratous sim`, is up to 2 m
-farther off (22 m/s, a turn by 30 degrees); a command that is late and wind are not in it. A turn by 180 degrees, to
-rounding, may be flown to the other side than is predicted.
+No theorem states this: it is argued as above for an autopilot that turns at the full rate from the first step on, as
+that of `cratous run` does, and flown at random in tests. One that has to roll first, as in `cratous sim`, deviates by
+up to 2 m more (22 m/s, a turn by 30 degrees); delayed commands and wind are not included. A turn by 180 degrees, to
+rounding, may be flown to the other side than predicted.
 """
 
 from __future__ import annotations
@@ -22,16 +22,17 @@ from cratous.core.avoidance.manoeuvre import PIECE_S, Ability, Motion, smallest_
 
 
 class Off(NamedTuple):
-    """How far off a place may be: beside, and in altitude [m]."""
+    """Bounds on the deviation of a position: horizontally, and in altitude [m]."""
 
     wide_m: float
     high_m: float
 
 
 class Drift(NamedTuple):
-    """turn_rad: of the whole turn; turn_rate_rad_s: how fast it is flown; m_per_rad: by how much the flown way may be
-    off for each radian that is turned [m]; rise_m_per_m: how far off in height for each metre; here: how far the vehicle
-    may be from where it is taken to be now."""
+    """turn_rad: angle of the whole turn; turn_rate_rad_s: its rate; m_per_rad: deviation of the flown path for each
+    radian turned [m]; rise_m_per_m: vertical deviation for each metre; here: present deviation of the vehicle from
+    its assumed position.
+    """
 
     turn_rad: float
     turn_rate_rad_s: float
@@ -40,18 +41,18 @@ class Drift(NamedTuple):
     here: Off = Off(0.0, 0.0)
 
     def aside_m(self, at_s: float) -> float:
-        """How far aside of the predicted way the vehicle may be until at_s [s from the start of the turn]."""
+        """The lateral deviation from the predicted path up to at_s [s from the start of the turn]."""
         turned_m = self.m_per_rad * min(self.turn_rad, self.turn_rate_rad_s * at_s)
         return turned_m + self.here.wide_m
 
     def rise_m(self, at_s: float) -> float:
-        """How far above or below it, likewise."""
+        """The vertical deviation up to at_s [s from the start of the turn]."""
         turned_m = self.m_per_rad * min(self.turn_rad, self.turn_rate_rad_s * at_s)
         return turned_m * self.rise_m_per_m + self.here.high_m
 
 
 NONE = Drift(0.0, 0.0, 0.0, 0.0)
-"""Flown as it is predicted."""
+"""No deviation from the prediction."""
 
 
 def drift_of(
@@ -62,8 +63,9 @@ def drift_of(
     climb_m_s: float,
     here: Off = NONE.here,
 ) -> Drift:
-    """The drift of a turn to a heading [rad] with a change of speed [m/s] and a climb [m/s], as `fly_to`
-    predicts it. here: how far the vehicle may be from where it is taken to be."""
+    """The drift of a turn to a heading [rad] with a change of speed [m/s] and a climb [m/s], as `fly_to` predicts it.
+    here: present deviation of the vehicle from its assumed position.
+    """
     slow, fast = sorted((now.speed_m_s, speed_m_s))
     radius_m = now.speed_m_s / ability.turn_rate_rad_s
     wider_m = radius_m * abs((speed_m_s / now.speed_m_s) ** 2 - 1)

@@ -1,4 +1,4 @@
-"""Whether a vehicle is on the ground of a landing site, and whether it rolls to a stand there.
+"""Whether a vehicle is on the ground of a landing site, and whether its landing roll fits into it.
 
 Definitions: `spec.avoidance.landing`.
 """
@@ -11,16 +11,17 @@ from cratous.core.kernel import kernel
     restates="what a monitor and an autopilot call on the ground, by its own definition",
 )
 def on_ground(north: float, east: float, radius: float, height: float, slack: float) -> bool:
-    """True iff a place is within a site's disc, and at most `slack` above its ground.
+    """True iff a position is within a site's disc, and at most `slack` above its ground.
 
-    north, east: from the middle of the site [m]; radius: of its disc [m]; height: above its ground [m]; slack: [m].
+    north, east: from the centre of the site [m]; radius: of its disc [m]; height: above its ground [m]; slack: [m].
     """
     return north * north + east * east <= radius * radius and height <= slack
 
 
 @kernel(implements="avoidance.landing.has_room")
 def roll_fits(radius: float, speed: float, braking: float, off: float) -> bool:
-    """True iff a roll fits into the disc of a site about whose middle it is aimed. A division less than its meaning.
+    """True iff a landing roll centred on a site fits into its disc. Written with one division less than the
+    definition.
 
     radius: of the disc [m]; speed: at the touch-down [m/s]; braking: [m/s2], above 0; off: how much too early or too
     late it may touch down [m].

@@ -1,4 +1,4 @@
-"""Trajectories that an aircraft can really fly, as pieces of constant velocity."""
+"""Flyable trajectories of an aircraft, as segments of constant velocity."""
 
 from __future__ import annotations
 
@@ -10,13 +10,14 @@ from cratous.core.avoidance.prediction import Piece, after
 from cratous.spec.mission import Position, Velocity
 
 PIECE_S = 0.5
-"""Turns, climbs and changes of speed are cut into pieces of this length [s]."""
+"""Length of the segments of turns, climbs and changes of speed [s]."""
 
 
 class Ability(NamedTuple):
-    """What an airframe can do: turn rate [rad/s] at its present speed, speeds [m/s], climb [m/s],
-    acceleration [m/s2], the lowest altitude that a manoeuvre may use [m MSL], and for how long at most the
-    autopilot holds one heading in a turn [s]."""
+    """Performance of an airframe: turn rate [rad/s] at its present speed, speeds [m/s], climb [m/s], acceleration
+    [m/s2], the lowest altitude that a manoeuvre may use [m MSL], and the longest time for which the autopilot holds
+    one heading in a turn [s].
+    """
 
     turn_rate_rad_s: float
     min_speed_m_s: float
@@ -44,7 +45,7 @@ def velocity_of(heading_rad: float, speed_m_s: float, climb_m_s: float) -> Veloc
 
 
 def smallest_turn(from_rad: float, to_rad: float) -> float:
-    """The turn from one heading to another, in (-pi, pi]; positive is right."""
+    """The smallest turn from one heading to another, in (-pi, pi] [rad]; positive is right."""
     turn = math.fmod(to_rad - from_rad, 2 * math.pi)
     if turn > math.pi:
         return turn - 2 * math.pi
@@ -62,10 +63,9 @@ def fly_to(
     climb_for_s: float,
     horizon_s: float,
 ) -> tuple[Piece, ...]:
-    """Turn to a heading and change speed as fast as possible, climb for a while, then straight on.
+    """Turn to a heading and change speed as fast as possible, climb for a while, then fly straight.
 
-    A turning piece flies its mean heading with the chord's speed, so the ends of the pieces lie
-    on the arc.
+    A segment of a turn flies its mean heading at the speed of the chord, so the ends of the segments lie on the arc.
     """
     pieces: list[Piece] = []
     p, heading, speed, t = now.position, now.heading_rad, now.speed_m_s, 0.0
@@ -95,15 +95,16 @@ def fly_to(
 
 
 class Way(NamedTuple):
-    """Flight through points. pieces: up to the last point, or as far as is looked; beyond: straight on
-    from there, None where the points are not all reached by then."""
+    """Flight through points. pieces: up to the last point, or to the horizon; beyond: straight flight from there,
+    None if not all points are reached by then.
+    """
 
     pieces: tuple[Piece, ...]
     beyond: Piece | None
 
 
 class Pace(NamedTuple):
-    """The speed that a way is flown at once it is reached [m/s], and how fast it is changed to [m/s2]."""
+    """The final speed on a path [m/s], and the acceleration towards it [m/s2]."""
 
     speed_m_s: float
     acceleration_m_s2: float
@@ -116,7 +117,7 @@ def way_along(
     start_s: float = 0.0,
     pace: Pace | None = None,
 ) -> Way:
-    """Fly from the present position through points at the present speed, or changing to that of a pace."""
+    """Fly from the present position through points at the present speed, or changing to the speed of a pace."""
     if pace is not None and pace.acceleration_m_s2 > 0 and pace.speed_m_s != now.speed_m_s:
         return _paced(now, points, horizon_s, pace)
     pieces: list[Piece] = []
@@ -140,15 +141,15 @@ def way_along(
 
 
 PACED_OFF_M = 0.5
-"""A change of speed is cut into pieces of which none is farther off than this [m]."""
+"""Greatest deviation of a segment of a speed change [m]."""
 
 
 LEAST_M = 1e-6
-"""What is left of a leg when it is flown, by rounding [m]."""
+"""Remainder of a leg, by rounding, at which it counts as flown [m]."""
 
 
 def _paced(now: Motion, points: Sequence[Position], horizon_s: float, pace: Pace) -> Way:
-    """The same with a change of speed, cut into pieces of constant speed."""
+    """The path with a change of speed, divided into segments of constant speed."""
     pieces: list[Piece] = []
     p, t, speed = now.position, 0.0, now.speed_m_s
     north, east, up = math.cos(now.heading_rad), math.sin(now.heading_rad), 0.0
@@ -173,7 +174,7 @@ def _paced(now: Motion, points: Sequence[Position], horizon_s: float, pace: Pace
 
 
 def _changed(speed_m_s: float, pace: Pace, left_m: float) -> tuple[float, float, float]:
-    """The next piece of a leg of which left_m is left: how long it is [s], its speed, and that after it [m/s]."""
+    """The next segment of a leg with left_m left: its duration [s], its speed, and the speed after it [m/s]."""
     gap = pace.speed_m_s - speed_m_s
     if gap == 0:
         return left_m / speed_m_s, speed_m_s, speed_m_s
@@ -181,7 +182,7 @@ def _changed(speed_m_s: float, pace: Pace, left_m: float) -> tuple[float, float,
     share = min(1.0, math.sqrt(8 * PACED_OFF_M / pace.acceleration_m_s2) / whole_s)
     to = pace.speed_m_s if share == 1.0 else speed_m_s + share * gap
     mean = (speed_m_s + to) / 2
-    # the leg ends within the piece
+    # the leg ends within the segment
     ends = min(1.0, left_m / (mean * share * whole_s))
     if ends == 1.0:
         return share * whole_s, mean, to
@@ -189,7 +190,7 @@ def _changed(speed_m_s: float, pace: Pace, left_m: float) -> tuple[float, float,
 
 
 def looked_at(way: Way, horizon_s: float) -> Way:
-    """The same way, no farther than horizon_s [s]."""
+    """The path, cut off at horizon_s [s]."""
     pieces = tuple(
         piece
         if piece.duration_s <= horizon_s - piece.start_s
@@ -206,6 +207,6 @@ def looked_at(way: Way, horizon_s: float) -> Way:
 def along(
     now: Motion, points: Sequence[Position], horizon_s: float, start_s: float = 0.0
 ) -> tuple[Piece, ...]:
-    """The same, then straight on, as pieces."""
+    """The path through points, then straight, as segments."""
     way = way_along(now, points, horizon_s, start_s)
     return way.pieces if way.beyond is None else (*way.pieces, way.beyond)

@@ -1,10 +1,9 @@
 """When a piecewise straight flight first loses well clear of straight-flying traffic.
 
-A trajectory is a sequence of pieces of constant velocity. Each piece is checked against each
-intruder by the kernel `violation_within`, which is exact over the whole piece: no time between
-samples is missed. Only the *instant* of the first violation is found by halving, to a fraction of
-the piece, and always rounded towards the earlier side. An intruder that is known within a spread loses well clear
-where the true one may (`core.daa.uncertainty`).
+A trajectory is a sequence of segments of constant velocity. Each segment is checked against each intruder by the
+kernel `violation_within`, which is exact over the whole segment: no time between samples is missed. Only the
+*instant* of the first violation is found by bisection, to a fraction of the segment, and rounded towards the earlier
+side. An intruder known within a spread loses well clear if it may do so anywhere within it (`core.daa.uncertainty`).
 """
 
 from __future__ import annotations
@@ -15,13 +14,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
+from cratous.core.avoidance.extent import bounds, fastest, reached, reached_until
 from cratous.core.daa.uncertainty import LEAST_ERROR, Uncertainty, uncertain_conflict
 from cratous.core.kernel import Vec2, driver
 from cratous.core.well_clear import StandardThresholds, Thresholds, violation, violation_within
 from cratous.spec.mission import Position, Velocity, WellClear
 
 STANDING = Velocity(0.0, 0.0, 0.0)
-"""How the middle of a hold moves."""
+"""Velocity of the centre of a hold."""
 
 
 class Piece(NamedTuple):
@@ -34,8 +34,8 @@ class Piece(NamedTuple):
 
 
 class Spread(NamedTuple):
-    """How far an aircraft may be from where it is predicted: wide_m beside and high_m in altitude [m], and after t seconds
-    wide_m_s t and high_m_s t more, until it does not grow any more at steady_s [s]. All 0: it is where it is predicted.
+    """Bounds on an aircraft's deviation from its prediction: wide_m horizontally and high_m in altitude [m], growing
+    by wide_m_s and high_m_s per second [m/s] until steady_s [s]. All 0: none.
     """
 
     wide_m: float = 0.0
@@ -45,7 +45,7 @@ class Spread(NamedTuple):
     steady_s: float = math.inf
 
     def after(self, t_s: float) -> Spread:
-        """The same, counted from t_s [s] later on."""
+        """The same spread, with time counted from t_s [s] on."""
         if self == EXACT:
             return self
         grows_s = min(t_s, self.steady_s)
@@ -56,14 +56,14 @@ class Spread(NamedTuple):
 
 
 EXACT = Spread()
-"""Of one that is where it is predicted."""
+"""No deviation from the prediction."""
 
 
 class Intruder(NamedTuple):
-    """Another aircraft, as seen now; cooperates: it too is flown by one of our instances.
+    """Another aircraft, as observed now; cooperates: it too is flown by an ICAROUS instance of this system.
 
-    way: how it is taken to fly, from now on and without gaps; () is straight on. After it the intruder is within hold_m
-    [m] of where the way ends. spread: how far off it may be, the own vehicle being where it is taken to be.
+    way: its assumed path from now on, without gaps; () is straight flight. After it the intruder stays within hold_m
+    [m] of the path's end. spread: bounds on its deviation, with the own vehicle at its assumed position.
     """
 
     id: int
@@ -86,18 +86,20 @@ def buffered(volume: WellClear, buffer: float) -> WellClear:
 
 
 def straight(p: Position, v: Velocity, start_s: float, duration_s: float) -> Piece:
-    """One piece of straight flight."""
+    """One segment of straight flight."""
     return Piece(start_s, duration_s, p, v)
 
 
 def after(piece: Piece, t_s: float) -> Position:
-    """Where the piece is t_s after its start."""
+    """The position t_s after the segment's start."""
     (north, east, alt), (north_s, east_s, down_s) = piece.position, piece.velocity
     return Position(north + north_s * t_s, east + east_s * t_s, alt - down_s * t_s)
 
 
 def legs_of(other: Intruder) -> tuple[Piece, ...]:
-    """The straight flights that an intruder is taken to fly, the last one without an end: of a hold it stands."""
+    """The straight flights that an intruder is assumed to fly; the last one has no end, and is
+    stationary for a hold.
+    """
     if not other.way:
         return (Piece(0.0, math.inf, other.position, other.velocity),)
     last = other.way[-1]
@@ -106,7 +108,7 @@ def legs_of(other: Intruder) -> tuple[Piece, ...]:
 
 
 def later(other: Intruder, t_s: float) -> Intruder:
-    """The intruder as it will be t_s [s] from now, if it flies as it is taken to."""
+    """The intruder t_s [s] from now, if it flies as assumed."""
     if not other.way:
         begun = straight(other.position, other.velocity, 0.0, math.inf)
         return other._replace(position=after(begun, t_s), spread=other.spread.after(t_s))
@@ -122,7 +124,7 @@ def later(other: Intruder, t_s: float) -> Intruder:
 
 
 def rest_of(pieces: Sequence[Piece], t_s: float) -> tuple[Piece, ...]:
-    """What is left of pieces t_s [s] after they begin, at 0, counted from then; their end if they are over."""
+    """The rest of the segments t_s [s] after they begin, at 0, counted from then; their end if they are over."""
     begun = []
     for piece in [p for p in pieces if p.start_s + p.duration_s > t_s] or pieces[-1:]:
         gone_s = min(max(t_s - piece.start_s, 0.0), piece.duration_s)
@@ -135,9 +137,10 @@ def rest_of(pieces: Sequence[Piece], t_s: float) -> tuple[Piece, ...]:
 def meetings(
     pieces: Sequence[Piece], other: Intruder
 ) -> Iterator[tuple[tuple[Piece, ...], Intruder]]:
-    """The pieces cut where the intruder begins another leg, and where its spread stops to grow: each run of them with
-    the intruder as it flies then, as one that has flown and will fly straight on. No instant of the pieces is left out,
-    none comes twice but the cuts."""
+    """The segments divided where the intruder begins another leg, and where its spread stops growing: each group with
+    the intruder as it flies then, modelled as flying straight throughout. No instant of the segments is left out, and
+    only the dividing instants occur twice.
+    """
     if not other.way and other.spread.steady_s == math.inf:
         yield tuple(pieces), other
         return
@@ -149,8 +152,9 @@ def meetings(
 def _parts(
     pieces: Sequence[Piece], other: Intruder
 ) -> Iterator[tuple[Piece, Sequence[Piece], float]]:
-    """Each straight flight of an intruder of which some pieces are in the time, with these, and how far from it the
-    intruder holds [m]. All that is flown after the last piece is left out."""
+    """Each straight flight of an intruder that overlaps some segments in time, with these, and the intruder's
+    distance from it in a hold [m]. Flights after the last segment are left out.
+    """
     steady_s = other.spread.steady_s
     begins = [piece.start_s for piece in pieces]
     ends = [piece.start_s + piece.duration_s for piece in pieces]
@@ -171,7 +175,7 @@ def _parts(
 
 
 def _straight_on(other: Intruder, part: Piece, held_m: float) -> Intruder:
-    """An intruder as it flies in a part, as one that has flown and will fly straight on."""
+    """An intruder as it flies in a part, modelled as flying straight throughout."""
     spread = other.spread
     if spread.steady_s != math.inf:
         spread = spread.after(spread.steady_s) if part.start_s >= spread.steady_s else spread
@@ -181,7 +185,7 @@ def _straight_on(other: Intruder, part: Piece, held_m: float) -> Intruder:
 
 
 def _cut(leg: Piece, at_s: float) -> tuple[Piece, ...]:
-    """A leg, in two where an instant [s] lies in it."""
+    """A leg, divided in two if an instant [s] lies in it."""
     gone_s = at_s - leg.start_s
     if not 0 < gone_s < leg.duration_s:
         return (leg,)
@@ -190,7 +194,7 @@ def _cut(leg: Piece, at_s: float) -> tuple[Piece, ...]:
 
 
 def around(volume: WellClear, other: Intruder) -> WellClear:
-    """The volume of one that stands in a hold: as much wider as it may be from the middle."""
+    """The volume about an intruder in a hold, widened by its greatest distance from the centre."""
     return volume if not other.hold_m else replace(volume, dthr_m=volume.dthr_m + other.hold_m)
 
 
@@ -200,7 +204,7 @@ def _overlap(piece: Piece, leg: Piece) -> bool:
 
 
 def _within(piece: Piece, leg: Piece) -> Piece:
-    """The part of a piece in the time of a leg."""
+    """The part of a segment that overlaps a leg in time."""
     begins, end = piece.start_s, piece.start_s + piece.duration_s
     start, end = max(begins, leg.start_s), min(end, leg.start_s + leg.duration_s)
     return Piece(start, end - start, after(piece, start - begins), piece.velocity)
@@ -224,7 +228,8 @@ def _relative(piece: Piece, other: Intruder, t_s: float) -> tuple[Vec2, Vec2, fl
 
 
 def out_of_reach(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> bool:
-    """True only if no piece can lose well clear of one that flies straight on: a bound on range and closing speed.
+    """True only if no segment can lose well clear of an intruder in straight flight: a bound on range and closing
+    speed.
 
     A violation needs |s| <= DTHR + TTHR |v|, and |s| shrinks by at most |v| per second.
     """
@@ -242,42 +247,28 @@ def out_of_reach(pieces: Sequence[Piece], other: Intruder, volume: WellClear) ->
 
 
 def ways_out_of_reach(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> bool:
-    """True only if no piece can lose well clear: a bound on how far the places of the pieces are from those of the
-    intruder's legs until they end, and on the closing speed. See `out_of_reach`."""
-    until_s = max(piece.start_s + piece.duration_s for piece in pieces)
-    if until_s == math.inf:
+    """True only if no segment can lose well clear: a bound on the distance between the positions of the segments and
+    those of the intruder's legs until they end, and on the closing speed. See `out_of_reach`.
+    """
+    until_s, own_bounds = reached(pieces)
+    if own_bounds is None:
         return False
-    legs = [leg for leg in legs_of(other) if leg.start_s < until_s]
-    if not legs:  # the pieces are over as the intruder's flight begins
+    way = other.way
+    met = reached_until(way, until_s) if way else bounds(legs_of(other), until_s)
+    if met is None:  # the pieces are over as the intruder's flight begins
         return True
-    last = legs[-1]
-    legs[-1] = last._replace(duration_s=min(last.duration_s, until_s - last.start_s))
-    own, its = _extent(pieces), _extent(legs)
+    (own, own_m_s), (its, its_m_s) = own_bounds, met
     north = max(own[0] - its[1], its[0] - own[1], 0.0)
     east = max(own[2] - its[3], its[2] - own[3], 0.0)
-    return math.hypot(north, east) > _reach_m(
-        other, volume, until_s, _fastest(pieces) + _fastest(legs), 0.0
-    )
-
-
-def _extent(pieces: Sequence[Piece]) -> tuple[float, float, float, float]:
-    """The least and the greatest north, and east, of where pieces lead [m]."""
-    norths, easts = list[float](), list[float]()
-    for _, duration_s, (north, east, _), (north_s, east_s, _) in pieces:
-        norths += (north, north + north_s * duration_s)
-        easts += (east, east + east_s * duration_s)
-    return min(norths), max(norths), min(easts), max(easts)
-
-
-def _fastest(pieces: Sequence[Piece]) -> float:
-    """The greatest horizontal speed of pieces [m/s]."""
-    return max(math.hypot(piece.velocity[0], piece.velocity[1]) for piece in pieces)
+    return math.hypot(north, east) > _reach_m(other, volume, until_s, own_m_s + its_m_s, 0.0)
 
 
 def _reach_m(
     other: Intruder, volume: WellClear, until_s: float, closing: float, lasts_s: float
 ) -> float:
-    """From how far on no loss comes in a time [s] in which both close in at most so fast [m/s]; see `out_of_reach`."""
+    """The distance beyond which no loss occurs within a time [s] at a given greatest closing speed [m/s]; see
+    `out_of_reach`.
+    """
     spread = other.spread.after(until_s)
     off = spread.wide_m + other.spread.wide_m_s * volume.tthr_s
     return 1 + volume.dthr_m + other.hold_m + off + closing * (lasts_s + volume.tthr_s)
@@ -286,13 +277,14 @@ def _reach_m(
 def leg_out_of_reach(
     pieces: Sequence[Piece], leg: Piece, other: Intruder, volume: WellClear
 ) -> bool:
-    """The same of one leg of the intruder and the pieces in its time, from where both are as the first of them begins
-    that is flown on it: no farther than they close in from there."""
+    """The same for one leg of the intruder and the segments in its time: from the positions of both at the beginning
+    of the first of these, they come no nearer than the closing speed allows.
+    """
     first, ends_s = min(pieces), max(piece.start_s + piece.duration_s for piece in pieces)
     at_s, until_s = max(first.start_s, leg.start_s), min(ends_s, leg.start_s + leg.duration_s)
     own, its = after(first, at_s - first.start_s), after(leg, at_s - leg.start_s)
     far = math.hypot(own.north_m - its.north_m, own.east_m - its.east_m)
-    closing = _fastest(pieces) + math.hypot(leg.velocity[0], leg.velocity[1])
+    closing = fastest(pieces) + math.hypot(leg.velocity[0], leg.velocity[1])
     return far > _reach_m(other, volume, until_s, closing, until_s - at_s)
 
 
@@ -300,9 +292,9 @@ def leg_out_of_reach(
 def first_violation_s(
     pieces: Sequence[Piece], other: Intruder, volume: WellClear, halvings: int = 6
 ) -> float | None:
-    """When the first violation begins [s from now], or None if there is none on any piece.
+    """When the first violation begins [s from now], or None if there is none on any segment.
 
-    The instant is early by at most the piece's duration / 2^halvings.
+    The instant is early by at most the segment's duration / 2^halvings.
     """
     if not other.way and other.spread.steady_s == math.inf:
         return _first_of_straight(pieces, other, volume, halvings)
@@ -320,14 +312,14 @@ def first_violation_s(
 
 @driver(checked_by=("violation_within", "uncertain_conflict"))
 def meets(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> bool:
-    """Whether there is a violation on any piece, whenever it begins."""
+    """Whether there is a violation on any segment, whenever it begins."""
     return first_violation_s(pieces, other, volume, halvings=0) is not None
 
 
 def _first_of_straight(
     pieces: Sequence[Piece], other: Intruder, volume: WellClear, halvings: int
 ) -> float | None:
-    """The same against one that flies straight on."""
+    """`first_violation_s` for an intruder in straight flight."""
     volume = around(volume, other)
     if not pieces or out_of_reach(pieces, other, volume):
         return None
@@ -347,7 +339,7 @@ def _first_of_straight(
 
 @driver(checked_by=("violation_within", "uncertain_conflict"))
 def _lost_within(piece: Piece, other: Intruder, volume: WellClear, t_s: float) -> bool:
-    """Whether the first t_s [s] of a piece lose well clear of one that flies straight on, or may."""
+    """Whether the first t_s [s] of a segment lose, or may lose, well clear of an intruder in straight flight."""
     s, v, sz, vz = _relative(piece, other, 0.0)
     spread = other.spread
     if not (spread.wide_m or spread.wide_m_s or spread.high_m or spread.high_m_s):
@@ -375,7 +367,9 @@ def _lost_within(piece: Piece, other: Intruder, volume: WellClear, t_s: float) -
 def violated_s(
     pieces: Sequence[Piece], other: Intruder, volume: WellClear, grid_s: float = 1.0
 ) -> float:
-    """About how long well clear is lost [s]: only to rank manoeuvres that all lose it."""
+    """The approximate duration of the loss of well clear [s]: only used to rank manoeuvres that all lose it."""
+    if pieces and ways_out_of_reach(pieces, other, volume):
+        return 0.0
     lost = 0.0
     for piece, straight_on in ((p, leg) for run, leg in meetings(pieces, other) for p in run):
         count = max(1, math.ceil(piece.duration_s / grid_s))

@@ -1,13 +1,13 @@
-"""Which manoeuvre to fly: candidates are searched, the kernels decide each of them.
+"""Resolution manoeuvres: candidates are generated, and the kernels decide each of them.
 
-Candidates: headings to the left and right of the course in steps of 5 degrees, flown with the
-real turn rate; if none is free of conflict, level changes (climb or descend past the intruder's
-layer) and changes of speed, also together with turns. Where the scene asks for another kind of manoeuvre
-first, flight on course comes first, then those of that kind with turns of up to 60 degrees. Each piece of each candidate is checked
-against every intruder by `violation_within` and against every zone by `leg_keeps`. The one that
-deviates least from the course wins (ties to the right); a manoeuvre already begun is kept as long
-as it holds, unless one that is nearer to the course by more than 10 degrees has become free.
-When none holds, the one whose first violation is latest is flown, and the choice says so.
+Candidates: headings to the left and right of the course in steps of 5 degrees, flown with the real turn rate; if none
+is free of conflict, level changes (climb or descend past the intruder's layer) and changes of speed, also together
+with turns. If the scene prefers another kind of manoeuvre, flight on course comes first, then manoeuvres of that kind
+with turns of up to 60 degrees. Each segment of each candidate is checked against every intruder by `violation_within`
+and against every zone by `leg_keeps`. The candidate that deviates least from the course is chosen (ties to the
+right); a manoeuvre already begun is kept as long as it is free, unless one nearer to the course by more than 10
+degrees has become free (hysteresis). If none is free, the one with the latest first violation is flown, and the
+choice records that.
 """
 
 from __future__ import annotations
@@ -34,8 +34,7 @@ STEP_DEG = 5
 KEEP_RAD = math.radians(10)
 TURNS_DEG = (0, 30, -30, 60, -60, 90, -90, 135, -135, 180)
 SMALL_TURNS_DEG = TURNS_DEG[:5]
-"""Turns off the course that changes of altitude and of speed are looked at with; those where such a change is looked
-for first."""
+"""Turns off the course combined with changes of altitude and of speed; those used where such a change is preferred."""
 
 
 class Choice(NamedTuple):
@@ -55,8 +54,9 @@ class Choice(NamedTuple):
 
 
 class Scene(NamedTuple):
-    """What a manoeuvre is judged against: traffic, zones, the buffered volume, and how far. here: how far the vehicle
-    may be from where it is taken to be; first: the kind of manoeuvre that is looked for first."""
+    """What a manoeuvre is checked against: traffic, zones, the buffered volume, and the look-ahead. here: present
+    deviation of the vehicle from its assumed position; first: the preferred kind of manoeuvre.
+    """
 
     intruders: tuple[Intruder, ...]
     zones: tuple[Zone, ...]
@@ -70,8 +70,9 @@ class Scene(NamedTuple):
 def first_zone_s(
     pieces: Sequence[Piece], zones: Sequence[Zone], chunk_s: float, drift: Drift = NONE
 ) -> float | None:
-    """When the first zone is broken [s], or may be where the flown way is off by the drift, or None; early by at
-    most chunk_s on a long piece."""
+    """When the first zone is, or within the drift may be, violated [s], or None; early by at most chunk_s on a long
+    segment.
+    """
     for piece in pieces:
         t = 0.0
         while t < piece.duration_s:
@@ -94,7 +95,7 @@ def first_conflict_s(pieces: Sequence[Piece], scene: Scene) -> float | None:
 
 
 def turn_back_s(now: Motion, ability: Ability) -> float:
-    """How far ahead a zone matters at least [s]: time to fly a half circle, plus one radius."""
+    """The least look-ahead for zones [s]: time to fly a half circle, plus one radius."""
     return (math.pi + 1) / ability.turn_rate_rad_s
 
 
@@ -102,7 +103,7 @@ def turn_back_s(now: Motion, ability: Ability) -> float:
     checked_by=("violation_within", "keep_out_leg_ok", "keep_in_leg_ok", "locate", "comes_within")
 )
 def keeps_clear(now: Motion, ability: Ability, scene: Scene, choice: Choice) -> bool:
-    """True iff a manoeuvre is free of traffic and zones over the whole look-ahead, with the drift of its turn."""
+    """True iff a manoeuvre, including the drift of its turn, is free of traffic and zones over the whole look-ahead."""
     pieces = _pieces(now, ability, choice, scene.lookahead_s)
     if any(meets(pieces, other, scene.volume) for other in scene.intruders):
         return False
@@ -123,12 +124,12 @@ def resolve(
     speed_m_s: float,
     held: Choice | None,
 ) -> Choice:
-    """The manoeuvre to fly now, at speed_m_s if it can be; `held` is the one flown until now.
+    """The manoeuvre to fly now, at speed_m_s if possible; `held` is the one flown until now.
 
-    Free of zones is a heading that keeps the drift of its turn from them. One that is free of traffic over the whole
-    look-ahead but meets a zone in it is used when no heading is free of both and the zone is farther
-    than a half circle takes to fly: the choice is renewed long before. Where there is no such heading
-    either, the vehicle is near a zone already: the zone itself counts then, without drift.
+    A heading is free of zones if it keeps the drift of its turn from them. One that is free of traffic over the whole
+    look-ahead but meets a zone in it is used if no heading is free of both and the zone is farther away than the
+    flight time of a half circle: the choice is renewed long before. If there is no such heading either, the vehicle
+    is already near a zone: the zone itself counts then, without drift.
     """
     near_s = turn_back_s(now, ability)
     fallback: tuple[tuple[float, float], Choice] | None = None
@@ -150,11 +151,15 @@ def resolve(
             close = close or candidate._replace(clear=True, first_violation_s=None)
             continue
         first = min(t for t in (traffic_s, zone_s) if t is not None)
-        lost = 0.0
-        if first <= 1.0:
-            lost = sum(violated_s(pieces, other, scene.volume) for other in scene.intruders)
         # a zone met before a turn back could avoid it counts as the worst case
-        rank = (-1.0 if zone_s is not None and zone_s < near_s else first, -lost)
+        until_s = -1.0 if zone_s is not None and zone_s < near_s else first
+        most_s = math.inf
+        if fallback is not None:
+            if until_s < fallback[0][0]:
+                continue
+            most_s = -fallback[0][1] if until_s == fallback[0][0] else math.inf
+        lost_s = _lost_s(pieces, scene, most_s) if first <= 1.0 else 0.0
+        rank = (until_s, -lost_s)
         if fallback is None or rank > fallback[0]:
             fallback = (rank, candidate._replace(first_violation_s=first))
     found = later or close
@@ -162,6 +167,16 @@ def resolve(
         return found
     assert fallback is not None, "there is always a candidate"
     return fallback[1]
+
+
+def _lost_s(pieces: Sequence[Piece], scene: Scene, most_s: float) -> float:
+    """The approximate duration of the losses of well clear, summed over intruders up to most_s [s]."""
+    lost_s = 0.0
+    for other in scene.intruders:
+        lost_s += violated_s(pieces, other, scene.volume)
+        if lost_s >= most_s:
+            break
+    return lost_s
 
 
 def _pieces(now: Motion, ability: Ability, choice: Choice, horizon_s: float) -> tuple[Piece, ...]:
@@ -221,7 +236,7 @@ def of_kind(
 def _changes(
     now: Motion, ability: Ability, scene: Scene, level: Choice, turns_deg: Sequence[int]
 ) -> Iterator[Choice]:
-    """Changes of altitude and of speed, together with turns."""
+    """Changes of altitude and of speed, combined with turns."""
     _, course_rad, speed, *_ = level
     # past the layer of the volume, twice, so that the climb itself does not end at its edge
     climb_for_s = 2 * scene.volume.zthr_m / ability.max_climb_m_s if ability.max_climb_m_s else 0

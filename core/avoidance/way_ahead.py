@@ -1,7 +1,7 @@
-"""Whether a vehicle is on its path, which waypoint lies ahead, and who flies straight on.
+"""Whether a vehicle is on its path, which waypoint lies ahead, and who flies straight.
 
-On these rests which way is predicted and which waypoint an avoiding vehicle makes for. All multiplied out,
-in squares. Definitions: `spec.avoidance.way_ahead`.
+These determine which path is predicted and which waypoint an avoiding vehicle flies to. Free of divisions and roots.
+Definitions: `spec.avoidance.way_ahead`.
 """
 
 from cratous.core.geofence.distance import apart_squared
@@ -10,8 +10,9 @@ from cratous.core.kernel import Vec2, kernel
 
 @kernel(implements="avoidance.way_ahead.near_line_at", nonnegative=("width_m",))
 def near_line(p: Vec2, a: Vec2, b: Vec2, width_m: float) -> bool:
-    """True iff p is no farther than width_m [m], >= 0, from the straight line through a and b; from a,
-    where both are one point."""
+    """True iff p is at most width_m [m], >= 0, from the straight line through a and b; from a, if
+    both are one point.
+    """
     squared = apart_squared(a, b)
     if squared <= 0:
         return apart_squared(p, a) <= width_m * width_m
@@ -31,7 +32,7 @@ def there_within(p: Vec2, goal: Vec2, speed_m_s: float, within_s: float) -> bool
 
 @kernel(implements="avoidance.way_ahead.makes_for_at", nonnegative=("radius_m",))
 def makes_for(p: Vec2, goal: Vec2, beyond: Vec2, radius_m: float) -> bool:
-    """True iff from p the goal is one to make for: farther than three turn radii and not passed abeam.
+    """True iff the goal can be flown to from p: farther than three turn radii and not passed abeam.
 
     beyond: the waypoint that follows the goal; radius_m: of a turn [m], >= 0.
     """

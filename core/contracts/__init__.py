@@ -1,1 +1,1 @@
-"""The control logic of the planning services as transition kernels: no messages, no clock."""
+"""The control logic of the planning services as transition kernels, without messages or clock."""

@@ -1,6 +1,6 @@
-"""The plan builder's progress with one request: which task is asked next, and when it answers.
+"""The plan builder's progress with one request: which task is queried next, and when it answers.
 
-Definitions: `spec.contracts.building`. Stages: 0 waits for the assignment, 1 builds, 2 answered.
+Definitions: `spec.contracts.building`. Stages: 0 awaits the assignment, 1 builds, 2 answered.
 """
 
 from typing import NamedTuple
@@ -9,7 +9,7 @@ from cratous.core.kernel import fold, kernel
 
 
 class Building(NamedTuple):
-    """stage; parts: how many the assignment has; at: the part that was asked for last."""
+    """stage; parts: number of parts of the assignment; at: the part requested last."""
 
     stage: int
     parts: int
@@ -19,8 +19,8 @@ class Building(NamedTuple):
 class Built(NamedTuple):
     """The progress afterwards, and what to do.
 
-    act: 0 nothing, 1 ask for part `part`, 2 answer with the plan, 3 answer with an error, 4 report
-    something that nobody waits for; done: part `part` has just been built.
+    act: 0 nothing, 1 request part `part`, 2 answer with the plan, 3 answer with an error, 4 report an unexpected
+    message; done: part `part` has just been built.
     """
 
     building: Building
@@ -33,8 +33,8 @@ class Built(NamedTuple):
 def building_step(b: Building, event: int, number: int) -> Built:
     """One step.
 
-    event: 1 the assignment of `number` parts, 2 part `number` was built, 3 it failed. An assignment
-    of nothing is answered with an error. Parts are numbered from 0, at most 2^60 of them.
+    event: 1 the assignment of `number` parts, 2 part `number` was built, 3 it failed. An empty assignment is answered
+    with an error. Parts are numbered from 0, at most 2^60 of them.
     """
     if event == 1 and b.stage == 0:
         if number < 1 or number > 1152921504606846976:
@@ -51,7 +51,7 @@ def building_step(b: Building, event: int, number: int) -> Built:
 
 @kernel(implements="contracts.building.after")
 def part_after(stage: int, asked: bool, built: bool) -> int:
-    """The stage of one part after it was asked for, or built, or neither: 3 if that is wrong."""
+    """The stage of one part after it was requested, or built, or neither: 3 if that is an error."""
     if not asked and not built:
         return stage
     if asked and not built and stage == 0:
@@ -63,7 +63,7 @@ def part_after(stage: int, asked: bool, built: bool) -> int:
 
 @kernel(supports="parts_in_order")
 def part_seen(stage: int, part: int, act: int, asked: int, done: bool, built: int) -> int:
-    """The stage of part `part` after a step that asked for `asked` (if act is 1) and built `built`."""
+    """The stage of part `part` after a step that requested `asked` (if act is 1) and built `built`."""
     return part_after(stage, act == 1 and asked == part, done and built == part)
 
 
@@ -71,7 +71,7 @@ def part_seen(stage: int, part: int, act: int, asked: int, done: bool, built: in
 def parts_orderly(first: int, second: int, due: bool, again: bool) -> bool:
     """Whether two parts are in order.
 
-    due: the request was answered with a plan that has to hold both; again: it was answered twice.
+    due: the request was answered with a plan, which must contain both; again: it was answered twice.
     """
     if again or first == 3 or second == 3:
         return False
@@ -97,7 +97,7 @@ class WatchedParts(NamedTuple):
 def watched_parts_step(
     w: WatchedParts, event: int, number: int, one: int, other: int
 ) -> WatchedParts:
-    """One step, with an eye on the parts `one` and `other`."""
+    """One step, observing the parts `one` and `other`."""
     b, act, part, done = building_step(Building(w.stage, w.parts, w.at), event, number)
     first = part_seen(w.first, one, act, part, done, number)
     second = part_seen(w.second, other, act, part, done, number)
@@ -110,7 +110,7 @@ def watched_parts_step(
 
 @kernel(supports="parts_in_order")
 def watched_parts_result(w: WatchedParts) -> bool:
-    """Whether all was in order all the time."""
+    """Whether everything was in order throughout."""
     return w.held
 
 

@@ -1,8 +1,8 @@
 """The route aggregator's and collector's bookkeeping: open items, blocks of ids, stages of a request.
 
-The service keeps what was received by key; these kernels decide whether a list is complete, which
-request an id belongs to, and what the collector of one request does next. A list is looked at as
-a whole each time, so no count can drift from what is there. Definitions: `spec.contracts.checklists`.
+The service stores what was received by key; these kernels decide whether a list is complete, which request an id
+belongs to, and what the collector of one request does next. A list is evaluated as a whole each time, so that no
+count can deviate from its contents. Definitions: `spec.contracts.checklists`.
 """
 
 from typing import NamedTuple
@@ -35,12 +35,12 @@ list_complete = fold(
 
 @kernel(implements="contracts.checklists.is_number_of_block")
 def owns(first: int, count: int, number: int) -> bool:
-    """True iff an id belongs to the block of `count` ids that begins with `first`."""
+    """True iff an id belongs to the block of `count` ids that begins at `first`."""
     return number >= first and number < first + count
 
 
 class Owners(NamedTuple):
-    """The next free id, and how many blocks so far hold the id that is looked at."""
+    """The next free id, and how many blocks so far contain the given id."""
 
     free: int
     owners: int
@@ -48,9 +48,9 @@ class Owners(NamedTuple):
 
 @kernel(implements="contracts.checklists.fits")
 def free_after(free: int, count: int) -> int:
-    """The next free id after a block of `count` was given out from `free`; the same if it may not.
+    """The next free id after a block of `count` was allocated from `free`; unchanged if it may not be.
 
-    A negative count gets nothing, and ids end at 2^60.
+    A negative count gets no block, and ids end at 2^60.
     """
     if count < 0 or count > 1152921504606846976 - free:
         return free
@@ -59,7 +59,7 @@ def free_after(free: int, count: int) -> int:
 
 @kernel(implements="contracts.checklists.give_step")
 def owners_after(o: Owners, count: int, number: int) -> Owners:
-    """Give out a block, with an eye on one id."""
+    """Allocate a block, observing one id."""
     free = free_after(o.free, count)
     if owns(o.free, free - o.free, number):
         return Owners(free, o.owners + 1)
@@ -68,7 +68,7 @@ def owners_after(o: Owners, count: int, number: int) -> Owners:
 
 @kernel(supports="owners_of")
 def owners_result(o: Owners) -> int:
-    """How many blocks hold the id."""
+    """The number of blocks that contain the id."""
     return o.owners
 
 
@@ -81,7 +81,7 @@ owners_of = fold(
 )
 
 NOTHING, ASK_ROUTES, HAND_OVER = 0, 1, 2
-"""What the collector of one request does."""
+"""Acts of the collector of one request."""
 
 
 class Collected(NamedTuple):
@@ -93,7 +93,7 @@ class Collected(NamedTuple):
 
 @kernel(implements="contracts.checklists.collected")
 def collector_step(stage: int, all_options: bool, all_routes: bool) -> Collected:
-    """What the collector does with what it has; call it again after every act."""
+    """The collector's next act, given what it has received; call it again after every act."""
     if stage == 1 and all_options:
         return Collected(2, 1)
     if stage == 2 and all_options and all_routes:

@@ -1,9 +1,8 @@
-"""The line of automation requests: first come, first served, one at a time, each answered once.
+"""The queue of automation requests: first come, first served, one at a time, each answered once.
 
-A request gets the next ticket when it is taken; the ticket after the last answered one is the one
-whose turn it is. So two counters, a flag and an instant stand for a line of any length. The
-service keeps the requests by ticket, calls `line_step` for whatever happens, and does what the
-step says. Definitions: `spec.contracts.requests`.
+A request gets the next ticket when it is taken; the ticket after the last answered one is next in turn. So two
+counters, a flag and an instant represent a queue of any length. The service stores the requests by ticket, calls
+`line_step` for every event, and does what the step returns. Definitions: `spec.contracts.requests`.
 """
 
 from typing import NamedTuple
@@ -11,15 +10,17 @@ from typing import NamedTuple
 from cratous.core.kernel import fold, kernel
 
 ARRIVAL, ANSWER, PUMP = 1, 2, 3
-"""What can happen: a valid request arrives, a response or error arrives, time has passed."""
+"""Events: a valid request arrives, a response or error arrives, time has passed."""
 NOTHING, TAKE, PUBLISH, PASS_ON, GIVE_UP, LATE, FULL = 0, 1, 2, 3, 4, 5, 6
-"""What the service does: nothing, keep the request under its ticket, publish it, pass its answer
-on, answer that its time ran out, report an answer that nobody waits for, refuse a request."""
+"""Acts of the service: nothing, store the request under its ticket, publish it, pass its answer on, answer with a
+timeout, report an unexpected answer, refuse a request.
+"""
 
 
 class Line(NamedTuple):
-    """taken: tickets given out; answered: how many have their answer; busy: the next one is being
-    planned, since sent_ms [ms]."""
+    """taken: tickets issued; answered: number of them answered; busy: the next one is being planned, since sent_ms
+    [ms].
+    """
 
     taken: int
     answered: int
@@ -28,7 +29,7 @@ class Line(NamedTuple):
 
 
 class Step(NamedTuple):
-    """The line afterwards, what to do, and for which ticket."""
+    """The queue afterwards, the act, and its ticket."""
 
     line: Line
     act: int
@@ -37,14 +38,13 @@ class Step(NamedTuple):
 
 @kernel(supports="requests_in_order")
 def line_step(line: Line, event: int, ticket: int, now_ms: int, limit_ms: int) -> Step:
-    """One step of the line.
+    """One step of the queue.
 
-    event: 1 arrival, 2 answer (to `ticket`), 3 time has passed; now_ms: present instant [ms];
-    limit_ms: how long a request may be planned [ms]. An answer to any other ticket than the one
-    that is being planned changes nothing.
+    event: 1 arrival, 2 answer (to `ticket`), 3 time has passed; now_ms: present instant [ms]; limit_ms: how long a
+    request may be planned [ms]. An answer to any other ticket than the one that is being planned changes nothing.
     """
     if event == 1:
-        # a counter that may not overflow: 2^60 requests
+        # the counter must not overflow: 2^60 requests
         if line.taken >= 1152921504606846976:
             return Step(line, 6, line.taken)
         return Step(Line(line.taken + 1, line.answered, line.busy, line.sent_ms), 1, line.taken)
@@ -63,7 +63,7 @@ def line_step(line: Line, event: int, ticket: int, now_ms: int, limit_ms: int) -
 
 @kernel(implements="contracts.requests.means")
 def happening(act: int, about: int, ticket: int) -> int:
-    """What a step's act, about one ticket, is for the request with that ticket: 0 if not its own."""
+    """The event that a step's act, about one ticket, is for the request with that ticket: 0 if not its own."""
     if about != ticket:
         return 0
     if act == 1 or act == 2:
@@ -75,7 +75,7 @@ def happening(act: int, about: int, ticket: int) -> int:
 
 @kernel(implements="contracts.requests.after")
 def stage_after(stage: int, what: int) -> int:
-    """The stage of a request after something happened to it; 4 if that must not happen."""
+    """The stage of a request after an event; 4 if that event must not occur."""
     if what == 0:
         return stage
     if stage < 3 and what == stage + 1:
@@ -84,7 +84,7 @@ def stage_after(stage: int, what: int) -> int:
 
 
 class Watched(NamedTuple):
-    """A line, and the stages of two of its requests."""
+    """A queue, and the stages of two of its requests."""
 
     taken: int
     answered: int
@@ -105,7 +105,7 @@ def watched_step(
     one: int,
     other: int,
 ) -> Watched:
-    """One step of the line, with an eye on the tickets `one` and `other`."""
+    """One step of the queue, observing the tickets `one` and `other`."""
     line, act, about = line_step(
         Line(w.taken, w.answered, w.busy, w.sent_ms), event, ticket, now_ms, limit_ms
     )
@@ -119,7 +119,7 @@ def watched_step(
 
 @kernel(supports="requests_in_order")
 def watched_result(w: Watched) -> bool:
-    """Whether all was in order all the time."""
+    """Whether everything was in order throughout."""
     return w.held
 
 

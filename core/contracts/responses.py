@@ -1,8 +1,8 @@
-"""Answers to predicted losses of well clear as a transition kernel, and what a band forbids.
+"""Responses to predicted losses of well clear as a transition kernel, and whether a band contains a value.
 
-Definitions: `spec.contracts.responses`. The service gathers the facts of an instant (each decided by
-a kernel: `gives_way` and `must_act`, `heading_blocked` and `value_blocked`, the leg kernels for zones)
-and does what `response_step` answers.
+Definitions: `spec.contracts.responses`. The service gathers the inputs of an instant (each decided by a kernel:
+`gives_way` and `must_act`, `heading_blocked` and `value_blocked`, the leg kernels for zones) and does what
+`response_step` returns.
 """
 
 from typing import NamedTuple
@@ -19,8 +19,9 @@ class Response(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """The response afterwards, and what to do: 0 nothing, 1 command a manoeuvre, 2 go on with the
-    one that is flown, 3 refuse with the reasons, 4 leave it to the others, 5 command the mission."""
+    """The response afterwards, and what to do: 0 nothing, 1 command a manoeuvre, 2 continue the one being flown, 3
+    refuse with the reasons, 4 leave it to the others, 5 command the mission.
+    """
 
     response: Response
     act: int
@@ -28,7 +29,7 @@ class Answer(NamedTuple):
 
 @kernel(supports="response_step")
 def manoeuvre_act(flown: bool, found: bool) -> int:
-    """2 go on with the manoeuvre that is flown, 1 command one that was found, 3 refuse.
+    """2 continue the manoeuvre being flown, 1 command one that was found, 3 refuse.
 
     flown: one is flown and is still free of conflict and of zones; found: there is one that is.
     """
@@ -52,9 +53,9 @@ def response_step(
 ) -> Answer:
     """One step.
 
-    conflict: a loss is predicted soon; ours: it is for us to act; good: the manoeuvre that is flown
-    is still free of zones and of conflicts that are ours; found: there is one that is free; free: so
-    is the way back; lasted: for long enough; taken: the vehicle flies its mission.
+    conflict: a loss is predicted soon; ours: this vehicle has to act; good: the manoeuvre that is flown is still free
+    of zones and of conflicts that are ours; found: there is one that is free; free: so is the way back; lasted: for
+    long enough; taken: the vehicle flies its mission.
     """
     if conflict and not ours:
         if response.off and not good:
@@ -74,7 +75,7 @@ def response_step(
 
 @kernel(implements="contracts.responses.in_band")
 def heading_blocked(heading_deg: float, low_deg: float, high_deg: float) -> bool:
-    """True iff a heading in [0, 360) lies in an interval within [0, 360], which has its ends [deg]."""
+    """True iff a heading in [0, 360) lies in an interval within [0, 360], ends included [deg]."""
     if heading_deg == 0 and high_deg == 360:
         return True
     return low_deg <= heading_deg and heading_deg <= high_deg
@@ -82,17 +83,17 @@ def heading_blocked(heading_deg: float, low_deg: float, high_deg: float) -> bool
 
 @kernel(implements="contracts.responses.apart")
 def value_blocked(value: float, low: float, high: float) -> bool:
-    """True iff a value lies in an interval, which has its ends; m/s or m."""
+    """True iff a value lies in an interval, ends included; m/s or m."""
     return low <= value and value <= high
 
 
 @kernel(implements="contracts.responses.soon")
 def loss_is_soon(first_s: float, limit_s: float, early_s: float, answering: bool) -> bool:
-    """True iff a predicted loss is a conflict: within the alerting time, while one is answered within
-    the early one.
+    """True iff a predicted loss is a conflict: within the alerting time, or within the early alerting time during a
+    conflict.
 
-    first_s: when the loss begins [s]; limit_s, early_s: the alerting times [s]; answering: a conflict
-    with this intruder was there at the last instant.
+    first_s: when the loss begins [s]; limit_s, early_s: the alerting times [s]; answering: a conflict with this
+    intruder was there at the last instant.
     """
     if answering:
         return first_s <= max(limit_s, early_s)

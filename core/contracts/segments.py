@@ -1,4 +1,4 @@
-"""Which piece of a mission path a vehicle gets next, so that together they are the path.
+"""The next segment of a mission path that a vehicle gets, so that together the segments are the path.
 
 Definitions: `spec.contracts.segments`. Positions count from 0, at most 2^60 of them.
 """
@@ -17,13 +17,13 @@ class Span(NamedTuple):
 
 @kernel(supports="spans_serve")
 def first_span(end: int, length: int) -> Span:
-    """The first piece. end: last position of the path; length: positions in a piece, >= 2."""
+    """The first segment. end: last position of the path; length: positions in a segment, >= 2."""
     return Span(0, min(end, length - 1))
 
 
 @kernel(supports="spans_serve")
 def span_after(span: Span, end: int, length: int, overlap: int) -> Span:
-    """The piece after this one of `length`; the same if it was the last, or the overlap cannot be.
+    """The segment of `length` after this one; the same if it was the last, or the overlap is not possible.
 
     overlap: positions that the two have in common, 1 <= overlap < length.
     """
@@ -35,14 +35,14 @@ def span_after(span: Span, end: int, length: int, overlap: int) -> Span:
 
 @kernel(implements="contracts.segments.follows")
 def waypoint_after(waypoint: int, count: int, back_to: int) -> int:
-    """The waypoint after this one on a path of `count`; the last leads back_to (itself to stay)."""
+    """The next waypoint on a path of `count`; the last leads to back_to (its own index: the path stops there)."""
     if waypoint + 1 < count:
         return waypoint + 1
     return back_to
 
 
 class Spans(NamedTuple):
-    """The piece served last, and how often so far the position that is looked at was new."""
+    """The segment served last, and how often so far the given position was new."""
 
     first: int
     last: int
@@ -51,7 +51,7 @@ class Spans(NamedTuple):
 
 @kernel(implements="contracts.segments.serve_step")
 def spans_step(s: Spans, overlap: int, end: int, length: int, position: int) -> Spans:
-    """Serve the next piece, with an eye on one position; before the first, last is -1."""
+    """Serve the next segment, observing one position; before the first, last is -1."""
     if s.last < 0:
         first, last = first_span(end, length)
     else:

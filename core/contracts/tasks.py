@@ -1,8 +1,7 @@
 """A task service's nine states as a transition kernel.
 
-The table is that of `spec.contracts.tasks`: Init, Idle, SensorRequest, OptionRoutes,
-OptionsPublished, FinalRoutes, OptionSelected, Active, Completed. The service tells the kernel what
-happened and does what it answers.
+The table is that of `spec.contracts.tasks`: Init, Idle, SensorRequest, OptionRoutes, OptionsPublished, FinalRoutes,
+OptionSelected, Active, Completed. The service passes events to the kernel and does what it returns.
 """
 
 from typing import NamedTuple
@@ -11,8 +10,9 @@ from cratous.core.kernel import kernel
 
 
 class Task(NamedTuple):
-    """state: 0 to 8; request: id of the request that it works for, 0 for none; kept: id of a newer
-    request that is to be begun, 0 for none."""
+    """state: 0 to 8; request: id of its current request, 0 for none; kept: id of a newer request that is to be begun,
+    0 for none.
+    """
 
     state: int
     request: int
@@ -20,11 +20,10 @@ class Task(NamedTuple):
 
 
 class Moved(NamedTuple):
-    """The task afterwards, and what it does.
+    """The task afterwards, and its act.
 
-    act: 0 nothing, 1 announce that it is ready, 2 ask for sensor footprints, 3 ask for option
-    routes, 4 publish options, 5 ask for final routes, 6 publish its plan, 7 steer, 8 complete,
-    9 report something stale.
+    act: 0 nothing, 1 announce that it is ready, 2 request sensor footprints, 3 request option routes, 4 publish
+    options, 5 request final routes, 6 publish its plan, 7 steer, 8 complete, 9 report a stale message.
     """
 
     task: Task
@@ -47,8 +46,8 @@ def task_requested(task: Task, request: int) -> Moved:
 def task_replied(task: Task, event: int, request: int) -> Moved:
     """An answer arrives: 3 sensor footprints, 4 option routes, 5 the choice, 6 final routes.
 
-    Each leads from the state that waits for it to the next, where the next thing is asked for or
-    published; an answer to another request, or out of turn, is stale.
+    Each leads from the state that awaits it to the next, in which the next item is requested or published; an answer
+    to another request, or out of turn, is stale.
     """
     if request != task.request or event < 3 or event > 6 or event != task.state + 1:
         return Moved(task, 9)

@@ -1,4 +1,4 @@
-"""Whether an automation request can be planned, and what is wrong with the thing that is not ready.
+"""Whether an automation request can be planned, and what is wrong with an item that is not ready.
 
 Definitions: `spec.contracts.validity`.
 """
@@ -8,11 +8,11 @@ from typing import NamedTuple
 from cratous.core.kernel import fold, kernel
 
 FINE, UNKNOWN, NOT_READY, NO_SUCH_KIND = 0, 1, 2, 3
-"""What may be wrong with one thing that a request names."""
+"""Possible faults of one item that a request names."""
 
 
 class Faults(NamedTuple):
-    """Whether a fault, a vehicle and a task have been seen."""
+    """Whether a fault, a vehicle and a task have been found."""
 
     fault: bool
     vehicle: bool
@@ -21,10 +21,10 @@ class Faults(NamedTuple):
 
 @kernel(implements="contracts.validity.holds")
 def item_fault(kind: int, known: bool, ready: bool, given: bool) -> int:
-    """What is wrong with one thing that a request names: 0 nothing, 1 unknown, 2 not ready.
+    """The fault of one item that a request names: 0 none, 1 unknown, 2 not ready.
 
-    kind: 1 vehicle, 2 task, 3 region, 4 zone (3 is the fault of any other); known: configured or
-    defined; ready: state known, or initialised; given: the request brings the vehicle's state.
+    kind: 1 vehicle, 2 task, 3 region, 4 zone (3 is the fault of any other); known: configured or defined; ready:
+    state known, or initialised; given: the request itself contains the vehicle's state.
     """
     if kind < 1 or kind > 4:
         return 3
@@ -39,7 +39,7 @@ def item_fault(kind: int, known: bool, ready: bool, given: bool) -> int:
 
 @kernel(implements="contracts.validity.found_step")
 def faults_step(faults: Faults, kind: int, known: bool, ready: bool, given: bool) -> Faults:
-    """Add one thing to what has been seen."""
+    """Add one item to what has been found."""
     return Faults(
         faults.fault or item_fault(kind, known, ready, given) != 0,
         faults.vehicle or kind == 1,

@@ -1,8 +1,7 @@
-"""Alert levels: which volumes are violated soon enough.
+"""Alert levels: which volumes are predicted to be violated within their alerting times.
 
-A level's volume violated within its alerting time raises that level; the most severe one counts.
-Definitions: `spec.daa.meaning`. The tables of levels are arrays, so that any number of encounters is
-judged in one call.
+A level's volume violated within its alerting time raises that level; the most severe one counts. Definitions:
+`spec.daa.meaning`. The tables of levels are arrays, so that any number of encounters is evaluated in one call.
 """
 
 import math
@@ -67,7 +66,7 @@ def level_times(
             if lost(kind, state, w, 0.0, 0.0, lookahead_s):
                 first, last = lost_span(kind, state, w, 0.0, 0.0, lookahead_s)
                 if first > last:
-                    # one instant of contact, lost by rounding: find it with the decision itself
+                    # one instant of contact, lost by rounding: find it with the deciding kernel itself
                     early, late = 0.0, lookahead_s
                     for _ in range(60):
                         middle = (early + late) / 2

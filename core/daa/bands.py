@@ -1,7 +1,7 @@
 """Bands of one dimension from safe grid values: guidance, colours, resolutions.
 
-Definitions: `spec.daa.meaning`. This is bookkeeping on arrays around the drivers of
-`core.daa.guidance`: which grid values are safe is decided by their kernels.
+Definitions: `spec.daa.meaning`. This is bookkeeping on arrays around the drivers of `core.daa.guidance`, whose
+kernels decide which grid values are safe.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ from cratous.core.readings.tiered import swift
 from cratous.spec.daa.parameters import NEAR, NONE, RECOVERY, Parameters, sensitivity
 
 SAMPLE_S = 1.0
-"""Changes of altitude are sampled so often while the vertical speed changes [s]."""
+"""Sampling interval of changes of altitude while the vertical speed changes [s]."""
 EDGE = 1e-7
-"""A value this near to an edge lies on it (rad, m/s, m): the own value is a grid value."""
+"""A value this near to an edge counts as on it (rad, m/s, m): the own value is a grid value."""
 
 
 class Traffic(NamedTuple):
@@ -51,7 +51,7 @@ class Traffic(NamedTuple):
 
 
 def _recovery_size(p: Parameters, alt_m: float) -> tuple[float, float]:
-    """Cylinder to keep clear before recovery: as given, or of the TCAS level at this altitude."""
+    """The cylinder to keep clear before recovery: as given, or of the TCAS level at this altitude."""
     table = sensitivity(alt_m)
     radius = p.min_horizontal_recovery_m or table.hmd_m
     half = p.min_vertical_recovery_m or table.zthr_m
@@ -61,8 +61,8 @@ def _recovery_size(p: Parameters, alt_m: float) -> tuple[float, float]:
 def colours(safe: np.ndarray, state: np.ndarray, recovered: bool) -> np.ndarray:
     """Regions of the cells between neighbouring grid values: (K + 1) values give K cells.
 
-    A cell is safe in a region iff both of its ends are. Its colour is the most severe region in
-    which it is not; RECOVERY where recovery found a way.
+    A cell is safe in a region iff both of its ends are. Its colour is the most severe region in which it is not;
+    RECOVERY where recovery is possible.
     """
     cells = np.zeros(safe.shape[1] - 1, dtype=np.int64)
     for region in range(1, NEAR + 1):
@@ -74,7 +74,7 @@ def colours(safe: np.ndarray, state: np.ndarray, recovered: bool) -> np.ndarray:
 
 
 def merged(edges: np.ndarray, cells: np.ndarray, low: float, high: float) -> list[Band]:
-    """Neighbouring cells of one colour as one band, cut to [low, high]."""
+    """Merge neighbouring cells of one colour into bands, clipped to [low, high]."""
     begins = np.where(edges[:-1] < low, low, edges[:-1])
     ends = np.where(edges[1:] > high, high, edges[1:])
     inside = begins < ends
@@ -89,7 +89,7 @@ def merged(edges: np.ndarray, cells: np.ndarray, low: float, high: float) -> lis
 
 
 def on_circle(bands: list[Band]) -> tuple[Band, ...]:
-    """Bands of directions around the own one, on [0, 2 pi)."""
+    """Bands of directions around the own one, mapped to [0, 2 pi)."""
     turn = 2 * math.pi
     parts = []
     for low, high, region in bands:
@@ -126,7 +126,9 @@ def region_of(bands: tuple[Band, ...], value: float, circle: bool) -> int:
 
 
 class Directive(NamedTuple):
-    """Nearest values that resolve: to the right or up, to the left or down; None: none there."""
+    """The nearest values that resolve the conflict: to the right or up, to the left or down; None:
+    none on that side.
+    """
 
     up: float | None
     down: float | None
@@ -136,7 +138,7 @@ class Directive(NamedTuple):
 def directive(bands: tuple[Band, ...], own: float, corrective: int, circle: bool) -> Directive:
     """The nearest edges of bands below the corrective region on both sides of the own value.
 
-    Directions are looked for within half a turn. Ties go to the right or up.
+    Directions are searched within half a turn. Ties go to the right or up.
     """
     turn = 2 * math.pi
     free = [b for b in bands if 0 <= severity(b.region) < corrective and b.region != UNKNOWN]
@@ -162,7 +164,7 @@ def directive(bands: tuple[Band, ...], own: float, corrective: int, circle: bool
 
 
 class Raw(NamedTuple):
-    """Bands around the own value, not wrapped, before any memory of earlier bands."""
+    """Bands around the own value, not wrapped, before the history of earlier bands is applied."""
 
     grid: Grid
     bands: list[Band]
@@ -174,7 +176,7 @@ class Raw(NamedTuple):
 
 
 def manoeuvres(g: Grid, piece_s: float) -> Manoeuvres:
-    """The manoeuvres of a grid; piece_s: how long the piece after each step is looked at [s]."""
+    """The manoeuvres of a grid; piece_s: for how long the segment after each step is checked [s]."""
     return Manoeuvres(
         g.right, g.left, g.step_s, piece_s, g.targets, g.rate_m_s, g.accel_m_s2, SAMPLE_S
     )
@@ -188,7 +190,7 @@ def raw_bands(
     recover: bool,
     no_descent: bool = False,
 ) -> Raw:
-    """The bands of one dimension now; no_descent: values below the own one are not offered."""
+    """The bands of one dimension now; no_descent: values below the own one are excluded."""
     g = grid(p, own, dimension)
     below = 0
     if no_descent and dimension == VS:
@@ -237,7 +239,7 @@ def raw_bands(
     at_once = g.step_s == 0 and (dimension != ALT or not (g.rate_m_s and g.accel_m_s2))
     corrective = p.corrective_region
     if recover and at_once and state[corrective] == 1 and traffic.violated[corrective].any():
-        # well clear is lost already: every value that is free of conflict regains it at once
+        # well clear is already lost: every conflict-free value regains it at once
         said, recovered = Recovery(True, False, 0.0, 0, radius, half), True
         safe_r[4], safe_l[4] = safe_r[corrective], safe_l[corrective]
     right = colours(safe_r, state, recovered)
@@ -264,8 +266,7 @@ def last_times(
 ) -> tuple[float | None, ...]:
     """Last time to manoeuvre out of conflict with intruder i, in each dimension [s]; None: too late.
 
-    The way to a step is sampled at the steps before it, as in DAIDALUS; exact: looked at in whole,
-    as bands do.
+    The path to a step is sampled at the steps before it, as in DAIDALUS; exact: checked continuously, as for bands.
     """
     found: list[float | None] = []
     region = p.corrective_region
@@ -286,7 +287,7 @@ def last_times(
 
 
 def last_free(free: Callable[[float], bool], entry_s: float) -> float | None:
-    """The last time in (0, entry_s) at which free(t) holds, by halving to 0.5 s; None: none."""
+    """The last time in (0, entry_s) at which free(t) holds, by bisection to 0.5 s; None: none."""
     green_s, red_s, t_s = 0.0, entry_s, 0.0
     while red_s - green_s > 0.5:
         if free(t_s):
@@ -298,7 +299,7 @@ def last_free(free: Callable[[float], bool], entry_s: float) -> float | None:
 
 
 def out_of_range(p: Parameters, own: Aircraft, dimension: int) -> str:
-    """Why there can be no bands: the own value lies outside of its range; "" if it does not."""
+    """Why no bands are possible: the own value lies outside its range; "" if it does not."""
     if dimension == HDIR:
         return ""
     x0 = own_value(own, dimension)
@@ -309,7 +310,7 @@ def out_of_range(p: Parameters, own: Aircraft, dimension: int) -> str:
 
 
 def unknown(p: Parameters, own: Aircraft, dimension: int, why: str) -> Guidance:
-    """Guidance that says that nothing can be said."""
+    """Guidance that is unknown, with the reason."""
     x0 = own_value(own, dimension)
     low, high = value_range(p, dimension, x0)
     band = Band(low, high, UNKNOWN)

@@ -1,8 +1,8 @@
-"""Flying to another altitude: accelerate to a climb rate, hold it, level off; and its conflicts.
+"""Changes of altitude: accelerate to a climb rate, hold it, level off; and their conflicts.
 
-Definitions: `spec.daa.meaning`. Vertical speed changes at a constant rate accel; in between it is
-the climb rate, or the present one where that is faster in the same direction. Where there is no
-room to reach the rate, the level-off begins at the fastest rate that can be reached.
+Definitions: `spec.daa.meaning`. Vertical speed changes at a constant rate accel; in between it is the climb rate, or
+the present one if that is faster in the same direction. If there is no room to reach the rate, the level-off begins
+at the fastest rate that can be reached.
 """
 
 import math
@@ -20,8 +20,9 @@ from cratous.core.well_clear.thresholds import Thresholds
 
 
 class Climb(NamedTuple):
-    """The phases of a change of altitude: the rate is reached at t1_s, held to t2_s, level from
-    t3_s on; rate_m_s is what is held, up."""
+    """The phases of a change of altitude: the rate is reached at t1_s, held to t2_s, level from t3_s on; rate_m_s is
+    the rate that is held, up.
+    """
 
     t1_s: float
     t2_s: float
@@ -33,7 +34,7 @@ class Climb(NamedTuple):
 def climb(z_m: float, vz_m_s: float, target_m: float, rate_m_s: float, accel_m_s2: float) -> Climb:
     """The phases from altitude z_m and vertical speed vz_m_s to target_m; rate, accel > 0.
 
-    A target too near to level off at is flown through and come back to.
+    A target too near to level off at is overshot and then returned to.
     """
     way = target_m - z_m
     up = vz_m_s
@@ -46,7 +47,7 @@ def climb(z_m: float, vz_m_s: float, target_m: float, rate_m_s: float, accel_m_s
         up = 0 - up
         down = not down
     most = max(rate_m_s, up)
-    # twice accel times the way flown while reaching the rate and while levelling off
+    # twice accel times the distance flown while reaching the rate and while levelling off
     if 2 * most * most - up * up <= 2 * accel_m_s2 * way:
         t1 = (most - up) / accel_m_s2
         t2 = t1 + (way - (2 * most * most - up * up) / (2 * accel_m_s2)) / most
@@ -72,7 +73,7 @@ class Height(NamedTuple):
 def height(
     z_m: float, vz_m_s: float, target_m: float, accel_m_s2: float, phases: Climb, t_s: float
 ) -> Height:
-    """Altitude and vertical speed t_s after the begin of a `climb` with these phases."""
+    """Altitude and vertical speed t_s after the beginning of a `climb` with these phases."""
     t1_s, t2_s, t3_s, rate_m_s = phases
     if t_s > t3_s:
         return Height(target_m, 0)
@@ -126,7 +127,7 @@ def altitude_conflict(
     if not whole:
         cruise_s = until(lookahead_s, horizon_s, t1, counted)
         final_s = until(lookahead_s, horizon_s, level_s, counted)
-    # straight on at the new altitude
+    # straight flight at the new altitude
     level = Relative(
         Vec2(x0 + v.x * level_s, y0 + v.y * level_s), v,
         target_m - h0 - other[5] * level_s, 0.0 - other[5],
@@ -161,27 +162,26 @@ def altitude_conflict(
 @driver(checked_by=("in_conflict",))
 def in_reach(
     own: np.ndarray, intruders: Intruders, i: int, regaining: Regaining, looking: Looking
-) -> bool:
-    """Whether intruder i matters at any altitude: only these change, the flight over ground does not.
+) -> tuple[bool, bool]:
+    """Whether intruder i's volume can matter at any altitude, and whether its recovery cylinder can: only altitudes
+    change, the flight over ground does not.
 
-    One that is not in conflict where it stays at the same height is so at no height and climb rate
+    An intruder that is not in conflict at equal height is not in conflict at any height and climb rate
     (`daa_conflict_at_no_height_beside`).
     """
     other, w, kind = intruders.states[i], intruders.volumes[i], intruders.kinds[i]
-    if kind == SUM_KIND:
-        return True
     until_s = max(looking.lookahead_s, intruders.horizons[i])
     v = Vec2(own[3] - other[3], own[4] - other[4])
     s = Vec2(
         own[0] - other[0] + v.x * looking.project_s, own[1] - other[1] + v.y * looking.project_s
     )
     volume = Thresholds(w[0], w[1], w[2], w[3], w[4])
-    if in_conflict(kind, s, v, 0.0, 0.0, volume, 0.0, until_s):
-        return True
-    if not regaining.recovering:
-        return False
+    near = regaining.begin_s <= intruders.horizons[i] and (
+        kind == SUM_KIND or in_conflict(kind, s, v, 0.0, 0.0, volume, 0.0, until_s)
+    )
     cylinder = Thresholds(regaining.radius_m, regaining.half_m, 0.0, 0.0, 0.0)
-    return in_conflict(3, s, v, 0.0, 0.0, cylinder, 0.0, until_s)
+    held = regaining.recovering and in_conflict(3, s, v, 0.0, 0.0, cylinder, 0.0, until_s)
+    return near, held
 
 
 @driver(checked_by=("in_conflict", "climb", "height", "until"))
@@ -205,9 +205,9 @@ def safe_altitudes(
     lead = 0
     cylinder = np.zeros(11)
     cylinder[0], cylinder[1] = regaining.radius_m, regaining.half_m
-    near = np.zeros(chosen.size, dtype=np.bool_)
+    near, held_clear = np.zeros(chosen.size, dtype=np.bool_), np.zeros(chosen.size, dtype=np.bool_)
     for c in range(chosen.size):
-        near[c] = in_reach(ways.right[0], intruders, chosen[c], regaining, looking)
+        near[c], held_clear[c] = in_reach(ways.right[0], intruders, chosen[c], regaining, looking)
     for k in range(targets.size):
         red = False
         for c in range(chosen.size):
@@ -216,15 +216,13 @@ def safe_altitudes(
                 q = lead
             elif c <= lead:
                 q = c - 1
-            if not near[q]:
-                continue
             i = chosen[q]
-            if begin_s <= horizons[i]:
+            if near[q] and begin_s <= horizons[i]:
                 red = altitude_conflict(
                     ways, targets[k], others[i], kinds[i], volumes[i],
                     Looked(begin_s, horizons[i], False), looking,
                 )  # fmt: skip
-            if regaining.recovering and not red:
+            if regaining.recovering and held_clear[q] and not red:
                 held = Looked(0.0, min(begin_s, horizons[i]), begin_s <= horizons[i])
                 red = altitude_conflict(ways, targets[k], others[i], 3, cylinder, held, looking)
             if red:

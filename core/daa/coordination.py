@@ -1,8 +1,8 @@
 """Implicit coordination: which side, and which new velocities keep to it.
 
-Definitions: `spec.daa.coordination`. Relative state is ownship minus intruder, x east, y north, z up.
-Both aircraft of a pair ask these kernels, each with its own signs: they agree on the horizontal side,
-and choose opposite vertical ones. What of it is proved: `cratous prove --only 'daa_coordination*' -v`.
+Definitions: `spec.daa.coordination`. Relative state is ownship minus intruder, x east, y north, z up. Both aircraft
+of a pair call these kernels, each with its own signs: they agree on the horizontal side, and choose opposite vertical
+ones. What is proved of it: `cratous prove --only 'daa_coordination*' -v`.
 """
 
 from cratous.core.kernel import Vec2, driver, kernel
@@ -11,7 +11,7 @@ from cratous.core.well_clear.during import within_during
 
 @kernel(implements="daa.coordination.horizontal_side")
 def horizontal_side(s: Vec2, v: Vec2) -> int:
-    """1: the intruder is passed on the right hand of the relative flight, or head-on; -1: on the left."""
+    """1: the intruder is passed on the right of the relative flight path, or head-on; -1: on the left."""
     if v.x * s.y >= v.y * s.x:
         return 1
     return -1
@@ -40,7 +40,7 @@ def repels(s: Vec2, v: Vec2, w: Vec2, side: int) -> bool:
 
 @kernel(implements="daa.coordination.in_cylinder_at", nonnegative=("radius_m", "half_m"))
 def enters_cylinder(s: Vec2, v: Vec2, sz: float, vz: float, radius_m: float, half_m: float) -> bool:
-    """True iff the two are in one cylinder [m] now or ever later; for vz not 0, else False."""
+    """True iff the two are within a cylinder [m] of each other now or later; for vz not 0, else False."""
     if vz == 0:
         return False
     w = abs(vz)
@@ -58,7 +58,7 @@ def enters_cylinder(s: Vec2, v: Vec2, sz: float, vz: float, radius_m: float, hal
 
 @kernel(implements="daa.coordination.vertical_side")
 def side_of(high: float, low: float, first: bool) -> int:
-    """1 if high is above low, -1 if below; at one height by whose id is first."""
+    """1 if high is above low, -1 if below; at equal height decided by whose id is first."""
     if high > low:
         return 1
     if high < low:
@@ -74,8 +74,8 @@ def vertical_side(
 ) -> int:
     """1: the ownship goes above the intruder, -1: below it.
 
-    On invariants: relative altitude [m] and climb rate [m/s], |v|^2, s.v; together: whether the two are
-    in one place; enters: whether a cylinder that must not be entered on the way to the other side would be
+    On invariants: relative altitude [m] and climb rate [m/s], |v|^2, s.v; together: whether the two are at the same
+    place; enters: whether a cylinder that must not be entered on the way to the other side would be
     (`enters_cylinder`); first: whether the own id is first of the two (equal heights).
     """
     if vz == 0:
@@ -105,8 +105,9 @@ def repels_vertically(v: Vec2, vz: float, w: Vec2, wz: float, side: int) -> bool
 
 @kernel(implements="daa.coordination.more_urgent")
 def more_urgent(size: float, time_s: float, other_size: float, other_time_s: float) -> bool:
-    """True iff an intruder is more urgent than another; size: of the least cylinder that both get into
-    in straight flight, in cylinders (squared); time_s: when [s]."""
+    """True iff an intruder is more urgent than another; size: of the least cylinder that both enter in straight
+    flight, in cylinders (squared); time_s: when [s].
+    """
     if size <= 1:
         if other_size > 1:
             return True
@@ -116,12 +117,12 @@ def more_urgent(size: float, time_s: float, other_size: float, other_time_s: flo
 
 @driver(checked_by=("repels", "repels_vertically"))
 def step_is_repulsive(own, k, step_s, other, side, side_z):
-    """Whether step k of one side repels an intruder that flies straight on.
+    """Whether step k of one side repels an intruder in straight flight.
 
-    own: as in `core.daa.steps.safe_steps`; other: (6,) state now; side, side_z: to keep to, 0: none. Where
-    steps take no time (step_s 0) each is asked by itself. Else the present flight, step 0, is always
-    allowed, and of each later step: its velocity instead of the mean one of the piece before it, that of
-    the piece after it instead of both; and of the first piece, that instead of the present velocity.
+    own: as in `core.daa.steps.safe_steps`; other: (6,) state now; side, side_z: to keep to, 0: none. If steps take no
+    time (step_s 0), each is checked by itself. Otherwise the present flight, step 0, is always allowed, and of each
+    later step these are checked: its velocity against the mean one of the segment before it, that of the segment
+    after it against both; and of the first segment, its velocity against the present one.
     """
     if step_s > 0 and k == 0:
         return True

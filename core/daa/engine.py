@@ -1,7 +1,7 @@
 """Detect and avoid for one ownship at one instant: alerts and guidance from states and parameters.
 
-Nothing is remembered here; `core.daa.history` adds history. What is violated, and which manoeuvre
-conflicts, is decided by the kernels behind `core.daa.alerting` and `core.daa.guidance`.
+Stateless; `core.daa.history` adds history. Violations, and which manoeuvres conflict, are decided by the kernels
+behind `core.daa.alerting` and `core.daa.guidance`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from cratous.core.daa.alerting import level_times, raw_levels
 from cratous.core.daa.bands import Raw, Traffic, last_times, out_of_range, raw_bands
 from cratous.core.daa.records import Tables
 from cratous.core.daa.spread import spread_conflict
-from cratous.core.daa.state import HDIR, Aircraft, Coordination, LevelTimes
+from cratous.core.daa.state import HDIR, Aircraft, Coordination, LevelTimes, Sigma
 from cratous.core.daa.urgency import coordination, sides
 from cratous.core.readings.tiered import swift
 from cratous.spec.daa.parameters import (
@@ -33,12 +33,15 @@ from cratous.spec.daa.parameters import (
     sensitivity,
 )
 
+EXACTLY = Sigma()
+"""No uncertainty: a state known exactly."""
+
 
 def thresholds(volume: Volume, alt_m: float) -> Volume:
     """A volume with its thresholds; those of TCAS are of the level at the own altitude [m].
 
-    A resolution advisory by modified tau is the well-clear volume with these thresholds, the
-    time to co-altitude included.
+    A resolution advisory by modified tau is the well-clear volume with these thresholds, including the time to
+    co-altitude.
     """
     if volume.kind != TCAS:
         return volume
@@ -48,7 +51,7 @@ def thresholds(volume: Volume, alt_m: float) -> Volume:
 
 @functools.lru_cache(maxsize=64)
 def tables(alerters: tuple[Alerter, ...], alt_m: float) -> Tables:
-    """The tables; alt_m matters only to TCAS volumes."""
+    """The levels of all alerters as arrays; alt_m matters only to TCAS volumes."""
     most = max((len(a.levels) for a in alerters), default=0)
     shape = (len(alerters), most)
     made = Tables(
@@ -69,7 +72,7 @@ def tables(alerters: tuple[Alerter, ...], alt_m: float) -> Tables:
 
 
 def tables_at(p: Parameters, alt_m: float) -> Tables:
-    """The tables of these parameters."""
+    """The level tables of these parameters."""
     tcas = any(level.volume.kind == TCAS for a in p.alerters for level in a.levels)
     return tables(p.alerters, alt_m if tcas else 0.0)
 
@@ -80,7 +83,7 @@ def states(aircraft: Sequence[Aircraft]) -> np.ndarray:
 
 
 def alerter_index(p: Parameters, own: Aircraft, other: Aircraft) -> int:
-    """Which alerter judges an intruder: an index, or -1 for none."""
+    """The index of the alerter used for an intruder, or -1 for none."""
     number = own.alerter if p.ownship_centric_alerting else other.alerter
     return number - 1 if 1 <= number <= len(p.alerters) else -1
 
@@ -88,6 +91,12 @@ def alerter_index(p: Parameters, own: Aircraft, other: Aircraft) -> int:
 def region_level(alerter: Alerter, region: int) -> tuple[int, Level] | None:
     """The first level of an alerter that colours a region, and its index."""
     return next(((k, x) for k, x in enumerate(alerter.levels) if x.region == region), None)
+
+
+def _regions_of(alerter: Alerter) -> list[tuple[int, int]]:
+    """The regions coloured by levels of an alerter, each with the index of the first such level."""
+    found = ((region, region_level(alerter, region)) for region in range(FAR, NEAR + 1))
+    return [(region, one[0]) for region, one in found if one is not None]
 
 
 def _root(east: float, north: float, both: float) -> float:
@@ -98,8 +107,11 @@ def _root(east: float, north: float, both: float) -> float:
 
 
 def errors_of(p: Parameters, own: Aircraft, other: Aircraft) -> np.ndarray:
-    """The uncertainties of a pair as `core.daa.uncertainty.lost` takes them: z-scores times the
-    standard deviations of both."""
+    """The uncertainties of a pair as `core.daa.uncertainty.lost` takes them: z-scores times the standard deviations
+    of both.
+    """
+    if own.sigma == EXACTLY and other.sigma == EXACTLY:
+        return np.array([0.0, 0.0, 0.0, 0.0, 0.0, p.h_vel_z_distance_m])
     pos = vel = 0.0
     for x in (own.sigma, other.sigma):
         pos += _root(x.s_ew_m, x.s_ns_m, x.s_en_m)
@@ -117,8 +129,9 @@ def errors_of(p: Parameters, own: Aircraft, other: Aircraft) -> np.ndarray:
 
 
 class Seen(NamedTuple):
-    """One instant: who is there, which alerter judges whom, raw levels, times, conflicts, and with
-    whom to coordinate."""
+    """The evaluation of one instant: aircraft, alerter of each, raw levels, times, conflicts, and the intruder to
+    coordinate with.
+    """
 
     own: Aircraft
     others: tuple[Aircraft, ...]
@@ -138,8 +151,8 @@ def look(
 ) -> Seen:
     """Raw alert levels and conflicts.
 
-    alerters: indices that override those of the parameters; held: levels that are shown already, by
-    id and alerter index: in conflict with such a level is who violates it within its early time.
+    alerters: indices that override those of the parameters; held: levels that are already shown, by id and alerter
+    index: an intruder that violates such a level within its early alerting time is in conflict with it.
     """
     t = tables_at(p, own.alt_m)
     index = tuple(alerters if alerters is not None else (alerter_index(p, own, o) for o in others))
@@ -191,14 +204,11 @@ def look(
         np.zeros((4, n), dtype=np.bool_),
         keep,
     )
+    mapped = {a: _regions_of(p.alerters[a]) for a in set(index) if a >= 0}
     for i, a in enumerate(index):
         if a < 0:
             continue
-        for region in range(FAR, NEAR + 1):
-            found = region_level(p.alerters[a], region)
-            if found is None:
-                continue
-            k = found[0]
+        for region, k in mapped[a]:
             traffic.mapped[region, i] = True
             traffic.kinds[region, i] = t.kinds[a, k]
             traffic.volumes[region, i] = [*t.volumes[a, k], *errors[i]]
@@ -216,8 +226,8 @@ def look(
 def bands_now(p: Parameters, seen: Seen, dimension: int, terminal: bool = False) -> Raw | None:
     """The bands of a dimension without history; None if the own value is out of range.
 
-    terminal: a conflict in the terminal area: nothing downward is offered, and with dta_logic -1 no
-    recovery of direction.
+    terminal: a conflict in the terminal area: no downward guidance is given, and with dta_logic -1 no recovery of
+    direction.
     """
     if out_of_range(p, seen.own, dimension):
         return None

@@ -1,9 +1,8 @@
 """The local plane of detect and avoid: an orthographic projection at the ownship.
 
-A sphere of radius 6,366,707.0194937 m, on which one minute of arc is one nautical mile. Positions
-are projected onto the plane that touches it below the ownship; altitudes stay as they are. A
-ground velocity is carried along: it is turned into the ownship's directions and projected.
-Distances beyond five minutes of flight are increasingly foreshortened.
+A sphere of radius 6,366,707.0194937 m, on which one minute of arc is one nautical mile. Positions are projected onto
+the plane tangent to it below the ownship; altitudes are unchanged. A ground velocity is projected too, expressed in
+the ownship's directions. Distances beyond five minutes of flight are increasingly foreshortened.
 """
 
 from __future__ import annotations
@@ -33,7 +32,7 @@ def project(
     sin_t, cos_t = math.sin(turn), math.cos(turn)
     east = RADIUS_M * cos1 * sin_t
     north = RADIUS_M * (sin1 * cos0 - cos1 * sin0 * cos_t)
-    # the directions east and north there, in the axes of the plane
+    # the local east and north directions, in the axes of the plane
     ve = ve_m_s * cos_t - vn_m_s * sin1 * sin_t
     vn = ve_m_s * sin0 * sin_t + vn_m_s * (cos1 * cos0 + sin1 * sin0 * cos_t)
     return Local(east, north, ve, vn)

@@ -1,4 +1,4 @@
-"""The grid of one dimension: the manoeuvres that bands try, as trajectories, or target altitudes.
+"""The grid of one dimension: the manoeuvres that bands examine, as trajectories, or target altitudes.
 
 Definitions: `spec.daa.meaning`. Which of them are safe is decided by the kernels of `core.daa.steps` and
 `core.daa.climb`.
@@ -15,7 +15,7 @@ from cratous.core.daa.state import ALT, HDIR, HS, VS, Aircraft
 from cratous.spec.daa.parameters import G_M_S2, Parameters
 
 SLACK = 1e-9
-"""A grid step this near to the limit [steps] is the limit."""
+"""A grid step this near to the limit [steps] counts as the limit."""
 
 
 class Grid(NamedTuple):
@@ -34,7 +34,7 @@ class Grid(NamedTuple):
 
     @property
     def values(self) -> int:
-        """How many values are looked at."""
+        """The number of grid values."""
         return len(self.right) + len(self.left) + len(self.targets)
 
 
@@ -42,7 +42,7 @@ EMPTY = np.zeros(0)
 
 
 def value_range(p: Parameters, dimension: int, own: float) -> tuple[float, float]:
-    """The least and greatest value that bands speak of."""
+    """The range of values that bands cover."""
     if dimension == HDIR:
         return own - p.left_hdir_rad, own + p.right_hdir_rad
     low, high, below, above = {
@@ -52,7 +52,7 @@ def value_range(p: Parameters, dimension: int, own: float) -> tuple[float, float
     }[dimension]
     if below == 0 and above == 0:
         return low, high
-    # a negative distance means: to the limit
+    # a negative distance means: up to the limit
     least = low if below < 0 else max(low, own - below)
     most = high if above < 0 else min(high, own + above)
     return least, most
@@ -138,6 +138,7 @@ def grid(p: Parameters, own: Aircraft, dimension: int) -> Grid:
 
 
 def sides_in(dimension: int, sides: np.ndarray) -> np.ndarray:
-    """Those of the sides (n, 2) that matter in a dimension: the horizontal ones for directions and
-    speeds, the vertical ones for vertical speeds, none for altitudes."""
+    """The columns of sides (n, 2) that matter in a dimension: the horizontal ones for directions and speeds, the
+    vertical ones for vertical speeds, none for altitudes.
+    """
     return sides * np.array([dimension in (HDIR, HS), dimension == VS])

@@ -25,10 +25,10 @@ def evaluate(
     ways: Manoeuvres, intruders: Intruders, chosen: np.ndarray, regaining: Regaining,
     looking: Looking, safe_r: np.ndarray, safe_l: np.ndarray,
 ):  # fmt: skip
-    """Safe steps to the right and left, or safe altitudes if there are targets, which know no sides.
+    """Safe steps to the right and left, or safe altitudes if there are targets, which have no sides.
 
-    chosen: indices of the intruders that count.
-    Returns whether there is a safe value: two neighbouring grid values, or any one if single.
+    chosen: indices of the intruders that count. Returns whether there is a safe value: two neighbouring grid values,
+    or any one if single.
     """
     if ways.targets.size > 0:
         return safe_altitudes(ways, intruders, chosen, regaining, looking, safe_r)
@@ -41,7 +41,7 @@ def evaluate(
 
 @kernel(implements="daa.meaning.shrunk")
 def shrunk(size_m: float, least_m: float, factor: float) -> float:
-    """A recovery distance [m] one step smaller, never below least_m; factor in (0, 1)."""
+    """A recovery distance [m] after one reduction, at least least_m; factor in (0, 1)."""
     return max(least_m, size_m * (1 - factor))
 
 
@@ -50,11 +50,11 @@ def recover(
     ways: Manoeuvres, intruders: Intruders, chosen: np.ndarray, looking: Looking,
     size: RecoverySizes, safe_r: np.ndarray, safe_l: np.ndarray, result: np.ndarray,
 ):  # fmt: skip
-    """The earliest manoeuvres that regain the volume, and how far the intruder stays away until.
+    """The earliest manoeuvres that regain the volume, and the separation kept until then.
 
-    result: [saturated, time s, times shrunk, radius m, half height m]. A cylinder is to be kept
-    clear until the recovery time, the volumes after it; if that cannot be, and shrinking, the
-    cylinder is made smaller, down to the NMAC cylinder. The time is found by halving to 0.5 s.
+    result: [saturated, time s, times shrunk, radius m, half height m]. A cylinder is to be kept clear until the
+    recovery time, the volumes after it; if that is not possible, and shrinking is on, the cylinder is reduced, down
+    to the NMAC cylinder. The time is found by bisection to 0.5 s.
     """
     radius_m, half_m, lookahead_s = size.radius_m, size.half_m, looking.lookahead_s
     kinds = intruders.kinds.copy()
@@ -62,7 +62,7 @@ def recover(
     for i in range(kinds.size):
         kinds[i] = 3
         sizes[i, 0], sizes[i, 1] = size.nmac_m, size.nmac_half_m
-        # a cylinder has no times
+        # a cylinder has no time thresholds
         sizes[i, 2], sizes[i, 3], sizes[i, 4] = 0.0, 0.0, 0.0
     cylinders = Intruders(intruders.states, kinds, sizes, intruders.horizons, intruders.sides)
     early = Looking(lookahead_s, looking.counted, 0.0, True, False)
@@ -105,11 +105,11 @@ def in_region(
     ways: Manoeuvres, regions: Regions, region: int, row: int, looking: Looking, found: Guided,
     chosen: np.ndarray, horizons: np.ndarray,
 ):  # fmt: skip
-    """Safe values with respect to one region, into `row`: of each intruder by itself, then of all.
+    """Safe values with respect to one region, into `row`: for each intruder by itself, then for all.
 
-    An intruder in conflict counts with the whole look-ahead as horizon, any other one with its
-    alerting time, and only if some manoeuvre conflicts with it: then it is peripheral.
-    chosen: the intruders that count are put there. Returns (how many, whether a value is safe).
+    An intruder in conflict counts with the whole look-ahead as horizon, any other one with its alerting time, and
+    only if some manoeuvre conflicts with it: then it is peripheral. chosen: receives the intruders that count.
+    Returns (how many, whether a value is safe).
     """
     mapped, conflict = regions.mapped[region], regions.conflict[region]
     alerting_s, peripheral = regions.alerting_s[region], found.peripheral[region]
@@ -163,10 +163,10 @@ def guide(
     ways: Manoeuvres, regions: Regions, lookahead_s: float, counted: bool, corrective: int,
     recovery_on: bool, sizes: RecoverySizes, found: Guided,
 ):  # fmt: skip
-    """Everything about one dimension, into `found`.
+    """Compute all guidance of one dimension, into `found`.
 
-    counted: as in `Looking`; corrective: the region that is to be regained; recovery_on: whether
-    recovery is asked for.
+    counted: as in `Looking`; corrective: the region that is to be regained; recovery_on: whether recovery is
+    requested.
     """
     horizons = regions.alerting_s[0].copy()
     chosen = regions.kinds[0].copy()
@@ -206,8 +206,8 @@ def last_time(
 ):  # fmt: skip
     """The last time in [0, entry_s] at which a manoeuvre still avoids intruder i [s]; -1: none.
 
-    Both fly straight on until then. Found by halving to 0.5 s, on the early side. The horizon of
-    intruder i becomes the look-ahead.
+    Both fly straight until then. Found by bisection to 0.5 s, on the early side. The horizon of intruder i becomes
+    the look-ahead.
     """
     one = intruders.kinds[:1].copy()
     one[0] = i

@@ -1,8 +1,8 @@
-"""What is remembered from instant to instant, so that alerts do not flicker.
+"""History from instant to instant (hysteresis), so that alerts do not flicker.
 
-M of N: a level is shown if at least M of the last N raw levels reach it; the history begins with M
-copies of the first. Persistence: a level that was raised stays for a while. The early alerting
-time holds a level that is shown. History is forgotten after a gap, or if time does not go on.
+M of N: a level is shown if at least M of the last N raw levels reach it; the history begins with M copies of the
+first. Persistence: a level that was raised stays for a time. The early alerting time holds a level that is shown.
+History is reset after a gap, or if time does not advance.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from cratous.spec.daa.parameters import NONE, RECOVERY
     restates="M of N: how many of the last N values count",
 )
 def count_reached(before: int, value: int, level: int) -> int:
-    """How many values reach a level: one more if this one does."""
+    """The number of values that reach a level, with one more value."""
     if value >= level:
         return before + 1
     return before
@@ -33,7 +33,7 @@ def count_reached(before: int, value: int, level: int) -> int:
     restates="M of N: the number that raises an alert",
 )
 def enough(count: int, m: int) -> bool:
-    """True iff at least m did."""
+    """True iff the count is at least m."""
     return count >= m
 
 
@@ -45,7 +45,7 @@ def may_drop(now_s: float, raised_s: float, persistence_s: float) -> bool:
 
 @kernel(implements="daa.meaning.goes_on")
 def goes_on(now_s: float, before_s: float, gap_s: float) -> bool:
-    """True iff history counts: time has gone on, by at most gap_s (> 0: there is hysteresis)."""
+    """True iff history is valid: time has advanced, by at most gap_s (> 0: there is hysteresis)."""
     return now_s > before_s and now_s - before_s <= gap_s
 
 
@@ -72,7 +72,7 @@ class Shown:
     raised_s: float = float("-inf")
 
     def filtered(self, raw: int) -> int:
-        """The value by M of N."""
+        """The raw value filtered by M of N."""
         if self.m <= 0 or self.n < self.m:
             return raw
         if not self.values:
@@ -96,11 +96,11 @@ class Shown:
 SLIVER = 1e-4
 """Bands narrower than this (rad, m/s, m) come from rounding of the own value; they are dropped."""
 EDGE = 1e-7
-"""A value this near to an edge lies on it."""
+"""A value this near to an edge counts as on it."""
 
 
 def laid_over(bands: Sequence[Band], over: Sequence[Band]) -> tuple[Band, ...]:
-    """The bands with others laid over those that are milder; RECOVERY counts as the most severe."""
+    """The bands overlaid with others where these are more severe; RECOVERY counts as the most severe."""
     edges = sorted({x for b in (*bands, *over) for x in (b.low, b.high)})
     found: list[Band] = []
     for low, high in itertools.pairwise(edges):
@@ -115,7 +115,7 @@ def laid_over(bands: Sequence[Band], over: Sequence[Band]) -> tuple[Band, ...]:
 
 
 def resolved(bands: Sequence[Band], recovering: bool) -> tuple[Band, ...]:
-    """Values without conflict are RECOVERY while recovery is needed, and NONE otherwise."""
+    """The bands with conflict-free values as RECOVERY while recovery is needed, and as NONE otherwise."""
     found: list[Band] = []
     for band in bands:
         region = band.region
@@ -130,10 +130,10 @@ def resolved(bands: Sequence[Band], recovering: bool) -> tuple[Band, ...]:
 
 @dataclass
 class BandMemory:
-    """The last bands of one dimension; a value's region is shown by M of N of its regions.
+    """The last bands of one dimension; a value's region is filtered by M of N.
 
-    turn: the size of the circle for directions, else 0. held: the conflict band, or its two parts
-    around 0, in which the own value was shown; held_s: since when it is.
+    turn: the size of the circle for directions, else 0. held: the conflict band, or its two parts around 0, in which
+    the own value was shown; held_s: since when.
     """
 
     m: int
@@ -175,7 +175,7 @@ class BandMemory:
         return tuple(found)
 
     def at(self, bands: Sequence[Band], own: float) -> Band | None:
-        """The band of the own value; on an edge the one without conflict, or the milder one."""
+        """The band of the own value; on an edge the conflict-free one, or else the milder one."""
         near = [
             b
             for b in bands
@@ -187,8 +187,9 @@ class BandMemory:
     def shown(
         self, bands: tuple[Band, ...], recovering: bool, own: float, now_s: float
     ) -> tuple[Band, ...]:
-        """The bands to show: by M of N, and the conflict band of the own value held for the
-        persistence time since it was entered, where it would turn milder sooner."""
+        """The bands to show: filtered by M of N, and with the conflict band of the own value held for the persistence
+        time since it was entered, if it would become milder sooner.
+        """
         bands = self.filtered(bands)
         if self.persistence_s <= 0:
             return resolved(bands, recovering)

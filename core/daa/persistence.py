@@ -1,8 +1,8 @@
-"""Resolutions and the preferred direction from instant to instant, so that advice does not jump.
+"""Persistence of resolutions and the preferred direction from instant to instant, so that advice does not jump.
 
-Definitions: `spec.daa.persistence`. The nearest resolutions come from `core.daa.bands`; which of them,
-or of those shown before, is shown is decided by the kernels here. A resolution that is held still
-lies ahead, and between it and the nearest one no band reaches the corrective region.
+Definitions: `spec.daa.persistence`. The nearest resolutions come from `core.daa.bands`; the kernels here decide which
+of them, or of those shown before, is shown. A held resolution is still ahead of the own value, and between it and the
+nearest one no band reaches the corrective region.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ def resolution_kept(
     beyond: float,
     least: float,
 ) -> bool:
-    """True iff an earlier resolution, which still resolves, stays in place of the nearest one.
+    """True iff an earlier resolution, which still resolves the conflict, is kept in place of the nearest one.
 
-    preferred: its direction is; shrunk_before, shrunk_now: how often recovery shrank the cylinder
-    for it, and does now (-1: no recovery); age_s: since when the direction is shown [s]; persistence_s: how long it
-    stays at least [s]; beyond: how much farther it is than the nearest one, and least: what is worth
-    a change; both in the unit of the dimension.
+    preferred: its direction is; shrunk_before, shrunk_now: how often recovery shrank the cylinder for it, and does
+    now (-1: no recovery); age_s: since when the direction is shown [s]; persistence_s: how long it stays at least
+    [s]; beyond: how much farther it is than the nearest one, and least: the smallest change worth making; both in the
+    unit of the dimension.
     """
     if shrunk_before >= 0 and shrunk_before < shrunk_now:
         return True
@@ -48,10 +48,10 @@ def direction_kept(
     shrunk_preferred: int,
     shrunk_other: int,
 ) -> bool:
-    """True iff the preferred direction stays; there are resolutions both ways.
+    """True iff the preferred direction is kept; there are resolutions on both sides.
 
-    age_s, persistence_s, least: as above; up, down: how far the nearest resolutions are; shrunk_...:
-    how often the cylinder was shrunk for what is shown in the preferred and in the other direction.
+    age_s, persistence_s, least: as above; up, down: how far the nearest resolutions are; shrunk_...: how often the
+    cylinder was shrunk for what is shown in the preferred and in the other direction.
     """
     if age_s < persistence_s or shrunk_preferred < shrunk_other:
         return True
@@ -61,8 +61,9 @@ def direction_kept(
 
 
 class Held(NamedTuple):
-    """What is shown: the resolution to the right or up, that to the left or down (None: none), and
-    whether the first is preferred."""
+    """What is shown: the resolution to the right or up, the one to the left or down (None: none), and whether the
+    first is preferred.
+    """
 
     up: float | None = None
     down: float | None = None
@@ -78,15 +79,15 @@ class Span(NamedTuple):
 
 
 EDGE = 1e-7
-"""Values this near to each other are the same (rad, m/s, m)."""
+"""Values this near to each other count as equal (rad, m/s, m)."""
 
 
 @dataclass
 class Ways:
     """The history of one dimension.
 
-    least: what is worth a change; turn: the size of the circle for directions, else 0; since_s: when
-    the direction was chosen, None if there is none.
+    least: the smallest change worth making; turn: the size of the circle for directions, else 0; since_s: when the
+    direction was chosen, None if there is none.
     """
 
     persistence_s: float
@@ -98,12 +99,12 @@ class Ways:
     since_s: float | None = None
 
     def _away(self, start: float, end: float) -> float:
-        """How far it is from start up to end; along the circle in [0, turn)."""
+        """The distance from start up to end; along the circle in [0, turn)."""
         gap = end - start
         return gap % self.turn if self.turn else gap
 
     def _clear(self, spans: Sequence[Span], near: float, far: float) -> bool:
-        """No band between two values, from the near one up to the far one, is forbidden."""
+        """Whether no band between two values, from the near one up to the far one, reaches the corrective region."""
         length = self._away(near, far)
         if length < -EDGE:
             return False
@@ -153,10 +154,10 @@ class Ways:
 
     @driver(checked_by=("direction_kept",))
     def _direction(self, own: float, new: Held, now_s: float, was_s: float | None) -> bool:
-        """Whether up is preferred; since when follows."""
+        """Whether up is preferred; updates since when."""
         if new.up is None or new.down is None:
-            # without a choice there is none to be kept, but one that was made counts on; the right
-            # or upper way counts as chosen by itself
+            # without a choice there is none to keep, but an earlier one still counts; the right
+            # or upper direction is the default choice
             none = new.up is None and new.down is None
             start_s = now_s if new.up is not None and self.least > 0 else None
             self.since_s = None if none else was_s if was_s is not None else start_s
@@ -194,7 +195,7 @@ class Ways:
         return self.held
 
     def forget(self) -> None:
-        """Begin anew."""
+        """Reset the history."""
         self.held, self.since_s, self.shrunk_up, self.shrunk_down = Held(), None, 0, 0
 
 

@@ -1,6 +1,6 @@
-"""Why a grid value is not safe: which intruder, which volume, on the way or after it, and when.
+"""Why a grid value is not safe: which intruder, which volume, during the manoeuvre or after it, and when.
 
-The same kernels are asked as by the bands, for one value, intruder by intruder.
+The same kernels as for the bands are called, for one value, intruder by intruder.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from cratous.spec.daa.parameters import NEAR, Parameters
 
 
 class Reason(NamedTuple):
-    """What is in the way of a value.
+    """An obstacle to a value.
 
-    intruder: its id; region: whose volume; on_way: while manoeuvring, not after it; first_s,
-    last_s: when the volume is violated [s from now]; miss_m, above_m: least horizontal distance in
-    that time and vertical distance at it [m]; limit_m, limit_z_m: the volume's thresholds; side: 0, or
-    not the volume but coordination is in the way: from first_s on it does not repel to that side.
+    intruder: its id; region: whose volume; on_way: while manoeuvring, not after it; first_s, last_s: when the volume
+    is violated [s from now]; miss_m, above_m: least horizontal distance in that time and vertical distance at it [m];
+    limit_m, limit_z_m: the volume's thresholds; side: 0, or the obstacle is coordination, not the volume: from
+    first_s on the manoeuvre does not repel to that side.
     """
 
     intruder: str
@@ -57,8 +57,9 @@ def _least(state: np.ndarray, first_s: float, last_s: float) -> tuple[float, flo
 def coordination_reasons(
     p: Parameters, seen: Seen, raw: Raw, dimension: int, side: int, k: int
 ) -> list[Reason]:
-    """Whether step k to one side leaves the side to keep to from the most urgent intruder; told for
-    each region in whose bands it counts."""
+    """Whether step k to one side violates the coordination side with the most urgent intruder; reported for each
+    region in whose bands it counts.
+    """
     found: list[Reason] = []
     g, traffic = raw.grid, seen.traffic
     path = g.right if side > 0 else g.left
@@ -89,8 +90,9 @@ def coordination_reasons(
 
 
 def _looked_at(p: Parameters, traffic: Traffic, raw: Raw) -> Iterator[tuple[int, int, str, float]]:
-    """Each region of the bands, most severe first, with each intruder that counts there: (region, which, its id,
-    how far ahead it is looked [s])."""
+    """Each region of the bands, most severe first, with each intruder that counts there: (region, index, its id,
+    look-ahead [s]).
+    """
     for region in range(NEAR, 0, -1):
         if not raw.state[region]:
             continue
@@ -104,7 +106,7 @@ def _looked_at(p: Parameters, traffic: Traffic, raw: Raw) -> Iterator[tuple[int,
 
 @driver(checked_by=("in_conflict", "piece_counts", "straight_from"))
 def step_reasons(p: Parameters, seen: Seen, raw: Raw, side: int, k: int) -> list[Reason]:
-    """What is in the way of step k to the right (side 1) or left (side -1), most severe first."""
+    """The obstacles to step k to the right (side 1) or left (side -1), most severe first."""
     g, traffic = raw.grid, seen.traffic
     path = g.right if side > 0 else g.left
     found: list[Reason] = []
@@ -153,7 +155,7 @@ def step_reasons(p: Parameters, seen: Seen, raw: Raw, side: int, k: int) -> list
 
 @driver(checked_by=("in_conflict", "climb", "height"))
 def altitude_reasons(p: Parameters, seen: Seen, raw: Raw, k: int) -> list[Reason]:
-    """What is in the way of target altitude k, most severe first; the times are not computed."""
+    """The obstacles to target altitude k, most severe first; the times are not computed."""
     g, traffic = raw.grid, seen.traffic
     looking = Looking(p.lookahead_time_s, p.bands_add_time_to_maneuver, 0.0, False, False)
     found: list[Reason] = []
@@ -182,8 +184,9 @@ def altitude_reasons(p: Parameters, seen: Seen, raw: Raw, k: int) -> list[Reason
 def reasons_at(
     p: Parameters, seen: Seen, raw: Raw, value: float, dimension: int = -1
 ) -> list[Reason]:
-    """What is in the way of the grid value nearest to `value` (not wrapped around the circle); with a
-    dimension, coordination too."""
+    """The obstacles to the grid value nearest to `value` (not wrapped around the circle); with a dimension,
+    coordination too.
+    """
     g = raw.grid
     if len(g.targets):
         k = int(np.argmin(np.abs(g.targets - value)))

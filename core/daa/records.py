@@ -1,6 +1,6 @@
-"""What the drivers of guidance take: a dimension's manoeuvres, intruders, volumes, times, as records.
+"""Input records of the guidance drivers: manoeuvres of a dimension, intruders, volumes, times.
 
-Records of arrays, as they stand in memory; machine code takes a record as it takes its fields one by one.
+Records of arrays; machine code takes a record as its fields one by one.
 """
 
 from __future__ import annotations
@@ -13,14 +13,13 @@ from cratous.core.kernel import Vec2
 
 
 class Manoeuvres(NamedTuple):
-    """The manoeuvres of one dimension that are tried.
+    """The manoeuvres of one dimension that are examined.
 
-    right, left: (K + 1, 11) positions [m] and velocities [m/s] at the steps to each side, the velocity
-    east and north before the manoeuvre, and the mean velocity from the step to the next one; row 0 is
-    the state now; step_s: time from step to step, 0: at once; piece_s: how long a piece is looked at,
-    step_s, or 0 to sample the way at the steps; targets: altitudes [m], empty in other dimensions;
-    rate_m_s, accel_m_s2: of climbs, 0: at once; sample_s: how often changes of altitude are sampled
-    while the vertical speed changes.
+    right, left: (K + 1, 11) positions [m] and velocities [m/s] at the steps to each side, the velocity east and north
+    before the manoeuvre, and the mean velocity from the step to the next one; row 0 is the state now; step_s: time
+    from step to step, 0: at once; piece_s: for how long a segment is checked, step_s, or 0 to sample the path at the
+    steps; targets: altitudes [m], empty in other dimensions; rate_m_s, accel_m_s2: of climbs, 0: at once; sample_s:
+    sampling interval of changes of altitude while the vertical speed changes.
     """
 
     right: np.ndarray
@@ -58,11 +57,11 @@ class Regaining(NamedTuple):
 
 
 class Looking(NamedTuple):
-    """How far and how closely is looked.
+    """The extent and detail of the examination.
 
-    counted: the time of a manoeuvre counts towards the horizon; project_s: the manoeuvre begins after
-    so much straight flight; early: stop as soon as a safe value is known; single: one safe value is
-    enough, not two neighbours.
+    counted: the time of a manoeuvre counts towards the horizon; project_s: the manoeuvre begins after this much
+    straight flight; early: stop as soon as a safe value is known; single: one safe value is enough, not two
+    neighbours.
     """
 
     lookahead_s: float
@@ -73,8 +72,9 @@ class Looking(NamedTuple):
 
 
 class Looked(NamedTuple):
-    """From when on and until when a change of altitude is looked at [s]; whole: until_s holds in all
-    phases (the recovery cylinder), else it counts from the end of each phase's manoeuvre unless counted."""
+    """The time interval in which a change of altitude is checked [s]; whole: until_s applies to all phases (the
+    recovery cylinder), else it counts from the end of each phase's manoeuvre unless counted.
+    """
 
     from_s: float
     until_s: float
@@ -99,8 +99,9 @@ class Regions(NamedTuple):
 
 
 class RecoverySizes(NamedTuple):
-    """The cylinder to keep clear until recovery, the NMAC cylinder down to which it is made smaller if
-    shrinking, by `factor` a time; stability_s: how long after the earliest time recovery is shown."""
+    """The cylinder to keep clear until recovery, the NMAC cylinder down to which it is reduced if shrinking, by
+    `factor` each time; stability_s: how long after the earliest time recovery is shown.
+    """
 
     radius_m: float
     half_m: float
@@ -112,11 +113,11 @@ class RecoverySizes(NamedTuple):
 
 
 class Guided(NamedTuple):
-    """What is found, written in place.
+    """The guidance found, written in place.
 
-    safe_r, safe_l: (5, K + 1) by region, row 4 for recovery; peripheral: (4, n); recovery: (5,)
-    saturated, time [s], times shrunk, radius [m], half height [m]; state: (5,) per region 0 not asked,
-    1 has safe values, 2 has none; [4] 1 if recovery was computed.
+    safe_r, safe_l: (5, K + 1) by region, row 4 for recovery; peripheral: (4, n); recovery: (5,) saturated, time [s],
+    times shrunk, radius [m], half height [m]; state: (5,) per region 0 not examined, 1 has safe values, 2 has none;
+    [4] 1 if recovery was computed.
     """
 
     safe_r: np.ndarray

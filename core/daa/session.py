@@ -1,7 +1,7 @@
 """Detect and avoid over time for one ownship: alerts, guidance and metrics, with their history.
 
-A `Session` is given one instant after another. What is shown depends on the history as
-`core.daa.history` says; history ends with a gap, or when time does not go on. One session a vehicle.
+A `Session` is given one instant after another. What is shown depends on the history as described in
+`core.daa.history`, which is reset by a gap, or when time does not advance. One session per vehicle.
 """
 
 from __future__ import annotations
@@ -45,9 +45,10 @@ from cratous.spec.errors import BadInput
 
 
 class Instant(NamedTuple):
-    """What is said at one time: alerts and metrics per intruder, guidance per dimension, who is in
-    conflict per region, and whether the corrective region is in conflict. held: per guidance the
-    resolutions that are shown, which may be earlier ones than the nearest (persistence)."""
+    """The output at one time: alerts and metrics per intruder, guidance per dimension, the intruders in conflict per
+    region, and whether the corrective region is in conflict. held: for each guidance the resolutions that are shown,
+    which may be earlier ones than the nearest (persistence).
+    """
 
     time_s: float
     own: Aircraft
@@ -66,7 +67,7 @@ class Instant(NamedTuple):
 
 
 def checked(own: Aircraft, others: Sequence[Aircraft]) -> None:
-    """Raise BadInput for a state that is not finite or an id that stands twice."""
+    """Raise BadInput for a state that is not finite or a duplicate id."""
     known = set()
     for a in (own, *others):
         for name, value in zip(Aircraft._fields[1:7], a[1:7], strict=True):
@@ -111,7 +112,7 @@ class Session:
         self.forget()
 
     def forget(self) -> None:
-        """Forget all history."""
+        """Reset all history."""
         p = self.parameters
         self.time_s = -math.inf
         self.shown: dict[tuple[str, int], Shown] = {}
@@ -121,7 +122,7 @@ class Session:
             BandMemory(p.alerting_m, p.alerting_n, hold, 2 * math.pi * (d == HDIR))
             for d in range(len(DIMENSIONS))
         ]
-        # a change of just so much, but for rounding, is worth it
+        # a change of exactly this amount, up to rounding, is worth making
         least = (
             p.persistence_preferred_hdir_rad,
             p.persistence_preferred_hs_m_s,
@@ -151,7 +152,7 @@ class Session:
     def _alerters(
         self, own: Aircraft, others: Sequence[Aircraft], there: Sequence[bool]
     ) -> tuple[int, ...] | None:
-        """Alerter indices, the terminal area's where the active aircraft is in it."""
+        """Alerter indices; the terminal area's alerter if the active aircraft is in it."""
         p = self.parameters
         if not there or not p.dta_alerter:
             return None
@@ -251,10 +252,11 @@ class Session:
             region: tuple(o.id for i, o in enumerate(others) if seen.traffic.conflict[region, i])
             for region in range(FAR, NEAR + 1)
         }
-        found = (
-            region_level(p.alerters[a], p.corrective_region) if a >= 0 else None
-            for a in seen.alerters
-        )
+        levels = {
+            a: region_level(p.alerters[a], p.corrective_region) if a >= 0 else None
+            for a in set(seen.alerters)
+        }
+        found = (levels[a] for a in seen.alerters)
         metrics = tuple(
             metrics_of(own, o, 0.0 if f is None else f[1].volume.dthr_m)
             for o, f in zip(others, found, strict=True)

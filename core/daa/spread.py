@@ -1,5 +1,6 @@
-"""Alerts on what a small manoeuvre would do: a level is raised too if a value within its spread
-conflicts within the alerting time."""
+"""Spread alerts: a level is raised too if a small manoeuvre, to a value within its spread, conflicts within the
+alerting time.
+"""
 
 from __future__ import annotations
 
@@ -35,8 +36,9 @@ def spread_conflict(
     level: Level,
     sides: np.ndarray,
 ) -> bool:
-    """Whether some value within the level's spreads conflicts with the intruder `other` (6,), or leaves
-    one of the sides (2,) to keep to."""
+    """Whether some value within the level's spreads conflicts with the intruder `other` (6,), or violates one of the
+    coordination sides (2,).
+    """
     for dimension, spread in enumerate(level.spread):
         if spread == 0:
             continue

@@ -1,8 +1,7 @@
-"""What detect and avoid works on, and what it says: plain data, SI, one local frame.
+"""Input and output of detect and avoid: plain data, SI, one local frame.
 
-Positions are metres east, north and up (altitude MSL) in a frame that all aircraft share;
-velocities are of the air mass, so directions are headings and speeds are airspeeds. Angles are
-clockwise from north.
+Positions are metres east, north and up (altitude MSL) in a frame that all aircraft share; velocities are relative to
+the air mass, so directions are headings and speeds are airspeeds. Angles are clockwise from north.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ HDIR, HS, VS, ALT = 0, 1, 2, 3
 DIMENSIONS = ("hdir", "hs", "vs", "alt")
 """Direction, horizontal speed, vertical speed, altitude."""
 UNKNOWN = -1
-"""Region of values about which nothing can be said, e.g. when the own value is out of range."""
+"""Region of values for which no statement is possible, e.g. when the own value is out of range."""
 
 
 class Sigma(NamedTuple):
@@ -30,7 +29,7 @@ class Sigma(NamedTuple):
 
 
 class Aircraft(NamedTuple):
-    """An aircraft now. alerter: number of its alerter, from 1; 0: none, it raises no alert."""
+    """An aircraft now. alerter: number of its alerter, from 1; 0: none, so that it raises no alert."""
 
     id: str
     east_m: float
@@ -52,10 +51,10 @@ class Band(NamedTuple):
 
 
 class Recovery(NamedTuple):
-    """Whether recovery was needed, and if so how it is regained.
+    """Whether recovery was needed, and if so how the volume is regained.
 
-    saturated: no manoeuvre keeps even the NMAC cylinder clear; time_s: when the volume is regained;
-    shrunk: how often the cylinder was made smaller; its size then.
+    saturated: no manoeuvre keeps even the NMAC cylinder clear; time_s: when the volume is regained; shrunk: how often
+    the cylinder was reduced; its size then.
     """
 
     computed: bool = False
@@ -69,10 +68,10 @@ class Recovery(NamedTuple):
 class Guidance(NamedTuple):
     """Bands of one dimension and what follows from them.
 
-    own: present value; region: of the present value; up, down: nearest value that resolves to the
-    right or up and to the left or down, None if there is none that way or none is needed;
-    prefer_up: which of them is nearer; needed: whether the present value is in conflict; why: why
-    there are no bands; peripheral: per region, who is in the way of some manoeuvre.
+    own: present value; region: of the present value; up, down: nearest value that resolves to the right or up and to
+    the left or down, None if there is none on that side or none is needed; prefer_up: which of them is nearer;
+    needed: whether the present value is in conflict; why: why there are no bands; peripheral: per region, the
+    intruders with which some manoeuvre conflicts.
     """
 
     dimension: str
@@ -89,8 +88,9 @@ class Guidance(NamedTuple):
 
 
 class Coordination(NamedTuple):
-    """Implicit coordination with the most urgent intruder: its id; horizontal: 1 if it is to be passed
-    on the right hand of the relative flight, -1 on the left; vertical: 1 above it, -1 below it."""
+    """Implicit coordination with the most urgent intruder: its id; horizontal: 1 if it is to be passed on the right
+    of the relative flight path, -1 on the left; vertical: 1 above it, -1 below it.
+    """
 
     id: str
     horizontal: int

@@ -1,9 +1,8 @@
 """The terminal area (DTA): a cylinder around a place, in which another alerter is used.
 
-Inside, the alerter of the active aircraft becomes `dta_alerter`; in a conflict that is more severe
-than the corrective region no downward guidance is given there, and with dta_logic -1 no
-recovery of direction. The active aircraft is the ownship if alerting is ownship-centric, else the
-intruder.
+Inside, the alerter of the active aircraft becomes `dta_alerter`; in a conflict more severe than the corrective region
+no downward guidance is given there, and with dta_logic -1 no recovery of direction. The active aircraft is the
+ownship if alerting is ownship-centric, else the intruder.
 """
 
 from __future__ import annotations
@@ -20,14 +19,14 @@ from cratous.spec.daa.parameters import Parameters
 def inside_area(
     east_m: float, north_m: float, alt_m: float, radius_m: float, height_m: float
 ) -> bool:
-    """True iff a place relative to the area's centre lies in it; its border included [m]."""
+    """True iff a position relative to the area's centre lies in it, boundary included [m]."""
     return east_m * east_m + north_m * north_m <= radius_m * radius_m and alt_m <= height_m
 
 
 def in_terminal_area(
     p: Parameters, lat_rad: float | None, lon_rad: float | None, alt_m: float
 ) -> bool:
-    """Whether a geodetic position lies in the terminal area; never if there is none."""
+    """Whether a geodetic position lies in the terminal area; False without a position."""
     if p.dta_logic == 0 or p.dta_radius_m <= 0 or lat_rad is None or lon_rad is None:
         return False
     place = project(p.dta_latitude_rad, p.dta_longitude_rad, lat_rad, lon_rad, 0.0, 0.0)

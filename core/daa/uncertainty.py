@@ -1,11 +1,11 @@
-"""Sensor uncertainty mitigation (SUM): when a volume may be violated, states being known within bounds.
+"""Sensor uncertainty mitigation (SUM): when a volume may be violated, with states known within bounds.
 
-Definitions: `spec.daa.meaning`, `spec.well_clear`. Relative position and velocity are known within
-discs (horizontal) and intervals (vertical). What may be violated is looked for on the worst state: the
-relative speed at its greatest, the distance at its least, and the course turned towards the intruder
-as far as both discs allow. It stays violated until the position, whose disc grows with time, has surely
-left the circle. Whatever the volume itself says is always added, so uncertainty never removes an alert.
-The volume is the one by tau_mod. Source: RTCA DO-365B, appendix on SUM; the DAIDALUS v2 manual.
+Definitions: `spec.daa.meaning`, `spec.well_clear`. Relative position and velocity are known within discs (horizontal)
+and intervals (vertical). A possible violation is computed for the worst-case state: the greatest relative speed, the
+least distance, and the course turned towards the intruder as far as both discs allow. It lasts until the position,
+whose disc grows with time, has certainly left the circle. Whatever the volume itself reports is always added, so
+uncertainty never removes an alert. The volume is the one by tau_mod. Source: RTCA DO-365B, appendix on SUM; the
+DAIDALUS v2 manual.
 """
 
 from math import sqrt
@@ -28,16 +28,16 @@ from cratous.core.well_clear.interval import (
 from cratous.core.well_clear.thresholds import Thresholds
 
 SUM_KIND = 4
-"""`spec.daa.parameters.TAUMOD_SUM` as a number of compiled drivers."""
+"""`spec.daa.parameters.TAUMOD_SUM` as a number for compiled drivers."""
 LEAST_ERROR = 0.001
 """If any uncertainty is above 0, all are at least this much [m, m/s]."""
 
 
 class Uncertainty(NamedTuple):
-    """How well a relative state is known, each >= 0.
+    """The error bounds of a relative state, each >= 0.
 
-    es_m, ev_m_s: radii of the discs of horizontal position and velocity [m, m/s]; ez_m, ew_m_s: half
-    the intervals of altitude and climb rate [m, m/s].
+    es_m, ev_m_s: radii of the discs of horizontal position and velocity [m, m/s]; ez_m, ew_m_s: half the intervals of
+    altitude and climb rate [m, m/s].
     """
 
     es_m: float
@@ -48,7 +48,7 @@ class Uncertainty(NamedTuple):
 
 @kernel(implements="daa.meaning.in_either")
 def span_hull(a: Span, b: Span) -> Span:
-    """The least span that holds both; a span in the wrong order holds nothing."""
+    """The smallest span that contains both; a span in the wrong order is empty."""
     if a.first_s > a.last_s:
         return b
     if b.first_s > b.last_s:
@@ -65,7 +65,7 @@ def layer_above(
     up, climb rate in [slow_m_s, fast_m_s]."""
     if slow_m_s >= 0:
         return vertical_interval(low_m, slow_m_s, zthr_m, tcoa_s, vmod_s, 0, t_s)
-    # who may fall comes first from the lowest altitude, and leaves last from the highest
+    # a descending aircraft enters first from the lowest altitude, and leaves last from the highest
     near = vertical_interval(low_m, slow_m_s, zthr_m, tcoa_s, vmod_s, 0, t_s)
     left = vertical_interval(high_m, min(fast_m_s, 0), zthr_m, tcoa_s, vmod_s, 0, t_s)
     if near.first_s > near.last_s:
@@ -114,8 +114,9 @@ def circle_straight(
     ss_m2: float, vv_m2_s2: float, es_m: float, ev_m_s: float, dthr_m: float, tthr_s: float,
     t_s: float,
 ) -> Span:  # fmt: skip
-    """When the circle is violated, within [0, t_s], by who comes straight on: squares of distance
-    and speed, known within es_m and ev_m_s."""
+    """When the circle is violated, within [0, t_s], by an intruder that closes head-on: squares of distance and
+    speed, known within es_m and ev_m_s.
+    """
     far = sqrt(max(ss_m2, 0)) - es_m
     fast = sqrt(max(vv_m2_s2, 0)) + ev_m_s
     return horizontal_interval_taumod(Vec2(far, 0), Vec2(0 - fast, 0), dthr_m, tthr_s, 0, t_s)
@@ -125,11 +126,12 @@ def circle_straight(
 def circle_first(
     s: Vec2, v: Vec2, es_m: float, ev_m_s: float, dthr_m: float, tthr_s: float, t_s: float
 ) -> Span:
-    """When the worst state violates the circle, within [0, t_s]: on a course turned towards the
-    intruder as far as the discs of radius es_m < |s| and ev_m_s < |v| allow."""
+    """When the worst-case state violates the circle, within [0, t_s]: on a course turned towards the intruder as far
+    as the discs of radius es_m < |s| and ev_m_s < |v| allow.
+    """
     ss = s.x * s.x + s.y * s.y
     vv = v.x * v.x + v.y * v.y
-    # the course as seen from the way to the intruder, turned by the angles of both discs
+    # the course relative to the line of sight, turned by the angles of both discs
     course = Vec2(0 - s.x * v.x - s.y * v.y, abs(s.x * v.y - s.y * v.x))
     once = turned(course, sqrt(max(ss - es_m * es_m, 0)), es_m)
     twice = turned(once, sqrt(max(vv - ev_m_s * ev_m_s, 0)), ev_m_s)

@@ -1,7 +1,7 @@
-"""With whom an aircraft coordinates, and on which sides: the most urgent intruder.
+"""The intruder that an aircraft coordinates with, and on which sides: the most urgent one.
 
-Urgency strategies: NONE, nobody; FIXED, the aircraft of that id; DCPA, who gets into the smallest
-cylinder of the proportions of an NMAC, or, of those that get into it, who does so first.
+Urgency strategies: NONE, no intruder; FIXED, the aircraft of that id; DCPA, the intruder that enters the smallest
+cylinder with the proportions of an NMAC, or, of those that enter the NMAC cylinder, the earliest.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ def _relative(own: Aircraft, other: Aircraft) -> tuple[Vec2, Vec2, float, float]
 
 
 def nearest(own: Aircraft, other: Aircraft) -> tuple[float, float]:
-    """How near an intruder comes in straight flight: the least size, squared, of the NMAC cylinder
-    that it gets into (1: the NMAC cylinder itself), and when [s].
+    """The closest approach in straight flight: the least size, squared, of the NMAC-shaped cylinder that the intruder
+    enters (1: the NMAC cylinder itself), and when [s].
 
-    The size at an instant is the greater of two parabolas; its least lies now, at the lowest point of
-    one of them, or where they cross. Distances and speeds are 0 or above 1e-100, so that squares count.
+    The size at an instant is the greater of two parabolas; its minimum lies now, at the vertex of one of them, or
+    where they cross. Distances and speeds are 0 or above 1e-100, so that squares do not underflow.
     """
     s, v, sz, vz = _relative(own, other)
     dd, hh = NMAC_RADIUS_M**2, NMAC_HALF_HEIGHT_M**2
@@ -50,7 +50,7 @@ def nearest(own: Aircraft, other: Aircraft) -> tuple[float, float]:
     times = [0.0]
     times += [-half / square for square, half, _ in (level, upright) if square > 0]
     if a != 0 and b * b >= a * c:
-        # the root without cancellation, and the other by the product of both
+        # the root without cancellation, and the other from the product of both
         root = -b - math.copysign(math.sqrt(b * b - a * c), b)
         times += [root / a, c / root if root else 0.0]
     elif a == 0 and b != 0:
@@ -80,7 +80,7 @@ def most_urgent(p: Parameters, own: Aircraft, others: Sequence[Aircraft]) -> int
 
 @driver(checked_by=("horizontal_side", "vertical_side", "enters_cylinder"))
 def coordination(p: Parameters, own: Aircraft, others: Sequence[Aircraft]) -> Coordination | None:
-    """Whom to coordinate with, and the sides; None if a criterion is off or nobody is urgent."""
+    """The intruder to coordinate with, and the sides; None if a criterion is off or no intruder is urgent."""
     if not (p.conflict_crit or p.recovery_crit):
         return None
     i = most_urgent(p, own, others)

@@ -1,9 +1,9 @@
-"""Polygons for displays: where an intruder would violate a volume, and which ways lead to one.
+"""Polygons for displays: where an intruder would violate a volume, and which tracks lead to a violation.
 
-A hazard zone is the set of intruder positions, for its present velocity, at which the horizontal
-volume is violated; swept by the alerting time if wanted. A contour is the area that straight flight
-on other tracks covers while it is in conflict. Points are east, north [m] in the frame of the states.
-Both are for people: no verdict depends on them. Their borders are held against the kernels in tests.
+A hazard zone is the set of intruder positions, for its present velocity, at which the horizontal volume is violated,
+optionally swept by the alerting time. A contour is the area covered by straight flight on other tracks while in
+conflict. Points are east, north [m] in the frame of the states. Both are for display: no verdict depends on them.
+Tests compare their borders with the kernels.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Polygon(NamedTuple):
 
 
 def _far_end(volume: Volume, speed_m_s: float) -> Callable[[float], float]:
-    """How far ahead the zone reaches at a lateral offset [m], for a relative speed."""
+    """The forward extent of the zone at a lateral offset [m], for a relative speed."""
     d, reach = volume.dthr_m, volume.tthr_s * speed_m_s
 
     def round_end(y: float) -> float:
@@ -44,7 +44,7 @@ def _far_end(volume: Volume, speed_m_s: float) -> Callable[[float], float]:
         return lambda y: max(reach, round_end(y))
     if volume.kind == TEP:
         return lambda y: reach + round_end(y)
-    # modified tau: an arc around half of the way in TTHR
+    # modified tau: an arc around the point half the distance flown in TTHR ahead
     square = d * d + reach * reach / 4
     return lambda y: reach / 2 + math.sqrt(max(square - y * y, 0.0))
 

@@ -1,9 +1,9 @@
-"""The manoeuvres of the bands, one by one, against others as they fly: whether there is a way out.
+"""The manoeuvres of the bands, one by one, against other aircraft as they fly: whether there is a way out.
 
-Definitions: `spec.excuse`. The manoeuvres are those of `core.daa.bands.grid`: turns, changes of
-speed and of vertical speed in steps, each flown straight for a step time, and from any step straight
-on; changes of altitude in the phases of `core.daa.climb`, cut into pieces of SAMPLE_S. Others need not
-fly straight. Every piece is judged by the kernels of `core.excuse.way_out`.
+Definitions: `spec.excuse`. The manoeuvres are those of `core.daa.bands.grid`: turns, changes of speed and of vertical
+speed in steps, each flown straight for a step time, and from any step straight; changes of altitude in the phases of
+`core.daa.climb`, divided into segments of SAMPLE_S. Other aircraft need not fly straight. Every segment is judged by
+the kernels of `core.excuse.way_out`.
 """
 
 from __future__ import annotations
@@ -29,8 +29,9 @@ from cratous.spec.daa.parameters import Parameters
 
 
 class Pieces(NamedTuple):
-    """Straight pieces in order of time, (P, 8): begin, end [s], position [m] and velocity [m/s] at the
-    begin; those of manoeuvre or aircraft n from first[n] to first[n + 1]."""
+    """Straight segments in order of time, (P, 8): begin, end [s], position [m] and velocity [m/s] at the beginning;
+    those of manoeuvre or aircraft n from first[n] to first[n + 1].
+    """
 
     rows: np.ndarray
     first: np.ndarray
@@ -43,8 +44,9 @@ def judge_pieces(
 ):  # fmt: skip
     """Judge manoeuvres; answers: of each 1 free, 0 open, -1 refused.
 
-    own: of the manoeuvres; traffic: of the other aircraft; kinds: (n), volumes: (n, 5); less: the factor of thresholds for what is surely lost. by: who refuses; facts: (m, 3) when,
-    and the distances then.
+    own: of the manoeuvres; traffic: of the other aircraft; kinds: (n), volumes: (n, 5); less: the factor of
+    thresholds for a certain loss. by: the aircraft that causes the refusal; facts: (m, 3) when, and the distances
+    then.
     """
     pieces, first, others, begins = own.rows, own.first, traffic.rows, traffic.first
     for m in range(first.size - 1):
@@ -82,7 +84,7 @@ def judge_pieces(
                         facts[m, 1] = sqrt(x * x + y * y)
                         facts[m, 2] = abs(sz + when * vz)
                         break
-                # what is known of the other ends before the piece does
+                # the other's known states end before the segment does
                 so_far = after_piece(so_far, known_s >= pieces[p, 1], False, False)
                 if so_far < 0:
                     break
@@ -92,7 +94,7 @@ def judge_pieces(
 
 
 def _steps(g: Grid, dimension: int, side: int, horizon_s: float) -> list[tuple[float, np.ndarray]]:
-    """Value and pieces of every step to one side, the present value only to the right."""
+    """Value and segments of every step to one side, the present value only to the right."""
     path = g.right if side > 0 else g.left
     width = g.high - g.own if side > 0 else g.own - g.low
     found = []
@@ -109,7 +111,7 @@ def _steps(g: Grid, dimension: int, side: int, horizon_s: float) -> list[tuple[f
 
 
 def _climb_pieces(g: Grid, target_m: float, horizon_s: float) -> np.ndarray:
-    """The pieces of a change of altitude; at once if there is no rate or no acceleration."""
+    """The segments of a change of altitude; instantaneous without a rate or an acceleration."""
     x, y, z, vx, vy, vz = g.right[0, :6].tolist()
     if not g.rate_m_s or not g.accel_m_s2:
         return np.array([[0.0, horizon_s, x, y, target_m, vx, vy, 0.0]])
@@ -128,7 +130,7 @@ def _climb_pieces(g: Grid, target_m: float, horizon_s: float) -> np.ndarray:
 
 
 def _climbs(g: Grid, horizon_s: float) -> list[tuple[float, np.ndarray]]:
-    """Target and pieces of every change of altitude."""
+    """Target and segments of every change of altitude."""
     targets = [t for t in g.targets.tolist() if t <= g.high + SLACK * g.step]
     return [(t, _climb_pieces(g, t, horizon_s)) for t in targets]
 
@@ -156,7 +158,7 @@ def manoeuvres(
 def judge(
     p: Parameters, own: Aircraft, others: Sequence[Other], horizon_s: float
 ) -> tuple[int, tuple[Tried, ...], str]:
-    """The answer of the bands' manoeuvres within the horizon, each of them, and what stays open."""
+    """The answer of the bands' manoeuvres within the horizon, each of them, and what remains open."""
     ways, why = manoeuvres(p, own, horizon_s)
     count = len(ways)
     first = np.cumsum([0, *(len(rows) for _, _, rows in ways)]).astype(np.int64)

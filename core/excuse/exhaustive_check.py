@@ -1,9 +1,9 @@
-"""An independent, exhaustive check of every manoeuvre, written apart from the bands.
+"""An independent, exhaustive check of every manoeuvre, implemented separately from the bands.
 
-It shares nothing with `core.daa.bands`, `core.daa.steps` and `core.daa.climb` but the parameters: each
-manoeuvre is integrated in ticks of TICK_S from the own state under its rates, and the way between
-two ticks is a straight piece from where it was to where it is. Each piece is put to the times kernel
-`conflict_span` (the bands ask `in_conflict`), and the answers to the folds of `core.excuse.way_out`.
+It shares only the parameters with `core.daa.bands`, `core.daa.steps` and `core.daa.climb`: each manoeuvre is
+integrated in ticks of TICK_S from the own state under its rates, and the path between two ticks is a straight segment
+from the one position to the other. Each segment is checked by the times kernel `conflict_span` (the bands use
+`in_conflict`), and the answers go to the folds of `core.excuse.way_out`.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from cratous.core.readings.machine.compiled import compiled
 from cratous.spec.daa.parameters import G_M_S2, Parameters
 
 TICK_S = 0.25
-"""Manoeuvres are integrated in ticks of this length [s]."""
+"""Length of the ticks in which manoeuvres are integrated [s]."""
 NEAR_ENOUGH = 1e-9
 
 
 class Targets(NamedTuple):
-    """What each manoeuvre makes for: one number of `which` (0 hdir, 1 hs, 2 vs, 3 alt) is `value`."""
+    """The target of each manoeuvre: the quantity `which` (0 hdir, 1 hs, 2 vs, 3 alt) reaches `value`."""
 
     which: np.ndarray
     value: np.ndarray
@@ -50,7 +50,7 @@ def _limits(low: float, high: float, below: float, above: float, own: float) -> 
 
 
 def targets(p: Parameters, own: Aircraft) -> tuple[Targets, str]:
-    """All targets on the grid, and which own values lie outside of their range."""
+    """All targets on the grid, and which own values lie outside their range."""
     heading = math.atan2(own.ve_m_s, own.vn_m_s)
     speed = math.hypot(own.ve_m_s, own.vn_m_s)
     hdir = _multiples(
@@ -67,7 +67,7 @@ def targets(p: Parameters, own: Aircraft) -> tuple[Targets, str]:
         if not low <= now <= high:
             why.append(f"own {DIMENSIONS[which]} {now:g} is outside of [{low:g}, {high:g}]")
             continue
-        # altitudes are counted from the lowest one, everything else from the own value
+        # altitudes are counted from the lowest one, all other values from the own one
         parts.append((which, _multiples(low, high, low if which == 3 else now, step)))
     return Targets(
         np.concatenate([np.full(len(v), which, dtype=np.int64) for which, v in parts]),
@@ -85,14 +85,14 @@ def _turn_rate(p: Parameters, speed: float, flown: float) -> float:
 
 
 def _towards(now: np.ndarray, wanted: np.ndarray, most: float) -> np.ndarray:
-    """`now` changed towards `wanted` by at most `most`; 0: there at once."""
+    """`now` changed towards `wanted` by at most `most`; 0: immediately."""
     if most == 0:
         return wanted.copy()
     return now + np.clip(wanted - now, -most, most)
 
 
 def integrate(p: Parameters, own: Aircraft, goal: Targets, ticks_s: np.ndarray) -> np.ndarray:
-    """Where every manoeuvre is at every tick, (M, T + 1, 3) [m]."""
+    """The position in every manoeuvre at every tick, (M, T + 1, 3) [m]."""
     count = len(goal.value)
     flown = math.hypot(own.ve_m_s, own.vn_m_s)
     slowest = max(flown, p.step_hs_m_s, p.min_airspeed_m_s)
@@ -100,7 +100,7 @@ def integrate(p: Parameters, own: Aircraft, goal: Targets, ticks_s: np.ndarray) 
     turning, pacing, climbing, levelling = (goal.which == k for k in range(4))
     heading = np.full(count, math.atan2(own.ve_m_s, own.vn_m_s))
     to_heading = np.where(turning, goal.value, heading)
-    # a turn is flown no slower than this, as in the bands
+    # the minimum speed in a turn, as in the bands
     speed = np.where(turning, slowest, flown)
     to_speed = np.where(pacing, goal.value, speed)
     up = np.full(count, own.vu_m_s)
@@ -118,7 +118,7 @@ def integrate(p: Parameters, own: Aircraft, goal: Targets, ticks_s: np.ndarray) 
         )
         half = (turned - heading) / 2 if rate else np.zeros(count)
         fresh = turned if not rate else heading + half
-        # the time within the tick in which the rate is used; after it the course is straight
+        # the time within the tick during which the rate applies; after it the course is straight
         used = np.abs(turned - heading) / rate if rate else np.zeros(count)
         chord = np.sinc(half / math.pi)
         east = np.sin(fresh) * chord * used + np.sin(turned) * (h - used)
@@ -145,11 +145,12 @@ def integrate(p: Parameters, own: Aircraft, goal: Targets, ticks_s: np.ndarray) 
 def _to_level(
     z: np.ndarray, target: np.ndarray, up: np.ndarray, accel: float, reach: float, h: float
 ) -> np.ndarray:
-    """The climb rate to have at the end of a tick on the way to an altitude: as fast as it may be
-    so that it can still be levelled off there."""
+    """The climb rate at the end of a tick on the way to an altitude: the fastest from which it can still be levelled
+    off there.
+    """
     rest = target - z
     side = np.where(rest >= 0, 1.0, -1.0)
-    # after a tick at the mean of the rates, braking must bring it to the target: v^2 / 2a = what is left
+    # after a tick at the mean of the rates, braking must bring it to the target: v^2 / 2a = the remaining distance
     room = np.maximum(np.abs(rest) - side * up * h / 2, 0.0)
     most = -accel * h / 2 + np.sqrt((accel * h / 2) ** 2 + 2 * accel * room)
     fastest = np.maximum(reach, side * up)
@@ -157,7 +158,7 @@ def _to_level(
 
 
 def _flown(other: Other, t_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The piece that another flies at each of these times, (T, 8), and whether there is one."""
+    """The segment that another aircraft flies at each of these times, (T, 8), and whether there is one."""
     if not len(other.pieces):
         return np.zeros((len(t_s), 8)), np.zeros(len(t_s), dtype=np.bool_)
     k = np.searchsorted(other.pieces[:, 0], t_s, side="right") - 1
@@ -166,20 +167,20 @@ def _flown(other: Other, t_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def cut(others: Sequence[Other], horizon_s: float) -> np.ndarray:
-    """Ticks, and every time at which another begins a new piece."""
+    """Ticks, and every time at which another aircraft begins a new segment."""
     ticks = [np.arange(0.0, horizon_s, TICK_S), np.array([horizon_s])]
     for other in others:
         ticks += [other.pieces[:, 0], other.pieces[:, 1]]
     times = np.unique(np.concatenate(ticks))
     times = times[(times >= 0) & (times <= horizon_s)]
-    # times that differ by rounding alone are one
+    # times that differ only by rounding are merged
     return times[np.append(np.diff(times) > NEAR_ENOUGH, True)] if len(times) > 1 else times
 
 
 def judge(
     p: Parameters, own: Aircraft, others: Sequence[Other], horizon_s: float
 ) -> tuple[int, tuple[Tried, ...], str]:
-    """The answer of this check within the horizon, each manoeuvre, and what stays open."""
+    """The answer of this check within the horizon, each manoeuvre, and what remains open."""
     goal, why = targets(p, own)
     ticks_s = cut(others, horizon_s)
     if ticks_s[0] > 0:

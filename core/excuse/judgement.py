@@ -1,7 +1,7 @@
-"""Whether a way out existed from one state: the bands' manoeuvres and the independent check, both asked.
+"""Whether a way out existed from one state: by the bands' manoeuvres and by the independent check.
 
-Definitions: `spec.excuse`. What the two answer alike is the answer; where they differ, or where one
-could not decide, it is undecided, and `why` says so.
+Definitions: `spec.excuse`. The answer is the one that both give; if they differ, or if one could not decide, it is
+undecided, and `why` gives the reason.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from cratous.spec.daa.parameters import TAUMOD, TAUMOD_SUM, Parameters
 def judged(
     p: Parameters, own: Aircraft, others: Sequence[Other], horizon_s: float, why: str = ""
 ) -> Judgement:
-    """The judgement from a state, others flying as given; why: what is open to begin with."""
+    """The judgement from a state, with other aircraft flying as given; why: what is undecided from the outset."""
     by_bands, bands, outside = excuse_bands.judge(p, own, others, horizon_s)
     by_check, check, beyond = excuse_check.judge(p, own, others, horizon_s)
     reasons = [why, outside] if outside == beyond else [why, outside, beyond]
@@ -45,12 +45,12 @@ def _open(tried: Iterable[Tried]) -> str:
 
 
 def from_state(p: Parameters, own: Aircraft, aircraft: Sequence[Aircraft]) -> Judgement:
-    """The judgement from a state, all others flying straight on: of the corrective volumes, within
-    the look-ahead.
+    """The judgement from a state, with all other aircraft in straight flight: for the corrective volumes, within the
+    look-ahead.
 
-    Who has no alerter, or none with the corrective region, is in nobody's way, as in the bands. A
-    state that is only known within bounds cannot be judged: with uncertainties it is undecided.
-    Raises BadInput for states that cannot be used.
+    An aircraft without an alerter, or whose alerter has no corrective region, is ignored, as in the bands. With
+    uncertainties the result is undecided, because a state known only within bounds cannot be judged. Raises BadInput
+    for unusable states.
     """
     checked(own, aircraft)
     found, unsure = [], []

@@ -1,10 +1,9 @@
-"""Whether a recorded loss of well clear could have been avoided, from where everybody was.
+"""Whether a recorded loss of well clear could have been avoided, from the recorded positions.
 
-Definitions: `spec.excuse`. The loss is looked at from every recorded instant of the look-ahead before
-it: could the ownship have flown any manoeuvre of its set and kept well clear, all others flying as
-they are recorded to have flown, for as long as it looks ahead? A way out at one instant is one; only if
-there was none at any is the loss excused. Where the record has no answer, nothing is excused.
-Places are east, north, up [m].
+Definitions: `spec.excuse`. The loss is examined from every recorded instant of the look-ahead before it: could the
+ownship have flown any manoeuvre of its set and kept well clear for the look-ahead, with all other aircraft flying as
+recorded? A way out at one instant suffices; only if there was none at any instant is the loss excused. Where the
+record is insufficient, nothing is excused. Positions are east, north, up [m].
 """
 
 from __future__ import annotations
@@ -27,33 +26,33 @@ from cratous.spec.mission import Vehicle, WellClear
 
 Place = tuple[float, float, float]
 ACCELERATION_M_S2 = 1.0
-"""How fast the aircraft of a mission change speed, as the simulator flies them."""
+"""The acceleration of the aircraft of a mission, as the simulator flies them [m/s2]."""
 CLIMB_CHANGE_M_S2 = 10 * G_M_S2
-"""They change their climb rate from one step to the next; this is as good as at once."""
+"""They change their climb rate from one step to the next; this is practically immediate."""
 STEP_HDIR_RAD, STEP_HS_M_S, STEP_VS_M_S, STEP_ALT_M = DEG, 0.5, 0.25, 5.0
 ROUNDING = 0.01
-"""A speed beyond the declared limits by this share comes from taking it from two places."""
+"""A speed beyond the declared limits by up to this share is attributed to differencing two positions."""
 
 
 class Scene(NamedTuple):
-    """Where everybody in the air was at an instant."""
+    """The positions of all airborne aircraft at an instant."""
 
     time_ms: int
     places: Mapping[int, Place]
 
 
 class Moment(NamedTuple):
-    """An instant from which the loss was looked at, and the judgement from there."""
+    """An instant from which the loss was examined, and the judgement from there."""
 
     time_ms: int
     judgement: Judgement
 
 
 class Loss(NamedTuple):
-    """A loss and whether it could be avoided by its ownship.
+    """A loss, and whether its ownship could have avoided it.
 
-    answer: WAY_OUT, UNDECIDED or NO_WAY over all moments; excused: no way out; why: what could not be
-    decided; moments: the instants looked at, up to the first with a way out.
+    answer: WAY_OUT, UNDECIDED or NO_WAY over all moments; excused: no way out; why: what could not be decided;
+    moments: the instants examined, up to the first with a way out.
     """
 
     own: int
@@ -71,9 +70,9 @@ def modelled(
 ) -> Parameters:  # fmt: skip
     """The manoeuvres of a vehicle of a mission, as parameters of detect and avoid.
 
-    Turns at its greatest bank, speeds and climb rates within its limits, altitudes that it can reach
-    in time and that are not below floor_m. An own value beyond a limit by no more than ROUNDING is
-    taken as the limit; one farther out stays outside, and then nothing is decided.
+    Turns at its greatest bank, speeds and climb rates within its limits, altitudes that it can reach in time and that
+    are not below floor_m. An own value beyond a limit by at most ROUNDING is taken as the limit; one farther out
+    stays outside, and then nothing is decided.
     """
     slow, fast, most = vehicle.min_speed_m_s, vehicle.max_speed_m_s, vehicle.max_climb_m_s
     if slow * (1 - ROUNDING) <= speed_m_s <= fast * (1 + ROUNDING):
@@ -109,7 +108,7 @@ def _velocity(a: Place, b: Place, ms: int) -> Place:
 
 
 def flown(scenes: Sequence[Scene], k: int, number: int, until_ms: int) -> np.ndarray:
-    """The straight pieces of one aircraft from scene k on; none where it is missing."""
+    """The straight segments of one aircraft from scene k on; none where it is missing."""
     rows = []
     start_ms = scenes[k].time_ms
     for a, b in zip(scenes[k:], scenes[k + 1 :], strict=False):
@@ -129,7 +128,7 @@ def flown(scenes: Sequence[Scene], k: int, number: int, until_ms: int) -> np.nda
 
 
 def own_state(scenes: Sequence[Scene], k: int, number: int) -> Aircraft:
-    """Its place at scene k and the velocity it came with; at its first scene the one it went on with."""
+    """Its position at scene k and its velocity before it; at its first scene the velocity after it."""
     here = scenes[k].places[number]
     if k > 0 and number in scenes[k - 1].places:
         before = scenes[k - 1]
@@ -141,7 +140,7 @@ def own_state(scenes: Sequence[Scene], k: int, number: int) -> Aircraft:
 
 
 def lost_now(own: Aircraft, other: Other) -> bool:
-    """Whether its volume is violated at this instant already."""
+    """Whether its volume is already violated at this instant."""
     first = other.pieces[0]
     s = Vec2(own.east_m - first[2], own.north_m - first[3])
     v = Vec2(own.ve_m_s - first[5], own.vn_m_s - first[6])
@@ -159,8 +158,9 @@ def lost_now(own: Aircraft, other: Other) -> bool:
 
 
 class Record(NamedTuple):
-    """Scenes in order of time. after_ms: the end of the loss before, if there was one; earlier: who is
-    known to have been in the air before the first scene."""
+    """Scenes in order of time. after_ms: the end of the preceding loss, if there was one; earlier: the aircraft known
+    to have been airborne before the first scene.
+    """
 
     scenes: Sequence[Scene]
     after_ms: int | None = None
@@ -172,8 +172,8 @@ def window(
 ) -> tuple[list[int], str]:
     """The scenes before the loss, in step k, from which it could have been avoided; and what is missing.
 
-    They reach back to the look-ahead, to the end of the loss before, to where one of the two came to
-    be, or to the begin of the mission; a record that begins later leaves it undecided.
+    They reach back to the look-ahead, to the end of the preceding loss, to the first appearance of one of the two, or
+    to the beginning of the mission; a record that begins later leaves it undecided.
     """
     scenes, after_ms, earlier = record
     earliest_ms = scenes[k].time_ms - round(lookahead_s * 1000)
@@ -203,8 +203,8 @@ def judge_loss(
 ) -> Loss:
     """Whether the vehicle could have avoided the loss of well clear of `other` in step k of the record.
 
-    Who well clear is lost of already at an instant is no reason against a manoeuvre from there, unless
-    it is `other`; who is not in the air then is not known yet.
+    An aircraft whose volume is already violated at an instant does not rule out a manoeuvre from there, unless it is
+    `other`; one that is not airborne then is not known yet.
     """
     own_id, scenes = vehicle.id, record.scenes
     indices, why = window(record, k, own_id, other, lookahead_s)

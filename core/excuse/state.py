@@ -1,4 +1,4 @@
-"""What an excuse is asked of and what it says: tracks of others, and manoeuvres with their answers.
+"""Input and output of excuses: tracks of other aircraft, and manoeuvres with their answers.
 
 SI, the local frame of `core.daa.state` (east, north, up); times are seconds from now.
 """
@@ -13,7 +13,7 @@ WAY_OUT, UNDECIDED, NO_WAY = 1, 0, -1
 FREE, OPEN, REFUSED = 1, 0, -1
 ANSWERS = {WAY_OUT: "a way out", UNDECIDED: "undecided", NO_WAY: "no way out"}
 SURELY = 1e-6
-"""A manoeuvre is refused only if it is so too with thresholds smaller by this share of them."""
+"""A manoeuvre is refused only if it also is with thresholds reduced by this share."""
 
 
 class Other(NamedTuple):
@@ -47,10 +47,10 @@ class Tried(NamedTuple):
 
 
 class Judgement(NamedTuple):
-    """Whether a way out existed at one instant, and every manoeuvre that was tried.
+    """Whether a way out existed at one instant, and every manoeuvre that was examined.
 
-    answer: what both judges say alike, else UNDECIDED; by_bands, by_check: what each says; why: what
-    could not be decided.
+    answer: the common answer of both judges, else UNDECIDED; by_bands, by_check: the answer of each; why: what could
+    not be decided.
     """
 
     answer: int
@@ -62,5 +62,5 @@ class Judgement(NamedTuple):
 
 
 def straight(state: tuple[float, ...], horizon_s: float) -> np.ndarray:
-    """The pieces of one who flies straight on from a position and a velocity."""
+    """The straight flight from a position and a velocity, as segments."""
     return np.array([[0.0, horizon_s, *state]], dtype=np.float64)

@@ -1,8 +1,8 @@
-"""Keeps what the judgement of a loss needs, and judges each loss when what followed it is known.
+"""Keeps the data needed to judge a loss, and judges each loss once its aftermath is known.
 
-Definitions: `spec.excuse`. The record goes back by the look-ahead, and on by it after a loss; then, or
-when the flight is over, `core.excuse.record` judges it. Where two aircraft of a pair are both
-protected, the loss is excused only if neither had a way out.
+Definitions: `spec.excuse`. The record extends over the look-ahead before a loss and after it; then, or when the
+flight is over, `core.excuse.record` judges it. If both aircraft of a pair are protected, the loss is excused only if
+neither had a way out.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Pair = tuple[int, int]
 
 
 class Pending(NamedTuple):
-    """A loss that is not judged yet: whose, when, and when the pair's loss before it ended."""
+    """A loss that is not judged yet: the pair, its time, and when the pair's preceding loss ended."""
 
     pair: Pair
     lost_ms: int
@@ -46,7 +46,7 @@ class LossWatch:
         self._judged: dict[Pair, list[Loss]] = {}
 
     def step(self, before: Scene, after: Scene, lost: frozenset[Pair]) -> None:
-        """One step of the record, and the pairs that lost well clear in it."""
+        """Add one step of the record, and the pairs that lost well clear in it."""
         if not self._scenes or self._scenes[-1].time_ms != before.time_ms:
             self._scenes.append(before)
         self._scenes.append(after)
@@ -63,11 +63,11 @@ class LossWatch:
         self._forget(after.time_ms)
 
     def _excusable(self, pair: Pair) -> bool:
-        """Whether anything is left to excuse: a pair with a loss that is not excused is violated."""
+        """Whether the pair can still be excused: a pair with a loss that is not excused is violated."""
         return all(loss.excused for loss in self._judged.get(pair, []))
 
     def _judge(self, one: Pending) -> list[Loss]:
-        """The judgement of a loss, from each of the two that is protected."""
+        """The judgement of a loss, for each protected aircraft of the pair."""
         k = next(i for i, s in enumerate(self._scenes) if s.time_ms == one.lost_ms)
         found = []
         for own, other in (one.pair, one.pair[::-1]):
@@ -83,16 +83,16 @@ class LossWatch:
         return found
 
     def _forget(self, now_ms: int) -> None:
-        """Drop what no judgement needs any more."""
+        """Drop scenes that no judgement needs any more."""
         oldest_ms = min([now_ms, *(x.lost_ms for x in self._pending)]) - self._reach_ms
         keep = next((i for i, s in enumerate(self._scenes) if s.time_ms >= oldest_ms), 0)
-        # one scene more: the velocity that an aircraft came with
+        # one scene more: for the velocity before the first one
         for scene in self._scenes[: max(keep - 2, 0)]:
             self._earlier |= scene.places.keys()
         del self._scenes[: max(keep - 2, 0)]
 
     def losses(self, pair: Pair) -> list[Loss]:
-        """The judgements of all losses of a pair, as far as the record goes now."""
+        """The judgements of all losses of a pair, as far as the record extends now."""
         found = list(self._judged.get(pair, []))
         for one in self._pending:
             if one.pair == pair and all(loss.excused for loss in found):
@@ -101,10 +101,10 @@ class LossWatch:
 
 
 def pair_answer(losses: list[Loss]) -> int:
-    """The answer on a pair: no way out only if there was none at any of its losses."""
+    """The answer for a pair: no way out only if there was none at any of its losses."""
     return int(way_out([(loss.answer,) for loss in losses]))
 
 
 def pair_excused(losses: list[Loss]) -> bool:
-    """Whether every loss of the pair is excused; nothing judged is no excuse."""
+    """Whether every loss of the pair is excused; False if none was judged."""
     return bool(is_excused(pair_answer(losses)))

@@ -1,8 +1,8 @@
-"""Whether a way out existed: judging manoeuvres piece by piece, and all of them together.
+"""Whether a way out existed: judging manoeuvres segment by segment, and all of them together.
 
-Definitions: `spec.excuse`. Answers are 1 (free; a way out), 0 (open; undecided) and -1 (refused; no
-way out). Which pieces there are, and what is known of the other aircraft, is the caller's:
-`core.excuse.bands` flies the manoeuvres of the bands, `core.excuse.exhaustive_check` integrates its own.
+Definitions: `spec.excuse`. Answers are 1 (free; a way out), 0 (open; undecided) and -1 (refused; no way out). The
+caller supplies the segments and what is known of the other aircraft: `core.excuse.bands` flies the manoeuvres of the
+bands, `core.excuse.exhaustive_check` integrates its own.
 """
 
 from cratous.core.daa.volume import in_conflict
@@ -14,19 +14,19 @@ from cratous.core.well_clear.thresholds import Thresholds
 def piece_lost(
     kind: int, s: Vec2, v: Vec2, sz: float, vz: float, thresholds: Thresholds, piece_s: float
 ) -> bool:
-    """True iff the volume is violated at some instant of a straight piece of piece_s seconds.
+    """True iff the volume is violated at some instant of a straight segment of piece_s seconds.
 
-    Relative state at its begin, ownship minus other; kind and thresholds as for `in_conflict`.
+    Relative state at its beginning, ownship minus other; kind and thresholds as for `in_conflict`.
     """
     return in_conflict(kind, s, v, sz, vz, thresholds, 0, piece_s)
 
 
 @kernel(implements="excuse.flown_step")
 def after_piece(so_far: int, known: bool, lost: bool, surely: bool) -> int:
-    """A manoeuvre after a piece more: -1 refused, 0 open, 1 free.
+    """A manoeuvre after one more segment: -1 refused, 0 open, 1 free.
 
-    known: whether where the other aircraft is then is known; lost: the volume is violated at some
-    instant; surely: a slightly smaller volume is, too.
+    known: whether the other aircraft's position then is known; lost: the volume is violated at some instant; surely:
+    a slightly smaller volume is, too.
     """
     if so_far < 0:
         return so_far
@@ -40,14 +40,14 @@ def after_piece(so_far: int, known: bool, lost: bool, surely: bool) -> int:
 manoeuvre_judged = fold(
     name="manoeuvre_judged", implements="excuse.flown_step", step=after_piece, start=1
 )
-"""A manoeuvre from its pieces (known, lost, surely)."""
+"""Judge a manoeuvre from its segments (known, lost, surely)."""
 
 
 @kernel(implements="excuse.tried_step")
 def after_manoeuvre(so_far: int, manoeuvre: int) -> int:
-    """The answer after a manoeuvre more: 1, 0, -1, or 2 before the first.
+    """The answer after one more manoeuvre: 1, 0, -1, or 2 before the first.
 
-    What is neither 1 (free) nor -1 (refused) is open.
+    A verdict that is neither 1 (free) nor -1 (refused) is open.
     """
     if so_far == 1 or manoeuvre == 1:
         return 1
@@ -76,7 +76,7 @@ way_out = fold(
 
 @kernel(implements="excuse.agreed")
 def both_say(one: int, other: int) -> int:
-    """What two independent judges answer alike; 0 where they differ."""
+    """The common answer of two independent judges; 0 if they differ."""
     if one == other and (one == 1 or one == -1):
         return one
     return 0

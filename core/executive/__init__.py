@@ -1,1 +1,1 @@
-"""What UxAS's executive decides about chains of tasks in flight."""
+"""Decisions of UxAS's executive on chains of tasks in flight."""

@@ -1,8 +1,8 @@
-"""What the executive decides about chains of tasks in flight, as transition kernels.
+"""Decisions of the executive on chains of tasks in flight, as transition kernels.
 
-A vehicle flies its chain item by item: TRANSIT (0) to the start pose, WAIT (1) on a circle through it
-while the task may not begin, TASK (2), DONE (3). A task is LEFT (0), BEGUN (1), ENDED (2) or FAILED
-(3). Definitions: `spec.executive`.
+A vehicle flies its chain item by item: TRANSIT (0) to the start pose, WAIT (1) on a circle through it while the task
+may not begin, TASK (2), DONE (3). A task is LEFT (0), BEGUN (1), ENDED (2) or FAILED (3). Definitions:
+`spec.executive`.
 """
 
 from typing import NamedTuple
@@ -23,7 +23,7 @@ class Passed(NamedTuple):
 def end_passed(phase: int, suspended: bool, opens: bool, more: bool) -> Passed:
     """A vehicle has passed the end of the track of its present phase.
 
-    suspended: UxAS does not fly it; opens: its task may begin now; more: another item follows.
+    suspended: UxAS does not command it; opens: its task may begin now; more: another item follows.
     """
     if suspended:
         return Passed(phase, 0)
@@ -91,10 +91,10 @@ some_begun_before = fold(
     restates="the rule for deadlines that cannot be kept; that another plan tears no task is proved of it",
 )
 def late_act(under_way: bool, may_plan: bool, torn: bool) -> int:
-    """What to do about a task that cannot keep an upper bound any more: 0 wait, 1 plan anew, 2 fail it.
+    """What to do about a task that can no longer meet an upper bound: 0 wait, 1 plan anew, 2 fail it.
 
-    under_way: it is being flown; may_plan: there is a planner; torn: another plan now would interrupt
-    some task, for one is under way or a vehicle is not flown by UxAS.
+    under_way: it is being flown; may_plan: there is a planner; torn: another plan now would interrupt some task, for
+    one is under way or a vehicle is not flown by UxAS.
     """
     if under_way or not may_plan:
         return 2
@@ -105,11 +105,11 @@ def late_act(under_way: bool, may_plan: bool, torn: bool) -> int:
 
 @kernel(implements="executive.change_counts")
 def change_counts(kind: int, left: int, ended: bool) -> bool:
-    """True iff a change by itself asks for another plan.
+    """True iff a change by itself requires a new plan.
 
-    kind: 1 a vehicle is lost, 2 one joins, 3 a task is added, 4 a task is removed, 5 anything else,
-    6 a zone ends; left: how many tasks the vehicle has left, or the plan leaves undone, in whole or in part,
-    that the zone may have forbidden; ended: the task has ended.
+    kind: 1 a vehicle is lost, 2 one joins, 3 a task is added, 4 a task is removed, 5 anything else, 6 a zone ends;
+    left: how many tasks the vehicle has left, or the plan leaves undone, in whole or in part, that the zone may have
+    forbidden; ended: the task has ended.
     """
     if kind == 1 or kind == 6:
         return left > 0
@@ -120,10 +120,10 @@ def change_counts(kind: int, left: int, ended: bool) -> bool:
 
 @kernel(implements="executive.outcome")
 def flight_outcome(flying: int, away: int, expected: int, left: int, now: int, limit: int) -> int:
-    """How a flight stands: 0 it goes on, 1 it is complete, 2 it has failed, 3 its time is over.
+    """The state of a flight: 0 it goes on, 1 it is complete, 2 it has failed, 3 its time limit is reached.
 
-    flying: vehicles with items left; away: vehicles that UxAS does not command; expected: changes to
-    come that bring work; left: tasks asked for that have not ended; now, limit: [ms].
+    flying: vehicles with items left; away: vehicles that UxAS does not command; expected: changes to come that bring
+    work; left: tasks asked for that have not ended; now, limit: [ms].
     """
     if flying == 0 and away == 0 and expected == 0:
         if left > 0:
@@ -138,14 +138,16 @@ def flight_outcome(flying: int, away: int, expected: int, left: int, now: int, l
 def leg_given_up(takeovers: int, most: int, under: int, longest: int) -> bool:
     """True iff a leg is given up: ICAROUS has taken over too often on it, or flown for too long.
 
-    takeovers, most: how often, and how often it may; under, longest: how long in all, and may [ms].
+    takeovers, most: their number, and the greatest allowed; under, longest: total time, and the greatest allowed
+    [ms].
     """
     return takeovers > most or under > longest
 
 
 class Answered(NamedTuple):
-    """For what a plan is asked afterwards, and what to do: 0 nothing, 1 fly the plan, 2 fail all that is
-    left, 3 fail the late task."""
+    """The reason for the pending plan request afterwards, and what to do: 0 nothing, 1 fly the plan, 2 fail all
+    remaining tasks, 3 fail the late task.
+    """
 
     awaited: int
     act: int
@@ -155,7 +157,7 @@ class Answered(NamedTuple):
 def answered(asked: int, found: bool) -> Answered:
     """The planner has answered.
 
-    asked: for what a plan has been asked, 0 nothing, 1 a change, 2 a deadline; found: there is a plan.
+    asked: the reason for the pending request, 0 none, 1 a change, 2 a deadline; found: there is a plan.
     """
     if asked != 1 and asked != 2:
         return Answered(asked, 0)
@@ -168,27 +170,27 @@ def answered(asked: int, found: bool) -> Answered:
 
 @kernel(implements="executive.on_path_again")
 def rejoined(away: bool, suspended: bool, flown_m: float, join_m: float) -> bool:
-    """True iff a vehicle has come back onto the path of its task.
+    """True iff a vehicle has returned to the path of its task.
 
-    away: it had left the path; suspended: UxAS does not fly it; flown_m: how far it is on its track [m];
-    join_m: where the path begins again on it [m].
+    away: it had left the path; suspended: UxAS does not fly it; flown_m: how far it is on its track [m]; join_m:
+    where the path begins again on it [m].
     """
     return away and not suspended and flown_m >= join_m
 
 
 @kernel(implements="executive.falls_with")
 def falls_with(kind: int, named: bool, life: int) -> bool:
-    """True iff a task fails with another that has failed.
+    """True iff a task fails because another one has failed.
 
-    kind: of a row of the task, 1 after the end of others, 2 after their start; named: the row names the
-    one that has failed; life: of the task.
+    kind: of a row of the task, 1 after the end of others, 2 after their start; named: the row names the one that has
+    failed; life: of the task.
     """
     return (kind == 1 or kind == 2) and named and life == 0
 
 
 @kernel(implements="executive.is_after_search")
 def way_act(found: bool, tasked: bool) -> int:
-    """What to do after the search for a way that keeps the zones: 0 fly it, 1 fail the task, 2 circle.
+    """What to do after the search for a path that keeps the zones: 0 fly it, 1 fail the task, 2 circle.
 
     found: there is one; tasked: a task needs it.
     """
@@ -201,7 +203,7 @@ def way_act(found: bool, tasked: bool) -> int:
 
 @kernel(implements="executive.completes_at")
 def completes(outcome: int, end: int, limit: int) -> bool:
-    """True iff a mission has ended complete, in time.
+    """True iff a mission has ended complete and in time.
 
     outcome: as of `flight_outcome`; end: when it ended; limit: until when it had to [ms].
     """

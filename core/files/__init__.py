@@ -1,1 +1,1 @@
-"""Files on disk: written whole or not at all, and what is kept from run to run."""
+"""Files on disk: atomic writes, and the cache kept between runs."""

@@ -1,7 +1,7 @@
-"""The folder of what is kept between runs: machine code, solver answers, verdicts.
+"""The cache folder for data kept between runs: machine code, solver answers, verdicts.
 
-Whoever can write there can change what runs, so it belongs to this user alone. A folder that
-another may have written to is refused; one that others could only read is closed to them.
+Anyone who can write there can change what runs, so it belongs to this user alone. A folder that another user may have
+written to is refused; one that others could only read is closed to them.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ WRITABLE = stat.S_IWGRP | stat.S_IWOTH
 
 
 def cache_folder() -> Path:
-    """Where it lies: in $CRATOUS_CACHE, else in the user's cache folder."""
+    """Its location: $CRATOUS_CACHE, else a folder in the user's cache folder."""
     base = os.environ.get("CRATOUS_CACHE") or os.environ.get("XDG_CACHE_HOME")
     root = Path(base) if base else Path.home() / ".cache"
     return root / "cratous"
 
 
 def private_cache() -> Path:
-    """The folder, made if need be; raises BadInput if it is not this user's alone."""
+    """The folder, created if necessary; raises BadInput if it is not this user's alone."""
     return _private(cache_folder())
 
 

@@ -1,8 +1,8 @@
-"""Files that are written whole or not at all, and what a killed writer leaves is swept away.
+"""Atomic file writes, with clean-up of what a killed writer leaves behind.
 
-A file is made in a hidden folder beside its name and renamed when it is whole and on disk. The
-hidden folder holds a lock for as long as its process lives: one whose lock is free is a dead
-process's, whatever its number says, and the next writer beside it removes it.
+A file is written in a hidden folder beside its target and renamed when it is complete and on disk. The hidden folder
+holds a lock for as long as its process lives: one whose lock is free belongs to a dead process, whatever its process
+number, and the next writer beside it removes it.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ LOCK = "lock"
 PART = ".cratous-part"
 TURN_S = 10.0
 UNLOCKED_S = 60.0
-"""A hidden folder without a lock is only being made, unless it is older than this."""
+"""A hidden folder without a lock is assumed to be just being created, unless it is older than this [s]."""
 NO_ROOM = {
     errno.ENOSPC: "the disk is full",
     errno.EDQUOT: "the disk quota is used up",
@@ -35,7 +35,7 @@ SQLITE_FULL, SQLITE_TEXT = 13, "database or disk is full"
 
 
 def cannot_write(path: Path, error: BaseException, what: str = "the file") -> BadInput:
-    """The error for something that cannot be written; says so if it is for want of room."""
+    """The error for a path that cannot be written; states whether space has run out."""
     full = NO_ROOM.get(getattr(error, "errno", None) or 0)
     if getattr(error, "sqlite_errorcode", None) == SQLITE_FULL or SQLITE_TEXT in str(error):
         full = NO_ROOM[errno.ENOSPC]
@@ -48,10 +48,10 @@ def cannot_write(path: Path, error: BaseException, what: str = "the file") -> Ba
 
 
 def write_atomically(path: Path, data: str | bytes, what: str = "the file") -> None:
-    """Write a file; under its name stands the old or the new content at any moment.
+    """Write a file; at any moment its name refers to the old or the new content.
 
-    Text is UTF-8. A link is followed; the permissions of a file that is there are kept. BadInput
-    if it cannot be written, and then nothing has changed.
+    Text is UTF-8. A link is followed; the permissions of an existing file are kept. Raises BadInput if it cannot be
+    written, and then nothing has changed.
     """
     with replacing(path, what) as part:
         part.write_bytes(data.encode("utf-8") if isinstance(data, str) else data)
@@ -59,7 +59,7 @@ def write_atomically(path: Path, data: str | bytes, what: str = "the file") -> N
 
 @contextmanager
 def replacing(path: Path, what: str = "the file") -> Iterator[Path]:
-    """A name to write a file under; that file takes the place of `path` if all goes well."""
+    """Context with a path to write to; that file replaces `path` on success."""
     try:
         target = path.resolve()
         kept = _regular(target)
@@ -88,7 +88,7 @@ def replacing(path: Path, what: str = "the file") -> Iterator[Path]:
 
 
 def _regular(target: Path) -> list[os.stat_result] | None:
-    """The file that is there, if any; None for a device or a pipe; OSError if it must stay."""
+    """The status of the existing file, if any; None for a device or a pipe; OSError if it must not be replaced."""
     try:
         found = target.stat()
     except FileNotFoundError:
@@ -118,7 +118,7 @@ def _like(part: Path, kept: list[os.stat_result]) -> None:
 
 
 def sync(path: Path) -> None:
-    """Have a file, or the names in a folder, on disk."""
+    """Flush a file, or the entries of a folder, to disk."""
     handle = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
     try:
         os.fsync(handle)
@@ -133,7 +133,7 @@ class Workspace:
     """A hidden folder of this process, `.NAME.PID-TOKEN` and a suffix, with a lock that it holds."""
 
     def __init__(self, folder: Path, name: str, suffix: str) -> None:
-        """Make it; remains of dead processes that wrote files in this folder go first."""
+        """Create it; remains of dead processes that wrote files in this folder are removed first."""
         with in_turn(folder):
             if suffix == PART:
                 for old, handle in dead(folder, PART):
@@ -157,7 +157,7 @@ class Workspace:
         self.release()
 
     def release(self) -> None:
-        """Let go of the lock: what is left belongs to whoever comes next."""
+        """Release the lock: what is left is removed by the next writer."""
         with suppress(OSError):
             os.close(self._lock)
         self._lock = -1
@@ -165,7 +165,7 @@ class Workspace:
 
 @contextmanager
 def in_turn(folder: Path) -> Iterator[None]:
-    """Only one process at a time is in here for a folder (as far as its file system has locks)."""
+    """Context that admits one process at a time per folder (if its file system has locks)."""
     try:
         handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     except OSError:
@@ -192,7 +192,7 @@ def _wait_for(handle: int) -> None:
 
 
 def dead(folder: Path, suffix: str) -> Iterator[tuple[Path, int]]:
-    """The hidden folders whose processes are gone, each with its lock, which the caller closes."""
+    """The hidden folders whose processes have ended, each with its lock, which the caller closes."""
     ours = re.compile(r"\..+\.\d+-[0-9a-f]{8}" + re.escape(suffix))
     try:
         names = sorted(name for name in os.listdir(folder) if ours.fullmatch(name))
@@ -205,7 +205,7 @@ def dead(folder: Path, suffix: str) -> Iterator[tuple[Path, int]]:
 
 
 def _taken(path: Path) -> int | None:
-    """The lock of a folder of ours that nobody holds."""
+    """The lock of one of our folders, if it is free."""
     try:
         found = path.lstat()
         if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid():

@@ -1,7 +1,7 @@
-"""Places, nearness and contact for arrays of points and legs: numpy in, numpy out, exact.
+"""Places, distances and contact for arrays of points and legs: numpy in, numpy out, exact.
 
-Every result is that of the proved folds on the real numbers that the doubles are: a compiled
-filter decides nearly all (`core.readings.exact.folds`), the exact kernels the rest. Broadcasting is numpy's.
+Every result is that of the proved folds on the real numbers that the doubles represent: a compiled filter decides
+nearly all (`core.readings.exact.folds`), the exact kernels the rest. Broadcasting as in numpy.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from cratous.core.readings.exact import exactly
 from cratous.core.readings.exact.folds import folded
 
 AT_ONCE = 1 << 20
-"""So many pairs of a point and an edge are held in memory at a time."""
+"""Maximum number of point-edge pairs held in memory at a time."""
 
 
 def _pairs(
@@ -28,7 +28,7 @@ def _pairs(
     items: tuple[np.ndarray, ...],
     columns: list[np.ndarray],
 ) -> np.ndarray:
-    """`decide` on columns of shape (points, 1), a part of the points at a time."""
+    """Apply `decide` to columns of shape (points, 1), in blocks of points."""
     size, step = columns[0].size, max(1, AT_ONCE // max(1, items[0].size))
     parts = [
         decide([column[k : k + step, None] for column in columns]) for k in range(0, size, step)
@@ -81,7 +81,7 @@ def contact(px: Any, py: Any, qx: Any, qy: Any, shape: Polygon) -> np.ndarray:
 
 
 def boundary_against(x: Any, y: Any, buffer_m: Any, shape: Polygon) -> np.ndarray:
-    """-1, 0, 1 as the boundary is nearer to each point than the buffer, just so near, farther."""
+    """-1, 0, 1 as the boundary is nearer to each point than the buffer, at the buffer, or farther."""
     found: np.ndarray = _AGAINST(shape.columns, x, y, buffer_m)
     return found
 

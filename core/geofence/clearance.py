@@ -1,6 +1,6 @@
-"""Whether a straight leg obeys a zone, and so does every flight that is no farther from it than a margin.
+"""Whether a straight leg, and every flight within a margin of it, obeys a zone.
 
-Where the leg begins, whether it comes within the margin, and what follows are decided by proved kernels.
+Proved kernels decide where the leg begins, whether it comes within the margin, and what follows.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Box = tuple[float, float, float, float]
 def _shape(vertices: tuple[tuple[float, float], ...], number: str) -> tuple[Box, tuple[Edge, ...]]:
     """Lowest and highest north, lowest and highest east of a polygon, and its edges.
 
-    number: type name of the coordinates, so that floats and equal rationals are remembered apart.
+    number: type name of the coordinates, so that floats and equal rationals are cached separately.
     """
     norths, easts = [v[0] for v in vertices], [v[1] for v in vertices]
     return (min(norths), max(norths), min(easts), max(easts)), edges_of(vertices)
@@ -32,8 +32,8 @@ def leg_keeps(p: Position, q: Position, zone: Zone, margin_m: float, rise_m: flo
     """True iff the straight leg from p to q obeys the zone and, from floor to ceiling, is farther than the margin
     from its boundary. ValueError if the zone has padding.
 
-    margin_m: to the side [m], >= 0; rise_m: how far above or below the leg the flight may be [m], >= 0. Boxes
-    spare the folds only what changes nothing in them: a zone or an edge that is farther than the margin from the
+    margin_m: horizontal margin [m], >= 0; rise_m: vertical deviation of the flight from the leg [m], >= 0. Bounding
+    boxes only skip steps that change nothing in the folds: a zone or an edge that is farther than the margin from the
     leg in one direction, and edges beside the ray from p.
     """
     if margin_m == 0 and rise_m == 0:

@@ -1,9 +1,9 @@
-"""How far a point or a leg is from an edge and from a boundary: exact, in squares. No division.
+"""The distance of a point or a leg from an edge and from a boundary: exact, in squares. No division.
 
-Definitions: `spec.geofence`. Whether a point is nearer than a buffer, at it, or farther comes from
-the invariants of the edge seen from the point (`Foot`); which feature of the edge is nearest, an
-end or the foot of the perpendicular, is decided without dividing. The squared distance itself is
-a ratio of two numbers that the kernels give exactly.
+Definitions: `spec.geofence`. Whether a point is nearer than a buffer, at it, or farther follows from the invariants
+of the edge with respect to the point (`Foot`); which feature of the edge is nearest, an end or the foot of the
+perpendicular, is decided without division. The squared distance itself is a ratio of two numbers that the kernels
+give exactly.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ NEARER, AT, FARTHER = -1, 0, 1
 
 
 class Ratio(NamedTuple):
-    """num / den with den >= 0; den = 0 with num = 1 stands for infinity."""
+    """num / den with den >= 0; den = 0 with num = 1 represents infinity."""
 
     num: float
     den: float
@@ -25,7 +25,7 @@ class Ratio(NamedTuple):
 
 @kernel(implements="geofence.foot_at")
 def ahead(p: Vec2, a: Vec2, b: Vec2) -> float:
-    """How far p is along the edge from a towards b, times the edge's length; any one unit."""
+    """The position of p along the edge from a towards b, times the edge's length; any one unit."""
     return (p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y)
 
 
@@ -64,7 +64,7 @@ def edge_distance(p: Vec2, a: Vec2, b: Vec2) -> Ratio:
 
 @kernel(implements="geofence.within_at")
 def edge_against(p: Vec2, a: Vec2, b: Vec2, d_m: float) -> int:
-    """-1 if the closed edge a-b is nearer to p than d_m, 0 if just so near, 1 if farther.
+    """-1 if the closed edge a-b is nearer to p than d_m, 0 if at d_m, 1 if farther.
 
     d_m: the buffer, >= 0, in the unit of the points.
     """
@@ -74,7 +74,7 @@ def edge_against(p: Vec2, a: Vec2, b: Vec2, d_m: float) -> int:
 
 @kernel(implements="geofence.found_step")
 def nearest_step(least: int, a: Vec2, b: Vec2, p: Vec2, d_m: float) -> int:
-    """The least of the verdicts so far and that of the edge a-b."""
+    """The least of the verdicts so far and that for the edge a-b."""
     return min(least, edge_against(p, a, b, d_m))
 
 

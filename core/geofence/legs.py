@@ -1,10 +1,9 @@
 """A straight leg through regions: its places, with the parameters at which they change, exact.
 
-A leg p-q is p + t (q - p), 0 <= t <= 1, in the plane or in space. The parameters at which it may
-change its place are those of `core.geofence.passages`; between two neighbouring ones the place is
-constant (`geofence_location_is_constant_between_crossings`, `geofence_layer_is_constant_between_
-crossings`), so that one point between them speaks for all. Everything is computed on rationals:
-the parameters are fractions, and so are the times.
+A leg p-q is p + t (q - p), 0 <= t <= 1, in the plane or in space. The parameters at which it may change its place are
+those of `core.geofence.passages`; between two neighbouring ones the place is constant
+(`geofence_location_is_constant_between_crossings`, `geofence_layer_is_constant_between_crossings`), so that one point
+between them represents all. Everything is computed on rationals: the parameters are fractions, and so are the times.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ Exact = tuple[Fraction, ...]
 class Stretch:
     """Part of a leg with one place: from parameter `begin` to `end`, which may be equal.
 
-    A stretch on the boundary has both of its ends; another has an end only at that of the leg.
+    A stretch on the boundary contains both of its ends; any other contains an end only at an end of the leg.
     """
 
     begin: Fraction
@@ -51,7 +50,7 @@ def _rational(edge: tuple[Vec2, Vec2]) -> tuple[Vec2, Vec2]:
 
 
 def _met(p: Exact, q: Exact, shape: Polygon) -> list[tuple[Vec2, Vec2]]:
-    """The edges that the leg meets; the others change nothing along it."""
+    """The edges that the leg meets; the others do not affect its places."""
     a, b = _plane(p), _plane(q)
     low_x, high_x, low_y, high_y = min(a.x, b.x), max(a.x, b.x), min(a.y, b.y), max(a.y, b.y)
     near = [
@@ -66,7 +65,7 @@ def _met(p: Exact, q: Exact, shape: Polygon) -> list[tuple[Vec2, Vec2]]:
 
 
 def _place_in(m: Vec2, shape: Polygon) -> int:
-    """`locate` on rationals; edges beside the ray add nothing and are left out."""
+    """`locate` on rationals; edges beside the ray contribute nothing and are left out."""
     seen = Seen(False, False)
     for a, b in shape.edges:
         if (a.y >= m.y or b.y >= m.y) and (a.y <= m.y or b.y <= m.y):

@@ -1,7 +1,7 @@
 """Legs against all zones at once: the zone kernels in loops over arrays, for thousands of paths.
 
-The kernels are those of `core.geofence.planar`, step by step as their folds run them; only edges that change
-nothing in the folds are passed over (`core.geofence.mission_legs`). CPython runs these functions as they stand;
+The kernels are those of `core.geofence.planar`, step by step as their folds run them; only edges that change nothing
+in the folds are skipped (`core.geofence.mission_legs`). CPython runs these functions directly;
 `core.readings.machine.compiled.machine` compiles the same text.
 """
 
@@ -57,32 +57,33 @@ def leg_zone(
 ) -> int:
     """The first zone that the straight leg from p to q breaks, or -1. North, east, altitude [m]."""
     keep_out, floor, ceiling, boxes, first, edges = zones
+    # CPython computes with its own numbers twice as fast as with those of arrays
+    pn, pe, pa, qn, qe, qa = float(pn), float(pe), float(pa), float(qn), float(qe), float(qa)
     low, high = min(pa, qa), max(pa, qa)
     south, north = min(pn, qn), max(pn, qn)
     west, east = min(pe, qe), max(pe, qe)
-    p, q = Vec2(pn, pe), Vec2(qn, qe)
+    p, q, unseen = Vec2(pn, pe), Vec2(qn, qe), Seen(False, False)
     for z in range(len(keep_out)):
-        # no literal: for one the compiler makes `contact_step`, with all that it calls, once more
-        seen, met = Seen(False, False), bool(0)
-        apart = north < boxes[z, 0] or south > boxes[z, 1]
-        if not (apart or east < boxes[z, 2] or west > boxes[z, 3]):
+        # not a literal: the compiler would compile `contact_step`, with all that it calls, again
+        seen, met = unseen, bool(0)
+        apart = north < float(boxes[z, 0]) or south > float(boxes[z, 1])
+        if not (apart or east < float(boxes[z, 2]) or west > float(boxes[z, 3])):
             for k in range(first[z], first[z + 1]):
-                an, ae, bn, be = edges[k, 0], edges[k, 1], edges[k, 2], edges[k, 3]
+                ae, be = float(edges[k, 1]), float(edges[k, 3])
+                first_e, last_e = min(ae, be), max(ae, be)
+                if first_e > east or last_e < west:
+                    continue
+                an, bn = float(edges[k, 0]), float(edges[k, 2])
                 a, b = Vec2(an, ae), Vec2(bn, be)
-                if min(ae, be) <= pe and pe <= max(ae, be):
+                if first_e <= pe and pe <= last_e:
                     seen = location_step(seen, a, b, p)
-                if (
-                    min(an, bn) <= north
-                    and max(an, bn) >= south
-                    and min(ae, be) <= east
-                    and max(ae, be) >= west
-                ):
+                if min(an, bn) <= north and max(an, bn) >= south:
                     met = contact_step(met, a, b, p, q)
         where = location_result(seen)
         if keep_out[z]:
-            fine = keep_out_leg_ok(where, met, low, high, floor[z], ceiling[z])
+            fine = keep_out_leg_ok(where, met, low, high, float(floor[z]), float(ceiling[z]))
         else:
-            fine = keep_in_leg_ok(where, met, low, high, floor[z], ceiling[z])
+            fine = keep_in_leg_ok(where, met, low, high, float(floor[z]), float(ceiling[z]))
         if not fine:
             return z
     return -1
@@ -95,19 +96,14 @@ def first_bad(points: np.ndarray, zones: tuple[np.ndarray, ...]) -> tuple[int, i
     """
     if len(zones[0]) == 0:
         return -1, -1
+    pn, pe, pa = float(points[0, 0]), float(points[0, 1]), float(points[0, 2])
     for k in range(max(len(points) - 1, 1)):
         j = min(k + 1, len(points) - 1)
-        zone = leg_zone(
-            points[k, 0],
-            points[k, 1],
-            points[k, 2],
-            points[j, 0],
-            points[j, 1],
-            points[j, 2],
-            zones,
-        )
+        qn, qe, qa = float(points[j, 0]), float(points[j, 1]), float(points[j, 2])
+        zone = leg_zone(pn, pe, pa, qn, qe, qa, zones)
         if zone >= 0:
             return k, zone
+        pn, pe, pa = qn, qe, qa
     return -1, -1
 
 

@@ -1,7 +1,7 @@
 """Whether flown legs obey the zones: the proved polygon kernels, applied to mission data.
 
-A zone comes here with its padding already turned into vertices; one that still carries padding
-is refused, because a check without it would mean less than it says.
+Zones must already have their padding turned into vertices; a zone that still has padding is refused, because a check
+without it would be too weak.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def _shape(
 ) -> tuple[Box, tuple[tuple[Box, Edge], ...]]:
     """The bounding box of a polygon, and its edges with theirs.
 
-    number: type name of the coordinates, so that floats and equal rationals are remembered apart.
+    number: type name of the coordinates, so that floats and equal rationals are cached separately.
     """
     return _box(vertices), tuple((_box(edge), edge) for edge in edges_of(vertices))
 
@@ -48,9 +48,8 @@ def _shape(
 def leg_ok(p: Position, q: Position, zone: Zone) -> bool:
     """True iff the straight leg from p to q obeys the zone. ValueError if the zone has padding.
 
-    Bounding boxes spare the folds only what changes nothing in them: all edges where the leg's
-    box does not touch the zone's, edges beside the ray from p, edges whose box the leg's does not
-    touch.
+    Bounding boxes only skip steps that change nothing in the folds: all edges if the leg's box does not touch the
+    zone's, edges beside the ray from p, edges whose box does not touch the leg's.
     """
     if zone.padding_m != 0:
         raise ValueError(f"zone {zone.id}: padding must be turned into vertices first")
@@ -75,8 +74,8 @@ def leg_ok(p: Position, q: Position, zone: Zone) -> bool:
 def first_bad_leg(path: Sequence[Position], zones: Sequence[Zone]) -> tuple[int, Zone] | None:
     """Index of the first leg (path[i], path[i + 1]) that breaks a zone, and the zone; else None.
 
-    A path of one point is a leg from that point to itself. A long path of plain numbers is put to the
-    same kernels in one go (`core.geofence.mission_leg_arrays`).
+    A path of one point is a leg from that point to itself. A long path of plain numbers is checked by the same
+    kernels in one call (`core.geofence.mission_leg_arrays`).
     """
     if len(path) > LONG and all(type(v) is float for p in path for v in p):
         k, z = swift(first_bad, len(path) // LONG)(as_points(path), table(tuple(zones)))

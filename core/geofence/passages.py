@@ -1,9 +1,9 @@
 """Where a straight leg changes its place: parameters of crossings, as ratios. No division.
 
-Definitions: `spec.geofence`. The leg p-q is p + t (q - p). An edge that is not parallel to it can
-only be met at one t; a parallel one on the same line from the foot of one of its ends to that of
-the other; a floor or ceiling at one t. Between two neighbouring ones of all these parameters the
-place does not change (proved), so that a leg is judged by finitely many of its points.
+Definitions: `spec.geofence`. The leg p-q is p + t (q - p). An edge that is not parallel to it can only be met at one
+t; a parallel one on the same line from the foot of one of its ends to that of the other; a floor or ceiling at one t.
+Between two neighbouring parameters of these the place does not change (proved), so that finitely many points
+determine the places of a leg.
 """
 
 from __future__ import annotations

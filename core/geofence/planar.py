@@ -1,8 +1,8 @@
 """Points, legs and polygons in the plane: orientation, containment, contact. No division.
 
-Definitions: `spec.geofence`. A polygon is the tuple of its edges (a, b) in order, simple, either
-orientation. Containment is even-odd with half-open edges, after the boundary is set apart; it is
-exact in the exact reading for any number of vertices.
+Definitions: `spec.geofence`. A polygon is the tuple of its edges (a, b) in order, simple, either orientation.
+Containment is even-odd with half-open edges, with the boundary handled separately; it is exact in the exact reading
+for any number of vertices.
 """
 
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ OUTSIDE, BOUNDARY, INSIDE = -1, 0, 1
 
 
 class Seen(NamedTuple):
-    """What a pass over the edges has seen: on an edge? an odd number of ray crossings?"""
+    """The state of a pass over the edges: on an edge? an odd number of ray crossings?"""
 
     on: bool
     odd: bool
@@ -31,7 +31,7 @@ def on_segment(p: Vec2, a: Vec2, b: Vec2) -> bool:
     """True iff p is a point of the closed segment from a to b."""
     if orient(a, b, p) != 0:
         return False
-    # no rounding in these: where they refuse, no filter is needed
+    # no rounding here: if this returns False, no filter is needed
     within_x = min(a.x, b.x) <= p.x and p.x <= max(a.x, b.x)
     return within_x and min(a.y, b.y) <= p.y and p.y <= max(a.y, b.y)
 
@@ -50,7 +50,7 @@ def crosses_ray(p: Vec2, a: Vec2, b: Vec2) -> bool:
 
 @kernel(supports="locate")
 def location_step(seen: Seen, a: Vec2, b: Vec2, p: Vec2) -> Seen:
-    """Add the edge a-b to what has been seen from p."""
+    """Add the edge a-b to the state of the pass for p."""
     return Seen(seen.on or on_segment(p, a, b), seen.odd != crosses_ray(p, a, b))
 
 
@@ -93,7 +93,7 @@ def straddles(one: float, other: float) -> bool:
 
 @kernel(supports="meets_boundary")
 def contact_step(met: bool, a: Vec2, b: Vec2, p: Vec2, q: Vec2) -> bool:
-    """Add the edge a-b to whether the leg p-q has met the boundary."""
+    """Whether the leg p-q has met the boundary, with one more edge a-b."""
     return met or segments_meet(p, q, a, b)
 
 

@@ -43,8 +43,7 @@ def outside_place(place: int) -> int:
 def widened_place(place: int, against: int) -> int:
     """The place in a region widened by a buffer.
 
-    place: in the region; against: -1, 0, 1 as its boundary is nearer than the buffer, just so
-    near, or farther.
+    place: in the region; against: -1, 0, 1 as its boundary is nearer than the buffer, at it, or farther.
     """
     return max(place, -against)
 

@@ -1,7 +1,7 @@
-"""Polygons and regions as checked values: what is made here is valid, or refused with the reason.
+"""Polygons and regions as checked values: what is constructed here is valid, or refused with the reason.
 
-Coordinates are metres in one plane (north and east of the mission's frame, or any x and y);
-altitudes are MSL [m]. Topology: `spec.geofence`.
+Coordinates are metres in one plane (north and east of the mission's frame, or any x and y); altitudes are MSL [m].
+Topology: `spec.geofence`.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from cratous.core.kernel import Vec2
 from cratous.spec.errors import BadInput
 
 SMALLEST_M = 1.0
-"""No zone is smaller than this both ways: a polygon that is has its corners in degrees."""
+"""A polygon smaller than this in both directions is assumed to have its corners in degrees [m]."""
 UNBOUNDED_M = 2.0**1000
-"""Stands for no ceiling, and its negative for no floor."""
+"""Represents no ceiling; its negative, no floor."""
 
 
 class Place(IntEnum):
-    """Where a point is: in the open part, on the boundary, outside of the closed part."""
+    """The place of a point: in the open part, on the boundary, outside the closed part."""
 
     OUTSIDE = -1
     BOUNDARY = 0
@@ -36,7 +36,7 @@ class Place(IntEnum):
 
 
 class BadPolygon(BadInput):
-    """Vertices that make no polygon; `fault` has the kind and the numbers of vertices or edges."""
+    """Vertices that do not form a polygon; `fault` has the kind and the numbers of vertices or edges."""
 
     def __init__(self, fault: Fault, *, where: str, item: str, got: str) -> None:
         self.fault = fault
@@ -46,7 +46,7 @@ class BadPolygon(BadInput):
 
 @dataclass(frozen=True)
 class Polygon:
-    """A simple polygon; make it with `polygon`. vertices: (x, y) [m] in order, not closed."""
+    """A simple polygon, constructed by `polygon`. vertices: (x, y) [m] in order, not closed."""
 
     vertices: tuple[tuple[float, float], ...]
 
@@ -74,10 +74,10 @@ class Polygon:
 
 @dataclass(frozen=True)
 class Region:
-    """A polygon with holes, between floor and ceiling; make it with `region`.
+    """A polygon with holes, between floor and ceiling, constructed by `region`.
 
-    outline, holes: polygons; a hole may reach beyond the outline, and holes may overlap. floor_m,
-    ceiling_m: MSL [m], or None for no bound.
+    outline, holes: polygons; a hole may reach beyond the outline, and holes may overlap. floor_m, ceiling_m: MSL [m],
+    or None for no bound.
     """
 
     outline: Polygon
@@ -125,11 +125,11 @@ def polygon(
     where: str = "",
     item: str = "vertices",
 ) -> Polygon:
-    """A checked polygon from (x, y) pairs in order, either way round, not closed.
+    """A checked polygon from (x, y) pairs in order, either orientation, not closed.
 
-    metres: the coordinates are metres, and corners all within one metre are taken for degrees and
-    refused; with False any unit is accepted. where, item: the place, for messages. Raises
-    BadPolygon with the vertex or edge that is at fault, BadInput for what are no pairs of numbers.
+    metres: the coordinates are metres, and corners all within one metre are taken for degrees and refused; with False
+    any unit is accepted. where, item: the place, for messages. Raises BadPolygon with the faulty vertex or edge,
+    BadInput for values that are not pairs of numbers.
     """
     try:
         listed = list(vertices)

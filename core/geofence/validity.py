@@ -1,9 +1,8 @@
-"""Whether vertices make a simple polygon, and if not, why and where.
+"""Whether vertices form a simple polygon, and if not, why and where.
 
-Definition: `spec.geofence`: at least three different vertices, and no two edges with a point in
-common but the vertex that neighbours share. Whether edges clash is decided by the kernel
-`edges_clash`, exactly. Vertices and edges are numbered from 1; edge k runs from vertex k to the
-next one, the last one back to vertex 1.
+Definition: `spec.geofence`: at least three different vertices, and no two edges with a point in common but the vertex
+that neighbours share. Whether edges intersect is decided exactly by the kernel `edges_clash`. Vertices and edges are
+numbered from 1; edge k runs from vertex k to the next one, the last one back to vertex 1.
 """
 
 from __future__ import annotations
@@ -23,10 +22,10 @@ Corner = tuple[float, float]
 
 @dataclass(frozen=True)
 class Fault:
-    """Why vertices make no polygon.
+    """Why vertices do not form a polygon.
 
-    kind: `few`, `not finite`, `repeated`, `spike`, `crossing`; text: the same in words; vertices,
-    edges: their numbers, from 1.
+    kind: `few`, `not finite`, `repeated`, `spike`, `crossing`; text: the same in words; vertices, edges: their
+    numbers, from 1.
     """
 
     kind: str
@@ -36,7 +35,7 @@ class Fault:
 
 
 def edge_text(k: int, count: int) -> str:
-    """Edge number k + 1 of so many, in words."""
+    """Edge number k + 1 of `count`, in words."""
     return f"edge {k + 1} (vertex {k + 1} to {(k + 1) % count + 1})"
 
 
@@ -68,11 +67,11 @@ def _verdict(kernel: Any, *args: Any) -> bool:
 
 @driver(checked_by=("edges_clash",))
 def fault_of(vertices: Sequence[Corner]) -> Fault | None:
-    """The first reason why these vertices make no simple polygon; None if they do.
+    """The first reason why these vertices do not form a simple polygon; None if they do.
 
-    vertices: (x, y) in order, either way round, not closed; doubles or rationals, any one unit.
-    Few vertices are named first, then numbers that are not finite, repeated vertices, spikes, and
-    crossings in the order of the edges.
+    vertices: (x, y) in order, either orientation, not closed; doubles or rationals, any one unit. Too few vertices
+    are reported first, then numbers that are not finite, repeated vertices, spikes, and crossings in the order of the
+    edges.
     """
     count = len(vertices)
     if count < 3:
@@ -94,7 +93,7 @@ def fault_of(vertices: Sequence[Corner]) -> Fault | None:
             at = following + 1
             text = f"a spike at vertex {at}: the outline turns back on itself"
             return Fault("spike", text, (at,), (i + 1, following + 1))
-    # neighbours are done; of the others every pair whose boxes touch is put to the kernel
+    # neighbours are done; every other pair whose boxes touch is checked by the kernel
     for i, j in sorted(_touching([box_of(edge) for edge in edges])):
         apart = j - i > 1 and (j + 1) % count != i
         if apart and _verdict(segments_meet, *edges[i], *edges[j]):

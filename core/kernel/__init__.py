@@ -1,9 +1,9 @@
 """Marking and registering kernels, folds and drivers.
 
-A *kernel* is a plain typed function in the subset of `core.subset`. A *fold* runs a kernel step
-over data of run-time length. A *driver* is a map, a fold or a search that proved
-kernels decide in; how far they vouch for its output is read from its text (`proofs.statements`). All three are registered here under their qualified names, `package.module.function`, so
-that the ledger can be held against them and two of one bare name stand side by side. The
+A *kernel* is a plain typed function in the subset of `core.subset`. A *fold* runs a kernel step over data of run-time
+length. A *driver* is a map, a fold or a search in which proved kernels decide; how far they check its output is
+determined from its text (`proofs.statements`). All three are registered here under their qualified names,
+`package.module.function`, so that the ledger can be compared with them and two of one bare name can coexist. The
 decorators return the function itself: CPython runs exactly what is written.
 """
 
@@ -23,25 +23,24 @@ Acc = TypeVar("Acc")
 
 
 class Vec2(NamedTuple):
-    """A vector in the horizontal plane: north and east (or x and y), one unit for both."""
+    """A vector in the horizontal plane: north and east (or x and y), both in one unit."""
 
     x: float
     y: float
 
 
 class Refusal:
-    """Base of what a driver gives where it found nothing: such a result claims nothing."""
+    """Base of driver results where nothing was found: such a result claims nothing."""
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One registered function: its qualified name, what it is, what it implements, the function.
+    """One registered function: its qualified name, its kind, what it implements, the function.
 
-    uses: kernels that a fold is made of, or that decide for a driver as its author names them (see
-    `checkers`); nonnegative: arguments for which a number below 0 means nothing, of a record
-    all its numbers; supports: the kernel
-    or fold of which it is a part, which has the definition (see `supported`); restates: what a formula
-    is for that its definition only repeats.
+    uses: kernels that a fold consists of, or that decide in a driver, as named by its author (see `checkers`);
+    nonnegative: arguments for which a number below 0 is meaningless, of a record all its numbers; supports: the
+    kernel or fold of which it is a part, which has the definition (see `supported`); restates: the purpose of a
+    formula that its definition only repeats.
     """
 
     name: str
@@ -65,7 +64,7 @@ def qualified(item: Callable[..., Any] | Fold[Any]) -> str:
 
 
 def entry_of(item: Any) -> Entry | None:
-    """The entry of this very function or fold; None for anything else, of whatever name."""
+    """The entry of this very function or fold; None for anything else, even one of the same name."""
     if not (isinstance(item, Fold) or inspect.isfunction(item)):
         return None
     entry = REGISTRY.get(qualified(item))
@@ -73,7 +72,7 @@ def entry_of(item: Any) -> Entry | None:
 
 
 def named(text: str) -> Entry:
-    """The entry of this name; the end of a name will do where only one ends so. Raises BadInput."""
+    """The entry of this name, or of the only name with this ending. Raises BadInput."""
     found = [text] if text in REGISTRY else candidates(text, REGISTRY)
     if len(found) == 1:
         return REGISTRY[found[0]]
@@ -87,14 +86,14 @@ def named(text: str) -> Entry:
 def checkers(entry: Entry) -> tuple[str, ...]:
     """Qualified names of the kernels that re-check a driver.
 
-    A bare name is what the driver's module calls so, else the only kernel of its package that is
-    called so; what is neither stays as it is. Raises BadInput for a name of several.
+    A bare name is resolved in the driver's module, else to the only kernel of that name in its package; otherwise it
+    stays as it is. Raises BadInput for an ambiguous name.
     """
     return tuple(_resolved(name, entry) for name in entry.uses)
 
 
 def supported(entry: Entry) -> str:
-    """Qualified name of the kernel or fold that an entry is a step of; found as `checkers` are."""
+    """Qualified name of the kernel or fold that an entry is a step of; resolved as in `checkers`."""
     return _resolved(entry.supports, entry)
 
 
@@ -129,7 +128,7 @@ def _register(entry: Entry) -> None:
 
 
 def _alike(old: Entry, new: Entry) -> bool:
-    """The same text, read again."""
+    """Whether two entries have the same text (the module was imported again)."""
     said = [(e.kind, e.implements, e.uses, e.supports, e.restates) for e in (old, new)]
     if said[0] != said[1]:
         return False
@@ -148,12 +147,11 @@ def kernel(
 ) -> Callable[[F], F]:
     """Register a kernel under its qualified name.
 
-    implements: its definition in `spec`, as `module.function`; or supports: the kernel or fold that
-    it is a step of, which calls it and has a definition. restates: what the formula is for, where
-    the definition can only repeat it. nonnegative: arguments (a record for all its numbers) that the theorems take to be at least
-    0 and that come from outside, as thresholds do; the exact and the enclosed reading refuse a
-    number below 0 there. Raises ValueError for a name that is no argument, and unless exactly one
-    of implements and supports is given.
+    implements: its definition in `spec`, as `module.function`; or supports: the kernel or fold that it is a step of,
+    which calls it and has a definition. restates: the purpose of the formula, if the definition can only repeat it.
+    nonnegative: arguments (a record for all its numbers) that the theorems assume to be at least 0 and that come from
+    outside, such as thresholds; the exact and the enclosed reading refuse a number below 0 there. Raises ValueError
+    for a name that is not an argument, and unless exactly one of implements and supports is given.
     """
 
     def mark(function: F) -> F:
@@ -188,7 +186,7 @@ def kernel(
 def driver(*, checked_by: tuple[str, ...]) -> Callable[[F], F]:
     """Register a search or map; `checked_by` names the kernels that decide in it.
 
-    That its whole output goes through one of them is not taken from here: its text has to show it.
+    This does not claim that its whole output goes through one of them: its text has to show that.
     """
 
     def mark(function: F) -> F:
@@ -202,10 +200,9 @@ def driver(*, checked_by: tuple[str, ...]) -> Callable[[F], F]:
 class Fold(Generic[Acc]):
     """`finish(step(... step(step(start, item0, *context), item1, *context) ..., *context))`.
 
-    step and finish are kernels; without a finish the result is what the last step gives; start is a
-    tuple of integers or booleans; module: where it is made.
-    The prover turns each fold into three obligations (base, step, use), so its theorem holds for
-    every number of items.
+    step and finish are kernels; without a finish the result is that of the last step; start is a tuple of integers or
+    booleans; module: where it is defined. The prover turns each fold into three obligations (base, step, use), so its
+    theorem holds for every number of items.
     """
 
     name: str
@@ -221,7 +218,7 @@ class Fold(Generic[Acc]):
 
     @property
     def kernels(self) -> tuple[Callable[..., Any], ...]:
-        """The kernels that it is made of."""
+        """The kernels that it consists of."""
         return (self.step,) if self.finish is None else (self.step, self.finish)
 
     def __call__(self, items: Iterable[tuple[Any, ...]], *context: Any) -> Any:

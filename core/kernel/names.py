@@ -1,7 +1,7 @@
-"""Qualified names for people: the shortest end that tells them apart, patterns, near misses.
+"""Qualified names for display: shortest unambiguous suffixes, patterns, near misses.
 
-A name is `package.module.function`. Whoever asks for something by a name or a pattern that fits
-nothing gets an error with the nearest names, never an empty answer.
+A name is `package.module.function`. A name or pattern that matches nothing raises an error with the nearest names,
+never an empty answer.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ from pathlib import Path
 from cratous.spec.errors import BadInput
 
 NEAR = 3
-"""So many names are offered where one is not there."""
+"""Number of near names offered for an unknown one."""
 
 
 def candidates(text: str, names: Iterable[str]) -> list[str]:
-    """The names that are this text, or end with it after a dot."""
+    """The names that equal this text, or end with it after a dot."""
     return sorted(name for name in names if f".{name}".endswith(f".{text}"))
 
 
 def near(text: str, names: Iterable[str]) -> list[str]:
-    """The names that look most like this text, whole or by their last part."""
+    """The names most similar to this text, as a whole or by their last part."""
     plain = text.strip("*?").rpartition(".")[2]
     ends: dict[str, list[str]] = {}
     for name in names:
@@ -34,7 +34,7 @@ def near(text: str, names: Iterable[str]) -> list[str]:
 
 
 def short(names: Iterable[str]) -> dict[str, str]:
-    """For each name its shortest end, in whole parts, with which no other of them ends."""
+    """For each name its shortest suffix, in whole parts, that no other of them has."""
     every = sorted(set(names))
     count: dict[str, int] = {}
     for name in every:
@@ -49,7 +49,7 @@ def _ends(name: str) -> list[str]:
 
 
 def fits(name: str, pattern: str) -> bool:
-    """True iff the pattern is of the name, or of an end of it in whole parts."""
+    """True iff the pattern matches the name, or a suffix of it in whole parts."""
     return any(fnmatch.fnmatchcase(end, pattern) for end in _ends(name))
 
 
@@ -60,9 +60,9 @@ def matching(
     item: str = "",
     others: Iterable[str] = (),
 ) -> list[str]:
-    """The names that fit one of the patterns. what: what the names are of, for the error.
+    """The names that match one of the patterns. what: the kind of thing named, for the error.
 
-    Raises BadInput for a pattern that fits none; others: more names that may be near to it.
+    Raises BadInput for a pattern that matches none; others: further names to suggest.
     """
     every, found = sorted(set(names)), set()
     for pattern in patterns:
@@ -84,7 +84,7 @@ def _offer(names: list[str], what: str) -> str:
 
 
 def files(folder: Path, pattern: str) -> list[Path]:
-    """The files below a folder that match a pattern, sorted; raises BadInput where there is none."""
+    """The files below a folder that match a pattern, sorted; raises BadInput if there are none."""
     found = sorted(file for file in folder.glob(pattern) if file.is_file())
     if not found:
         raise BadInput("no file matches", where=folder.name, expected=pattern, got="nothing")

@@ -1,9 +1,9 @@
-"""Functions as they run, and what they rest on.
+"""Functions as they run, and what they depend on.
 
-Used by the ledger, whose keys are hashes of text (`core/ledger/keys.py`): `constants` are the values that
-a function rests on, and `altered` holds the code that runs against the file that is hashed, so that
-stale or planted byte code cannot stand in for the source. What counts is the product's, and that of
-packages that add kernels of their own (`add_package`).
+Used by the ledger, whose keys are hashes of text (`core/ledger/keys.py`): `constants` are the values that a function
+depends on, and `altered` compares the code that runs with the file that is hashed, so that stale or planted byte code
+cannot replace the source. Only functions of the product, and of packages with kernels of their own (`add_package`),
+are considered.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ ROOT = Path(__file__).resolve().parents[2]
 """The folder that holds core, spec, proofs (the repository, or the installed package)."""
 
 PACKAGES: dict[str, Path] = {"cratous": ROOT}
-"""The packages whose sources count, with their folders."""
+"""The packages whose sources are considered, with their folders."""
 
 CONSTANTS = (bool, int, float, str, bytes, tuple, frozenset, Fraction, type(None))
 
 
 def digest(parts: Iterable[str]) -> str:
-    """One SHA-256 over several texts; the boundaries between them count."""
+    """One SHA-256 over several texts, including the boundaries between them."""
     sha = hashlib.sha256()
     for part in parts:
         data = part.encode()
@@ -45,7 +45,7 @@ def digest(parts: Iterable[str]) -> str:
 
 
 def add_package(name: str, folder: Path) -> None:
-    """Let the sources of another package count as the product's own do."""
+    """Have the sources of another package considered like the product's own."""
     PACKAGES[name] = folder.resolve()
 
 
@@ -55,7 +55,7 @@ def ours(value: Any) -> bool:
 
 
 def place(file: Path) -> str:
-    """A file's name for people and for hashes: relative to its package, without the machine."""
+    """A file's name for display and for hashes: relative to its package, independent of the machine."""
     return _place(file, tuple(PACKAGES.items()))
 
 
@@ -69,9 +69,9 @@ def _place(file: Path, packages: tuple[tuple[str, Path], ...]) -> str:
 
 
 def text_of(function: Any) -> str:
-    """The text of a function in its file as it is now. Raises OSError where there is none, TypeError.
+    """The text of a function in its file as it is now. Raises OSError if there is none, TypeError.
 
-    What an import may have put into `linecache` as the file's lines is left out.
+    Lines that an import may have put into `linecache` for the file are ignored.
     """
     inner = inspect.unwrap(function)
     linecache.cache.pop(inspect.getsourcefile(inner) or "", None)
@@ -79,13 +79,13 @@ def text_of(function: Any) -> str:
 
 
 def is_root(value: Any) -> bool:
-    """It is the library's own `math.sqrt`, which a package may have exchanged."""
+    """Whether it is the library's own `math.sqrt`, which a package may have replaced."""
     builtin = isinstance(value, types.BuiltinFunctionType)
     return builtin and (value.__module__, value.__name__) == ("math", "sqrt")
 
 
 def position(function: Any) -> str:
-    """Where a function, fold or class stands, as `core/authority/gate.py:24`."""
+    """Location of a function, fold or class, such as `core/authority/gate.py:24`."""
     if isinstance(function, Fold):
         function = function.step
     try:
@@ -96,7 +96,7 @@ def position(function: Any) -> str:
 
 
 def reached(item: Any) -> dict[str, Any]:
-    """All functions, classes and constants that a function or fold rests on, itself included."""
+    """All functions, classes and constants that a function or fold depends on, including itself."""
     seen: dict[str, Any] = {}
     todo: list[Any] = [item]
     while todo:
@@ -112,7 +112,7 @@ def reached(item: Any) -> dict[str, Any]:
             continue
         seen[name] = value
         if inspect.isclass(value):
-            # what dataclass and NamedTuple generate follows from the class's own source
+            # what dataclass and NamedTuple generate is determined by the class's own source
             own = [f for f in vars(value).values() if inspect.isfunction(f) and ours(f)]
             file = str(sys.modules[value.__module__].__file__)
             todo += [f for f in own if f.__code__.co_filename == file]
@@ -127,14 +127,14 @@ def reached(item: Any) -> dict[str, Any]:
             elif used in scope and isinstance(found, CONSTANTS):
                 owner = f"{name} " if used in held else f"{value.__module__}."
                 seen[f"{owner}{used}"] = found
-        # a record that only stands in an annotation still gives its fields their order
+        # a record that occurs only in an annotation still determines the order of its fields
         hints = get_type_hints(value).values()
         todo += [hint for hint in hints if inspect.isclass(hint) and ours(hint)]
     return seen
 
 
 def _held(function: types.FunctionType) -> dict[str, Any]:
-    """What a function holds by itself, beside its module: closure, defaults, what it wraps."""
+    """What a function itself refers to, apart from its module: closure, defaults, wrapped function."""
     code, defaults = function.__code__, function.__defaults__ or ()
     named = code.co_varnames[: code.co_argcount]
     held = dict(zip(named[len(named) - len(defaults) :], defaults, strict=True))
@@ -149,7 +149,7 @@ def _held(function: types.FunctionType) -> dict[str, Any]:
 
 
 def names_of(code: types.CodeType) -> Iterator[str]:
-    """The names that a code object looks up, and those that functions within it do."""
+    """The names that a code object and the functions within it look up."""
     yield from code.co_names
     for constant in code.co_consts:
         if isinstance(constant, types.CodeType):
@@ -157,12 +157,12 @@ def names_of(code: types.CodeType) -> Iterator[str]:
 
 
 def constants(item: Any) -> list[str]:
-    """The values of all constants that a function or fold rests on, in an order that no move changes."""
+    """The values of all constants that a function or fold depends on, in an order independent of their location."""
     return constants_of(reached(item))
 
 
 def constants_of(rests: Mapping[str, Any]) -> list[str]:
-    """The same of what was `reached` already."""
+    """The constants among things already `reached`."""
     found = []
     for name, value in rests.items():
         last = name.rpartition(".")[2]
@@ -186,7 +186,7 @@ def _shown(value: Any) -> str:
 def _written(file: Path) -> dict[str, str]:
     """The hash of every code object that a file compiles to, by qualified name and line.
 
-    Kept in the private cache by the hash of the file's text: compiling all files takes a second.
+    Cached privately by the hash of the file's text: compiling all files takes a second.
     """
     data = file.read_bytes()
     maker = f"{sys.version} {sys.flags.optimize} {_hash.__code__.co_code!r}"
@@ -209,7 +209,7 @@ def _written(file: Path) -> dict[str, str]:
 
 
 def written_names(file: str) -> list[str]:
-    """The qualified names of all functions and classes that a file writes."""
+    """The qualified names of all functions and classes that a file defines."""
     return [name.rpartition(":")[0] for name in _written(Path(file).resolve())]
 
 
@@ -218,7 +218,7 @@ def _name(code: types.CodeType) -> str:
 
 
 def _hash(code: types.CodeType) -> str:
-    """What a code object does; line numbers and files count for nothing."""
+    """A hash of what a code object does; line numbers and file names are ignored."""
     parts = [code.co_code.hex(), *map(repr, (code.co_names, code.co_varnames, code.co_freevars))]
     for value in code.co_consts:
         inner = _hash(value) if isinstance(value, types.CodeType) else _shown(value)
@@ -227,19 +227,19 @@ def _hash(code: types.CodeType) -> str:
 
 
 def stands_for_itself(function: Callable[..., Any]) -> bool:
-    """A function of a module is what the module calls so: callers reach it, and no wrapper of it."""
+    """Whether a function's module binds its name to it, so that callers reach it and not a wrapper."""
     if "." in function.__qualname__:
         return True
     return vars(sys.modules[function.__module__]).get(function.__name__) is function
 
 
 def altered(item: Callable[..., Any] | Fold[Any]) -> list[str]:
-    """Functions that do not run what their source file says, of `item` and all it rests on."""
+    """The functions, of `item` and all it depends on, whose running code differs from their source file."""
     return altered_of(reached(item))
 
 
 def altered_of(rests: dict[str, Any]) -> list[str]:
-    """The same of what was `reached` already."""
+    """The altered functions among things already `reached`."""
     return sorted(
         name
         for name, value in rests.items()
@@ -249,15 +249,15 @@ def altered_of(rests: dict[str, Any]) -> list[str]:
 
 @functools.cache
 def _resolved(file: str) -> Path:
-    """Where a module's file lies; many functions stand in one, and links are slow to follow."""
+    """The resolved path of a module's file, cached: many functions share one, and resolving links is slow."""
     return Path(file).resolve()
 
 
 @functools.cache
 def _as_written(function: types.FunctionType, code: types.CodeType) -> bool:
-    """A function runs what the file of its module says, which lies where the module should.
+    """Whether a function runs the code in its module's file, and the file lies where the module should.
 
-    code: what it runs now, so that it is looked at anew.
+    code: its present code, a cache key, so that a changed function is checked anew.
     """
     file = _resolved(str(sys.modules[function.__module__].__file__))
     top, *parts = function.__module__.split(".")
@@ -265,11 +265,11 @@ def _as_written(function: types.FunctionType, code: types.CodeType) -> bool:
         base = PACKAGES[top].joinpath(*parts)
         if file not in (base.with_suffix(".py"), base / "__init__.py"):
             return False
-    # the code of another function of the file is as written too, and not this one's
+    # the code of another function of the file is also as written, but not this one's
     own = (code.co_name, code.co_qualname) == (function.__name__, function.__qualname__)
     return own and _written(file).get(_name(code)) == _hash(code)
 
 
 def runs_as_written(function: types.FunctionType) -> bool:
-    """A function runs what the file of its module says."""
+    """Whether a function runs the code in its module's file."""
     return _as_written(function, function.__code__)

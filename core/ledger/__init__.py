@@ -1,12 +1,11 @@
 """The ledger's gate: a kernel flies only with the source that was proved.
 
-A ledger is written by `cratous prove`: the product's is `core/ledger/records/`, a package with
-kernels of its own has `<package>/ledger/`. For every registered kernel, fold and driver it keeps the
-parts of its key (`keys`): its own definition with all that it calls, the definition in `spec`, its
-theorems with everything they take from elsewhere, the prover, the readings (how a
-kernel becomes machine code or an exact verdict) and the compiler. `check` computes them anew and
-names whatever differs; it also holds the code that runs against the file that was hashed, and the
-names in it against what that file says of them. Which solver proved it is told beside the key and is no reason to refuse.
+A ledger is written by `cratous prove`: the product's is `core/ledger/records/`, a package with kernels of its own has
+`<package>/ledger/`. For every registered kernel, fold and driver it stores the parts of its key (`keys`): its own
+definition with all that it calls, the definition in `spec`, its theorems with all their dependencies, the prover, the
+readings (how a kernel becomes machine code or an exact verdict) and the compiler. `check` recomputes them and names
+every difference; it also compares the running code with the hashed file, and the meaning of the names in it with that
+file. The solver that proved an entry is recorded beside the key and is no reason to refuse.
 """
 
 from __future__ import annotations
@@ -45,7 +44,7 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Problem:
-    """A kernel that the ledger does not vouch for: its name, and what is wrong."""
+    """A kernel not covered by the ledger: its name, and what is wrong."""
 
     name: str
     what: str
@@ -53,9 +52,9 @@ class Problem:
 
 @dataclass(frozen=True)
 class Standing:
-    """The result of holding the running code against the ledger.
+    """The result of comparing the running code with the ledger.
 
-    kernels: how many kernels and folds there are; drivers are checked by kernels, not proved.
+    kernels: number of kernels and folds; drivers are checked by kernels, not proved.
     """
 
     kernels: int
@@ -76,10 +75,10 @@ def _top(entry: Entry) -> str:
 
 
 def load_all(home: Home = PRODUCT) -> dict[str, Entry]:
-    """Import every module that may hold kernels; the registered ones of this home, by name.
+    """Import every module that may contain kernels; the registered ones of this home, by name.
 
-    Raises BadInput for a module of another package that cannot be imported, and for one whose file is not
-    what Python runs.
+    Raises BadInput for a module of another package that cannot be imported, or whose file is not the one that Python
+    runs.
     """
     for file in home.shadowed():
         raise BadInput(
@@ -98,7 +97,7 @@ def load_all(home: Home = PRODUCT) -> dict[str, Entry]:
 
 
 def _not_proved(names: list[str], theorems: dict[str, Any], home: Home) -> str:
-    """The first of these theorems, or of this home's lemmas that they rest on, without a proof."""
+    """The first of these theorems, or of this home's lemmas that they depend on, without a proof."""
     todo, seen = list(names), set(names)
     for name in todo:
         record = theorems.get(name.removeprefix(f"{home.name}."))
@@ -150,7 +149,7 @@ def _problems(home: Home, entries: dict[str, Entry], data: dict[str, Any]) -> It
 
 
 def check(folder: Path | None = None, home: Home = PRODUCT) -> Standing:
-    """Hold every registered kernel, fold and driver of a home against its ledger, or another folder's."""
+    """Compare every registered kernel, fold and driver of a home with its ledger, or with that in another folder."""
     entries = load_all(home)
     data = read(home.records if folder is None else folder)
     try:
@@ -165,7 +164,7 @@ def check(folder: Path | None = None, home: Home = PRODUCT) -> Standing:
 
 
 def check_everything(folder: Path | None = None) -> Standing:
-    """The product, and every other package that has registered a kernel in this process."""
+    """Check the product, and every other package that has registered a kernel in this process."""
     standings = [check(folder)]
     for name in sorted({_top(entry) for entry in REGISTRY.values()} - {"cratous"}):
         try:
@@ -183,7 +182,7 @@ def check_everything(folder: Path | None = None) -> Standing:
 
 
 LISTED = 40
-"""So many kernels are named when the ledger refuses; the others are counted."""
+"""Maximum number of kernels named when the ledger refuses; the others are counted."""
 
 
 def require(*, allow_unproved: bool = False, folder: Path | None = None) -> Standing:
@@ -204,5 +203,5 @@ def require(*, allow_unproved: bool = False, folder: Path | None = None) -> Stan
 
 
 def place_of(name: str) -> str:
-    """Where a registered kernel, fold or driver stands."""
+    """Location of a registered kernel, fold or driver."""
     return position(named(name).function)

@@ -1,9 +1,9 @@
-"""One hash for a definition and all that it rests on, which says nothing of where these stand.
+"""One hash for a definition and all its dependencies, independent of their location.
 
-A walk goes from its roots over names to definitions, and numbers them in the order in which it meets
-them: names are taken in order, so the numbers follow from what is written alone. The hash is over what
-each says and which number each of its names means. A class counts with its dunder methods; another
-method counts once something that was met names it, whatever object it is named of.
+A walk follows names from its roots to definitions, and numbers these in the order of their discovery: names are taken
+in order, so the numbers follow from the text alone. The hash covers what each definition says and the number that
+each of its names refers to. A class is included with its dunder methods; another method is included once something
+already included names it, whatever object it is named of.
 """
 
 from __future__ import annotations
@@ -23,16 +23,15 @@ CLOSED = frozenset(
         "RuntimeError", "KeyError", "ArithmeticError", "tuple",
     }
 )  # fmt: skip
-"""Bases from outside that call no method of a class but dunder ones."""
+"""External bases that call no method of a class other than dunder methods."""
 
 
 @dataclass(frozen=True)
 class Walk:
-    """What a walk met, numbered.
+    """What a walk has found, numbered.
 
-    edge: what it met at the border; asks: by place, what its code looks up beside names
-    (`syntax_text.Reading`), without what is excused; registry: it asks for whatever is registered,
-    excused or not; strings: names that are known, in order.
+    edge: what it found at the border; asks: by place, dynamic look-ups in its code (`syntax_text.Reading`), without
+    the excused ones; registry: it looks up registered items, excused or not; strings: known names, in order.
     """
 
     digest: str
@@ -47,9 +46,9 @@ class Walk:
 
 @dataclass(frozen=True)
 class Border:
-    """Where a walk ends: places whose hash is another's matter, each with a text that stands for it.
+    """Where a walk ends: places hashed elsewhere, each with a text that represents it.
 
-    attributes, classes: those of the code behind the border, which may meet what is before it.
+    attributes, classes: those of the code behind the border, which may refer to code before it.
     """
 
     places: frozenset[Place] = frozenset()
@@ -65,10 +64,10 @@ def walk(
     known: frozenset[str] = frozenset(),
     excused: Mapping[str, frozenset[str]] | None = None,
 ) -> Walk:
-    """Walk from the roots. known: texts that name something whose hash is another's matter.
+    """Walk from the roots. known: texts that name something hashed elsewhere.
 
-    excused: by `module.definition`, ways of looking things up that need not be followed there; what
-    looks up any code or file in another way depends on everything.
+    excused: by `module.definition`, dynamic look-ups that need not be followed there; code that looks up any code or
+    file in another way depends on everything.
     """
     one = _Walk(tree, border or Border(), known, excused or {})
     for root in roots:
@@ -127,7 +126,7 @@ class _Walk:
             names = _fitting(word, self.known)
             for name in names:
                 self.strings.setdefault(name, len(self.strings))
-            # which name it is follows from the order in which they are met
+            # which name it is follows from the order of discovery
             self.say(f"names {[self.strings[name] for name in names]}" if names else word)
         for chain, targets in self.tree.edges(place):
             self.say(chain)
@@ -147,7 +146,7 @@ class _Walk:
             self.classes.append(place)
 
     def methods(self) -> bool:
-        """Meet the methods that are named by now; True iff there was one."""
+        """Add the methods that are named so far; True iff there was one."""
         found = False
         for place in self.classes:
             every = EVERY in self.attributes or open_class(self.tree, place)
@@ -176,7 +175,7 @@ class _Walk:
 
 @functools.cache
 def _fitting(word: str, known: frozenset[str]) -> tuple[str, ...]:
-    """The known names that a text is, or could become."""
+    """The known names that a text equals, or could become."""
     if "*" not in word:
         return (word,) if word in known else ()
     fits = [n for n in known if ("." in n) == ("." in word) and fnmatch.fnmatchcase(n, word)]
@@ -184,7 +183,7 @@ def _fitting(word: str, known: frozenset[str]) -> tuple[str, ...]:
 
 
 def open_class(tree: Tree, place: Place) -> bool:
-    """A class with a base from outside, which may call any of its methods."""
+    """Whether a class has an external base, which may call any of its methods."""
     if place not in tree.open_classes:
         tree.open_classes[place] = True  # a circle of bases is no Python
         tree.open_classes[place] = _open(tree, place)

@@ -1,8 +1,8 @@
-"""The keys of a home's entries, kept under the hash of all that they are made from.
+"""Cached keys of a home's entries, under the hash of everything that they are computed from.
 
-The walks of `keys` take most of the gate's time and depend on files, versions and the registry alone.
-So their outcome is kept in the private cache, as `tables` keeps what files define; every file is
-still read and hashed at each start, and any difference makes the walks be done anew.
+The walks of `keys` take most of the gate's time and depend only on files, versions and the registry. So their result
+is stored in the private cache, as `tables` stores what files define; every file is still read and hashed at each
+start, and any difference causes the walks to be repeated.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ from cratous.core.ledger.module_trees import DATA
 from cratous.core.ledger.package_home import PRODUCT, Home
 
 FOLDERS = ("bridge", "core", "proofs", "services", "spec")
-"""The product's folders with modules; names that lead elsewhere are not kept."""
+"""The product's folders with modules; results with names that lead elsewhere are not cached."""
 KEPT = "keys"
-"""The folder of the cache."""
+"""The folder within the cache."""
 
 Found = dict[str, dict[str, str]]
 Rests = Mapping[str, Mapping[str, Any]]
-"""What each entry rests on as it runs, by its name (`core.kernel.sources.reached`)."""
+"""The running dependencies of each entry, by its name (`core.kernel.sources.reached`)."""
 
 
 def keys_of(home: Home, known: Mapping[str, Entry], rests: Rests, data: Mapping[str, Any]) -> Found:
-    """The parts of the key of each of these entries, which all have records in this ledger."""
+    """The key parts of each of these entries, all of which have records in this ledger."""
     stamp = _stamp(home, known, rests, data)
     file = private_cache() / KEPT / stamp
     with contextlib.suppress(OSError, ValueError):
@@ -46,7 +46,7 @@ def keys_of(home: Home, known: Mapping[str, Entry], rests: Rests, data: Mapping[
     keys = Keys(home)
     made = _made(keys, known, data)
     whole = not any(MISSING in key.values() for key in made.values())
-    # a file that was edited meanwhile may stand in the keys and not in the stamp
+    # a file edited meanwhile may be in the keys and not in the stamp
     if whole and not _elsewhere(keys.tree.asked) and _stamp(home, known, rests, data) == stamp:
         _keep(file, made)
     return made
@@ -55,7 +55,7 @@ def keys_of(home: Home, known: Mapping[str, Entry], rests: Rests, data: Mapping[
 def made_anew(
     home: Home, known: Mapping[str, Entry], rests: Rests, data: Mapping[str, Any]
 ) -> Found:
-    """The same as `keys_of`, without a look at what was kept, and kept nowhere."""
+    """As `keys_of`, without reading or writing the cache."""
     return _made(Keys(home), known, data)
 
 
@@ -69,7 +69,7 @@ def _made(keys: Keys, known: Mapping[str, Entry], data: Mapping[str, Any]) -> Fo
 
 @contextlib.contextmanager
 def _no_garbage() -> Iterator[None]:
-    """Inside, nothing looks for garbage among a million nodes of syntax, of which hardly any is."""
+    """Context without garbage collection: among a million syntax nodes there is hardly any garbage."""
     was = gc.isenabled()
     gc.disable()
     try:
@@ -80,7 +80,7 @@ def _no_garbage() -> Iterator[None]:
 
 
 def _is_found(found: Any, known: Mapping[str, Entry]) -> bool:
-    """What was kept is whole: a key for each entry, a text for each part."""
+    """Whether a cached result is complete: a key for each entry, a text for each part."""
     return (
         isinstance(found, dict)
         and set(found) == set(known)
@@ -100,7 +100,7 @@ def _keep(file: Path, made: Found) -> None:
 
 
 def _stamp(home: Home, known: Mapping[str, Entry], rests: Rests, data: Mapping[str, Any]) -> str:
-    """One hash over all that the keys are made from: files, versions, the registry, the records."""
+    """One hash over everything that the keys are computed from: files, versions, the registry, the records."""
     texts = [sys.version, compiler(), solver_version(), home.name]
     for root, folders in _roots(home):
         texts += [f"{root.name} {name}" for name in _names(root)]
@@ -121,12 +121,12 @@ def _roots(home: Home) -> Iterator[tuple[Path, tuple[str, ...]]]:
 
 
 def _names(root: Path) -> list[str]:
-    """What lies at the top of a package, where a name might lead to it."""
+    """The entries at the top of a package, to which a name might lead."""
     return sorted(entry.name for entry in os.scandir(root))
 
 
 def _files(root: Path, folder: str) -> Iterator[str]:
-    """Every folder below, and every module and data file with the hash of what it says."""
+    """Every folder below, and every module and data file with the hash of its contents."""
     for place, folders, names in os.walk(root / folder, followlinks=True):
         folders[:] = sorted(name for name in folders if name != "__pycache__")
         yield os.path.relpath(place, root)
@@ -137,7 +137,7 @@ def _files(root: Path, folder: str) -> Iterator[str]:
 
 
 def _elsewhere(asked: set[str]) -> bool:
-    """A name led to a part of the product that is not hashed."""
+    """Whether a name led to a part of the product that is not hashed."""
     tops = {module.split(".")[1] for module in asked if module.startswith("cratous.")}
     return any(
         (PRODUCT.root / top).exists() or (PRODUCT.root / f"{top}.py").exists()

@@ -1,4 +1,4 @@
-"""The parts of a key: where the walks over readings and prover begin and end, and the versions."""
+"""The parts of a key: the roots and borders of the walks over readings and prover, and the versions."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PARTS = {
     "flags": "the compiler flags or the versions of numba, llvmlite, numpy",
 }
 PROVENANCE = ("solver",)
-"""Kept beside the parts of a key, and no reason to refuse: a proof is none the less one with another z3."""
+"""Stored beside the parts of a key, and no reason to refuse: a proof remains valid with another z3."""
 READINGS = (
     "core.kernel.kernel",
     "core.kernel.driver",
@@ -31,7 +31,7 @@ READINGS = (
     "core.readings.tiered.at_once",
     "core.ledger.require",
 )
-"""How a kernel is marked, compiled, read exactly, and held to what was proved: with all they rest on."""
+"""How a kernel is marked, compiled, read exactly, and checked against the ledger: with all dependencies."""
 PROVER = (
     "proofs.claim.Claim",
     "proofs.engine.prover.prove_file",
@@ -40,7 +40,7 @@ PROVER = (
     "proofs.ledger.prove_all",
     "proofs.ledger.problems",
 )
-"""What decides that something is proved: with all they rest on, part of the key of every proof."""
+"""The code that decides that something is proved: with all dependencies, part of the key of every proof."""
 REMEMBERS = (
     "proofs.engine.cache.Cache",
     "proofs.engine.counterexample.story",
@@ -48,10 +48,10 @@ REMEMBERS = (
     "proofs.engine.statement_errors.slip_in",
     "proofs.ledger.proof_recall.Recall",
 )
-"""What only prints or remembers: a prover with an empty cache decides the same without it."""
+"""Code that only prints or caches: a prover with an empty cache decides the same without it."""
 COMPILER = ("numba", "llvmlite", "numpy")
 MISSING = "missing"
-"""Stands for a part that is not there; the gate vouches for no such part."""
+"""Represents a missing part, for which the gate refuses."""
 
 
 @functools.cache
@@ -69,5 +69,5 @@ def solver_version() -> str:
 
 
 def compiler() -> str:
-    """How machine code is made: numba's flags, and the versions that decide what they mean."""
+    """How machine code is compiled: numba's flags, and the versions that determine their meaning."""
     return "; ".join([FLAGS, *(f"{name} {version(name)}" for name in COMPILER)])

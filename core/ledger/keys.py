@@ -1,9 +1,9 @@
 """What a proof depends on, as hashes of definitions: a key for each kernel, fold and driver.
 
-A key has parts: the entry's own definition with all that it calls; the definition in `spec`; its
-theorems with their sentences and lemmas; the prover; the readings; the versions. Each is a walk from
-definition to definition (`definition_hash`), so what nothing uses is in no key, and no hash knows where things
-stand: a move changes none. The prover and the readings are walked once; other walks end there.
+A key has parts: the entry's own definition with all that it calls; the definition in `spec`; its theorems with their
+sentences and lemmas; the prover; the readings; the versions. Each is a walk from definition to definition
+(`definition_hash`), so unused code is in no key, and no hash depends on locations: a move changes none. The prover
+and the readings are walked once; other walks end there.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from cratous.core.ledger.package_home import PRODUCT, Home, theorem_home, theore
 from cratous.core.ledger.syntax_text import ANYTHING
 
 _PRODUCT: list[Keys] = []
-"""The product's, once they were asked for: what its names mean is not looked up again, nor walked again."""
+"""The product's keys, once requested: its names are not resolved or walked again."""
 
 
 class Keys:
-    """The keys of one home as the files stand when they are asked for first.
+    """The keys of one home, from the files as they are at the first request.
 
-    edits: files that are to be read as if they said this.
+    edits: replacement texts for some files.
     """
 
     def __init__(self, home: Home = PRODUCT, edits: Mapping[Path, bytes] | None = None) -> None:
@@ -57,7 +57,7 @@ class Keys:
 
     # -- walks ---------------------------------------------------------------------------------
     def places(self, name: str) -> tuple[Place, ...]:
-        """The statements that bind a name, `package.module.name`; none where nothing does."""
+        """The statements that bind a name, `package.module.name`; empty if there are none."""
         module, _, last = name.rpartition(".")
         if self.tree.table(module) is not None:
             found = self.tree.meant(module, (last,))
@@ -91,25 +91,25 @@ class Keys:
 
     @functools.cached_property
     def prover(self) -> Walk:
-        """The walk over the prover, up to the readings and what only remembers."""
+        """The walk over the prover, up to the readings and code that only prints or caches."""
         same = self._product is not None and self.readings is self._product.readings
         if self._product is not None and same and self._walked(self._product.prover):
             return self._product.prover
         return self.deciding(PROVER)
 
     def _walked(self, done: Walk) -> bool:
-        """A walk over the product's definitions would be the same with this home's beside them."""
+        """Whether a walk over the product's definitions would be the same together with this home's."""
         anything = any(asks & ANYTHING for asks in done.asks.values())
         return not anything and self.tree.walks_as(done.places)
 
     def asking(self, roots: Iterable[str]) -> Walk:
-        """The walk over code that puts questions, up to what only remembers."""
+        """The walk over code that states obligations, up to code that only prints or caches."""
         left_out = {p: f"remembers {k}" for k, p in enumerate(self._roots(REMEMBERS))}
         border = Border(frozenset(left_out), left_out.__getitem__)
         return walk(self.tree, self._roots(roots), border, excused=EXCUSED)
 
     def deciding(self, roots: Iterable[str]) -> Walk:
-        """The walk over code that decides, up to the readings and what only remembers."""
+        """The walk over code that decides, up to the readings and code that only prints or caches."""
         left_out = {p: str(k) for k, p in enumerate(self._roots(REMEMBERS))}
         places = frozenset(self.readings.places) | frozenset(left_out)
 
@@ -147,7 +147,7 @@ class Keys:
 
     # -- functions -----------------------------------------------------------------------------
     def function(self, *names: str) -> Walk | None:
-        """The walk over these functions, folds or classes; None where one is not there."""
+        """The walk over these functions, folds or classes; None if one is missing."""
         if names not in self._walks:
             places = [self.places(name) for name in names]
             if not all(places):
@@ -157,12 +157,12 @@ class Keys:
         return self._walks[names]
 
     def source(self, entry: Entry) -> str:
-        """An entry with all that it calls, the values of its constants, and what re-checks it."""
+        """An entry with all that it calls, the values of its constants, and the kernels that re-check it."""
         found = self.function(entry.name, *(checkers(entry) if entry.kind == "driver" else ()))
         return MISSING if found is None else digest([found.digest, *constants(entry.function)])
 
     def definition(self, entry: Entry) -> str:
-        """What an entry implements; empty where it names nothing."""
+        """The definition that an entry implements; empty if it names none."""
         if not entry.implements:
             return ""
         found = self.function(f"{self.home.name}.spec.{entry.implements}")
@@ -176,7 +176,7 @@ class Keys:
         return self._theorems[name]
 
     def statement(self, name: str) -> Walk | None:
-        """The walk over what a theorem says; None where there is no such theorem."""
+        """The walk over a theorem's statement; None if there is no such theorem."""
         if name not in self._statement:
             module = self._module(name)
             roots = self.places(f"{module}.claim") if module else ()
@@ -199,9 +199,9 @@ class Keys:
         return digest([table.sentence if table else "", found.digest]), found.strings
 
     def theorem(self, name: str, lemmas: Mapping[str, Iterable[str]] | None = None) -> str:
-        """The meaning of a theorem and of the lemmas that it rests on, whatever they are called.
+        """A hash of a theorem's meaning and of the lemmas that it depends on, independent of their names.
 
-        lemmas: what is known to be used, beside what is named. `MISSING` where one is not there.
+        lemmas: those known to be used, beside those named. `MISSING` if one is missing.
         """
         order, numbers, parts = [name], {name: 0}, []
         for one in order:
@@ -218,13 +218,13 @@ class Keys:
         return digest(parts)
 
     def theorems(self, names: Iterable[str], records: Mapping[str, Any] | None = None) -> str:
-        """The meaning of several; records: the ledger's, which name the lemmas that were used."""
+        """A hash of the meaning of several theorems; records: the ledger's, which name the lemmas that were used."""
         lemmas = {n: record.get("lemmas", ()) for n, record in (records or {}).items()}
         found = sorted(self.theorem(name, lemmas) for name in names)
         return MISSING if MISSING in found else digest(found)
 
     def _statements(self, name: str) -> Iterator[Walk]:
-        """The walks of a theorem and of all that it names."""
+        """The walks of a theorem and of all theorems that it names."""
         names, done = [name], set()
         while names:
             one = names.pop()
@@ -235,15 +235,15 @@ class Keys:
                 names += found.strings
 
     def asks_registry(self, name: str) -> bool:
-        """A theorem, or a lemma of it, asks for whatever is registered."""
+        """Whether a theorem, or a lemma of it, looks up registered items."""
         return any(found.registry for found in self._statements(name))
 
     def lemmas(self, name: str) -> frozenset[str]:
-        """The names by which a theorem, and the lemmas that it rests on, call others."""
+        """The names by which a theorem, and the lemmas that it depends on, refer to others."""
         return frozenset(other for found in self._statements(name) for other in found.strings)
 
     def functions(self, name: str) -> frozenset[str]:
-        """Qualified names of all functions, folds and classes that a theorem or a lemma could meet."""
+        """Qualified names of all functions, folds and classes that a theorem or a lemma could refer to."""
         found: set[str] = set()
         for one in self._statements(name):
             found |= {self.name(place) for place in one.places}
@@ -254,7 +254,7 @@ class Keys:
         return frozenset(found)
 
     def name(self, place: Place) -> str:
-        """The qualified name of what stands there."""
+        """The qualified name of the definition at a place."""
         return f"{place[0]}.{self.tree.unit(place).name}"
 
     # -- keys ----------------------------------------------------------------------------------

@@ -1,8 +1,8 @@
-"""Ways of looking something up that were looked at: why a key need not follow them.
+"""Dynamic look-ups that were reviewed: why a key need not follow them.
 
-A name that is looked up while the code runs cannot be followed in its text. What does so depends on
-everything, unless it stands here. A row names `module.definition` and the words by which it looks
-something up, with the reason; a row that names nothing real fails a test.
+A name that is looked up at run time cannot be followed in the text. Code that does so depends on everything, unless
+it is listed here. A row names `module.definition` and the words by which it looks something up, with the reason; a
+row that names nothing real fails a test.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""Folds that are made of other kernels than the files of their modules say.
+"""Folds that consist of other kernels than the files of their modules say.
 
-A fold is an object, and a statement such as `object.__setattr__(total, "step", other)` can give it another
-step after it was registered; or its module calls another fold so. Both are functions as written, so only
-the text tells which of them was meant. The start is a value, which is part of the key; of a kind that
-adds or compares in its own way it would be another value than it looks.
+A fold is an object, and a statement such as `object.__setattr__(total, "step", other)` can replace its step after
+registration; or its module may bind its name to another fold. Both steps are functions as written, so only the text
+shows which of them was meant. The start is a value and part of the key; if its type defines its own addition or
+comparison, it may behave differently from what its text shows.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ PARTS = ("step", "finish")
 
 @functools.cache
 def _written(file: str) -> dict[str, tuple[str, dict[str, str]]]:
-    """By the name of each fold that a file makes in a statement: the variable, and the parts as written."""
+    """For each fold defined in a file, by name: the variable, and the parts as written."""
     found: dict[str, tuple[str, dict[str, str]]] = {}
     for statement in ast.parse(Path(file).read_bytes()).body:
         if isinstance(statement, ast.AnnAssign):
@@ -44,7 +44,7 @@ def _written(file: str) -> dict[str, tuple[str, dict[str, str]]]:
 
 
 def other_parts(fold: Fold[Any]) -> Iterator[str]:
-    """What of a registered fold is another thing than its file says; nothing where all is as written."""
+    """The parts of a registered fold that differ from its file; empty if none does."""
     module = sys.modules[fold.module]
     written = _written(str(module.__file__)).get(fold.name)
     if type(fold) is not Fold or written is None:
@@ -68,7 +68,7 @@ def _first(step: Any) -> Any:
 
 
 def _plain(start: Any, kind: Any) -> bool:
-    """A start that means what it looks like: integers, truth values, records of them of this type."""
+    """Whether a start consists only of integers, truth values and records of this type."""
     if type(start) in (int, bool):
         return True
     hints = get_type_hints(kind) if type(start) is kind and isinstance(start, tuple) else {}
@@ -79,7 +79,7 @@ def _plain(start: Any, kind: Any) -> bool:
 
 
 def _named(module: Any, text: str) -> Any:
-    """What a name with its attributes means in a module; the module itself where it means nothing."""
+    """What a dotted name refers to in a module; the module itself if nothing."""
     if text == "None":
         return None
     value = module

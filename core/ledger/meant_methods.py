@@ -1,8 +1,8 @@
-"""Methods and fields of classes that are not what the files of their classes say.
+"""Methods and fields of classes that differ from the files of their classes.
 
-A method is found through its class while the code runs, so another one that the class was given runs in
-its place. What dataclass and NamedTuple make of a class from a text is held against what they make anew of a
-class like it; other methods of the library's are known by file and name.
+A method is looked up through its class at run time, so a replacement assigned to the class runs in its place. What
+dataclass and NamedTuple generate from a text is compared with what they generate anew for an equal class; other
+library methods are identified by file and name.
 """
 
 from __future__ import annotations
@@ -23,20 +23,20 @@ from cratous.core.kernel.sources import ours, runs_as_written, written_names
 
 MAKERS: tuple[ModuleType, ...] = (abc, collections, dataclasses, enum, functools, typing)
 LIBRARY = frozenset(str(module.__file__) for module in MAKERS)
-"""Where the code of methods lies that Python's library gives to a class."""
+"""Files with the code of methods that Python's library adds to a class."""
 OTHERWISE = {
     "__getstate__": "_dataclass_getstate",
     "__setstate__": "_dataclass_setstate",
     "_new_member_": "__new__",
 }
-"""What the library names otherwise than the name under which it gives it to a class."""
+"""Library functions whose own name differs from the name they have in a class."""
 SETTINGS = ("init", "repr", "eq", "order", "unsafe_hash", "frozen")
 GETTER: Any = type(vars(collections.namedtuple("_Pair", "first"))["first"])
-"""What reads a field of a NamedTuple."""
+"""The type of object that reads a field of a NamedTuple."""
 
 
 def other_methods(item: type) -> Iterator[str]:
-    """Methods and fields of a class, and of the classes that it is made from, that are others."""
+    """Methods and fields of a class and its bases that were replaced."""
     for one in item.__mro__:
         if ours(one):
             yield from _of(one)
@@ -63,7 +63,7 @@ def _of(one: type) -> Iterator[str]:
 
 @functools.cache
 def _written(module: str) -> dict[str, tuple[str, ...]]:
-    """The methods that a file writes, by class."""
+    """The methods that a file defines, by class."""
     found: dict[str, dict[str, None]] = {}
     for name in written_names(str(sys.modules[module].__file__)):
         owner, _, last = name.rpartition(".")
@@ -73,7 +73,7 @@ def _written(module: str) -> dict[str, tuple[str, ...]]:
 
 
 def _functions(value: Any) -> list[Any]:
-    """The functions that run where a class holds this; none in a plain value."""
+    """The functions that run for this class attribute; none for a plain value."""
     if isinstance(value, FunctionType):
         return [value]
     if isinstance(value, staticmethod | classmethod):
@@ -94,7 +94,7 @@ def _is_own(function: Any, one: type, name: str) -> bool:
 
 
 def _is_made(function: Any, one: type, name: str) -> bool:
-    """Whether a method is what the library makes for such a class under this name."""
+    """Whether a method is what the library generates for such a class under this name."""
     if not isinstance(function, FunctionType):
         return False
     code = function.__code__
@@ -110,7 +110,7 @@ def _does(code: CodeType) -> tuple[Any, ...]:
 
 @functools.cache
 def _made_anew(one: type) -> type:
-    """A class like this one, of a record or a dataclass, with the methods that the library makes from texts."""
+    """An equal NamedTuple or dataclass, with freshly generated methods."""
     has = vars(one)
     if "_field_defaults" in has:
         return collections.namedtuple(one.__name__, has["_fields"])
@@ -131,7 +131,7 @@ def _like(field: Any) -> Any:
 
 
 def _other_fields(one: type) -> set[str]:
-    """Fields of a NamedTuple that read another place of it, and slots that are another's."""
+    """Fields of a NamedTuple that read another index, and slots that belong to another class."""
     has = vars(one)
     slots = {
         name

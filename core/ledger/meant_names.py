@@ -1,9 +1,9 @@
-"""Names in running functions that mean something else than the files of their modules say.
+"""Names in running functions that refer to something else than the files of their modules say.
 
-A function's own code may be its file's while its module was given another helper under the same name, which
-then runs in the helper's place; so may a class be given another method. Held against the file are functions,
-classes with their methods and fields, modules, what is imported from one, and the names of builtins; values
-are part of the keys (`core/kernel/sources.constants`).
+A function's own code may match its file while its module was given another helper under the same name, which then
+runs in its place; likewise a class may be given another method. Compared with the file are functions, classes with
+their methods and fields, modules, imported names, and the names of builtins; values are part of the keys
+(`core/kernel/sources.constants`).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from cratous.core.ledger.tables import Unit, table
 
 
 class _Meant(NamedTuple):
-    """What a file says of a name. module, name: where it is defined, or imported from."""
+    """What a name refers to according to a file. module, name: where it is defined, or imported from."""
 
     kind: str
     module: str
@@ -32,9 +32,9 @@ class _Meant(NamedTuple):
 
 
 class _Said(NamedTuple):
-    """What a file says. meant: the names that it binds to functions, classes and what it imports.
+    """What a file binds. meant: names bound to functions, classes and imports.
 
-    hides: builtins that a name of its own may stand for.
+    hides: builtins that one of its own names may shadow.
     """
 
     meant: dict[str, tuple[_Meant, ...]]
@@ -42,9 +42,9 @@ class _Said(NamedTuple):
 
 
 MADE = ("ExceptionGroup", "copyright", "credits", "exit", "help", "license", "quit")
-"""What Python makes as it starts: no kernel calls any of it."""
+"""Names that Python creates at start-up: no kernel calls any of them."""
 HEAP_TYPE = 1 << 9
-"""Of the flags of a type: it was made by a class statement or as one would make it."""
+"""Type flag: created by a class statement or in the same way."""
 ALIASES = ("IOError", "EnvironmentError")
 BUILTINS = frozenset(name for name in vars(builtins) if not name.startswith("__"))
 
@@ -70,11 +70,11 @@ def _meant(unit: Unit, module: str, name: str) -> _Meant:
 
 
 Looked = dict[Any, tuple[str, ...]]
-"""What was found of functions and classes so far: many rest on the same ones."""
+"""Cached results for functions and classes, many of which are shared dependencies."""
 
 
 def replaced(rests: Iterable[Any], looked: Looked) -> list[str]:
-    """Names that are not what their files say, of functions and classes that something rests on."""
+    """Names that differ from their files, in the functions and classes among these dependencies."""
     found: set[str] = set()
     for value in rests:
         function = inspect.isfunction(value)
@@ -89,7 +89,7 @@ def _of(function: FunctionType) -> Iterator[str]:
     module, scope = function.__module__, function.__globals__
     said = _file_says(module)
     names = tuple(names_of(function.__code__))
-    # what an interpreter has and its stubs do not
+    # names that an interpreter has and its stubs do not
     whole: Any = function
     if whole.__builtins__ is not vars(builtins):
         yield f"{module}.__builtins__"
@@ -109,20 +109,20 @@ def _of(function: FunctionType) -> Iterator[str]:
 
 
 def _is_pythons(name: str) -> bool:
-    """A name of the interpreter's means what it is called: its own function or type, or nothing to call."""
+    """Whether an interpreter name refers to the interpreter's own function or type, or to nothing callable."""
     value = vars(builtins).get(name)
     return not callable(value) or name in MADE or _is_called(value, name)
 
 
 def _is_called(value: Any, name: str) -> bool:
-    """A function or type in C of this name: none that a package can make."""
+    """Whether it is a C function or type of this name, which no package can create."""
     own = isinstance(value, BuiltinFunctionType)
     own = own or (isinstance(value, type) and not value.__flags__ & HEAP_TYPE)
     return own and value.__name__ == name
 
 
 def _within(module: ModuleType, names: tuple[str, ...]) -> Iterator[str]:
-    """What a module of ours is asked for by name is what its file says."""
+    """The attributes, of those looked up in one of our modules, that differ from its file."""
     meant, scope = _file_says(module.__name__).meant, vars(module)
     for used in names:
         if used in meant and used in scope and not _is_one(scope[used], meant[used]):
@@ -130,7 +130,7 @@ def _within(module: ModuleType, names: tuple[str, ...]) -> Iterator[str]:
 
 
 def _part(module: str, name: str, value: Any) -> bool:
-    """A package names its own modules, without a word in its file."""
+    """Whether a name is a submodule of a package, which its file need not mention."""
     return isinstance(value, ModuleType) and sys.modules.get(f"{module}.{name}") is value
 
 
@@ -142,7 +142,7 @@ def _is(value: Any, meant: _Meant) -> bool:
     if meant.kind == "import":
         return _is_imported(value, meant)
     named = (getattr(value, "__module__", None), getattr(value, "__qualname__", None))
-    # a decorator's own object has the name of what it marks, or is none that has a name
+    # a decorator's own object has the name of what it decorates, or has no name
     if not inspect.isfunction(value) and not inspect.isclass(value) and named == (None, None):
         return not isinstance(value, ModuleType)
     if isinstance(value, Fold):
@@ -165,8 +165,8 @@ def _is_imported(value: Any, meant: _Meant) -> bool:
     if vars(source)[meant.name] is not value:
         return False
     if meant.module.split(".")[0] not in PACKAGES:
-        # the library's own are no functions of Python's
+        # the library's own are not Python functions
         return meant.module != "math" or not callable(value) or _is_called(value, meant.name)
-    # its own module may have been given another thing as well
+    # its own module may have been given a replacement as well
     said = _file_says(meant.module).meant.get(meant.name)
     return said is None or _is_one(value, said)

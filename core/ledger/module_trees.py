@@ -1,7 +1,7 @@
-"""A tree of modules as written, and which definitions a name in one of them means.
+"""A tree of modules as written, and the definitions that a name in one of them refers to.
 
-A tree need not be the one that runs: nothing of it is imported. Names are followed through imports,
-`import *` and submodules to the statements that bind them; what no module of the tree binds is outside.
+A tree need not be the one that runs: nothing of it is imported. Names are followed through imports, `import *` and
+submodules to the statements that bind them; names bound by no module of the tree are external.
 """
 
 from __future__ import annotations
@@ -15,15 +15,15 @@ from pathlib import Path
 from cratous.core.ledger.tables import Table, Unit, table
 
 Place = tuple[str, int]
-"""A unit: its module, and its number there."""
+"""A unit: its module, and its index there."""
 Target = Place | str
-"""What a name means: a unit of the tree, or text for what is outside of it."""
+"""What a name refers to: a unit of the tree, or a text for something external."""
 
 
 class Tree:
-    """Packages by name, with their folders. parts: folders of each whose loose statements count.
+    """Packages by name, with their folders. parts: folders of each whose loose statements are included.
 
-    edits: files that are to be read as if they said this.
+    edits: replacement texts for some files.
     """
 
     def __init__(
@@ -48,10 +48,10 @@ class Tree:
         """The modules and folders that were looked for."""
 
     def take_over(self, other: Tree) -> bool:
-        """Know what names mean as another tree does, whose packages are some of this one's.
+        """Reuse the name resolution of another tree, whose packages are some of this one's.
 
-        Only if every file that it has read, and every name that it looked for, is there as it was, and
-        it imports nothing of what this tree has beside them: then each name means the same here.
+        Only if every file that it has read, and every name that it looked up, is unchanged here, and it imports
+        nothing from this tree's other packages: then each name has the same meaning here.
         """
         mine = {name: self.packages.get(name) for name in other.packages}
         more = self.packages.keys() - other.packages.keys()
@@ -74,9 +74,9 @@ class Tree:
         return same
 
     def walks_as(self, places: Iterable[Place]) -> bool:
-        """A walk of the tree that was taken over, which met these places, would be the same here.
+        """Whether a walk of the reused tree that found these places would be the same here.
 
-        Unless loose statements of the other packages change what is there.
+        It is not if loose statements of the other packages change them.
         """
         before = self._before
         return before is not None and all(
@@ -85,7 +85,7 @@ class Tree:
 
     @property
     def outside(self) -> frozenset[str]:
-        """The packages that the modules which were read import from, and that are not of the tree."""
+        """The external packages from which the modules read so far import."""
         read = [one for one in self._tables.values() if one is not None]
         named = {source for one in read for unit in one.units for _, source, _ in unit.imports}
         named.update(star for one in read for star in one.stars)
@@ -117,7 +117,7 @@ class Tree:
         return None
 
     def table(self, module: str) -> Table | None:
-        """What a module defines; None if it is not of the tree."""
+        """The definitions of a module; None if it is not part of the tree."""
         if module not in self._tables:
             file = self._where(module)
             self._tables[module] = None if file is None else self._read(file, module)
@@ -147,7 +147,7 @@ class Tree:
 
     @functools.cached_property
     def everything(self) -> str:
-        """What all of these modules say, and the data files beside them."""
+        """The contents of all of these modules, and of the data files beside them."""
         said = [one.digest for name in self.every_module if (one := self.table(name)) is not None]
         for package, root in self.packages.items():
             for part in self.parts.get(package, ()):
@@ -156,7 +156,7 @@ class Tree:
 
     # -- names ------------------------------------------------------------------------------------
     def meant(self, module: str, chain: tuple[str, ...]) -> tuple[Target, ...]:
-        """What a name with its attributes means in a module; nothing for a builtin."""
+        """What a name with its attributes refers to in a module; empty for a builtin."""
         key = (module, chain)
         if key in self._meant:
             return self._meant[key]
@@ -192,7 +192,7 @@ class Tree:
             yield from self.meant(module, ("__getattr__",))
 
     def imported(self, source: str, there: str, rest: tuple[str, ...]) -> Iterator[Target]:
-        """What `from source import there`, or `import source`, means with these attributes."""
+        """What `from source import there`, or `import source`, refers to with these attributes."""
         if source.split(".")[0] not in self.packages:
             yield f"{source}.{there}"
             return
@@ -226,7 +226,7 @@ class Tree:
         return self._folders[module]
 
     def whole(self, module: str) -> Iterator[Target]:
-        """Everything that a module defines, for a use that cannot be told."""
+        """Everything that a module defines, for a use that cannot be resolved."""
         found = self.table(module)
         if found is None:
             yield "a package"
@@ -240,7 +240,7 @@ class Tree:
 
     # -- edges ------------------------------------------------------------------------------------
     def edges(self, place: Place) -> tuple[tuple[str, tuple[Target, ...]], ...]:
-        """What a unit looks up: each name, as it is written, with what it means."""
+        """What a unit looks up: each name, as written, with what it refers to."""
         if place not in self._edges:
             self._edges[place] = tuple(self._edges_of(place))
         return self._edges[place]
@@ -262,7 +262,7 @@ class Tree:
 
     @functools.cached_property
     def _changes(self) -> dict[Place, tuple[Place, ...]]:
-        """Units of other modules that a module's loose statements mention, so may change."""
+        """Units of other modules that a module's loose statements mention and so may change."""
         found: dict[Place, list[Place]] = {}
         known: frozenset[str] = frozenset()
         if self._before is not None:  # each of its names means the same here
@@ -293,7 +293,7 @@ class Tree:
 
 
 DATA = (".lark", ".conf")
-"""Files beside the modules that these may read; records say what was proved, and decide nothing."""
+"""Data files that the modules may read; ledger records, which decide nothing, are not among them."""
 
 
 def _modules(package: str, root: Path, part: str) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""A package with kernels of its own: its name and folder, and where its parts lie in it."""
+"""A package with kernels of its own: its name and folder, and the locations of its parts."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cratous.spec.errors import BadInput
 
 @dataclass(frozen=True)
 class Home:
-    """A package with kernels: its name and folder, and where its parts lie in it."""
+    """A package with kernels: its name and folder, and the locations of its parts."""
 
     name: str
     root: Path
@@ -41,7 +41,7 @@ class Home:
         return module / "__init__.py" if module.is_dir() else module.with_suffix(".py")
 
     def modules(self) -> Iterator[str]:
-        """Every module that may hold kernels."""
+        """Every module that may contain kernels."""
         folder = self.root / "core" if self.product else self.root
         for file in sorted(folder.rglob("*.py")):
             parts = file.relative_to(self.root).with_suffix("").parts
@@ -49,7 +49,7 @@ class Home:
                 yield ".".join((self.name, *parts))
 
     def shadowed(self) -> Iterator[Path]:
-        """Files of modules that Python does not run: a folder or machine code of their name is beside them."""
+        """Module files that Python does not run because a folder or an extension module of that name is beside them."""
         folder = self.root / "core" if self.product else self.root
         for around, folders, names in os.walk(folder):
             modules = [name.removesuffix(".py") for name in sorted(names) if name.endswith(".py")]
@@ -59,7 +59,7 @@ class Home:
                     yield Path(around, f"{stem}.py")
 
     def module(self, theorem: Path) -> str:
-        """The module that the file of a theorem is."""
+        """The module name of a theorem file."""
         inside = "cratous.proofs.theorems" if self.product else f"{self.name}.theorems"
         return ".".join((inside, *theorem.relative_to(self.theorems).with_suffix("").parts))
 
@@ -99,9 +99,9 @@ def package(name: str) -> Home:
 
 
 def _elsewhere(root: Path, folders: Iterable[Path]) -> Iterator[tuple[str, str]]:
-    """Further folders of a package, and symbolic links in it that modules are found by.
+    """Further folders of a package, and symbolic links in it, through which modules are found.
 
-    Where a link leads is no part of a key, and can be another file for whoever looks next.
+    The target of a link is not part of a key, and can change later.
     """
     for folder in folders:
         if folder.resolve() != root:
@@ -114,7 +114,7 @@ def _elsewhere(root: Path, folders: Iterable[Path]) -> Iterator[tuple[str, str]]
 
 # -- theorems --------------------------------------------------------------------------------
 def theorem_file(name: str, home: Home) -> Path | None:
-    """The file of a theorem, called so or `package.name`: of this home, else of the product."""
+    """The file of a theorem, named as such or as `package.name`: of this home, else of the product."""
     found = theorem_home(name, home)
     return None if found is None else theorems(found)[name.rpartition(".")[2]]
 
@@ -122,7 +122,7 @@ def theorem_file(name: str, home: Home) -> Path | None:
 def theorem_home(
     name: str, home: Home, files: Mapping[Home, dict[str, Path]] | None = None
 ) -> Home | None:
-    """Whose theorem this is: of this home, else of the product. files: `theorems` of each."""
+    """The home of a theorem: this one, else the product. files: `theorems` of each."""
     package, _, plain = name.rpartition(".")
     for one in (home, PRODUCT):
         if package in ("", one.name) and plain in (theorems(one) if files is None else files[one]):
@@ -131,7 +131,7 @@ def theorem_home(
 
 
 def theorems(home: Home) -> dict[str, Path]:
-    """What could be a theorem of this home: the files by name."""
+    """The possible theorem files of this home, by name."""
     found: dict[str, Path] = {}
     for folder, _, names in os.walk(home.theorems):
         around = "".join(f"{part}_" for part in Path(folder).relative_to(home.theorems).parts)
@@ -143,12 +143,12 @@ def theorems(home: Home) -> dict[str, Path]:
 
 
 def theorem_name(file: Path, folder: Path) -> str:
-    """How the theorem of a file is called: its folders below `theorems` and itself, with `_`."""
+    """The name of a theorem from its file: the folders below `theorems` and the file name, joined by `_`."""
     return "_".join(file.relative_to(folder).with_suffix("").parts)
 
 
 def theorem_names(home: Home, files: Mapping[Home, dict[str, Path]] | None = None) -> set[str]:
-    """What could name a theorem of this home or of the product, alone or after its package.
+    """All names of theorems of this home or of the product, alone or after the package name.
 
     files: `theorems` of each.
     """

@@ -1,8 +1,7 @@
 """The ledger on disk: a file for each module with kernels and for each folder of theorems.
 
-No file says anything of another, so that two branches that change two kernels change different lines.
-Each record has a checksum of its own, which notices edits by hand and broken merges; the seal over
-all of them is computed on reading.
+No file refers to another, so that two branches that change two kernels change different lines. Each record has its
+own checksum, which detects manual edits and broken merges; the seal over all records is computed on reading.
 """
 
 from __future__ import annotations
@@ -33,11 +32,11 @@ FIELDS = {
         }
     ),
 }  # fmt: skip
-"""What a record has, no less and no more."""
+"""The exact fields of a record."""
 
 
 def checksum(name: str, record: dict[str, Any]) -> str:
-    """Over the contents of one record."""
+    """The checksum of one record's contents."""
     body = {key: value for key, value in record.items() if key != "seal"}
     return digest([name, json.dumps(body, sort_keys=True)])
 
@@ -48,9 +47,9 @@ def sealed(name: str, record: dict[str, Any]) -> dict[str, Any]:
 
 
 def read(folder: Path = PRODUCT.records) -> dict[str, Any]:
-    """The ledger as data, with the seal over all; empty where there is none.
+    """The ledger as data, with the seal over all records; empty if there is none.
 
-    Raises Refused for what cannot be read or was edited.
+    Raises Refused for records that cannot be read or were edited.
     """
     data: dict[str, Any] = {kind: {} for kind in KINDS}
     for file in sorted(folder.glob("*/*.json")):
@@ -72,7 +71,7 @@ def read(folder: Path = PRODUCT.records) -> dict[str, Any]:
 
 
 def _fits(name: str, kind: str, record: dict[str, Any]) -> None:
-    """Raise ValueError for a record of another form, or with a status that its facts do not give."""
+    """Raise ValueError for a record of another form, or with a status that its facts do not support."""
     if strange := sorted(FIELDS[kind] ^ set(record)):
         raise ValueError(f"{name}: its fields are of another format: {', '.join(strange)}")
     if kind == "kernels" and (given := status_of(record)) != record["status"]:
@@ -80,13 +79,13 @@ def _fits(name: str, kind: str, record: dict[str, Any]) -> None:
 
 
 def seal(data: dict[str, Any]) -> str:
-    """One checksum over all records; empty where there are none."""
+    """One checksum over all records; empty if there are none."""
     said = [f"{name} {data[kind][name]['seal']}" for kind in KINDS for name in sorted(data[kind])]
     return digest(said) if said else ""
 
 
 def texts(data: dict[str, Any], home: Home = PRODUCT) -> dict[str, str]:
-    """The ledger as it is written: the text of each file, by its place in the folder."""
+    """The ledger as written: the text of each file, by its path in the folder."""
     rows: dict[str, dict[str, Any]] = {}
     for name, record in data["kernels"].items():
         module = name.removeprefix("cratous.core.").rpartition(".")[0]
@@ -101,7 +100,7 @@ def texts(data: dict[str, Any], home: Home = PRODUCT) -> dict[str, str]:
 
 
 def _folder(name: str, home: Home, files: Mapping[Home, dict[str, Path]]) -> str:
-    """The folder that a theorem lies in, for the name of its file of records."""
+    """The folder of a theorem, which names its file of records."""
     whose = theorem_home(name, home, files)
     if whose is None:
         return "theorems"
@@ -110,9 +109,9 @@ def _folder(name: str, home: Home, files: Mapping[Home, dict[str, Path]]) -> str
 
 
 def differing(new: dict[str, str], folder: Path, *, provenance: bool = True) -> list[str]:
-    """The files of records that say something else than these texts, or should not be there.
+    """The record files whose contents differ from these texts, or that should not exist.
 
-    provenance: whether another solver alone is a difference.
+    provenance: whether another solver alone counts as a difference.
     """
     old = {f"{f.parent.name}/{f.name}": f for f in folder.glob("*/*.json")}
     gone = sorted(set(old) - set(new))
@@ -125,7 +124,7 @@ def differing(new: dict[str, str], folder: Path, *, provenance: bool = True) -> 
 
 
 def _without_provenance(text: str) -> str:
-    """The same records without the solver's version; as they stand if one was edited by hand."""
+    """The records without the solver's version; unchanged if one was edited manually."""
     rows = json.loads(text)
     for name, record in rows.items():
         if record.pop("seal") != checksum(name, record):
@@ -136,12 +135,12 @@ def _without_provenance(text: str) -> str:
 
 
 def solvers(data: dict[str, Any]) -> list[str]:
-    """The solvers that records name, of a ledger as `read` gives it."""
+    """The solvers named by the records of a ledger as `read` returns it."""
     return sorted({record["key"]["solver"] for record in data["kernels"].values()})
 
 
 def write(new: dict[str, str], folder: Path) -> list[str]:
-    """Write these texts, whole or not at all, and remove other records; the files that differed."""
+    """Write these texts atomically, and remove other records; returns the files that differed."""
     found = differing(new, folder)
     for place in found:
         file = folder / place

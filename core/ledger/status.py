@@ -1,7 +1,7 @@
-"""What the ledger says of a kernel, fold or driver: how far a proof, or a check of its output, goes.
+"""The ledger's status of a kernel, fold or driver: how far a proof, or a check of its output, goes.
 
-The status follows from the facts of a record. It is recorded beside them and computed again on
-reading, so a record that claims more than its facts give is refused.
+The status follows from the facts of a record. It is stored beside them and recomputed on reading, so a record that
+claims more than its facts support is refused.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ RECHECKED = "output re-checked"
 USES = "uses proved kernels"
 NOT_PROVED = "not proved"
 STATUSES = (AGAINST, RESTATED, PROPERTIES, RECHECKED, USES, NOT_PROVED)
-"""From a proof about the function itself to none; a re-check is of what a driver gives, run by run."""
+"""From a proof about the function itself to none; a re-check concerns a driver's output, run by run."""
 
 
 class Grounds(NamedTuple):
-    """What a status rests on beside proofs.
+    """What a status is based on beside proofs.
 
-    against: theorems, and lemmas of them, that hold a kernel against its definition; rechecked_by:
-    kernels and folds that a driver's output goes through before it is returned.
+    against: theorems, and lemmas of them, that relate a kernel to its definition; rechecked_by: kernels and folds
+    that a driver's output goes through before it is returned.
     """
 
     against: tuple[str, ...] = ()
@@ -30,7 +30,7 @@ class Grounds(NamedTuple):
 
 
 def status_of(record: dict[str, Any]) -> str:
-    """The status that the facts of a kernel's record give."""
+    """The status that follows from the facts of a kernel's record."""
     if not record["proved"]:
         return NOT_PROVED
     if record["kind"] == "driver":
@@ -41,7 +41,9 @@ def status_of(record: dict[str, Any]) -> str:
 
 
 def in_words(record: dict[str, Any], names: dict[str, str] | None = None) -> str:
-    """The status with what it names: who re-checks, whose step it is. names: shorter ones."""
+    """The status with the names it refers to: the re-checking kernels, or the kernel it is a step of. names: shorter
+    ones.
+    """
     said = names or {}
     text: str = record["status"]
     if record.get("rechecked_by"):
@@ -52,6 +54,6 @@ def in_words(record: dict[str, Any], names: dict[str, str] | None = None) -> str
 
 
 def counts(statuses: list[str]) -> dict[str, int]:
-    """How many there are of each status that occurs, in their order."""
+    """The number of entries of each status that occurs, in the order of `STATUSES`."""
     found = {status: statuses.count(status) for status in (*STATUSES, *sorted(set(statuses)))}
     return {status: number for status, number in found.items() if number}

@@ -1,8 +1,8 @@
-"""What a piece of code says, and what it looks up outside of itself, from its syntax tree.
+"""What a piece of code says, and what it looks up outside itself, from its syntax tree.
 
-The text leaves out what has no meaning when the code runs: comments, layout, docstrings and `pass`.
-The lookups are more rather than less than what really happens: a name that is not surely local counts
-as one of the module, and an attribute counts by its name alone, whatever object it is of.
+The text omits what has no meaning at run time: comments, layout, docstrings and `pass`. The look-ups over-approximate
+those at run time: a name that is not certainly local counts as one of the module, and an attribute counts by its name
+alone, whatever object it belongs to.
 """
 
 from __future__ import annotations
@@ -18,35 +18,34 @@ PATTERN = re.compile(r"[\w.*]*[a-z][\w.*]*")
 IDENTIFIERS = re.compile(r"[A-Za-z_][\w.]*")
 SILENT = frozenset({"ctx", "type_comment", "kind", "type_ignores"})
 BY_NAME = frozenset({"getattr", "setattr", "delattr", "hasattr"})
-"""They reach an attribute whose name is written, or else any attribute."""
+"""Functions that access an attribute by a written name, or else any attribute."""
 ANY_ATTRIBUTE = frozenset({"vars", "attrgetter", "methodcaller", "__dict__", *BY_NAME})
-"""They reach attributes whose names are not written."""
+"""Means of accessing attributes whose names are not written."""
 REGISTERED = frozenset({"REGISTRY", "load_all"})
-"""They reach whatever is registered."""
+"""Means of accessing all registered items."""
 ANYTHING = frozenset(
     {
         "eval", "exec", "open", "globals", "__import__", "importlib", "import_module", "__globals__",
         "read_text", "read_bytes", "environ", "getenv", "modules", "__subclasses__", *REGISTERED,
     }
 )  # fmt: skip
-"""They reach any code or file, whatever is registered, or what stands outside of all of it."""
+"""Means of accessing any code or file, all registered items, or external state."""
 OPENERS = frozenset({"os", "io", "gzip", "bz2", "lzma", "codecs", "tokenize", "builtins"})
-"""Modules whose `open` counts uncalled as well; fields of records are called so too."""
+"""Modules whose `open` counts even if not called; for other names it may be a record field."""
 EVERY = "*"
-"""Stands for every attribute."""
+"""Represents every attribute."""
 MARKS = frozenset({"kernel", "fold"})
-"""They name a definition, whose own key stands beside the function's."""
+"""They name a definition, whose own key is stored beside the function's."""
 
 
 @dataclass
 class Reading:
-    """What was read of one piece of code.
+    """The result of reading one piece of code.
 
-    names: what it looks up outside of itself, with the attributes that follow, as `module.name`;
-    attributes: every attribute that it names; imports: (name, module, name there) of imports inside of
-    functions; strings: texts that could be names, in order, with `*` for what is only known when the
-    code runs; rebinds: names of its module that it binds
-    when it runs; asks: the words of ANY_ATTRIBUTE and ANYTHING by which it looks something up.
+    names: what it looks up outside itself, with the attributes that follow, as `module.name`; attributes: every
+    attribute that it names; imports: (name, module, name there) of imports inside functions; strings: texts that
+    could be names, in order, with `*` for parts known only at run time; rebinds: names of its module that it binds at
+    run time; asks: the words of ANY_ATTRIBUTE and ANYTHING by which it looks something up.
     """
 
     parts: list[str] = field(default_factory=list)
@@ -59,12 +58,12 @@ class Reading:
 
     @property
     def text(self) -> str:
-        """What the code says."""
+        """The text of the code."""
         return "".join(self.parts)
 
 
 def read(nodes: Iterable[ast.AST], package: list[str]) -> Reading:
-    """Read some statements of one module; package: where relative imports of it begin."""
+    """Read some statements of one module; package: the base of its relative imports."""
     reader = _Reader(package)
     for node in nodes:
         reader.node(node)
@@ -72,7 +71,7 @@ def read(nodes: Iterable[ast.AST], package: list[str]) -> Reading:
 
 
 def silent(node: ast.AST) -> bool:
-    """True iff it is a statement that does nothing: a docstring or `pass`."""
+    """True iff it is a statement without effect: a docstring or `pass`."""
     text = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
     return text or isinstance(node, ast.Pass)
 
@@ -165,7 +164,7 @@ class _Reader:
         self.found.parts.append(")")
 
     def counts(self, name: str, root: str, node: ast.Attribute) -> bool:
-        """An attribute that may be a way of looking something up, not a field of the name."""
+        """Whether an attribute may be a dynamic look-up rather than a field of the name."""
         if name == "open":
             return node is self.called or root in OPENERS or root[:1].isupper()
         if name in ("eval", "globals"):
@@ -185,7 +184,7 @@ class _Reader:
         self.called = node.func
         if called not in MARKS:
             return self.plain(node)
-        # a definition is known by what it says, not by where it stands
+        # a definition is identified by its contents, not by its location
         kept = [word for word in node.keywords if word.arg != "implements"]
         write = self.found.parts.append
         write(f"Call {len(node.keywords) - len(kept)}(")
@@ -211,7 +210,7 @@ class _Reader:
         self.plain(node)
 
     def pattern(self, parts: list[ast.expr]) -> None:
-        """A text that is put together: it could be any name that its written parts fit."""
+        """A text composed at run time: it could be any name that its written parts fit."""
         known = [p.value if isinstance(p, ast.Constant) else "*" for p in parts]
         text = "".join(p if isinstance(p, str) else "" for p in known)
         written = any(isinstance(p, ast.Constant) and isinstance(p.value, str) for p in parts)
@@ -282,9 +281,9 @@ def imported(
 
 
 def _bindings(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, str]]:
-    """What the code of one scope binds, as ("bound", name), and what it says is bound outside.
+    """What the code of one scope binds, as ("bound", name), and what it declares as bound outside.
 
-    The loop variables of comprehensions are none of them: outside of these the name is another.
+    The loop variables of comprehensions are not included: outside these the name is another.
     """
     for node in nodes:
         kind = type(node)
@@ -300,7 +299,7 @@ def _bindings(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, str]]:
                 yield "bound", alias.asname or alias.name.partition(".")[0]
         elif kind in (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef):
             yield "bound", node.name  # type: ignore[attr-defined]
-            # what stands before the body is evaluated here, and may bind with :=
+            # what comes before the body is evaluated here, and may bind with :=
             yield from _bindings(node.decorator_list)  # type: ignore[attr-defined]
             continue
         elif kind is ast.Lambda:

@@ -1,7 +1,7 @@
 """What a module defines: one unit for each statement, one for each method of a class.
 
-A table is made from the text of a file alone, so that a tree that is not the running one can be read
-as well. It is kept in the private cache under the hash of that text.
+A table is made from the text of a file alone, so that a tree other than the running one can be read too. It is stored
+in the private cache under the hash of that text.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ CHANGES = frozenset(
         "discard", "clear", "sort", "reverse", "setattr", "delattr", "__setitem__", "__setattr__",
     }
 )  # fmt: skip
-"""Calls that change what they are called on or given."""
+"""Calls that change the object they are called on or an argument."""
 MARKS = frozenset(
     {
         "kernel", "driver", "dataclass", "cache", "lru_cache", "property", "cached_property",
         "contextmanager", "wraps", "staticmethod", "classmethod", "overload", "abstractmethod",
     }
 )  # fmt: skip
-"""Decorators that tell nobody else of what they mark, or only the registry of kernels."""
+"""Decorators that register what they mark nowhere, or only in the registry of kernels."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Unit:
     """One statement at the top of a module, or one method of a class.
 
     kind: function, class, value, import, loose or method; name: what it binds, after its class;
-    digest: of what it says; the other fields are those of `syntax_text.Reading`; methods: the units
+    digest: of its contents; the other fields are those of `syntax_text.Reading`; methods: the units
     of a class's methods, by name.
     """
 
@@ -63,8 +63,8 @@ class Unit:
 class Table:
     """The units of one file. bound: name -> its units, in order; stars: modules of `import *`.
 
-    loose: statements that may change what others define; sentence: the docstring, blanks joined; digest: of
-    all that the file says.
+    loose: statements that may change what others define; sentence: the docstring, whitespace normalised; digest: of
+    the whole file's contents.
     """
 
     units: tuple[Unit, ...]
@@ -106,19 +106,19 @@ def _table(data: bytes, around: tuple[str, ...], key: str) -> Table:
 
 @functools.cache
 def _maker() -> bytes:
-    """What tables are made by: another text makes others."""
+    """A digest of the code that makes tables: changed code makes new ones."""
     files = (Path(__file__), Path(str(syntax_text.__file__)))
     text = sys.version.encode() + b"".join(file.read_bytes() for file in files)
     return hashlib.sha256(text).digest()
 
 
 def _kept(made: Table) -> dict[str, Any]:
-    """The fields of a table and of its units, without a copy of each text in them."""
+    """The fields of a table and of its units, without copying the texts."""
     return {**vars(made), "units": [vars(unit) for unit in made.units]}
 
 
 def restored(data: dict[str, Any]) -> Table:
-    """A table from its fields as they were kept. Raises KeyError or TypeError for others."""
+    """A table from its stored fields. Raises KeyError or TypeError for malformed data."""
     units = []
     for row in data["units"]:
         pairs = {n: tuple(map(tuple, row.pop(n))) for n in ("imports", "methods")}
@@ -131,7 +131,7 @@ def restored(data: dict[str, Any]) -> Table:
 
 
 def make(data: bytes, around: list[str]) -> Table:
-    """The table of a file's text; around: the package that it lies in."""
+    """The table of a file's text; around: the package that contains it."""
     tree = ast.parse(data)
     maker = _Maker(around)
     for node in tree.body:
@@ -182,7 +182,7 @@ class _Maker:
                 self.statement(inner)
 
     def marked(self, node: ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef, n: int) -> None:
-        """Bind a function or class; a decorator that may have told others of it counts for all."""
+        """Bind a function or class; one with a decorator that may have registered it elsewhere counts as loose."""
         self.bind([node.name], n)
         if _told(node):
             self.loose.append(n)
@@ -224,7 +224,7 @@ class _Maker:
             self.bind([name], number)
 
     def of_class(self, node: ast.ClassDef) -> int:
-        """The class with what always counts of it; its other methods are units of their own."""
+        """The class with the parts that are always included; its other methods are units of their own."""
         methods: dict[str, list[ast.stmt]] = {}
         always: list[ast.stmt] = []
         for inner in node.body:
@@ -245,7 +245,7 @@ class _Maker:
 
 
 def _told(node: ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef) -> bool:
-    """Marked with a decorator that is not known."""
+    """Whether it has an unknown decorator, which may have registered it elsewhere."""
     for mark in node.decorator_list:
         called = mark.func if isinstance(mark, ast.Call) else mark
         name = called.attr if isinstance(called, ast.Attribute) else getattr(called, "id", "")
@@ -255,7 +255,7 @@ def _told(node: ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef) -> bool:
 
 
 def _plain(node: ast.Assign | ast.AnnAssign) -> bool:
-    """Binds names and, as far as can be seen, changes nothing else."""
+    """Whether an assignment binds names and, as far as can be seen, changes nothing else."""
     targets = node.targets if isinstance(node, ast.Assign) else [node.target]
     if not all(isinstance(t, ast.Name | ast.Tuple | ast.List) for t in targets):
         return False

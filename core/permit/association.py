@@ -1,4 +1,4 @@
-"""Whether what a sensor has measured is of a track: no farther from it than so many standard deviations. No root.
+"""Whether a sensor measurement is associated with a track: within a number of standard deviations of it. No root.
 
 Definitions: `spec.permit.association`.
 """

@@ -1,7 +1,7 @@
 """How often one vehicle's ICAROUS takes over because of one intruder, as transition kernels.
 
-After a handback the way that is flown is permitted against the intruder until an instant. Meanwhile there is no
-takeover because of it; one follows only if what was permitted no longer is, which is a surprise, or has ended.
+After a handback the path that is flown is permitted against the intruder until an instant. Until then there is no
+takeover because of it; one follows only if the permit no longer covers what is observed (a surprise), or has ended.
 Definitions: `spec.permit.encounter`.
 """
 
@@ -11,9 +11,10 @@ from cratous.core.kernel import kernel
 
 
 class Encounter(NamedTuple):
-    """takeovers: so many because of the intruder; surprises, ended: how many permits were over since what happened
-    was not allowed for, and since their time was; avoiding: a takeover because of it is not over; permitted: the
-    way that UxAS flies is, against it, until expiry_ms [ms]."""
+    """takeovers: number because of the intruder; surprises, ended: number of permits that ended because of an event
+    they did not cover, and because their time was over; avoiding: a takeover because of it is in progress; permitted:
+    the path that UxAS flies is permitted against it until expiry_ms [ms].
+    """
 
     takeovers: int
     surprises: int
@@ -48,8 +49,9 @@ def encounter_looked(before: Encounter, allowed: bool, now: int) -> Encounter:
 
 @kernel(implements="permit.encounter.is_after_watch")
 def encounter_watched(before: Encounter, foreseen: bool) -> Watched:
-    """At a heartbeat under UxAS, after `encounter_looked`. foreseen: a conflict with the intruder is, on which
-    ICAROUS must act."""
+    """At a heartbeat under UxAS, after `encounter_looked`. foreseen: a conflict with the intruder is predicted on
+    which ICAROUS must act.
+    """
     if not foreseen or before.permitted or before.avoiding:
         return Watched(before, False)
     taken = before.takeovers + 1
@@ -58,8 +60,9 @@ def encounter_watched(before: Encounter, foreseen: bool) -> Watched:
 
 @kernel(implements="permit.encounter.is_after_handback")
 def encounter_resumed(before: Encounter, allowed: bool, expiry: int) -> Encounter:
-    """UxAS has the vehicle again. allowed: the way that it flies is permitted, until expiry [ms]; if not, that too is
-    a surprise, since control is offered only on a way that is."""
+    """UxAS has the vehicle again. allowed: the path that it flies is permitted, until expiry [ms]; if not, that too
+    is a surprise, since control is offered only on a path that is.
+    """
     if allowed:
         return Encounter(before.takeovers, before.surprises, before.ended, False, True, expiry)
     if before.avoiding or before.permitted:

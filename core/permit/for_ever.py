@@ -1,7 +1,7 @@
-"""Whether a hold is clear of an intruder at every instant from now on, without an end. No division, no root.
+"""Whether a hold is clear of an intruder at every instant from now on, without a time limit. No division, no root.
 
-Only against an intruder that is taken to fly straight, whose tube grows steadily (no gain), and no faster than
-the two move apart: every other tube outgrows every hold. Definitions: `spec.permit.motion`.
+Only against an intruder that is assumed to fly straight, whose tube grows linearly (no gain), and no faster than the
+two separate: every other tube outgrows every hold. Definitions: `spec.permit.motion`.
 """
 
 from cratous.core.kernel import Vec2, kernel
@@ -18,7 +18,7 @@ def ever_dips_to_zero(a: float, b: float, c: float) -> bool:
 
 @kernel(implements="permit.motion.reached_at")
 def beside_for_ever(s: Vec2, v: Vec2, growth: Growth) -> bool:
-    """True iff the radius has no gain and the centres are farther apart than it at every instant from now on.
+    """True iff the radius has no gain and is less than the distance of the centres at every instant from now on.
 
     s, v: relative position [m] and velocity [m/s].
     """
@@ -30,7 +30,7 @@ def beside_for_ever(s: Vec2, v: Vec2, growth: Growth) -> bool:
 
 @kernel(implements="permit.motion.levelled_at")
 def above_for_ever(sz: float, vz: float, growth: Growth) -> bool:
-    """True iff the radius has no gain and the altitude above the other is more than it from now on.
+    """True iff the radius has no gain and is less than the altitude above the other at every instant from now on.
 
     sz, vz: relative altitude [m] and climb rate [m/s].
     """
@@ -46,9 +46,10 @@ def hold_clear(
     tube: Tube,
     margins: Margins,
 ) -> bool:
-    """True only if the cylinder is not entered at any instant from now on, whatever place the vehicle has
-    within rho_m and the intruder in its tube. s, v, sz, vz: own reference minus prediction [m, m/s]; of
-    a hold the reference stands."""
+    """True only if the cylinder is not entered at any instant from now on, for every position of the vehicle within
+    rho_m and of the intruder in its tube. s, v, sz, vz: own reference minus prediction [m, m/s]; the reference of a
+    hold is stationary.
+    """
     wide, high = tube
     radius_m, half_m, rho_m = margins
     around = Growth(wide.start_m + radius_m + rho_m, wide.rate_m_s, wide.gain_m_s2)

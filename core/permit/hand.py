@@ -1,6 +1,6 @@
-"""The certificate in hand of one vehicle, as transition kernels: what is offered, and what becomes known.
+"""The certificate in hand of one vehicle, as transition kernels: offers, and what becomes known.
 
-The hand lives behind the actuator gate: where nothing is commanded any more it is flown on. Definitions:
+The hand is kept behind the actuator gate: it is flown on when nothing is commanded any more. Definitions:
 `spec.permit.hand`. `hand_step` is what a vehicle does, event by event; `hand_after` folds any number of them.
 """
 
@@ -9,12 +9,13 @@ from typing import NamedTuple
 from cratous.core.kernel import fold, kernel
 
 OFFERED, KNOWN, LEFT = 0, 1, 2
-"""What happens to a hand: an offer comes; a track or zone becomes known; another trajectory is flown."""
+"""Events of a hand: an offer arrives; a track or zone becomes known; another trajectory is flown."""
 
 
 class Hand(NamedTuple):
-    """id: which certificate is flown; knowledge: changes of tracks and zones that it allows for;
-    expiry_ms: up to when it is clear [ms]; surprises: changes so far that it did not allow for."""
+    """id: the certificate that is flown; knowledge: changes of tracks and zones that it covers; expiry_ms: until when
+    it is clear [ms]; surprises: changes so far that it did not cover.
+    """
 
     id: int
     knowledge: int
@@ -36,7 +37,7 @@ class Offer(NamedTuple):
 def accepts(hand: Hand, offer: Offer, now: int, reserve: int) -> bool:
     """True iff the offer may take the place of the hand.
 
-    now: [ms]; reserve: how much of what is certain must be left [ms], >= 0.
+    now: [ms]; reserve: least remaining time of the certificate [ms], >= 0.
     """
     if offer.base != hand.id or offer.knowledge != hand.knowledge:
         return False
@@ -63,36 +64,39 @@ def hand_told(hand: Hand, permitted: bool, now: int) -> Hand:
 
 @kernel(implements="permit.hand.is_after_time")
 def hand_passed(hand: Hand, now: int) -> Hand:
-    """The hand at a later instant [ms]: one that has expired holds nothing, and an offer may begin on it."""
+    """The hand at a later instant [ms]: an expired one guarantees nothing, and an offer may begin on it."""
     return Hand(hand.id, hand.knowledge, max(hand.expiry_ms, now), hand.surprises)
 
 
 @kernel(implements="permit.hand.is_after_leaving")
 def hand_left(hand: Hand, now: int) -> Hand:
-    """Another trajectory is flown from now on [ms]: nothing is certain any more, and no offer that begins on
-    the one that was in hand is accepted."""
+    """Another trajectory is flown from now on [ms]: nothing is guaranteed any more, and no offer based on the
+    previous hand is accepted.
+    """
     return Hand(hand.id + 1, hand.knowledge, min(hand.expiry_ms, now), hand.surprises)
 
 
 @kernel(supports="hand_step")
 def news_for(hand: Hand, news: Offer) -> bool:
-    """True iff what was asked about a track or zone is the hand itself: its id, up to its expiry, as what it knows
-    next. news: the certificate that was asked about."""
+    """True iff the answer about a track or zone refers to the hand itself: its id, up to its expiry, with the next
+    change. news: the certificate that was asked about.
+    """
     same = news.id == hand.id and news.knowledge == hand.knowledge + 1
     return same and news.expiry_ms >= hand.expiry_ms
 
 
 @kernel(supports="hand_step")
 def worn(hand: Hand) -> bool:
-    """True iff it has been changed so often that one more could not be counted."""
+    """True iff it has been changed so often that one more change could not be counted."""
     most = 1152921504606846976
     return hand.id >= most or hand.knowledge >= most or hand.surprises >= most
 
 
 @kernel(implements="permit.hand.is_after_event", nonnegative=("reserve",))
 def hand_step(hand: Hand, kind: int, offer: Offer, permitted: bool, now: int, reserve: int) -> Hand:
-    """The hand after an event: OFFERED, KNOWN or LEFT, else time has passed alone. offer: what is offered, or what was
-    asked whether it is permitted against what has become known; now: [ms]; reserve: as for `accepts`."""
+    """The hand after an event: OFFERED, KNOWN or LEFT; for any other code only time has passed. offer: the
+    certificate offered, or the one checked against what has become known; now: [ms]; reserve: as for `accepts`.
+    """
     present = hand_passed(hand, now)
     if worn(present):
         until = min(present.expiry_ms, now)

@@ -1,9 +1,9 @@
-"""Whether pieces of flight are clear of an intruder at every instant. No division, no root.
+"""Whether segments of flight are clear of an intruder at every instant. No division, no root.
 
-A piece is a moving disc, an intruder a tube of growing radius; see `spec.permit.motion`. The radius is
-convex in time, so on a piece its chord is above it: the horizontal test is a quadratic whose leading term
-has any sign. Clear is beside, or above, or below, during the whole piece; the pilot cuts pieces where the
-layer is crossed. The fold is over the pieces, for one intruder.
+A segment (piece) is a moving disc, an intruder a tube of growing radius; see `spec.permit.motion`. The radius is
+convex in time, so on a segment its chord is above it: the horizontal test is a quadratic whose leading term has any
+sign. Clear means beside, or above, or below, during the whole segment; the pilot divides segments where the layer is
+crossed. The fold is over the segments, for one intruder.
 """
 
 from typing import NamedTuple
@@ -21,15 +21,16 @@ class Growth(NamedTuple):
 
 
 class Tube(NamedTuple):
-    """How far an intruder may be from its straight prediction: horizontally, and in altitude."""
+    """Bounds on the deviation of an intruder from its straight prediction: horizontally, and in altitude."""
 
     wide: Growth
     high: Growth
 
 
 class Margins(NamedTuple):
-    """How far off is clear, each >= 0: radius_m, half_m: of the cylinder about the intruder [m]; rho_m: how
-    far the vehicle may be from its reference, also in altitude [m]."""
+    """The separation required, each >= 0: radius_m, half_m: of the cylinder about the intruder [m]; rho_m: bound on
+    the vehicle's deviation from its reference, also in altitude [m].
+    """
 
     radius_m: float
     half_m: float
@@ -37,8 +38,9 @@ class Margins(NamedTuple):
 
 
 class Meeting(NamedTuple):
-    """An intruder as a trajectory begins: the own reference minus its prediction s [m], sz [m, up]; its
-    velocity w [m/s], wz [m/s, up]; its tube; radius_m, half_height_m: of the cylinder to keep clear."""
+    """The intruder when a trajectory begins: the own reference minus its prediction s [m], sz [m, up]; its velocity w
+    [m/s], wz [m/s, up]; its tube; radius_m, half_height_m: of the cylinder to keep clear.
+    """
 
     s: Vec2
     sz: float
@@ -68,7 +70,7 @@ def reach_after(growth: Growth, t_s: float) -> float:
 
 @kernel(implements="permit.motion.later")
 def growth_after(growth: Growth, t_s: float) -> Growth:
-    """The same radius, counted from t_s seconds later on."""
+    """The same radius, with time counted from t_s seconds later on."""
     rate = growth.rate_m_s + 2 * t_s * growth.gain_m_s2
     return Growth(reach_after(growth, t_s), rate, growth.gain_m_s2)
 
@@ -79,7 +81,7 @@ def beside_during(s: Vec2, v: Vec2, growth: Growth, d_s: float) -> bool:
 
     s, v: relative position [m] and velocity [m/s]. Exact where the radius grows steadily.
     """
-    # the chord of the radius over [0, d_s] starts where it does and is never below it
+    # the chord of the radius over [0, d_s] starts at it and is never below it
     rate = growth.rate_m_s + d_s * growth.gain_m_s2
     a = v.x * v.x + v.y * v.y - rate * rate
     b = 2 * (s.x * v.x + s.y * v.y - growth.start_m * rate)
@@ -92,7 +94,7 @@ def above_during(sz: float, vz: float, growth: Growth, d_s: float) -> bool:
 
     sz, vz: relative altitude [m] and climb rate [m/s].
     """
-    # what is left of it is concave in time, so the ends decide
+    # the remaining expression is concave in time, so the ends decide
     return sz > growth.start_m and sz + d_s * vz > reach_after(growth, d_s)
 
 
@@ -106,8 +108,9 @@ def piece_clear(
     margins: Margins,
     d_s: float,
 ) -> bool:
-    """True only if the cylinder is not entered at any instant of [0, d_s], whatever place the vehicle has
-    within rho_m and the intruder in its tube. s, v, sz, vz: own reference minus prediction [m, m/s]."""
+    """True only if the cylinder is not entered at any instant of [0, d_s], for every position of the vehicle within
+    rho_m and of the intruder in its tube. s, v, sz, vz: own reference minus prediction [m, m/s].
+    """
     wide, high = tube
     radius_m, half_m, rho_m = margins
     around = Growth(wide.start_m + radius_m + rho_m, wide.rate_m_s, wide.gain_m_s2)
@@ -131,7 +134,7 @@ class Flight(NamedTuple):
 def flight_step(
     flight: Flight, v: Vec2, climb_m_s: float, d_s: float, rho_m: float, meeting: Meeting
 ) -> Flight:
-    """One more piece is flown: its fields as in `Piece`, and `meeting`."""
+    """Add a segment: its fields as in `Piece`, and `meeting`."""
     t = flight.time_s
     clear = flight.clear and piece_clear(
         Vec2(
@@ -174,7 +177,7 @@ def part_step(
     meeting: Meeting,
     gone_s: float,
 ) -> Flight:
-    """One more piece, of which only what lies after gone_s [s from the beginning] counts."""
+    """Add a segment, of which only the part after gone_s [s from the beginning] counts."""
     t = flight.time_s
     clear = flight.clear
     if t + d_s >= gone_s:

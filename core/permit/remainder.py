@@ -1,12 +1,13 @@
-"""Whether a vehicle may fly a way to its end, and hold there: what permits it, by traffic and by zones.
+"""Whether a vehicle may fly a path to its end, and hold there: permission by traffic and by zones.
 
-The hold is a disc that stands. Intruders are taken to fly straight on, as everywhere in prediction: their tubes
-are as wide as their states are known, and have no width where they are exact. The proved kernels keep the closed cylinder of the volume; that the way keeps its thresholds of time
-too is the caller's to check.
+The hold is a stationary disc. Intruders are assumed to fly straight, as everywhere in prediction: their tubes are as
+wide as the uncertainty of their states, with zero width for exact ones. The proved kernels keep the closed cylinder
+of the volume clear; the caller has to check that the path also keeps the volume's time thresholds.
 """
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Sequence
 
 from cratous.core.avoidance.prediction import (
@@ -31,14 +32,12 @@ from cratous.core.permit.pieces import (
     permitted,
     piece_clear,
 )
+from cratous.core.permit.whole_numbers import Moving, in_whole_numbers
 from cratous.core.readings.exact import exact
 from cratous.spec.mission import Position, WellClear, Zone, ZoneKind
 
 STEADY = Growth(0.0, 0.0, 0.0)
-"""The tube of an intruder that is where it is predicted."""
-
-Moving = tuple[Vec2, float, float, float]
-"""Velocity [m/s], climb [m/s, up], duration [s] and rho [m], as in `core.permit.pieces.Piece`."""
+"""The tube of an intruder without deviation from its prediction."""
 
 
 def hold_at(place: Position, start_s: float, horizon_s: float) -> Piece:
@@ -47,7 +46,7 @@ def hold_at(place: Position, start_s: float, horizon_s: float) -> Piece:
 
 
 def meeting(start: Position, other: Intruder, volume: WellClear) -> Meeting:
-    """An intruder as a trajectory begins at `start`, and the cylinder of a volume to keep clear."""
+    """The intruder when a trajectory begins at `start`, and the cylinder of a volume to keep clear."""
     p, w, volume = other.position, other.velocity, around(volume, other)
     return Meeting(
         Vec2(start.north_m - p.north_m, start.east_m - p.east_m),
@@ -61,7 +60,7 @@ def meeting(start: Position, other: Intruder, volume: WellClear) -> Meeting:
 
 
 def tube_of(spread: Spread) -> Tube:
-    """How far an intruder may be from where it is predicted, as a tube. Of one whose spread never stops to grow."""
+    """An intruder's spread as a tube; for a spread that does not stop growing."""
     if spread == EXACT:
         return Tube(STEADY, STEADY)
     return Tube(
@@ -70,7 +69,7 @@ def tube_of(spread: Spread) -> Tube:
 
 
 def moving(piece: Piece, rho_m: float) -> Moving:
-    """A piece of a predicted way as one of a trajectory."""
+    """A segment of a predicted path as one of a trajectory."""
     v = piece.velocity
     return Vec2(v.north_m_s, v.east_m_s), -v.down_m_s, piece.duration_s, rho_m
 
@@ -79,10 +78,10 @@ def moving(piece: Piece, rho_m: float) -> Moving:
 def hold_permits(
     hold: Piece, other: Intruder, volume: WellClear, hold_m: float, rise_m: float
 ) -> bool:
-    """True only if a hold, from its start on for its duration, keeps the closed cylinder of a volume clear of an
-    intruder that flies straight on. ValueError if it does not stand.
+    """True only if a hold, during its duration, keeps the closed cylinder of a volume clear of an intruder in
+    straight flight. ValueError if it is not stationary.
 
-    hold_m, rise_m: how far the vehicle may be from the middle of the hold, and off its height [m], >= 0.
+    hold_m, rise_m: greatest horizontal and vertical distance of the vehicle from the centre of the hold [m], >= 0.
     """
     if hold.velocity != STANDING:
         raise ValueError("a hold does not stand")
@@ -96,9 +95,9 @@ def hold_permits(
 def _hold_permits(
     hold: Piece, other: Intruder, volume: WellClear, hold_m: float, rise_m: float
 ) -> bool:
-    """The same against one that flies straight on."""
+    """`hold_permits` for an intruder in straight flight."""
     met = meeting(hold.position, later(other, hold.start_s), volume)
-    # it stands: 0 less the other's velocity, which no rounding touches
+    # stationary: 0 minus the other's velocity, which is free of rounding
     v = Vec2(0.0 - met.w.x, 0.0 - met.w.y)
     margins = Margins(met.radius_m, met.half_height_m, hold_m)
     tube = Tube(met.wide, met.high)
@@ -114,11 +113,11 @@ def _hold_permits(
 def way_permits(
     pieces: Sequence[Piece], other: Intruder, volume: WellClear, rho_m: float = 0.0
 ) -> bool:
-    """True only if a way, from its first piece to its last, keeps the closed cylinder of a volume clear of an
-    intruder that flies straight on. rho_m: how far off the way the vehicle may be, also in altitude [m], >= 0.
+    """True only if a path, from its first segment to its last, keeps the closed cylinder of a volume clear of an
+    intruder in straight flight. rho_m: bound on the vehicle's deviation from the path, also in altitude [m], >= 0.
 
-    A way of no piece is permitted, wherever the intruder is: it lasts for no instant, and where the vehicle is then
-    is not the way's to say. Whoever asks has looked at what is flown after it (`hold_permits`).
+    A path without segments is permitted, wherever the intruder is, because it has no duration. The caller has to
+    check what is flown after it (`hold_permits`).
     """
     if not pieces:
         return True
@@ -129,15 +128,19 @@ def way_permits(
 
 
 def _run_permits(pieces: Sequence[Piece], other: Intruder, volume: WellClear, rho_m: float) -> bool:
-    """The same against one that flies straight on, and is seen as the first piece begins."""
+    """`way_permits` for an intruder in straight flight, observed as the first segment begins."""
     met = meeting(pieces[0].position, other, volume)
-    return bool(exact(permitted, [moving(piece, rho_m) for piece in pieces], met))
+    moved = [moving(piece, rho_m) for piece in pieces]
+    with contextlib.suppress(OverflowError, ValueError):  # not finite: the reading says which
+        moved, met = in_whole_numbers(moved, met)
+    return bool(exact(permitted, moved, met))
 
 
 @driver(checked_by=("locate", "comes_within", "keep_out_leg_ok", "keep_in_leg_ok"))
 def zones_permit(place: Position, zones: Sequence[Zone], hold_m: float) -> bool:
-    """True iff the disc of hold_m [m] about a place, at its height, obeys every zone. ValueError if one
-    has padding."""
+    """True iff the disc of radius hold_m [m] about a position, at its altitude, obeys every zone. ValueError if one
+    has padding.
+    """
     centre, alt = Vec2(place.north_m, place.east_m), place.alt_m
     for zone in zones:
         if zone.padding_m != 0:

@@ -1,7 +1,6 @@
 """Whether one disc lies in another, and one tube in another from now on. No root.
 
-A tracker's new tube takes the place of the old one in a certificate only if it lies in it. Definitions:
-`spec.permit.motion`.
+A tracker's new tube replaces the old one in a certificate only if it lies in it. Definitions: `spec.permit.motion`.
 """
 
 from cratous.core.kernel import Vec2, kernel

@@ -1,10 +1,10 @@
 """The enclosed reading: an interval of doubles that contains the real value of a kernel.
 
-For kernels with divisions and roots, which have no exact reading. The kernel's graph is carried
-out on intervals; the result of every operation that rounds is moved outward by `outward_margin`
-(a theorem says that this suffices, underflow included). Where a condition is uncertain the result
-covers both branches. A value for which a division or a root may be undefined is refused, unless
-the kernel itself asks (`if disc < 0: ...`) and so never comes there.
+For kernels with divisions and roots, which have no exact reading. The kernel's graph is evaluated on intervals; the
+result of every operation that rounds is moved outward by `outward_margin` (a theorem says that this suffices,
+underflow included). Where a condition is uncertain the result covers both branches. A value for which a division or a
+root may be undefined is refused, unless the kernel itself tests for it (`if disc < 0: ...`) and so does not reach the
+operation.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from cratous.core.readings.machine.domain import nonnegative, refuse_negative
 from cratous.spec.errors import BadInput
 
 SHARE = 2.0**-51
-"""Four units of rounding: one of the operation, the others for widening in doubles."""
+"""Four units of rounding: one of the operation, the others for the widening in doubles."""
 LEAST = 2.0**-1071
 
 
@@ -67,7 +67,7 @@ def _quotient(a: Interval, b: Interval) -> tuple[Any, Any, Any]:
 
 
 def known_by(condition: Node, holds: bool) -> set[tuple[str, int]]:
-    """What a condition says of single values: ("div", n) n is not 0, ("sqrt", n) n is not below 0.
+    """What a condition implies for single values: ("div", n) n is not 0, ("sqrt", n) n is not below 0.
 
     n are node numbers; holds: whether the condition is true or false.
     """
@@ -200,7 +200,7 @@ class _Evaluation:
     def guarded(
         self, doubts: dict[int, Any], condition: Node, holds: bool, reached: Any
     ) -> dict[int, Any]:
-        """What remains doubtful behind a condition, on states that may get there."""
+        """What remains doubtful behind a condition, for states that may get there."""
         known = known_by(condition, holds)
         return {k: m & reached for k, m in doubts.items() if self.operations[k] not in known}
 

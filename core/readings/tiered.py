@@ -1,50 +1,58 @@
 """Loops over arrays, in CPython until there is much to do, then in machine code: the same results.
 
-`core.readings.machine.compiled.machine` compiles the text that CPython runs, so which of the two ran cannot be seen
-in what comes out (`tests/routing/test_routing.py`); only the time differs. Short jobs start without the
-compiler. Compiling takes seconds, so machine code that an earlier run has kept is used much sooner;
-not while calls are counted, as which reading ran is then told (`by_work_alone`).
+`core.readings.machine.compiled.machine` compiles the text that CPython runs, so the results do not show which of the
+two ran (`tests/routing/test_routing.py`); only the time differs. Short jobs start without the compiler. Compiling
+takes seconds, so machine code that is cached, by an earlier run or by a parallel process, is used much sooner. Code
+that counts calls gets each loop together with what runs it (`entered_by`), so that counts are the same for both.
 """
 
 import contextlib
+import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
 from typing import Any
 
 from cratous.core.kernel import qualified
 
-SOON, MUCH, WORTH = 300, 3_000, 60_000
-"""After so much work the compiled loop is used: if it is kept, if work alone counts, if it is not kept."""
-DEAR = {"cratous.core.daa.guidance.guide": 4, "cratous.core.routing.bulk.direct_many": 4}
-"""Loops that take long to compile wait for so many times as much where work alone counts: CPython has done it sooner."""
-_patience: list[int | None] = [None]
+Loop = Callable[..., Any]
+SOON, LOADED, WORTH = 300, 3_000, 60_000
+"""Work after which the compiled loop is used: if it is cached and the compiler is loaded, if it is only cached (loading
+the compiler takes half a second), and if it is not kept."""
+_at_once: list[bool] = [False]
+_entered: list[Callable[[Loop, Loop], Loop] | None] = [None]
 _done: Counter[str] = Counter()
-_compiled: dict[str, Callable[..., Any]] = {}
+_compiled: dict[str, Loop] = {}
 _coming: dict[str, Callable[[], None]] = {}
 
 
-def expect(function: Callable[..., Any], wait: Callable[[], None]) -> None:
-    """Another process makes this function's machine code; `wait` returns when that has ended, well or not.
+def expect(function: Loop, wait: Callable[[], None]) -> None:
+    """Announce that another process compiles this function; `wait` returns when that has ended, successfully or not.
 
-    When work reaches the limit that is waited for, and nothing else depends on it.
+    It is called when the work reaches the limit; nothing else depends on it.
     """
     _coming[qualified(function)] = wait
 
 
-def swift(function: Callable[..., Any], work: int = 1) -> Callable[..., Any]:
-    """The function as it stands, or compiled once enough has been done with it.
+def swift(function: Loop, work: int = 1) -> Loop:
+    """The function as written, or compiled once enough work has been done with it.
 
-    work: how much this call does; a unit is about what CPython does in a tenth of a millisecond.
+    work: the work of this call; a unit is about what CPython does in a tenth of a millisecond.
     """
+    run, enter = _chosen(function, work), _entered[-1]
+    return run if enter is None else enter(function, run)
+
+
+def _chosen(function: Loop, work: int) -> Loop:
     name = qualified(function)
     known = _compiled.get(name)
     if known is not None:
         return known
-    _done[name] += work
-    if _done[name] <= _limit(function, _done[name]):
+    before = _done[name]
+    _done[name] = before + work
+    if not _is_time(function, before, before + work):
         return function
     wait = _coming.pop(name, None)
-    if wait is not None:
+    if wait is not None and not _is_kept(function):
         wait()
     from cratous.core.readings.machine.compiled import machine
 
@@ -52,40 +60,36 @@ def swift(function: Callable[..., Any], work: int = 1) -> Callable[..., Any]:
     return _compiled[name]
 
 
-def _limit(function: Callable[..., Any], done: int) -> int:
-    """How much is done with a function before it is compiled."""
-    fixed = _patience[-1]
-    if fixed is not None:
-        return fixed * DEAR.get(qualified(function), 1)
-    if done <= SOON:
-        return SOON
+def _is_time(function: Loop, before: int, done: int) -> bool:
+    """Whether a function is to be compiled now, given the work done before and including this call."""
+    if _at_once[-1] or done > WORTH:
+        return True
+    # checked periodically: a parallel process may have compiled it since
+    step = SOON if "numba" in sys.modules else LOADED
+    return (done - 1) // step > max(before - 1, 0) // step and _is_kept(function)
+
+
+def _is_kept(function: Loop) -> bool:
     from cratous.core.readings.machine.compiled import is_kept
 
-    return SOON if is_kept(function) else WORTH
-
-
-def _begin_anew() -> None:
-    _done.clear()
-    _compiled.clear()
+    return is_kept(function)
 
 
 @contextlib.contextmanager
-def by_work_alone() -> Iterator[None]:
-    """Inside, when the compiler takes over follows from the work done inside, and from nothing else."""
-    _begin_anew()
-    _patience.append(MUCH)
+def entered_by(enter: Callable[[Loop, Loop], Loop]) -> Iterator[None]:
+    """Context in which `swift` returns what `enter` makes of a function and of what runs it."""
+    _entered.append(enter)
     try:
         yield
     finally:
-        _patience.pop()
-        _begin_anew()
+        _entered.pop()
 
 
 @contextlib.contextmanager
 def at_once() -> Iterator[None]:
-    """Inside, everything is compiled at its first call: for a cache that is to be complete."""
-    _patience.append(-1)
+    """Context in which everything is compiled at its first call: to fill a cache completely."""
+    _at_once.append(True)
     try:
         yield
     finally:
-        _patience.pop()
+        _at_once.pop()

@@ -1,7 +1,7 @@
 """Bounded since, for one sample of a trace: decided at that sample.
 
-Definition: `spec.requirements.operators.since_step`. Of the samples so far four times suffice. Times in
-one unit of the user's, integers.
+Definition: `spec.requirements.operators.since_step`. Four times summarise the samples so far. Times are integers in
+one unit chosen by the user.
 """
 
 from typing import NamedTuple
@@ -31,7 +31,7 @@ def is_due(time: int, at: int, low: int) -> bool:
 
 @kernel(supports="since_holds")
 def since_found(found: Found, time: int, psi: int) -> Found:
-    """A sample more that is old enough. time: of it; psi: the verdict there."""
+    """Add a sample that is old enough. time: of it; psi: the verdict there."""
     if psi == 2:
         return Found(time, time)
     if psi == 1:
@@ -41,7 +41,7 @@ def since_found(found: Found, time: int, psi: int) -> Found:
 
 @kernel(supports="since_holds")
 def since_broken(broken: Broken, time: int, phi: int) -> Broken:
-    """A sample more. time: of it; phi: the verdict there."""
+    """Add a sample. time: of it; phi: the verdict there."""
     if phi == 0:
         return Broken(time, time)
     if phi == 1:
@@ -63,7 +63,7 @@ def since_decided(found: Found, broken: Broken, at: int, high: int) -> int:
 
 
 class Since(NamedTuple):
-    """One sample's since so far: time of the last sample, the four times, the verdict."""
+    """The state of one sample's since: time of the last sample, the four times, the verdict."""
 
     last: int
     found: Found
@@ -73,10 +73,10 @@ class Since(NamedTuple):
 
 @kernel(supports="since_holds")
 def since_next(so_far: Since, time: int, phi: int, psi: int, at: int, low: int, high: int) -> Since:
-    """A sample more; one that is not later than the last, or later than `at`, does not count.
+    """Add a sample; one that is not later than the last, or later than `at`, does not count.
 
-    time: of the sample; phi, psi: verdicts there; at: of the sample whose since it is; low, high: bounds,
-    0 <= low <= high.
+    time: of the sample; phi, psi: verdicts there; at: of the sample whose since it is; low, high: bounds, 0 <= low <=
+    high.
     """
     if time <= so_far.last or time > at:
         return so_far

@@ -1,8 +1,8 @@
-"""Bounded until, for one sample of a trace: decided as early as any later sample cannot change it.
+"""Bounded until, for one sample of a trace: decided as soon as no later sample can change it.
 
-Definition: `spec.requirements.operators.until_step`. Of the samples so far two times suffice, and all
-waiting samples share them: when phi was last unknown, and when psi was last not false. Times in one
-unit of the user's, integers.
+Definition: `spec.requirements.operators.until_step`. Two times summarise the samples so far, and all undecided
+samples share them: when phi was last unknown, and when psi was last not false. Times are integers in one unit chosen
+by the user.
 """
 
 from typing import NamedTuple
@@ -19,10 +19,10 @@ class Times(NamedTuple):
 
 @kernel(supports="until_holds")
 def until_decided(times: Times, time: int, phi: int, psi: int, at: int, low: int, high: int) -> int:
-    """What a sample more decides for the one at `at`: 0 false, 1 unknown for good, 2 true, 3 it waits.
+    """What one more sample decides for the one at `at`: 0 false, 1 unknown for good, 2 true, 3 undecided.
 
-    times: of the samples before it; time: of the new sample, not before `at`; phi, psi: verdicts there;
-    at: of a sample that waited until then; low, high: bounds of the until, 0 <= low <= high.
+    times: of the samples before it; time: of the new sample, not before `at`; phi, psi: verdicts there; at: of a
+    sample that waited until then; low, high: bounds of the until, 0 <= low <= high.
     """
     inside = low <= time - at and time - at <= high
     clean = times.tainted < at
@@ -39,7 +39,7 @@ def until_decided(times: Times, time: int, phi: int, psi: int, at: int, low: int
 
 @kernel(supports="until_holds")
 def until_times(times: Times, time: int, phi: int, psi: int) -> Times:
-    """The two times after a sample more. time: of it; phi, psi: verdicts there."""
+    """The two times after one more sample. time: of it; phi, psi: verdicts there."""
     tainted = times.tainted
     candidate = times.candidate
     if phi == 1:
@@ -50,7 +50,7 @@ def until_times(times: Times, time: int, phi: int, psi: int) -> Times:
 
 
 class Until(NamedTuple):
-    """One sample's until so far: time of the last sample, the shared times, the verdict or 3.
+    """The state of one sample's until: time of the last sample, the shared times, the verdict or 3.
 
     reached: whether psi was not false, within the bounds, at a sample so far.
     """
@@ -63,7 +63,7 @@ class Until(NamedTuple):
 
 @kernel(supports="until_holds")
 def until_next(so_far: Until, time: int, phi: int, psi: int, at: int, low: int, high: int) -> Until:
-    """A sample more; one that is not later than the last is none of the trace. Arguments: until_decided."""
+    """Add a sample; one that is not later than the last is not part of the trace. Arguments: until_decided."""
     if time <= so_far.last:
         return so_far
     verdict = so_far.verdict
@@ -78,7 +78,7 @@ def until_next(so_far: Until, time: int, phi: int, psi: int, at: int, low: int, 
 
 @kernel(supports="until_holds")
 def until_result(so_far: Until) -> int:
-    """The verdict; where the trace ends before it is decided, what the trace so far says."""
+    """The verdict; if the trace ends before it is decided, the verdict on the trace so far."""
     if so_far.verdict != 3:
         return so_far.verdict
     if so_far.reached:

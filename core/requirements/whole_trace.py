@@ -1,8 +1,8 @@
-"""A whole trace at once, operator by operator: the kernels of the operators, step by step as sample by sample.
+"""A whole trace at once, operator by operator: the operators' kernels, called step by step as for single samples.
 
-Times (n) rise. What is found of an operator is an array (2, n) of int64: of each sample the verdict, 0 false, 1 unknown,
-2 true, and at which sample it is decided, n for one that is not decided when the trace ends. CPython runs these
-functions as they stand; `core.readings.machine.compiled.machine` compiles the same text.
+Times (n) increase. The result for an operator is an array (2, n) of int64: for each sample the verdict, 0 false, 1
+unknown, 2 true, and the sample at which it is decided, n for one that is not decided when the trace ends. CPython
+runs these functions directly; `core.readings.machine.compiled.machine` compiles the same text.
 """
 
 from math import isfinite
@@ -19,7 +19,7 @@ NEVER = -(2**62)
 def reached(left: np.ndarray, right: np.ndarray, verdict: np.ndarray) -> None:
     """Fill `verdict` (n) with whether left is at least right at each sample.
 
-    left, right: (n), or (1) for a number; what is no number or infinite is unknown.
+    left, right: (n), or (1) for a number; NaN and infinite values are unknown.
     """
     for k in range(len(verdict)):
         a, b = left[k if len(left) > 1 else 0], right[k if len(right) > 1 else 0]
@@ -38,7 +38,7 @@ def not_of(phi: np.ndarray, verdict: np.ndarray) -> None:
 
 
 def joined(phi: np.ndarray, psi: np.ndarray, is_and: bool, found: np.ndarray) -> None:
-    """Fill `found` (2, n) with phi and psi, or phi or psi: decided by one side alone where that suffices."""
+    """Fill `found` (2, n) with phi and psi, or phi or psi: decided by one side alone if that suffices."""
     alone, last = 0 if is_and else 2, 0
     for k in range(found.shape[1]):
         at = max(phi[1, k], psi[1, k])

@@ -1,1 +1,1 @@
-"""Routes that can be flown: turns, visibility around zones, laps, wind."""
+"""Flyable routes: turns, visibility around zones, laps, wind."""

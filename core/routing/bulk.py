@@ -1,10 +1,10 @@
 """Routes around zones in bulk: visibility graph, shortest chain, turns; loops over arrays.
 
-A route is the direct Dubins path if the zones allow it. Otherwise the shortest chain of via points is searched
-(A*), joined by Dubins pieces, and every leg of the result is put to the proved kernels; a piece
-that they refuse is struck from the graph, or tried with other headings, or on a wider ring. All
-loops are bounded. A pose is north, east, altitude, heading. CPython runs these functions as they
-stand; `core.readings.machine.compiled.machine` compiles the same text.
+A route is the direct Dubins path if the zones allow it. Otherwise the shortest chain of via points is searched (A*),
+joined by Dubins segments, and every leg of the result is checked by the proved kernels; a segment that they refuse is
+removed from the graph, or tried with other headings, or on a wider ring. All loops are bounded. A pose is north,
+east, altitude, heading. CPython runs these functions directly; `core.readings.machine.compiled.machine` compiles the
+same text.
 """
 
 import math
@@ -24,8 +24,9 @@ UNKNOWN, FREE, BLOCKED = 0, 1, 2
 
 
 class Turning(NamedTuple):
-    """How a vehicle flies: turn radius [m], steepest climb (metres per metre flown, > 0), and how far
-    chords may lie from their arc [m]."""
+    """Turn performance of a vehicle: turn radius [m], steepest climb (metres per metre flown, > 0), and greatest
+    distance of chords from their arc [m].
+    """
 
     r: float
     slope: float
@@ -33,8 +34,9 @@ class Turning(NamedTuple):
 
 
 class Rings(NamedTuple):
-    """Via points (g, m, 2) per ring, their sizes (g), and which of them see each other at the altitude of
-    all starts (g, m, m), 0 if not known yet."""
+    """Via points (g, m, 2) per ring, their numbers (g), and which of them are mutually visible at the altitude of all
+    starts (g, m, m), 0 if not known yet.
+    """
 
     points: np.ndarray
     sizes: np.ndarray
@@ -42,8 +44,9 @@ class Rings(NamedTuple):
 
 
 class Sights(NamedTuple):
-    """Which nodes see each other, filled in as it is asked: two points of a ring (m, m); the start and a
-    point or, at the end, the end (m + 1); a point and the end (m)."""
+    """Cache of which nodes are mutually visible: two points of a ring (m, m); the start and a point or, at the last
+    index, the end (m + 1); a point and the end (m).
+    """
 
     between: np.ndarray
     from_start: np.ndarray
@@ -51,14 +54,14 @@ class Sights(NamedTuple):
 
 
 class Word(NamedTuple):
-    """Kinds and lengths [m] of words (WORDS_MOST, 3), to work in; row 0 holds the word that is allowed."""
+    """Scratch space for kinds and lengths [m] of words (WORDS_MOST, 3); row 0 holds the allowed word."""
 
     kinds: np.ndarray
     lengths: np.ndarray
 
 
 class Routed(NamedTuple):
-    """Routes in bulk: FOUND or why not, lengths [m], links or the zone, the poses between links."""
+    """Routes in bulk: FOUND or a reason code, lengths [m], links or the zone, the poses between links."""
 
     codes: np.ndarray
     metres: np.ndarray
@@ -75,7 +78,7 @@ def piece(
 ) -> tuple[bool, float, int]:
     """The shortest allowed word from start to end: (allowed, length [m], zone of the shortest).
 
-    Full turns are put in front where the way is too short for the climb.
+    Full turns are added at the beginning if the path is too short for the climb.
     """
     r, slope, chord_error = turning.r, turning.slope, turning.chord_error
     kinds, lengths = word.kinds, word.lengths
@@ -110,7 +113,7 @@ def piece(
 
 
 def gains_little(start: np.ndarray, end: np.ndarray, r: float, flown: float, word: Word) -> bool:
-    """Whether a way of length `flown` is not much longer than the unobstructed word; `word` is worked in."""
+    """Whether a path of length `flown` is not much longer than the unobstructed word; `word` is scratch space."""
     words(end[0] - start[0], end[1] - start[1], start[3], end[3], r, word.kinds, word.lengths)
     least = word.lengths[0, 0] + word.lengths[0, 1] + word.lengths[0, 2]
     return bool(flown <= GAINS_LITTLE * least + r)
@@ -126,7 +129,7 @@ def free(
     k: int,
     zones: tuple[np.ndarray, ...],
 ) -> bool:
-    """Whether the level leg from a to b obeys all zones; `known[k]` remembers it."""
+    """Whether the level leg from a to b obeys all zones; cached in `known[k]`."""
     if known[k] == UNKNOWN:
         known[k] = FREE if leg_zone(an, ae, alt, bn, be, alt, zones) < 0 else BLOCKED
     return bool(known[k] == FREE)
@@ -141,10 +144,10 @@ def chain(
     zones: tuple[np.ndarray, ...],
     found: np.ndarray,
 ) -> int:
-    """Shortest chain of mutually visible nodes from start to end (A*), struck pairs left out.
+    """Shortest chain of mutually visible nodes from start to end (A*), without the excluded (struck) pairs.
 
-    Nodes are the points of the ring, then start, then end; found: filled with the chain. How many
-    nodes it has; 0 if there is none.
+    Nodes are the points of the ring, then start, then end; found: filled with the chain. Returns its number of nodes;
+    0 if there is none.
     """
     m = len(ring)
     here, there = m, m + 1
@@ -216,8 +219,8 @@ def fly_chain(
 ) -> tuple[int, float]:
     """The shortest allowed Dubins chain through the via points: (0, its length), poses filled.
 
-    Or (index of the link that is refused, 0). At a via point three headings are tried: halfway
-    between the legs, along the first, along the second.
+    Or (index of the refused link, 0). At a via point three headings are tried: halfway between the legs, along the
+    first, along the second.
     """
     count = len(nodes)
     place, run = np.empty((count, 2)), np.zeros(count)
@@ -276,7 +279,7 @@ def one_route(
     rings: Rings,
     poses: np.ndarray,
 ) -> tuple[int, float, int, int]:
-    """One route: (FOUND, length, links, 0) with the poses between links; or why not, and the zone."""
+    """One route: (FOUND, length, links, 0) with the poses between links; or a reason code, and the zone."""
     word = Word(np.empty((WORDS_MOST, 3), np.int64), np.empty((WORDS_MOST, 3)))
     allowed, flown, blocked = piece(start, end, turning, zones, word)
     for j in range(4):
@@ -321,9 +324,9 @@ def direct_many(
     zones: tuple[np.ndarray, ...],
     found: Routed,
 ) -> None:
-    """`route_many` where that takes the direct word, as it does nearly always; code NOT_DIRECT elsewhere.
+    """`route_many` for the pairs whose direct word is allowed, which is nearly all; code NOT_DIRECT for the others.
 
-    So what goes around zones has to be compiled only where many routes do.
+    So routing around zones is compiled only if many routes need it.
     """
     word = Word(np.empty((WORDS_MOST, 3), np.int64), np.empty((WORDS_MOST, 3)))
     for i in range(len(starts)):
@@ -349,10 +352,9 @@ def route_many(
 ) -> None:
     """A short flyable route for each pair of poses (n, 4), every leg of which obeys the zones.
 
-    zones: `leg_arrays.table`; rings.seen: int8. Filled: codes (n) and links (n) int64, metres (n),
-    poses (k, LINKS_MOST + 2, 4), k = n, or 1 where only lengths matter. With a code other than
-    FOUND, links holds the zone. The route is the shortest that was found, not the
-    shortest that exists.
+    zones: `leg_arrays.table`; rings.seen: int8. Filled: codes (n) and links (n) int64, metres (n), poses (k,
+    LINKS_MOST + 2, 4), k = n, or 1 if only lengths are needed. With a code other than FOUND, links holds the zone.
+    The route is the shortest that was found, not the shortest that exists.
     """
     for i in range(len(starts)):
         at = found.poses[min(i, len(found.poses) - 1)]

@@ -1,9 +1,8 @@
-"""Shortest paths of bounded curvature between two poses (Dubins), and their cutting into legs.
+"""Shortest paths of bounded curvature between two poses (Dubins), and their division into legs.
 
-Source: L. E. Dubins, "On curves of minimal length with a constraint on average curvature", 1957.
-The construction here is by tangents to the turning circles. Headings are clockwise from north in
-the north/east plane, so a positive turn is a right turn. A path is searched, never trusted: the
-legs that are flown are checked by the zone kernels.
+Source: L. E. Dubins, "On curves of minimal length with a constraint on average curvature", 1957. The construction
+here is by tangents to the turning circles. Headings are clockwise from north in the north/east plane, so a positive
+turn is a right turn. A path is searched, never trusted: the legs that are flown are checked by the zone kernels.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ RIGHT, STRAIGHT, LEFT = 1, 0, -1
 
 
 class DubinsPath(NamedTuple):
-    """Three pieces from `start`: kinds (RIGHT, STRAIGHT, LEFT) and lengths [m]."""
+    """Three segments from `start`: kinds (RIGHT, STRAIGHT, LEFT) and lengths [m]."""
 
     start: Pose
     radius_m: float
@@ -59,7 +58,7 @@ def dubins(start: Pose, end: Pose, radius_m: float) -> DubinsPath:
 
 
 def pose_after(pose: Pose, kind: int, length_m: float, radius_m: float) -> Pose:
-    """The pose after one piece: straight on, or a right or left turn of the given length."""
+    """The pose after one segment: straight, or a right or left turn of the given length."""
     n, e, alt, h = pose
     if kind == STRAIGHT:
         return Pose(n + length_m * math.cos(h), e + length_m * math.sin(h), alt, h)
@@ -75,7 +74,7 @@ def pose_after(pose: Pose, kind: int, length_m: float, radius_m: float) -> Pose:
 def cut(path: DubinsPath, end: Pose, chord_error_m: float = 0.5) -> tuple[Position, ...]:
     """The path as a polyline from start to end, both exactly; altitude is linear in length.
 
-    An arc is cut into equal chords that leave it by at most chord_error_m [m].
+    An arc is divided into equal chords that deviate from it by at most chord_error_m [m].
     """
     found = swift(legs)(
         np.array(path.start, float), np.array(end, float), np.array(path.kinds, np.int64),
@@ -86,7 +85,7 @@ def cut(path: DubinsPath, end: Pose, chord_error_m: float = 0.5) -> tuple[Positi
 
 
 def cut_length_m(path: DubinsPath, chord_error_m: float = 0.5) -> float:
-    """Length [m] of the polyline that `cut` makes, without making it."""
+    """Length [m] of the polyline that `cut` returns, without building it."""
     kinds, lengths = np.array(path.kinds, np.int64), np.array(path.lengths_m, float)
     return float(swift(legs_length)(kinds, lengths, float(path.radius_m), float(chord_error_m)))
 

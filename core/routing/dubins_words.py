@@ -1,8 +1,8 @@
-"""The Dubins words between two poses, and their cutting into legs: plain loops over arrays.
+"""The Dubins words between two poses, and their division into legs: plain loops over arrays.
 
-A word is three pieces: turn right (1), straight on (0), turn left (-1). CPython runs these functions as
-they stand; `core.readings.machine.compiled.machine` compiles the same text. What they make is searched, never
-trusted: legs are put to the zone kernels.
+A word has three segments: turn right (1), straight (0), turn left (-1). CPython runs these functions directly;
+`core.readings.machine.compiled.machine` compiles the same text. The results are searched, never trusted: legs are
+checked by the zone kernels.
 """
 
 import math
@@ -28,7 +28,7 @@ def put(
     kind: tuple[int, int, int],
     length: tuple[float, float, float],
 ) -> int:
-    """Put a word among the `count` shorter and longer ones; the new count."""
+    """Insert a word among `count` words sorted by length; returns the new count."""
     total, k = length[0] + length[1] + length[2], count
     while k > 0 and lengths[k - 1, 0] + lengths[k - 1, 1] + lengths[k - 1, 2] > total:
         for j in range(3):
@@ -94,19 +94,21 @@ def words(
 
 
 def chords(length: float, kind: int, r: float, step: float) -> int:
-    """Into how many legs a piece is cut; step: the longest arc of one leg [m]."""
+    """The number of legs into which a segment is divided; step: the longest arc of one leg [m]."""
     if length <= NOTHING_M:
         return 0
     return 1 if kind == 0 else max(1, math.ceil(length / step))
 
 
 def arc_step(r: float, chord_error: float) -> float:
-    """The longest arc whose chord leaves it by no more than chord_error [m]."""
+    """The longest arc whose chord deviates from it by at most chord_error [m]."""
     return 2 * math.acos(max(0.0, 1 - chord_error / r)) * r
 
 
 def legs_length(kinds: np.ndarray, lengths: np.ndarray, r: float, chord_error: float) -> float:
-    """Length of the polyline that `legs` makes of a word, without making it, to NOTHING_M a piece [m]."""
+    """Length of the polyline that `legs` makes of a word, without building it, accurate to
+    NOTHING_M per segment [m].
+    """
     step, total = arc_step(r, chord_error), 0.0
     for j in range(3):
         length = lengths[j]
@@ -135,14 +137,15 @@ def legs(
     for j in range(3):
         count += chords(lengths[j], kinds[j], r, step)
     points = np.empty((max(count, 2), 3))
-    total = lengths[0] + lengths[1] + lengths[2]
+    total = float(lengths[0] + lengths[1] + lengths[2])
     if total == 0.0:
         total = 1.0
-    climb = end[2] - start[2]
-    points[0, 0], points[0, 1], points[0, 2] = start[0], start[1], start[2]
-    n, e, h, flown, at = start[0], start[1], start[3], 0.0, 1
+    # CPython computes with its own numbers twice as fast as with those of arrays
+    n, e, low, h = float(start[0]), float(start[1]), float(start[2]), float(start[3])
+    climb, flown, at = float(end[2]) - low, 0.0, 1
+    points[0, 0], points[0, 1], points[0, 2] = n, e, low
     for j in range(3):
-        kind, length = kinds[j], lengths[j]
+        kind, length = int(kinds[j]), float(lengths[j])
         parts = chords(length, kind, r, step)
         if parts == 0:
             continue
@@ -156,7 +159,7 @@ def legs(
                 north = n + kind * r * (math.sin(heading) - math.sin(h))
                 east = e - kind * r * (math.cos(heading) - math.cos(h))
             points[at, 0], points[at, 1] = north, east
-            points[at, 2] = start[2] + climb * (flown + run) / total
+            points[at, 2] = low + climb * (flown + run) / total
             at += 1
         n, e, h, flown = north, east, heading, flown + length
     points[len(points) - 1, 0] = end[0]

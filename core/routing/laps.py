@@ -1,8 +1,8 @@
-"""Closed ways of loiters, as turns and straights of one lap, and how they are flown for a time.
+"""Closed paths of loiters, as turns and straights of one lap, and their flight over a given length.
 
-Shapes as in CMASI: a racetrack's straights have `length_m`, a figure-eight has its turn centres
-`length_m` apart (2 radii at least); both are length_m + 2 radius_m long. Nothing here is trusted:
-legs are checked by the zone kernels, and the monitor measures what was flown.
+Shapes as in CMASI: a racetrack's straights have `length_m`, a figure-eight has its turn centres `length_m` apart (2
+radii at least); both are length_m + 2 radius_m long. Nothing here is trusted: legs are checked by the zone kernels,
+and the monitor measures what was flown.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from cratous.spec.mission import Loiter, Position
 from cratous.spec.mission.plan import Pose
 
 Lap = tuple[Pose, tuple[tuple[int, float], ...]]
-"""Where a lap begins, and its pieces: kind and length [m]."""
+"""The start pose of a lap, and its segments: kind and length [m]."""
 CHORD_ERROR_M = 0.5
 
 
@@ -42,7 +42,7 @@ def lap_of(loiter: Loiter, radius_m: float, clockwise: bool) -> Lap:
 
 
 def _beside(pose: Pose, right_m: float) -> Pose:
-    """The pose moved to its right."""
+    """The pose displaced to its right."""
     n, e, alt, h = pose
     return Pose(n - right_m * math.sin(h), e + right_m * math.cos(h), alt, h)
 
@@ -53,7 +53,7 @@ def lap_length_m(lap: Lap) -> float:
 
 
 def _poses(lap: Lap, radius_m: float, from_m: float) -> Iterator[Pose]:
-    """Poses round and round from a place on the lap, close enough to be joined by chords."""
+    """Poses along repeated laps from a position on the lap, close enough to be joined by chords."""
     step = 2 * math.acos(max(0.0, 1 - CHORD_ERROR_M / radius_m)) * radius_m
     skip, first = from_m % lap_length_m(lap), True
     while True:
@@ -75,7 +75,7 @@ def _poses(lap: Lap, radius_m: float, from_m: float) -> Iterator[Pose]:
 def _round(
     lap: Lap, radius_m: float, from_m: float, length_m: float
 ) -> tuple[Pose, Pose, tuple[Position, ...]]:
-    """The same on a circle: equal chords that add up to the length, all ends on the circle."""
+    """The same on a circle: equal chords that add up to the length, with all ends on the circle."""
     kind = lap[1][0][0]
     step = 2 * math.acos(max(0.0, 1 - CHORD_ERROR_M / radius_m)) * radius_m
     count = max(1, math.ceil(length_m / step))
@@ -88,7 +88,7 @@ def _round(
 def flown(
     lap: Lap, radius_m: float, from_m: float, length_m: float
 ) -> tuple[Pose, Pose, tuple[Position, ...]]:
-    """Start pose, end pose and a polyline of exactly length_m, round the lap from from_m on."""
+    """Start pose, end pose and a polyline of exactly length_m, along the lap from from_m on."""
     if len(lap[1]) == 1:
         return _round(lap, radius_m, from_m, length_m)
     poses = _poses(lap, radius_m, from_m)

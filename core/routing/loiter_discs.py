@@ -1,7 +1,8 @@
-"""Whether a place to loiter obeys the zones: all of a disc, by the proved polygon kernels.
+"""Whether a loiter location obeys the zones: for a whole disc, by the proved polygon kernels.
 
-A disc keeps out of a polygon iff its centre does and no edge is within the radius, and stays inside of
-one iff its centre does and no edge is; so every circle in it does, wherever it is entered.
+A disc keeps out of a polygon iff its centre does and no edge is within the radius, and stays inside one iff its
+centre does and no edge is within the radius; the same then holds for every circle in the disc, wherever it is
+entered.
 """
 
 from __future__ import annotations

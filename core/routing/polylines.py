@@ -1,7 +1,7 @@
-"""A polyline measured by horizontal arc length: where a point on it is, and what is left of it.
+"""Positions on a polyline by horizontal arc length, and its remainder.
 
-Nothing here decides whether anything is safe: it says where an aircraft is along its way, and
-what is flown is checked leg by leg by the zone and well-clear kernels.
+Nothing here decides whether anything is safe: it locates an aircraft on its path, and what is flown is checked leg by
+leg by the zone and well-clear kernels.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from cratous.spec.mission import Position
 
 
 class Near(NamedTuple):
-    """A place on a track: arc length s [m] and horizontal distance from it, positive right [m]."""
+    """A position relative to a track: arc length s [m] and horizontal distance from it, positive right [m]."""
 
     s_m: float
     offset_m: float
@@ -24,7 +24,7 @@ class Near(NamedTuple):
 
 @dataclass(frozen=True, init=False)
 class Track:
-    """A polyline without repeated points; beyond both ends it goes straight on.
+    """A polyline without repeated points, extended straight beyond both ends.
 
     s_m: arc length at each point [m]; directions: of each leg, north and east of a unit vector.
     """
@@ -34,7 +34,7 @@ class Track:
     directions: tuple[tuple[float, float], ...]
 
     def __init__(self, points: tuple[Position, ...], heading_rad: float = 0.0) -> None:
-        """points: one or more; heading_rad: direction if they are all at one place."""
+        """points: one or more; heading_rad: direction if they all coincide."""
         kept = [points[0]]
         for point in points[1:]:
             last = kept[-1]
@@ -56,14 +56,14 @@ class Track:
 
     @property
     def length_m(self) -> float:
-        """Of the whole polyline [m]."""
+        """Length of the whole polyline [m]."""
         return self.s_m[-1]
 
     def _leg(self, s_m: float) -> int:
         return min(max(bisect_right(self.s_m, s_m) - 1, 0), len(self.directions) - 1)
 
     def at(self, s_m: float) -> Position:
-        """The point at arc length s; straight on beyond the ends, at the height of the end."""
+        """The point at arc length s; on the straight extension beyond the ends, at the altitude of the end."""
         leg = self._leg(s_m)
         a = self.points[leg]
         along = s_m - self.s_m[leg]
@@ -80,7 +80,7 @@ class Track:
         return math.atan2(east, north)
 
     def nearest(self, p: Position, from_m: float, window_m: float) -> Near:
-        """The nearest place to p within [from_m, from_m + window_m]; past the end: straight on.
+        """The nearest position to p within [from_m, from_m + window_m]; on the straight extension past the end.
 
         The window keeps the search from jumping to a later leg that crosses this one.
         """

@@ -1,21 +1,22 @@
 """Flyable routes around zones: visibility graph, shortest path, turns, and a check of every leg.
 
-A `Roadmap` holds the zones of one altitude regime and rings of via points around them, from the
-tightest ring to the widest (made by offsetting outside `core`). How a route is searched, and that
-every leg of it is put to the proved kernels: `core.routing.bulk`.
+A `Roadmap` holds the zones of one altitude range and rings of via points around them, from the tightest ring to the
+widest (made by offsetting outside `core`). The search for a route, and the check of every leg of it by the proved
+kernels, are in `core.routing.bulk`.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from cratous.core.geofence.mission_leg_arrays import table
-from cratous.core.readings.tiered import swift
+from cratous.core.readings.tiered import SOON, swift
 from cratous.core.routing.bulk import (
     BAD_START,
     FOUND,
@@ -33,8 +34,12 @@ from cratous.core.routing.dubins import RIGHT, pose_after
 from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.plan import Pose
 
-DIRECT_WORK, AROUND_WORK = 4, 30
-"""What CPython does for a direct route beside zones, and for one around them, as `swift` counts it."""
+DIRECT_WORK, AROUND_WORK = 3, 10
+"""CPython's work for a direct route beside zones, and for one around them, in the units of `swift`."""
+BLOCK = 300
+"""Number of routes searched per block: machine code compiled meanwhile by a parallel process is used from the next
+block on.
+"""
 
 
 class Route(NamedTuple):
@@ -47,7 +52,7 @@ class Route(NamedTuple):
 
 @dataclass(eq=False)
 class Roadmap:
-    """Zones, and via points (north, east) per ring; remembers which of those see each other."""
+    """Zones, and via points (north, east) per ring; caches which of those are mutually visible."""
 
     zones: tuple[Zone, ...]
     rings: tuple[tuple[tuple[float, float], ...], ...] = ()
@@ -55,7 +60,7 @@ class Roadmap:
     _seen: dict[float, np.ndarray] = field(default_factory=dict)
 
     def seen(self, alt_m: float) -> np.ndarray:
-        """Which via points see each other at an altitude: to be filled while routes are searched."""
+        """Which via points are mutually visible at an altitude: filled in while routes are searched."""
         if alt_m not in self._seen:
             widest = self.ring_arrays[0].shape[1]
             self._seen[alt_m] = np.zeros((len(self.rings), widest, widest), np.int8)
@@ -63,7 +68,7 @@ class Roadmap:
 
     @cached_property
     def ring_arrays(self) -> tuple[np.ndarray, np.ndarray]:
-        """The rings, filled up to one length, and their sizes."""
+        """The rings, padded to one length, and their sizes."""
         sizes = np.array([len(ring) for ring in self.rings], np.int64)
         rings = np.zeros((len(self.rings), max([*sizes, 1]), 2))
         for g, ring in enumerate(self.rings):
@@ -91,48 +96,60 @@ def routes(
     )  # fmt: skip
     turning = Turning(float(radius_m), float(max_slope), float(roadmap.chord_error_m))
     zones = table(roadmap.zones)
-    direct = swift(direct_many, n * (DIRECT_WORK if roadmap.zones else 1))
-    direct(np.ascontiguousarray(starts), np.ascontiguousarray(ends), turning, zones, found)
-    others = np.flatnonzero(found.codes == NOT_DIRECT)
-    if not len(others):
-        return found
-    run = swift(route_many, len(others) * AROUND_WORK)
-    altitudes = starts[others, 2]
-    for alt in np.unique(altitudes):
-        at = others[altitudes == alt]
-        some = Routed(*(part[at] if len(part) == n else part for part in found))
-        run(
-            np.ascontiguousarray(starts[at]), np.ascontiguousarray(ends[at]), turning, zones,
-            Rings(*roadmap.ring_arrays, roadmap.seen(float(alt))), some,
-        )  # fmt: skip
-        for part, filled in zip(found, some, strict=True):
-            if len(part) == n:
-                part[at] = filled
+    poses, work = (starts, ends), DIRECT_WORK if roadmap.zones else 1
+    _search(direct_many, work, poses, (turning, zones), found, np.arange(n))
+    _around(starts, ends, turning, roadmap, found, np.flatnonzero(found.codes == NOT_DIRECT))
     return found
 
 
 def lengths_around(
     starts: np.ndarray, ends: np.ndarray, radius_m: float, roadmap: Roadmap, max_slope: float
 ) -> Routed:
-    """`routes` without the polylines, and the same lengths, where many are expected to lead around zones.
+    """`routes` without the polylines, with the same lengths, for pairs of which many are expected to lead around
+    zones.
 
-    `route_many` takes all of them, so that `direct_many` need not be compiled beside it.
+    All of them go to `route_many`, so that `direct_many` need not be compiled as well.
     """
     n = len(starts)
     found = Routed(
         np.empty(n, np.int64), np.empty(n), np.empty(n, np.int64), np.empty((1, LINKS_MOST + 2, 4))
     )
     turning = Turning(float(radius_m), float(max_slope), float(roadmap.chord_error_m))
-    run = swift(route_many, n * AROUND_WORK)
-    for alt in np.unique(starts[:, 2]):
-        at = np.flatnonzero(starts[:, 2] == alt)
-        some = Routed(found.codes[at], found.metres[at], found.links[at], found.poses)
-        run(
-            np.ascontiguousarray(starts[at]), np.ascontiguousarray(ends[at]), turning, table(roadmap.zones),
-            Rings(*roadmap.ring_arrays, roadmap.seen(float(alt))), some,
-        )  # fmt: skip
-        found.codes[at], found.metres[at], found.links[at] = some[:3]
+    _around(starts, ends, turning, roadmap, found, np.arange(n))
     return found
+
+
+def _around(
+    starts: np.ndarray,
+    ends: np.ndarray,
+    turning: Turning,
+    roadmap: Roadmap,
+    found: Routed,
+    which: np.ndarray,
+) -> None:
+    """Search these routes around zones, grouped by altitude."""
+    zones, altitudes = table(roadmap.zones), starts[which, 2]
+    for alt in np.unique(altitudes):
+        rings = Rings(*roadmap.ring_arrays, roadmap.seen(float(alt)))
+        here = which[altitudes == alt]
+        _search(route_many, AROUND_WORK, (starts, ends), (turning, zones, rings), found, here)
+
+
+def _search(
+    loop: Callable[..., None], work: int, poses: tuple[np.ndarray, ...], given: tuple[Any, ...], found: Routed,
+    which: np.ndarray,
+) -> None:  # fmt: skip
+    """Search these routes with a loop, block by block; work: of one route; given: the loop's other arguments."""
+    n = len(found.codes)
+    for k in range(0, len(which), BLOCK):
+        at = which[k : k + BLOCK]
+        some = Routed(*(part[at] if len(part) == n else part for part in found))
+        # the first block announces the total work; the others ask again which version to run
+        run = swift(loop, SOON if k else len(which) * work)
+        run(*(np.ascontiguousarray(part[at]) for part in poses), *given, some)
+        for part, filled in zip(found, some, strict=True):
+            if len(part) == n:
+                part[at] = filled
 
 
 def start_point(pose: Pose) -> Position:

@@ -1,7 +1,7 @@
-"""Which speed over the ground an aircraft can hold in a steady wind, whichever way it flies.
+"""The ground speed that an aircraft can hold in a steady wind in every direction.
 
-Definition: `spec.routing.wind`. Straight into the wind the airspeed is the ground speed and the wind's together,
-with the wind their difference; in every other direction it lies between.
+Definition: `spec.routing.wind`. Straight into the wind the airspeed is the sum of ground speed and wind speed, with a
+tailwind their difference; in every other direction it lies between.
 """
 
 from cratous.core.kernel import kernel

@@ -1,4 +1,4 @@
-"""Whether what is planned or flown is one choice of a mission's tasks: each task as often as it may be.
+"""Whether what is planned or flown is one choice of a mission's tasks: each task as often as permitted.
 
 Definition: `spec.schedule.flown_as_asked`.
 """
@@ -8,7 +8,7 @@ from cratous.core.kernel import fold, kernel
 
 @kernel(implements="schedule.flown_as_asked")
 def as_asked_step(ok: bool, least: int, most: int, times: int) -> bool:
-    """Add one task to whether all so far are there as often as is asked for.
+    """Whether all tasks so far, and one more, are done as often as required.
 
     least, most: how often the task is to be done; times: how often it is, >= 0.
     """

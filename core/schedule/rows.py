@@ -1,6 +1,6 @@
 """Whether times of tasks satisfy order and timing constraints. Integers, milliseconds.
 
-Definitions: `spec.schedule`; the codes of the six kinds of row stand there too.
+Definitions, and the codes of the six kinds of row: `spec.schedule`.
 """
 
 from cratous.core.kernel import fold, kernel
@@ -26,7 +26,7 @@ def row_holds(kind: int, start: int, end: int, ref: int, lo: int, hi: int) -> bo
 
 @kernel(implements="schedule.interval_is_ordered")
 def runs_forward(start: int, end: int) -> bool:
-    """True iff a task's interval is one: it does not end before it starts, nor start before 0."""
+    """True iff a task's interval is valid: it does not end before it starts, nor start before 0."""
     return start >= 0 and end >= start
 
 

@@ -1,1 +1,1 @@
-"""What tasks fly and see: lanes over areas, footprints, coverage."""
+"""What tasks fly and observe: lanes over areas, footprints, coverage."""

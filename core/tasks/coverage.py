@@ -1,9 +1,9 @@
-"""How much of an area footprints have covered: the area is cut into squares, small ones.
+"""How much of an area footprints have covered: the area is divided into small squares.
 
-A square counts as seen only if ONE convex footprint contains all of it, so the share that is
-reported is never more than what was seen; squares that straddle the outline count in full against
-the flight. A convex polygon in counter-clockwise order (x to y) is what lies left of all its
-edges: `square_within` says that of every point of a square. The loops: `core.tasks.coverage_arrays`.
+A square counts as seen only if ONE convex footprint contains all of it, so the reported share is never more than what
+was seen; an unseen square that straddles the outline counts in full as unseen. A convex polygon in counter-clockwise
+order (x to y) is what lies left of all its edges: `square_within` tests that for every point of a square. The loops:
+`core.tasks.coverage_arrays`.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from cratous.spec.mission import Pattern, Task
 
 Corner = tuple[float, float]
 FINEST_M = 10.0
-"""Squares are this large, or larger where there would be more than MOST."""
+"""Smallest side of the squares; larger if there would be more than MOST."""
 MOST = 1_000_000
 ROUND = 64
 """Corners of the polygon around a disc."""
 
 
 def disc(centre: Corner, radius_m: float) -> tuple[Corner, ...]:
-    """A polygon around a disc: its sides touch the circle."""
+    """A polygon circumscribed about a disc: its sides touch the circle."""
     reach, step = radius_m / math.cos(math.pi / ROUND), 2 * math.pi / ROUND
     return tuple(
         (centre[0] + reach * math.cos(k * step), centre[1] + reach * math.sin(k * step))
@@ -59,7 +59,7 @@ def _doubled(vertices: Sequence[Corner]) -> float:
 
 
 def square_side_m(vertices: Sequence[Corner], most: int = MOST) -> float:
-    """The side of the squares into which an area is cut [m]."""
+    """The side of the squares into which an area is divided [m]."""
     return max(FINEST_M, math.sqrt(area_m2(vertices) / most))
 
 
@@ -70,7 +70,7 @@ def squares(vertices: Sequence[Corner], side_m: float) -> list[Corner]:
 
 
 def square_array(vertices: tuple[Corner, ...], side_m: float) -> Any:
-    """What `squares` gives, as an array (n, 2)."""
+    """The result of `squares` as an array (n, 2)."""
     import numpy as np
 
     corners = np.array(vertices, float)
@@ -112,5 +112,5 @@ def seen_squares(centres: Any, side_m: float, footprint: Sequence[Corner]) -> li
 
 
 def share_covered(unseen: int, side_m: float, whole_m2: float) -> float:
-    """At least this share of an area has been seen, with so many squares unseen."""
+    """Lower bound of the share of an area that has been seen, given the number of unseen squares."""
     return max(0.0, 1 - unseen * side_m * side_m / whole_m2)

@@ -1,7 +1,7 @@
 """The squares of an area, and which of them footprints contain: loops over arrays.
 
 The kernels are those of `core.geofence.planar` and `core.tasks.coverage_steps`, step by step as their folds run
-them. CPython runs these functions as they stand; `core.readings.machine.compiled.machine` compiles the same text.
+them. CPython runs these functions directly; `core.readings.machine.compiled.machine` compiles the same text.
 """
 
 import numpy as np
@@ -17,7 +17,7 @@ from cratous.core.tasks.coverage_steps import within_step
 
 
 def place_of(edges: np.ndarray, n: float, e: float) -> int:
-    """Where a point lies: 1 inside, 0 on the boundary, -1 outside. edges: (k, 4)."""
+    """The place of a point: 1 inside, 0 on the boundary, -1 outside. edges: (k, 4)."""
     seen, p = Seen(False, False), Vec2(n, e)
     for k in range(len(edges)):
         if min(edges[k, 1], edges[k, 3]) <= e and e <= max(edges[k, 1], edges[k, 3]):
@@ -34,8 +34,8 @@ def grid_squares(
 ) -> int:  # fmt: skip
     """Fill `found` (rows * columns, 2) with the centres of the squares that share a point with a polygon.
 
-    edges (k, 4): north, east, north, east of each edge; north, east: the grid's corner; side [m].
-    From south to north, and within a row from west to east. How many there are.
+    edges (k, 4): north, east, north, east of each edge; north, east: the grid's corner; side [m]. From south to
+    north, and within a row from west to east. Returns their number.
     """
     half, count, m = side / 2, 0, len(edges)
     near = np.empty(m, np.int64)
@@ -53,7 +53,7 @@ def grid_squares(
                     near[close] = k
                     close += 1
             if close == 0:
-                # no edge comes near: the square is where its middle is, and so are those beside it
+                # no edge comes near: the square has the place of its centre, and so have those beside it
                 if not known:
                     known, inside = True, place_of(edges, x, y) >= 0
                 shares = inside
@@ -84,8 +84,8 @@ def grid_squares(
 def mark_seen(centres: np.ndarray, half: float, quads: np.ndarray, seen: np.ndarray) -> None:
     """Set `seen` (n, bool) for every square of which each point lies in one of the convex footprints.
 
-    centres (n, 2): from south to north; half: of a square's side [m]; quads (m, k, 2): corners of
-    footprints, counter-clockwise (north to east), without NaN. Boxes only leave squares out.
+    centres (n, 2): from south to north; half: of a square's side [m]; quads (m, k, 2): corners of footprints,
+    counter-clockwise (north to east), without NaN. Bounding boxes only skip squares.
     """
     total = len(centres)
     for f in range(len(quads)):

@@ -11,7 +11,7 @@ from cratous.core.kernel import Vec2, fold, kernel
 def square_left_of(a: Vec2, b: Vec2, centre: Vec2, half: float) -> bool:
     """True iff every point of the square lies left of the line a-b, or on it.
 
-    centre, half: the square's middle and half of its side [m], >= 0; sides along the axes.
+    centre, half: the square's centre and half of its side [m], >= 0; sides along the axes.
     """
     return orient(a, b, centre) >= half * (abs(b.x - a.x) + abs(b.y - a.y))
 

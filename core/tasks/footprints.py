@@ -1,8 +1,7 @@
-"""Which points lie in which footprints, and where along a line to look: loops over arrays.
+"""Which points lie in which footprints, and which points of a line are nearest: loops over arrays.
 
-That a point lies in a footprint is what the kernels of `locate` say, edge by edge; half planes only
-find the footprints to ask about. CPython runs these functions as they stand;
-`core.readings.machine.compiled.machine` compiles the same text.
+The kernels of `locate` decide, edge by edge, whether a point lies in a footprint; half planes only preselect
+footprints. CPython runs these functions directly; `core.readings.machine.compiled.machine` compiles the same text.
 """
 
 import math
@@ -33,7 +32,7 @@ def in_quad(n: float, e: float, quad: np.ndarray) -> bool:
 def points_in_quads(points: np.ndarray, quads: np.ndarray, found: np.ndarray) -> None:
     """Fill `found` (n, bool): whether each point (n, 2) lies in at least one quadrilateral (m, 4, 2).
 
-    The search begins where the point before was found; neighbours along a line share footprints.
+    The search begins at the footprint of the previous point; neighbours along a line share footprints.
     """
     last, m = 0, len(quads)
     for i in range(len(points)):
@@ -48,12 +47,12 @@ def points_in_quads(points: np.ndarray, quads: np.ndarray, found: np.ndarray) ->
 def nearest_on_line(wanted: np.ndarray, line: np.ndarray, apart: float, found: np.ndarray) -> None:
     """Fill `found` (n, int64): the point of the line (m, 2) that is nearest to each wanted point (n, 2).
 
-    apart: no two neighbours on the line are farther apart than this, so that points which cannot
-    be nearer than the nearest so far are passed over.
+    apart: upper bound of the distance between neighbours on the line, so that points that cannot be nearer than the
+    nearest so far are skipped.
     """
     m, at = len(line), 0
     for i in range(len(wanted)):
-        # the nearest of the place before is a good beginning: more can be passed over
+        # the nearest point of the previous one is a good start: more can be skipped
         n, e = line[at, 0] - wanted[i, 0], line[at, 1] - wanted[i, 1]
         best, k = math.sqrt(n * n + e * e), 0
         while k < m:

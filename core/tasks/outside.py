@@ -1,8 +1,8 @@
-"""How much of what a search has to see lies where a vehicle may fly, at one altitude: outside of the zones.
+"""How much of what a search has to see lies where a vehicle may fly, at one altitude: outside the zones.
 
 A point of a line counts if a vehicle there obeys every zone (`leg_ok` of the leg from it to itself). An area is
-cut into squares; one that shares a point with a forbidden region counts in full against it, so the share is
-never more than what lies outside. Zones come with their padding turned into vertices.
+divided into squares; one that shares a point with a forbidden region counts in full as forbidden, so the share is
+never more than what lies outside. Zones have their padding turned into vertices.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from cratous.core.tasks.coverage_arrays import grid_squares
 from cratous.spec.mission import Position, Zone, ZoneKind
 
 AROUND_M = 100.0
-"""How far the box reaches beyond the area and a keep-in, of which what lies outside the keep-in is forbidden."""
+"""Margin by which the box extends beyond the area and a keep-in; its part outside the keep-in is forbidden [m]."""
 
 
 @driver(checked_by=("keep_out_leg_ok", "keep_in_leg_ok", "locate", "meets_boundary"))
@@ -38,7 +38,7 @@ def points_outside(points: Sequence[Corner], alt_m: float, zones: Sequence[Zone]
 
 @driver(checked_by=("location_step", "contact_step", "keep_out_leg_ok", "keep_in_leg_ok"))
 def area_outside(vertices: tuple[Corner, ...], alt_m: float, zones: Sequence[Zone]) -> float:
-    """At least this share of a simple polygon lies where a vehicle at this altitude obeys the zones."""
+    """Lower bound of the share of a simple polygon that lies where a vehicle at this altitude obeys the zones."""
     import numpy as np
 
     side_m = square_side_m(vertices)
@@ -63,7 +63,7 @@ def area_outside(vertices: tuple[Corner, ...], alt_m: float, zones: Sequence[Zon
 
 
 def _met(vertices: Sequence[Corner], rings: Sequence[Sequence[Corner]], side_m: float) -> Any:
-    """Centres of the squares of the area's grid that share a point with what lies between the rings."""
+    """Centres of the squares of the area's grid that share a point with the region between the rings."""
     import numpy as np
 
     corners = np.array(vertices, float)

@@ -1,4 +1,6 @@
-"""When vehicles meet, at which speed each arrives then, and whether it did. Definitions: `spec.rendezvous`."""
+"""Rendezvous of vehicles: the common time, the speed for arriving then, and whether each did. Definitions:
+`spec.rendezvous`.
+"""
 
 from typing import NamedTuple
 
@@ -6,7 +8,7 @@ from cratous.core.kernel import Vec2, kernel
 
 
 class Meeting(NamedTuple):
-    """When all who were asked can arrive: from first [ms] until last [ms], -1: without an end."""
+    """The arrival times common to all vehicles so far: from first [ms] until last [ms], -1: without an end."""
 
     first: int
     last: int
@@ -14,7 +16,7 @@ class Meeting(NamedTuple):
 
 @kernel(implements="rendezvous.in_window")
 def meeting_step(meeting: Meeting, soonest: int, latest: int) -> Meeting:
-    """With one more, who can arrive from soonest [ms] until latest [ms], -1: who can wait without an end."""
+    """Add a vehicle that can arrive from soonest [ms] until latest [ms], -1: that can wait without limit."""
     first = meeting.first
     if soonest > first:
         first = soonest
@@ -25,7 +27,7 @@ def meeting_step(meeting: Meeting, soonest: int, latest: int) -> Meeting:
 
 
 class Common(NamedTuple):
-    """found: there is a time at which all can arrive; time: the first one [ms]."""
+    """found: there is a time at which all can arrive; time: the earliest one [ms]."""
 
     found: bool
     time: int
@@ -33,12 +35,12 @@ class Common(NamedTuple):
 
 @kernel(implements="rendezvous.in_window")
 def common_time(meeting: Meeting) -> Common:
-    """The first time at which all can arrive, if there is one."""
+    """The earliest time at which all can arrive, if there is one."""
     return Common(meeting.last == -1 or meeting.last >= meeting.first, meeting.first)
 
 
 class Pace(NamedTuple):
-    """act: 0 fly at this speed [m/s], 1 too early at any, 2 too late at any."""
+    """act: 0 fly at this speed [m/s], 1 too early at any speed, 2 too late at any speed."""
 
     act: int
     speed_m_s: float
@@ -51,10 +53,10 @@ class Pace(NamedTuple):
 def pace(
     left_m: float, left_s: float, slowest_m_s: float, fastest_m_s: float, tolerance_s: float
 ) -> Pace:
-    """The speed at which the way that is left is flown in the time that is left, to within a tolerance.
+    """The speed at which the remaining distance is flown in the remaining time, to within a tolerance.
 
-    left_m: [m], >= 0; left_s: [s], negative: the time is over; slowest, fastest: [m/s], > 0, of the
-    vehicle; tolerance: [s], >= 0.
+    left_m: [m], >= 0; left_s: [s], negative: the time is over; slowest, fastest: [m/s], > 0, of the vehicle;
+    tolerance: [s], >= 0.
     """
     if left_m > fastest_m_s * (left_s + tolerance_s):
         return Pace(2, fastest_m_s)
@@ -72,9 +74,10 @@ def pace(
     nonnegative=("left_m", "lap_s", "slowest_m_s", "fastest_m_s"),
 )
 def spares_a_lap(left_m: float, lap_s: float, slowest_m_s: float, fastest_m_s: float) -> bool:
-    """True iff a way [m] takes so much longer at the slowest speed [m/s] than at the fastest as a lap takes [s].
+    """True iff the flight times of a distance [m] at the slowest and the fastest speed [m/s] differ by at least a lap
+    [s].
 
-    Then who waits in laps is at some lap's end neither too early nor too late.
+    Then a vehicle that waits in laps is, at the end of some lap, neither too early nor too late.
     """
     return left_m * (fastest_m_s - slowest_m_s) >= lap_s * slowest_m_s * fastest_m_s
 
@@ -85,8 +88,9 @@ def spares_a_lap(left_m: float, lap_s: float, slowest_m_s: float, fastest_m_s: f
     restates="a time, compared by the way that is flown in it",
 )
 def another_lap(left_m: float, left_s: float, lap_s: float, nominal_m_s: float) -> bool:
-    """True iff after one more lap [s] the way [m] can still be flown at the nominal speed [m/s] in what is left
-    of the time [s]."""
+    """True iff after one more lap [s] the distance [m] can still be flown at the nominal speed [m/s] in the remaining
+    time [s].
+    """
     return left_m <= nominal_m_s * (left_s - lap_s)
 
 
@@ -96,11 +100,11 @@ def another_lap(left_m: float, left_s: float, lap_s: float, nominal_m_s: float) 
     restates="two bounds of a time",
 )
 def in_company(at: int, common: int, tolerance: int) -> bool:
-    """True iff who arrived at `at` [ms] did so within the tolerance [ms], >= 0, of the common time [ms]."""
+    """True iff the arrival at `at` [ms] was within the tolerance [ms], >= 0, of the common time [ms]."""
     return common - tolerance <= at and at <= common + tolerance
 
 
 @kernel(implements="rendezvous.beyond_line")
 def beyond(here: Vec2, place: Vec2, ahead: Vec2) -> bool:
-    """True iff `here` is not behind the line through a place across the direction `ahead` (any length)."""
+    """True iff `here` is not behind the line through a place perpendicular to the direction `ahead` (any length)."""
     return (here.x - place.x) * ahead.x + (here.y - place.y) * ahead.y >= 0

@@ -6,9 +6,10 @@ from cratous.core.kernel import kernel
 
 
 class Watched(NamedTuple):
-    """What was seen of a task. ended: it was flown to its end; over: the flight has ended; unseen: part of
-    what counts was not seen; short: too little of a search was seen; near: it came within its standoff;
-    missed: what its place asks for was not seen."""
+    """Observations of a task. ended: it was flown to its end; over: the flight has ended; unseen: part of what counts
+    was not observed; short: too little of a search was seen; near: the vehicle came within its standoff distance;
+    missed: what its location requires was not seen.
+    """
 
     ended: bool
     over: bool
@@ -20,7 +21,7 @@ class Watched(NamedTuple):
 
 @kernel(implements="service.served_if")
 def service_verdict(seen: Watched) -> int:
-    """0: the task was not served, 1: it was, 2: that is not known."""
+    """0: the task was not served, 1: it was, 2: unknown."""
     if seen.near:
         return 0
     if not seen.ended:

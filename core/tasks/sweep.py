@@ -1,8 +1,8 @@
-"""Lanes over an area, and search patterns, as straight pieces that are then joined by turns.
+"""Lanes over an area, and search patterns, as straight segments that are then joined by turns.
 
-A *swath* is what a footprint covers beside and ahead of a moving aircraft; a *strip* is a straight
-part of the area as wide as one lane covers. Lanes are made so that their swaths cover the strips.
-Nothing here is trusted: legs are checked by the zone kernels, coverage by `core.tasks.coverage`.
+A *swath* is what a footprint covers beside and ahead of a moving aircraft; a *strip* is a straight part of the area
+as wide as one lane covers. Lanes are made so that their swaths cover the strips. Nothing here is trusted: legs are
+checked by the zone kernels, coverage by `core.tasks.coverage`.
 
 Directions are clockwise from north; "right" of a heading h is the direction (-sin h, cos h).
 """
@@ -22,13 +22,13 @@ from cratous.spec.mission.plan import Pose
 
 Corner = tuple[float, float]
 SLICES = 40
-"""In how many places across a footprint its length is measured."""
+"""Number of positions across a footprint at which its length is measured."""
 LANES_MOST = 200
-"""More lanes than this are not flown by one vehicle in one task."""
+"""Maximum number of lanes that one vehicle flies in one task."""
 
 
 class Swath(NamedTuple):
-    """From left_m to right_m beside the track, wholly seen between near_m and far_m ahead [m]."""
+    """From left_m to right_m beside the track, fully seen between near_m and far_m ahead [m]."""
 
     left_m: float
     right_m: float
@@ -37,19 +37,19 @@ class Swath(NamedTuple):
 
     @property
     def width_m(self) -> float:
-        """How wide a strip one pass covers."""
+        """The width of the strip covered by one pass [m]."""
         return self.right_m - self.left_m
 
 
 class Strip(NamedTuple):
-    """The middle line of a strip that one lane has to cover, from one end to the other."""
+    """The centre line of a strip that one lane has to cover, from one end to the other."""
 
     start: Corner
     end: Corner
 
 
 class Piece(NamedTuple):
-    """A part of a path that is flown as it is: end poses and the polyline between."""
+    """A part of a path that is flown unchanged: end poses and the polyline between."""
 
     start: Pose
     end: Pose
@@ -63,8 +63,8 @@ SwathOf = Callable[[float], Swath | None]
 def swath(corners: Sequence[Corner], heading_rad: float, least_m: float) -> Swath | None:
     """The swath of a convex footprint given relative to the aircraft (north, east) [m].
 
-    Only what is at least least_m long in the direction of flight counts, so that what is seen
-    from one moment to the next has no gaps. None if no part is.
+    Only the part at least least_m long in the direction of flight counts, so that successive images leave no gaps.
+    None if there is no such part.
     """
     c, s = math.cos(heading_rad), math.sin(heading_rad)
     own = [(n * c + e * s, e * c - n * s) for n, e in corners]
@@ -72,14 +72,14 @@ def swath(corners: Sequence[Corner], heading_rad: float, least_m: float) -> Swat
     middle = max((low + (high - low) * k / SLICES for k in range(1, SLICES)), key=_length(own))
     if _length(own)(middle) < least_m:
         return None
-    # a convex footprint is long enough between two places, which halving finds to a millimetre
+    # a convex footprint is long enough between two positions, found by bisection to a millimetre
     left, right = (_edge_of(own, middle, end, least_m) for end in (low, high))
     rows = [_row(own, left + (right - left) * k / SLICES) for k in range(SLICES + 1)]
     return Swath(left, right, max(row[0] for row in rows), min(row[1] for row in rows))
 
 
 def _row(own: Sequence[Corner], y: float) -> tuple[float, float]:
-    """From where to where a convex polygon (ahead, right) reaches ahead at y to the right of the middle."""
+    """The range (ahead) of a convex polygon (ahead, right) at offset y to the right of the centre."""
     along = []
     for (x1, y1), (x2, y2) in zip(own, (*own[1:], own[0]), strict=True):
         if min(y1, y2) <= y <= max(y1, y2):
@@ -93,7 +93,7 @@ def _length(own: Sequence[Corner]) -> Callable[[float], float]:
 
 
 def _edge_of(own: Sequence[Corner], inner: float, outer: float, least_m: float) -> float:
-    """The place nearest to `outer` at which the polygon is at least least_m long, as it is at `inner`."""
+    """The position nearest to `outer` at which the polygon is at least least_m long, as it is at `inner`."""
     while abs(outer - inner) > 1e-3:
         between = (inner + outer) / 2
         if _length(own)(between) >= least_m:
@@ -104,7 +104,7 @@ def _edge_of(own: Sequence[Corner], inner: float, outer: float, least_m: float) 
 
 
 def strips_needed(vertices: Sequence[Corner], heading_rad: float, width_m: float) -> int:
-    """How many parallel strips at most width_m wide cover the polygon; 0 if more than LANES_MOST."""
+    """The number of parallel strips at most width_m wide that cover the polygon; 0 if more than LANES_MOST."""
     c, s = math.cos(heading_rad), math.sin(heading_rad)
     across = [e * c - n * s for n, e in vertices]
     extent = max(across) - min(across)
@@ -114,10 +114,10 @@ def strips_needed(vertices: Sequence[Corner], heading_rad: float, width_m: float
 
 
 def strips(vertices: Sequence[Corner], heading_rad: float, width_m: float) -> list[Strip]:
-    """The polygon cut into equal parallel strips at most width_m wide, from left to right.
+    """The polygon divided into equal parallel strips at most width_m wide, from left to right.
 
-    Each runs in the heading's direction over the whole extent of the polygon within it; empty if
-    there would be more than LANES_MOST.
+    Each runs in the heading's direction over the whole extent of the polygon within it; empty if there would be more
+    than LANES_MOST.
     """
     c, s = math.cos(heading_rad), math.sin(heading_rad)
     own = [(n * c + e * s, e * c - n * s) for n, e in vertices]
@@ -155,7 +155,7 @@ def lane(strip: Strip, heading_rad: float, seen: Swath, alt_m: float, lead_m: fl
 
 
 def orders(count: int, stride: int) -> list[tuple[int, ...]]:
-    """In which order parallel lanes may be flown: neighbours next, or every so manyth first.
+    """Possible orders of parallel lanes: neighbours in turn, or with a stride.
 
     With a turn wider than a lane, flying every k-th lane and then those between is shorter.
     """
@@ -198,7 +198,7 @@ def sweep(
 
 
 def _middles(row: Sequence[Strip]) -> tuple[Corner, Corner]:
-    """Where the first and the last strip's lines come closest: measured across the strips."""
+    """The positions of the first and the last strip, measured across the strips, as points (across, 0) [m]."""
     (n1, e1), (n2, e2) = row[0]
     length = math.dist(*row[0]) or 1.0
     c, s = (n2 - n1) / length, (e2 - e1) / length
@@ -214,7 +214,7 @@ def unjoined_m(pieces: Sequence[Piece], radius_m: float) -> float:
 
 @driver(checked_by=("keep_out_leg_ok", "keep_in_leg_ok"))
 def joined(pieces: Sequence[Piece], radius_m: float, roadmaps: Sequence[Roadmap]) -> Route:
-    """The pieces with turns between them that obey the zones, or the reason why there is none."""
+    """The segments joined by turns that obey the zones, or the reason why that is not possible."""
     points: list[Position] = list(pieces[0].points)
     for k, (before, after) in enumerate(pairwise(pieces)):
         turn = Route((), 0.0, "")
@@ -246,7 +246,7 @@ def square_spiral(
 ) -> list[Strip]:
     """Strips from the centre outwards that cover a square of side 2 extent_m, each a quarter turn on.
 
-    The square stands along the heading; empty if there would be more than LANES_MOST strips.
+    The sides of the square are along the heading and across it; empty if there would be more than LANES_MOST strips.
     """
     count = max(2, math.ceil(2 * extent_m / width_m - 1e-9))
     if 2 * count > LANES_MOST:
@@ -270,7 +270,7 @@ def square_spiral(
 
 
 def sector(centre: Corner, extent_m: float, width_m: float, heading_rad: float) -> list[Strip]:
-    """Passes over the centre from rim to rim, turned so that neighbours meet at the rim; 3 or more."""
+    """Passes over the centre from rim to rim, rotated so that neighbours meet at the rim; 3 or more."""
     count = 3
     if width_m < 2 * extent_m:
         count = max(3, math.ceil(math.pi / (2 * math.asin(width_m / (2 * extent_m))) - 1e-9))
@@ -305,11 +305,11 @@ def spiral(
     clockwise: bool,
     alt_m: float,
 ) -> Piece:
-    """A circle at first_m, then outwards by at most step_m a lap, and a circle at last_m."""
+    """A circle at first_m, then outwards by at most step_m per lap, and a circle at last_m."""
     laps = max(1, math.ceil((last_m - first_m) / step_m - 1e-9)) if last_m > first_m else 0
     side, points, poses = (1 if clockwise else -1), [], []
     whole = 2 + laps if laps else 1
-    # chords that leave the curve by half a metre at most
+    # chords that deviate from the curve by half a metre at most
     count = math.ceil(whole * 2 * math.pi / (2 * math.acos(1 - 0.5 / last_m)))
     for k in range(count + 1):
         turned = whole * 2 * math.pi * k / count

@@ -112,9 +112,9 @@ THRESHOLDS = Thresholds._fields
 class Volume:
     """A well-clear volume: its time variable and its thresholds, each a number or an array >= 0.
 
-    dthr_m: distance [m]; zthr_m: altitude [m]; tthr_s: on the time variable [s]; tcoa_s: on the
-    time to co-altitude [s]; vmod_s: time that the closing climb rate is multiplied by [s];
-    model: `tau_mod` (DO-365), `tcpa`, `tep`. Sets are closed. Raises BadInput.
+    dthr_m: distance [m]; zthr_m: altitude [m]; tthr_s: on the time variable [s]; tcoa_s: on the time to co-altitude
+    [s]; vmod_s: time by which the closing climb rate is multiplied [s]; model: `tau_mod` (DO-365), `tcpa`, `tep`.
+    Sets are closed. Raises BadInput.
 
     >>> Volume(100.0, 30.0, tthr_s=-1.0)
     Traceback (most recent call last):
@@ -256,7 +256,7 @@ def spans_on_doubles(s: Any, v: Any, volume: Volume, b_s: Any, t_s: Any) -> Span
 
 # -- entries --------------------------------------------------------------------------------
 def _numbers(value: Any, name: str) -> Any:
-    """The value as doubles; BadInput where it is not numbers, or not finite."""
+    """The value as doubles; BadInput if it is not numeric, or not finite."""
     try:
         found = np.asarray(value)
     except ValueError as error:

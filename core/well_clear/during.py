@@ -1,8 +1,8 @@
 """Whether well clear is lost during a span of straight flight, without division and root.
 
-Definitions: `spec.well_clear`. Relative state is ownship minus intruder; time is scaled by the
-relative climb rate instead of divided by it, so every verdict has an exact reading. When the
-violation begins and ends is told by `core.well_clear.interval`.
+Definitions: `spec.well_clear`. Relative state is ownship minus intruder; time is scaled by the relative climb rate
+instead of divided by it, so every verdict has an exact reading. The violation interval is computed by
+`core.well_clear.interval`.
 """
 
 from typing import NamedTuple
@@ -39,7 +39,7 @@ def horizontal_violation_within(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, 
 
 
 class Window(NamedTuple):
-    """A time window in scaled time: it holds the instants t with first <= t * scale <= last."""
+    """A time window in scaled time: it contains the instants t with first <= t * scale <= last."""
 
     scale: float
     first: float
@@ -74,7 +74,7 @@ def violation_within(
     thresholds: StandardThresholds,
     h_s: float,
 ) -> bool:
-    """True iff well clear is lost at some t in [0, h_s] if both fly straight on."""
+    """True iff well clear is lost at some t in [0, h_s] if both fly straight."""
     dthr_m, zthr_m, tthr_s, tcoa_s = thresholds
     k, first, last = vertical_window(sz, vz, zthr_m, tcoa_s, h_s)
     if first > last:
@@ -114,7 +114,7 @@ def horizontal_violation_within_tep(
     s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, h_s: float
 ) -> bool:
     """True iff the volume with tep is violated at some t in [0, h_s] of straight flight."""
-    # entering within TTHR is being within DTHR so much later
+    # entering within TTHR means being within DTHR at most that much later
     return within_during(s, v, dthr_m, h_s + tthr_s)
 
 

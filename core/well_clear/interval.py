@@ -20,7 +20,7 @@ from cratous.core.well_clear.thresholds import Thresholds
 
 
 class Span(NamedTuple):
-    """The instants first_s <= t <= last_s [s]; Span(1, 0) holds none."""
+    """The instants first_s <= t <= last_s [s]; Span(1, 0) is empty."""
 
     first_s: float
     last_s: float
@@ -89,7 +89,7 @@ def times_taumod(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, b_s: float, t_s
     vv = v.x * v.x + v.y * v.y
     sv = s.x * v.x + s.y * v.y
     cross = s.x * v.y - s.y * v.x
-    # asked of v itself as well: the square of a small speed may round to 0
+    # v itself is tested as well: the square of a small speed may round to 0
     if (v.x == 0 and v.y == 0) or vv == 0:
         return Span(b_s, t_s)
     disc = max(dthr_m * dthr_m * vv - cross * cross, 0)
@@ -122,7 +122,7 @@ def times_tcpa(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, b_s: float, t_s: 
     vv = v.x * v.x + v.y * v.y
     sv = s.x * v.x + s.y * v.y
     cross = s.x * v.y - s.y * v.x
-    # asked of v itself as well: the square of a small speed may round to 0
+    # v itself is tested as well: the square of a small speed may round to 0
     if (v.x == 0 and v.y == 0) or vv == 0:
         return Span(b_s, t_s)
     disc = max(dthr_m * dthr_m * vv - cross * cross, 0)
@@ -154,7 +154,7 @@ def times_tep(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, b_s: float, t_s: f
     vv = v.x * v.x + v.y * v.y
     sv = s.x * v.x + s.y * v.y
     cross = s.x * v.y - s.y * v.x
-    # asked of v itself as well: the square of a small speed may round to 0
+    # v itself is tested as well: the square of a small speed may round to 0
     if (v.x == 0 and v.y == 0) or vv == 0:
         return Span(b_s, t_s)
     disc = max(dthr_m * dthr_m * vv - cross * cross, 0)

@@ -122,7 +122,7 @@ def tep_decision(ss: float, vv: float, sv: float, cross: float, dd: float, tthr_
 def horizontal_violation_tau(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float) -> bool:
     """True iff the horizontal volume with plain tau is violated now; not convex in time.
 
-    Arguments as for `horizontal_violation`. For comparison only: nothing of ours decides by it.
+    Arguments as for `horizontal_violation`. For comparison only: nothing in this project is decided by it.
     """
     ss = s.x * s.x + s.y * s.y
     vv = v.x * v.x + v.y * v.y
@@ -140,8 +140,8 @@ def horizontal_violation_tau(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float) -> 
 def vertical_violation_vmod(sz: float, vz: float, zthr_m: float, vmod_s: float) -> bool:
     """True iff the vertical volume with VMOD is violated now: ZTHR grows with the closing rate.
 
-    sz: relative altitude [m]; vz: relative climb rate [m/s]; zthr_m: [m], >= 0;
-    vmod_s: time that the closing rate is multiplied by [s], >= 0.
+    sz: relative altitude [m]; vz: relative climb rate [m/s]; zthr_m: [m], >= 0; vmod_s: time by which the closing
+    rate is multiplied [s], >= 0.
     """
     if abs(sz) <= zthr_m:
         return True

@@ -1,11 +1,11 @@
-"""Writes the documents that follow from the records, into `docs/generated/` or the folder named.
+"""Writes the documents generated from the records, into `docs/generated/` or the folder given.
 
-`proof-inventory.md` from the ledger and the re-check, `mutation.md` from the record of mutants,
-`services.md` from the registry of services and the tests (`services_table.py`). They are not kept
-in the repository: they follow from what is, and two branches would both rewrite them.
+`proof-inventory.md` from the ledger and the re-check, `mutation.md` from the record of mutants, `services.md` from
+the registry of services and the tests (`services_table.py`). They are not kept in the repository, where any two
+branches would both rewrite them.
 
-The second solver's verdicts and the effort come from `proofs/recheck.json`, which
-`cratous prove --recheck` writes; a theorem that it does not know is shown as not re-checked.
+The second solver's verdicts and the effort come from `proofs/recheck.json`, which `cratous prove --recheck` writes; a
+theorem that is not in it is shown as not re-checked.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ FOLDER = Path(__file__).resolve().parents[1] / "generated"
 
 
 def inventory() -> str:
-    """Every theorem with its sentence, then every kernel, fold and driver with what checks it."""
+    """Every theorem with its sentence, then every kernel, fold and driver with the evidence for it."""
     data, second = ledger.read(), recheck.read()
     theorems, kernels = data["theorems"], data["kernels"]
     names = short(kernels)
@@ -94,17 +94,17 @@ def inventory() -> str:
 
 
 def _cell(text: str) -> str:
-    """Text that stands in a table and means only itself."""
+    """Text for a table cell, with special characters escaped."""
     return text.replace("|", "\\|").replace("*", "\\*").replace("_", "\\_").replace("<", "&lt;")
 
 
 def mutation() -> str:
-    """What mutants came of every kernel and definition; what is no longer up to date is named."""
+    """The results of mutation for every kernel and definition; stale results are marked."""
     return mutation_record.document(mutation_record.read(), Keys())
 
 
 def main(folder: Path) -> None:
-    """Write all of them."""
+    """Write all documents."""
     folder.mkdir(parents=True, exist_ok=True)
     pages = {
         "proof-inventory.md": inventory,

@@ -1,7 +1,6 @@
 """Draws the pictures of docs/guides/geofence.md: `python docs/tools/geofence_pictures.py`.
 
-What is drawn is what the product says of the shapes: places, buffers, stretches and faults come
-from `cratous.core.geofence`.
+All results shown (places, buffers, spans and errors) are computed by `cratous.core.geofence`.
 """
 
 from __future__ import annotations
@@ -68,7 +67,7 @@ def faults() -> None:
 
 
 def on_the_edge() -> None:
-    """Points one step of a double apart, around an edge: doubles against the exact reading."""
+    """Points one unit in the last place apart, around an edge: in doubles and by the exact reading."""
     corners = [(-3.0, -1.0), (3.0, 1.0), (0.0, 4.0)]
     shape = geofence.polygon(corners)
     n, step = 17, 2.0**-53
@@ -96,7 +95,7 @@ def on_the_edge() -> None:
 
 
 def passage() -> None:
-    """A leg through a comb, and one along its teeth: each point has its place."""
+    """A leg through a comb-shaped zone, and one along its teeth, with the place of each point."""
     shape = geofence.polygon(COMB)
     figure, axis = plt.subplots(figsize=(6, 3.6))
     _outline(axis, COMB)
@@ -113,7 +112,7 @@ def passage() -> None:
 
 
 def buffers() -> None:
-    """A star widened and narrowed by a buffer: where the places in them change."""
+    """A star widened and narrowed by a buffer: where the places change."""
     shape = geofence.polygon(STAR)
     x, y = np.linspace(-2, 10, 241), np.linspace(-2, 9, 221)
     grid = np.stack(np.meshgrid(x, y), axis=-1)
@@ -129,7 +128,7 @@ def buffers() -> None:
 
 
 def main() -> None:
-    """Draw all of them."""
+    """Draw all pictures."""
     for draw in (faults, on_the_edge, passage, buffers):
         draw()
 

@@ -1,8 +1,9 @@
-"""Takes the pictures of the ground station in `docs/img`, in a headless Chromium, of what is flown, planned and watched.
+"""Takes the pictures of the ground station in `docs/img`, in a headless Chromium, from live flights, plans and
+replays.
 
-    PYTHONPATH=src:tests/tools:tests/mission_editor python docs/tools/ground_station_pictures.py [NAME...]
+    PYTHONPATH=$PWD/src:tests/tools python docs/tools/ground_station_pictures.py [NAME...]
 
-NAME: one of two, bands, live, hold, command, edit, attached, or replay; without any, all. Look at each one.
+NAME: one of two, bands, live, hold, command, edit, attached, or replay; without any, all. Check each one by eye.
 """
 
 from __future__ import annotations
@@ -20,9 +21,9 @@ from tempfile import TemporaryDirectory
 import chromium_tools
 from chromium_tools import READY, Page, browsing, playing
 from daidalus_sky import SEES, Craft, Sky, fly
+from editor_tools import write as type_into
 from ground_station_tools import Served, attaching, editing, flying, serving
 from log_tools import write as write_log
-from test_editor_page import write as type_into
 
 from cratous.bridge import lmcp
 from cratous.core.files.whole_file import replacing
@@ -36,12 +37,12 @@ NEWEST_MS = "Number(document.getElementById('slider').max)"
 
 
 def taken(page: Page, name: str, width_px: int = 1280, height_px: int = 800) -> None:
-    """What the page shows, as a file of docs/img."""
+    """Write a screenshot of the page as a file of docs/img."""
     page.call(
         "Emulation.setDeviceMetricsOverride",
         width=width_px, height=height_px, deviceScaleFactor=1, mobile=False,
     )  # fmt: skip
-    time.sleep(1.0)  # it draws anew for another size
+    time.sleep(1.0)  # the page redraws after a change of size
     shot = page.call("Page.captureScreenshot", format="png")
     with replacing(FOLDER / name) as unnamed:
         unnamed.write_bytes(base64.b64decode(shot["data"]))
@@ -49,7 +50,7 @@ def taken(page: Page, name: str, width_px: int = 1280, height_px: int = 800) -> 
 
 
 def flown(work: Path, *more: str) -> Path:
-    """The results of the crossing."""
+    """The results folder of a flight of the crossing."""
     out = work / ("bare" if more else "out")
     words = ["run", str(CROSSING), "--allow-unproved", "--quiet", "--out", str(out), *more]
     subprocess.run([sys.executable, "-m", "cratous", *words], cwd=ROOT, check=False)
@@ -57,14 +58,14 @@ def flown(work: Path, *more: str) -> Path:
 
 
 def replay(work: Path) -> None:
-    """A takeover, replayed."""
+    """Picture `replay`: the replay of a takeover."""
     with playing(flown(work), work / "replay", 30.0) as page:
         page.value("location.hash = '#t=30&theme=light&aircraft=2'")
         taken(page, "ground-station.png")
 
 
 def two(work: Path) -> None:
-    """With and without ICAROUS, where the latter loses well clear."""
+    """Picture `two`: flights with and without ICAROUS; well clear is lost without it."""
     flown(work)
     flown(work, "--no-daa")
     with (
@@ -77,7 +78,7 @@ def two(work: Path) -> None:
 
 
 def bands(work: Path) -> None:
-    """Bands of a vehicle that another one flies at, with a third one near."""
+    """Picture `bands`: the bands of a vehicle with an intruder on a collision course and a third aircraft nearby."""
     sky = Sky(work, SEES)
     fly(
         sky,
@@ -96,7 +97,7 @@ def bands(work: Path) -> None:
 
 @contextlib.contextmanager
 def commanded(work: Path, name: str) -> Iterator[tuple[Served, Page]]:
-    """The crossing in flight, standing at its begin, and the page that commands it."""
+    """The crossing in flight, paused at its start, and the page that commands it."""
     with flying(CROSSING, work / name, ROOT) as live, browsing(work / f"{name}-page") as page:
         page.go(live.url)
         page.until(f"{STATE} === 'paused' && !document.getElementById('fly').disabled")
@@ -104,7 +105,7 @@ def commanded(work: Path, name: str) -> Iterator[tuple[Served, Page]]:
 
 
 def until_ms(page: Page, time_ms: int, rate: int) -> None:
-    """Fly to a time and stand."""
+    """Fly to a time and pause."""
     choose(page, "live-rate", str(rate))
     page.click("#fly")
     page.until(f"{NEWEST_MS} >= {time_ms}")
@@ -113,7 +114,7 @@ def until_ms(page: Page, time_ms: int, rate: int) -> None:
 
 
 def click_map(page: Page, across: float, down: float) -> None:
-    """Click on the map, at parts of its width and height."""
+    """Click on the map, at fractions of its width and height."""
     x, y, width, height = page.value(
         "(b => [b.x, b.y, b.width, b.height])(document.getElementById('map').getBoundingClientRect())"
     )
@@ -123,7 +124,7 @@ def click_map(page: Page, across: float, down: float) -> None:
 
 
 def choose(page: Page, name: str, value: str) -> None:
-    """Pick an item of a list."""
+    """Select an item of a list."""
     page.value(
         f"(s => {{ s.value = {value!r}; s.dispatchEvent(new Event('change')); }})"
         f"(document.getElementById({name!r}))"
@@ -131,7 +132,7 @@ def choose(page: Page, name: str, value: str) -> None:
 
 
 def drawn(page: Page, what: str, *places: tuple[float, float]) -> None:
-    """Pick what the operator asks for, and click its places on the map."""
+    """Select a kind of command of the operator, and click its places on the map."""
     choose(page, "operate", what)
     page.until("document.getElementById('operate-hint').textContent.startsWith('Click')")
     for across, down in places:
@@ -139,7 +140,7 @@ def drawn(page: Page, what: str, *places: tuple[float, float]) -> None:
 
 
 def live(work: Path) -> None:
-    """A flight, paused while ICAROUS has a vehicle."""
+    """Picture `live`: a flight, paused while ICAROUS commands a vehicle."""
     with commanded(work, "live") as (_, page):
         until_ms(page, 24_000, 5)
         page.until("document.getElementById('verdicts-at').textContent.startsWith('so far, at ')")
@@ -147,20 +148,21 @@ def live(work: Path) -> None:
 
 
 def hold(work: Path) -> None:
-    """A vehicle that holds where it was sent."""
+    """Picture `hold`: a vehicle that holds at the position commanded."""
     with commanded(work, "hold") as (_, page):
         until_ms(page, 120_000, 50)
         drawn(page, "hold_at", (0.6, 0.45))
         page.until("document.getElementById('confirm-command').open")
         page.value("document.getElementById('command-vehicle').value = 1")
         page.click("#command-yes")
+        page.until("!document.getElementById('confirm-command').open")
         until_ms(page, 200_000, 50)
         page.until("document.getElementById('live-text').textContent.includes('circles')")
         taken(page, "ground-station-hold.png")
 
 
 def command(work: Path) -> None:
-    """A keep-out zone of the operator's."""
+    """Picture `command`: a keep-out zone of the operator's."""
     with commanded(work, "command") as (_, page):
         until_ms(page, 24_000, 5)
         drawn(page, "keep_out", (0.66, 0.62), (0.86, 0.62), (0.86, 0.9))
@@ -173,7 +175,7 @@ def command(work: Path) -> None:
 
 
 def edit(work: Path) -> None:
-    """Relations with an error in them, beside the plan of what they were."""
+    """Picture `edit`: relations with an error in them, beside the plan of the previous version."""
     copy = Path("relations.yaml")
     copy.write_bytes((ROOT / "examples/relations/mission.yaml").read_bytes())
     with editing(copy) as served, browsing(work / "edit") as page:
@@ -191,7 +193,7 @@ def edit(work: Path) -> None:
 
 
 def attached(work: Path) -> None:
-    """A simulation that is watched."""
+    """Picture `attached`: a simulation that is observed."""
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     scenario = work / "crossing.xml"
@@ -218,7 +220,7 @@ ALL: dict[str, Callable[[Path], None]] = {
 
 
 def main() -> None:
-    """Take those that are named, or all."""
+    """Take the pictures named on the command line, or all."""
     chromium_tools.LIMIT_S = 400.0
     for name in sys.argv[1:] or ALL:
         with TemporaryDirectory(prefix="cratous-") as work, contextlib.chdir(work):

@@ -12,7 +12,7 @@ HEAD = "| name | default | here |\n|---|---|---|\n"
 
 
 def main() -> None:
-    """Everything after the head of the table is written anew."""
+    """Rewrite everything after the head of the table."""
     rows = []
     for name in NAMES.values():
         used = f"sets `{name.item}`" if name.item else "not used"

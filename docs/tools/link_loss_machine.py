@@ -1,11 +1,11 @@
-"""The machine that a vehicle flies by while UxAS is not heard, drawn from the kernel that decides.
+"""The state machine that a vehicle follows while UxAS is not heard, drawn from the kernel that decides.
 
     python docs/tools/link_loss_machine.py
 
-prints the block of docs/guides/detect-and-avoid.md: `loss_step` is asked for each mode that it reaches and each answer to
-what it asks (is UxAS heard, is what is chosen permitted, is the vehicle at its end), and an arrow is drawn where the mode
-changes. The modes, and what a mission may choose of them, are those of the specification: `CRATOUS/WithoutLink` of
-spec/lmcp names them.
+prints the diagram for docs/guides/detect-and-avoid.md: `loss_step` is evaluated for each mode that it reaches and each
+combination of its inputs (whether UxAS is heard, the chosen manoeuvre is permitted, the vehicle is at its end), and
+an arrow is drawn where the mode changes. The modes, and which of them a mission may choose, are those of the
+specification: `CRATOUS/WithoutLink` of spec/lmcp names them.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ NOW, BOUND = 10, 5
 
 
 def modes() -> dict[int, str]:
-    """The modes by number, with their names."""
+    """The names of the modes, by number."""
     mode: Any = lmcp.new("LinkLossState").Mode
     return {int(one): one.name for one in type(mode)}
 
 
 def arrows() -> dict[tuple[int, int], set[str]]:
-    """From which mode to which, and when."""
+    """The conditions of each transition, by the pair of modes (from, to)."""
     found: dict[tuple[int, int], set[str]] = {}
     for chosen in filter(may_be_chosen, modes()):
         reached, to_ask = {LINKED}, [LINKED]

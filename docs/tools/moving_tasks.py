@@ -2,8 +2,8 @@
 
     PYTHONPATH=src:tests/tools python docs/tools/moving_tasks.py
 
-What is drawn is flown, or driven: whole requests by `cratous uxas`, with the vehicles of `cratous sim`, in one process and
-in virtual time. The same code gives the same files.
+All tracks shown are simulated: complete requests to `cratous uxas`, with the vehicles of `cratous sim`, in one
+process and in virtual time. The same code gives the same files.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ HEARD = ("afrl.cmasi.AutomationResponse", "afrl.cmasi.VehicleActionCommand")
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7")
 CAR = (0.03, 0.002)
 STREET = ((0.034, 0.002), (0.034, 0.014), (0.055, 0.014))
-"""Where what is watched begins, and the corners of its way."""
+"""CAR is the start of the watched vehicle, STREET the corners of its route."""
 mpl.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "moving", "font.size": 8})
 
 
 class Panel(NamedTuple):
-    """title; flight; marks: places and their names; rings: places with a radius [m]."""
+    """title; flight; marks: places with their names; rings: places with a radius [m]."""
 
     title: str
     flight: Flight
@@ -73,7 +73,7 @@ WEST = ((0.0, 0.0), (0.004, -0.02), (0.012, -0.03))
 
 
 def flown(task: Any, seconds: float, *more: Any, starts: Sequence[Any] = SOUTH[:1]) -> Flight:
-    """Aircraft that begin at places do a task; a car drives, but where they come from the west."""
+    """Fly a task with aircraft at given starting places; a car drives, unless the aircraft come from the west."""
     bodies = list[Any]() if starts is WEST else car()
     numbers = tuple(range(1, len(starts) + 1))
     for n, at in zip(numbers, starts, strict=True):
@@ -88,12 +88,12 @@ def flown(task: Any, seconds: float, *more: Any, starts: Sequence[Any] = SOUTH[:
 
 
 def lasting(seconds: int) -> list[Any]:
-    """The parameter that says for how long."""
+    """The parameter for the duration of a task."""
     return [lmcp.new("KeyValuePair", Key="Duration_ms", Value=str(1000 * seconds))]
 
 
 def cordon() -> Flight:
-    """The example, as it is but for its bridge."""
+    """The flight of the example, unchanged except for its bridge."""
     with TemporaryDirectory() as name:
         folder = shutil.copytree(ROOT / "examples" / "cordon", Path(name) / "cordon")
         cfg = folder / "cfg_driven.xml"
@@ -105,7 +105,7 @@ def cordon() -> Flight:
 
 
 def together(seconds: float) -> Flight:
-    """Two processes, each of one vehicle, plan a request together, and each has its own vehicle fly its part."""
+    """Two processes, each with one vehicle, plan a request together, and each flies its own vehicle's part."""
     numbers, flight = (1, 2), Flight([])
     original = request(5, 6, 7, 8, vehicles=numbers)
     asked = lmcp.new("CoordinatedAutomationRequest", RequestID=7, MaximumResponseTime=5000,
@@ -149,7 +149,7 @@ CORNERS = ((0.03, -0.015), (0.045, -0.01), (0.03, 0.018), (0.05, 0.012))
 
 
 def moving() -> list[Panel]:
-    """What is drawn of the tasks that keep to what moves, and of those of several."""
+    """The panels of the tasks that follow moving objects, and of those for several vehicles."""
     watch = lmcp.new("WatchTask", TaskID=5, WatchedEntityID=ENTITY, DwellTime=120_000)
     several = lmcp.new("MultiVehicleWatchTask", TaskID=5, WatchedEntityID=ENTITY,
                        DwellTime=120_000, NumberVehicles=2)  # fmt: skip
@@ -179,7 +179,7 @@ def moving() -> list[Panel]:
 
 
 def draw(axis: Any, panel: Panel, streets: bool = False, bar_m: int = 500) -> None:
-    """One flight: where each was, thick while its task was active, and when that was complete."""
+    """Draw one flight: the tracks, thick while the vehicle's task was active, and the time of its completion."""
     flight = panel.flight
     told = [b for b in flight.of("AirVehicleState") + flight.of("GroundVehicleState") if b.Time]
     origin = told[0].Location
@@ -224,7 +224,7 @@ def _line(axis: Any, way: Sequence[Any], colour: str, style: str, width: float) 
 
 
 def _streets(axis: Any, origin: Any) -> None:
-    """The roads of the example's map."""
+    """Draw the roads of the example's map."""
     text = (ROOT / "examples" / "cordon" / "roads.osm").read_text()
     nodes = {
         number: lmcp.new("Location3D", Latitude=float(lat), Longitude=float(lon))
@@ -238,7 +238,7 @@ def _streets(axis: Any, origin: Any) -> None:
 
 
 def cordon_near(panel: Panel) -> Any:
-    """The cordon driven: all of the ways, and the blocked places from near."""
+    """Draw the cordon as driven: all routes, and the blocked places magnified."""
     figure, (whole, near) = plt.subplots(1, 2, figsize=(9, 5))
     middle = next(b.CordonLocation for b in panel.flight.of("CordonTask"))
     for axis, bar_m in ((whole, 500), (near, 50)):
@@ -254,14 +254,14 @@ def cordon_near(panel: Panel) -> Any:
 
 
 def save(figure: Any, name: str) -> None:
-    """A figure as SVG, the same for the same flight."""
+    """Write a figure as SVG, identical for the same flight."""
     with replacing(FOLDER / name) as part:
         figure.savefig(part, format="svg", metadata={"Date": None}, bbox_inches="tight")
     plt.close(figure)
 
 
 def main() -> None:
-    """Fly all, and draw."""
+    """Fly all scenarios, and draw them."""
     panels = moving()
     figure, axes = plt.subplots(2, 4, figsize=(12, 6.8))
     for axis, panel in zip(axes.flat, panels, strict=True):

@@ -1,7 +1,7 @@
 """Draws `docs/img/well-clear-volumes.svg`: the horizontal volumes and the vertical one.
 
-Every point is decided by the compiled kernels; nothing is drawn from a formula of its own. The same
-input gives the same file: `python docs/tools/pictures_well_clear.py`.
+Every point is decided by the compiled kernels, with no formula of this script's own. The same input gives the same
+file: `python docs/tools/pictures_well_clear.py`.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ STEPS = 121
 
 
 def horizontal(axes: plt.Axes) -> None:
-    """Positions of an intruder at rest around the ownship, which flies to the right."""
+    """Positions of a stationary intruder around the ownship, which flies to the right."""
     x, y = np.meshgrid(np.linspace(-1600, 5000, STEPS), np.linspace(-1600, 1600, STEPS))
     for name, kernel, colour in VOLUMES:
         # the relative position is ownship minus intruder
@@ -72,7 +72,7 @@ def vertical(axes: plt.Axes) -> None:
 
 
 def over_time(axes: plt.Axes) -> None:
-    """The bad example: when each volume is violated in one straight flight."""
+    """A counterexample: when each volume is violated in one straight flight."""
     t = np.linspace(0, 40, 401)
     for row, (name, kernel, colour) in enumerate(VOLUMES):
         lost = compiled(kernel)(600 - 20 * t, 140.0, -20.0, 0.0, 150.0, 16.0)
@@ -85,7 +85,7 @@ def over_time(axes: plt.Axes) -> None:
 
 
 def main() -> int:
-    """Draw and write."""
+    """Draw and write the picture."""
     plt.rcParams.update(
         {"svg.hashsalt": "cratous", "svg.fonttype": "none", "path.simplify_threshold": 1.0}
     )
@@ -98,7 +98,7 @@ def main() -> int:
     figure.tight_layout()
     drawn = StringIO()
     figure.savefig(drawn, format="svg", metadata={"Date": None})
-    # a tenth of a point is finer than the eye, and the file a third as large
+    # a tenth of a point is not visible, and makes the file a third as large
     text = re.sub(r"(\d\.\d)\d+", r"\1", drawn.getvalue())
     write_atomically(FILE, "\n".join(line.rstrip() for line in text.splitlines()) + "\n")
     return 0

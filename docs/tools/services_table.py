@@ -1,9 +1,8 @@
 """The page `services.md`: service x message x attribute, each with the tests that show its effect.
 
-Rows come from the registry: what a service subscribes to, what it sends, its attributes. A test says
-what it shows with `@pytest.mark.shows("Service", "Message or attribute", ...)`: it sends the message
-or sets the attribute (or receives what is sent), and asserts an effect. Marks are read from the
-tests' syntax trees; nothing is run.
+Rows come from the registry: a service's subscriptions, the messages it sends, its attributes. A test declares its
+subject with `@pytest.mark.shows("Service", "Message or attribute", ...)`: it sends the message or sets the attribute
+(or receives what is sent), and asserts an effect. Marks are read from the tests' syntax trees; nothing is run.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ RECEIVED, KNOWN, SENT, ATTRIBUTE, UNUSED = (
 
 
 class Row(NamedTuple):
-    """One thing of a service, its default if it is an attribute, and the tests that show it."""
+    """One message or attribute of a service, its default if it is an attribute, and the tests that show it."""
 
     service: str
     kind: str
@@ -37,7 +36,7 @@ class Row(NamedTuple):
 
 
 def marks(folder: Path = TESTS) -> dict[tuple[str, str], list[str]]:
-    """(service, name) -> tests that show it."""
+    """Tests by (service, name) that they show."""
     found: dict[tuple[str, str], list[str]] = {}
     for file in sorted(folder.rglob("test_*.py")):
         tree = ast.parse(file.read_text(encoding="utf-8"))
@@ -54,7 +53,7 @@ def marks(folder: Path = TESTS) -> dict[tuple[str, str], list[str]]:
 
 
 def _constants(tree: ast.Module) -> Iterator[tuple[str, str]]:
-    """Module-level names of texts: `A = "x"` and `A, B = "x", "y"`."""
+    """Module-level names of string constants: `A = "x"` and `A, B = "x", "y"`."""
     for node in tree.body:
         if not isinstance(node, ast.Assign):
             continue
@@ -94,7 +93,7 @@ def rows() -> list[Row]:
 
 
 def strays() -> list[str]:
-    """Marks that name no row."""
+    """Marks without a row."""
     known = {(row.service, row.name) for row in rows()}
     return [f"{service}: {name}" for service, name in marks() if (service, name) not in known]
 

@@ -1,10 +1,11 @@
-"""The machine by which a vehicle leaves the ground, drawn from the kernel that decides.
+"""The state machine by which a vehicle takes off, drawn from the kernel that decides.
 
     python docs/tools/take_off_machine.py
 
-prints the block of docs/guides/detect-and-avoid.md: `departure_step` is asked for each mode and each answer to what it
-asks (is UxAS heard, is the way up permitted, is the vehicle off the ground, is it at the end of the way), and an arrow is
-drawn where the mode changes. The modes are those of the specification: `CRATOUS/TakeOff` of spec/lmcp names them.
+prints the diagram for docs/guides/detect-and-avoid.md: `departure_step` is evaluated for each mode and each combination
+of its inputs (whether UxAS is heard, the climb is permitted, the vehicle is off the ground, it is at the end of the
+climb), and an arrow is drawn where the mode changes. The modes are those of the specification: `CRATOUS/TakeOff` of
+spec/lmcp names them.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ NOW, BOUND = 10, 5
 
 
 def modes() -> dict[int, str]:
-    """The modes by number, with their names."""
+    """The names of the modes, by number."""
     mode: Any = lmcp.new("TakeOffState").Mode
     return {int(one): one.name for one in type(mode)}
 

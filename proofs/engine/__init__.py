@@ -1,1 +1,1 @@
-"""What must be trusted: lifter, statements of theorems, solvers. Only `prover` makes a `Theorem`."""
+"""The trusted part: lifter, statements of theorems, solvers. Only `prover` makes a `Theorem`."""

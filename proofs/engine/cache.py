@@ -1,9 +1,9 @@
-"""What the solver said before, by the hash of what it was asked.
+"""Solver answers from earlier runs, by the hash of the question.
 
-A private folder below the product's cache (`CRATOUS_CACHE`), one small file for each question.
-The name holds the structural hash of the question, the solver's version, the budget and the
-strategy; a file that is damaged, or is about another question, counts as absent. Only answers
-without a model are kept: a counterexample is always found anew. Nor is kept what a limit of time ended.
+A private folder below the product's cache (`CRATOUS_CACHE`), one small file for each question. The name holds the
+structural hash of the question, the solver's version, the budget and the strategy; a file that is damaged, or is
+about another question, counts as absent. Only answers without a model are kept: a counterexample is computed anew
+each time. An answer cut short by a time limit is not kept either.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ ASKING = (
     "proofs.engine.smtlib.question",
     "proofs.engine.obligation_hash.Hasher.key",
 )
-"""What decides how a question is put, and what its answer is."""
+"""The functions that determine how a question is put to the solver and how its answer is read."""
 
 
 @functools.cache
@@ -34,9 +34,9 @@ def _strategy() -> str:
 
 @dataclass(frozen=True)
 class Answer:
-    """sat, unsat or unknown; effort in solver resources, CPU seconds, the logic that answered.
+    """Result (sat, unsat or unknown), effort in solver resources, CPU seconds, and the logic that answered.
 
-    ended: which limit of time ended the question, where that is why there is no answer.
+    ended: which time limit ended the question, where that is why there is no answer.
     """
 
     result: str
@@ -59,7 +59,7 @@ class Cache:
         return digest([key, str(rlimit), *self._salt])
 
     def get(self, key: str, rlimit: int) -> Answer | None:
-        """The kept answer, if there is one."""
+        """The stored answer, or None."""
         if self.folder is None:
             return None
         name = self.name(key, rlimit)
@@ -76,9 +76,9 @@ class Cache:
         return answer
 
     def put(self, key: str, rlimit: int, answer: Answer) -> None:
-        """Keep an answer; a folder that cannot be written is no error.
+        """Store an answer; a folder that cannot be written is no error.
 
-        What a limit of time ended is no answer, and is not kept: with more time there may be one.
+        An answer cut short by a time limit is not stored: with more time there may be another.
         """
         if self.folder is None or answer.ended:
             return

@@ -1,9 +1,8 @@
-"""One name for equal arguments: a hash of a term that does not depend on how it came to be.
+"""A hash for arguments of opaque functions that does not depend on how a term was built.
 
-The solver sorts operands by internal numbers, which follow from what was built before and what has
-been given free since. So polynomials are expanded by its simplifier, and then operands of operators
-that commute count in the order of their own hashes. Two terms with one hash are equal; equal terms
-may have two, where the simplifier does not see it.
+The solver sorts operands by internal numbers, which depend on the terms built and freed before. So polynomials are
+expanded by its simplifier, and operands of commutative operators are then ordered by their own hashes. Two terms with
+one hash are equal; equal terms may have two hashes where the simplifier does not bring them to one form.
 """
 
 from __future__ import annotations
@@ -18,9 +17,9 @@ COMMUTE = frozenset(
         z3.Z3_OP_DISTINCT, z3.Z3_OP_BADD, z3.Z3_OP_BMUL, z3.Z3_OP_BAND, z3.Z3_OP_BOR, z3.Z3_OP_BXOR,
     }
 )  # fmt: skip
-"""Operators whose operands may stand in any order."""
+"""Commutative operators."""
 TURNED = {z3.Z3_OP_GE: z3.Z3_OP_LE, z3.Z3_OP_GT: z3.Z3_OP_LT}
-"""a >= b is b <= a."""
+"""Comparisons that are hashed with their sides exchanged: a >= b as b <= a."""
 
 
 def canonical(term: z3.ExprRef) -> str:

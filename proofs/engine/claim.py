@@ -1,11 +1,10 @@
-"""Writing a theorem: any input of this kind, these premises, one use of the kernel, this holds.
+"""Writing a theorem: for any input of this kind under these premises, using the kernel, this holds.
 
-A theorem is a file in `proofs/theorems/` whose docstring is the sentence that reports print and
-whose function `claim(c: Claim)` states it. `c.real`, `c.integer`, ... introduce arbitrary values;
-`c.premise` restricts them; `c.use` runs a kernel and `c.define` a definition of `spec`;
-`c.show` states what must follow. `c.lemma` uses a theorem proved elsewhere: its premises become
-obligations here. `c.fold` proves a fold for every number of items by induction. Names are given
-once, lemmas may not go in a circle: a slip there would weaken a theorem without a word.
+A theorem is a file in `proofs/theorems/` whose docstring is the sentence that reports print and whose function
+`claim(c: Claim)` states it. `c.real`, `c.integer`, ... introduce arbitrary values; `c.premise` restricts them;
+`c.use` runs a kernel and `c.define` a definition of `spec`; `c.show` states what must follow. `c.lemma` uses a
+theorem proved elsewhere: its premises become obligations here. `c.fold` proves a fold for every number of items by
+induction. A name is introduced once, and lemmas must not be circular: otherwise a theorem would be weakened silently.
 """
 
 from __future__ import annotations
@@ -52,7 +51,7 @@ NAME = re.compile(r"[A-Za-z_]\w*(\.\w+)*", re.ASCII)
 class Claim:
     """The theorem under construction.
 
-    asked: whether it asked for the calls of an opaque function; asking: its lemmas that did; hidden: it finds none.
+    asked: it called `calls`; asking: its lemmas that did; hidden: `calls` returns no calls.
     """
 
     prefix: str = ""
@@ -138,21 +137,21 @@ class Claim:
         self._restrict(statement(condition))
 
     def _restrict(self, premise: z3.BoolRef) -> None:
-        """Add a premise, unless this reading of the claim is to do without it (`proofs.mutation.mutate`)."""
+        """Add a premise, unless this reading of the claim drops or weakens it (`proofs.mutation.mutate`)."""
         number, self.stated = self.stated, self.stated + 1
         if number not in self.dropped:
             weaker = premise if self.weakened is None else self.weakened(number, premise)
             self.premises.append(weaker)
 
     def assume(self, condition: Any, *, owner: str, reason: str) -> None:
-        """Take something for granted; it stays in the ledger, with owner and reason, for ever."""
+        """Take something for granted; the ledger lists it with owner and reason."""
         self.facts.append(statement(condition))
         self.assumptions.append((str(statement(condition)), owner, reason))
 
     def use(self, kernel: Callable[..., Any], *args: Any, when: Any = True) -> Any:
         """Run a kernel of `core` on these values; the theorem is about it.
 
-        when: where its value counts; elsewhere it owes nothing, and is any value.
+        when: the condition under which the call counts; elsewhere its value is arbitrary and no obligation arises.
         """
         self.used.append(kernel)
         self._name()
@@ -160,7 +159,7 @@ class Claim:
         return self._lift(kernel, args, where=where)
 
     def _name(self) -> None:
-        for kernel in self.used:  # and those that it or a lemma looks into
+        for kernel in self.used:  # and those that the theorem or a lemma looks into
             if kernel not in self.stubs or kernel in self.vouched:
                 self._about(kernel)
 
@@ -172,10 +171,10 @@ class Claim:
         return self._lift(definition, args, machine=False)
 
     def opaque(self, *functions: Callable[..., Any]) -> None:
-        """Do not look into these functions: equal arguments give equal, otherwise unknown results.
+        """Treat these functions as unknown: equal arguments give equal, otherwise unknown results.
 
-        What is known about them then comes from `lemma` alone, whose premises are owed for the very
-        arguments of the call; what they owe themselves is owed at every call (see `closed`).
+        Facts about them then come only from `lemma`, whose premises are owed for the arguments of the call; the
+        functions' own side conditions are owed at every call (see `closed`).
         """
         for function in functions:
             self.unseen.add(function)
@@ -190,7 +189,7 @@ class Claim:
     def congruence(
         self, function: Callable[..., Any], one: tuple[Any, ...], other: tuple[Any, ...]
     ) -> None:
-        """For an opaque function: where the two argument lists are equal, so are the results."""
+        """For an opaque function: equal argument lists give equal results."""
         stub = self.stubs[function]
         fact = self.implies(self.same(one, other), self.same(stub(*one), stub(*other))).term
         self.congruences.append(fact)
@@ -203,7 +202,7 @@ class Claim:
         machine: bool = True,
         where: z3.BoolRef = TRUE,
     ) -> Any:
-        """The value; machine: its integers are those of compiled code; where: it counts."""
+        """The lifted value. machine: integers are 64-bit, as in compiled code; where: when the call counts."""
         of_its_kinds(function, args)
         before = dict(OPAQUE)
         OPAQUE.update(self.stubs)
@@ -234,9 +233,9 @@ class Claim:
     def _closed(
         self, function: Callable[..., Any], args: Any, met: list[Any], machine: bool, where: Any
     ) -> None:
-        """Remember the calls of closed functions, for what they owe; a lemma shows that of its own."""
+        """Record the calls of opaque functions, for their side conditions; a lemma proves those of its own kernel."""
         if self.prefix:
-            own = machine or entry_of(function) is None  # a kernel's integers may not fit else
+            own = machine or entry_of(function) is None  # else its integers may overflow
             if own and function in self.stubs and function not in self.unseen:
                 self.told.add(function, self.stubs[function].key(args), where, ())
             return
@@ -246,7 +245,7 @@ class Claim:
             self.uses.append(closed.Call(called, values, key, path, machine, given))
 
     def settle(self) -> None:
-        """State what the calls of closed functions owe, when everything else is stated."""
+        """State the side conditions of calls of opaque functions, after everything else is stated."""
         calls, self.uses = self.uses, []
         for text, given, goal in closed.owed(calls, self.told):
             self.obligations.append(Obligation("defined", text, given, goal))
@@ -256,18 +255,18 @@ class Claim:
         self.obligations.append(Obligation(kind, text, given, goal))
 
     def show(self, goal: Any, text: str = "the claim") -> None:
-        """What must follow; later statements may use it."""
+        """State a goal; later statements may use it."""
         Claim.step(self, goal, text)
         self.goals.append(self.facts[-1])
 
     def step(self, goal: Any, text: str) -> None:
-        """Show something on the way: it may be used here, but a lemma's user does not see it."""
+        """Prove an intermediate step: later statements here may use it, a user of the lemma does not see it."""
         term = statement(goal)
         self._owe("goal", text, term)
         self.facts.append(term)
 
     def cases(self, *conditions: Any, goal: Any, text: str = "the claim") -> None:
-        """Show the goal case by case; that the cases cover everything is shown as well."""
+        """Prove the goal case by case; that the cases are exhaustive is an obligation too."""
         terms = [statement(c) for c in conditions]
         self._owe("goal", f"{text}: the cases cover everything", z3.Or(*terms))
         for number, term in enumerate(terms, 1):
@@ -317,23 +316,23 @@ class Claim:
         return inner
 
     def implies(self, if_: Any, then: Any) -> Any:
-        """If the one then the other."""
+        """Implication: if `if_` holds, so does `then`."""
         return SymBool(z3.Implies(statement(if_), statement(then)))
 
     def all_of(self, *conditions: Any) -> Any:
-        """All of them."""
+        """Conjunction of all conditions."""
         return SymBool(z3.And(*[statement(c) for c in conditions]))
 
     def any_of(self, *conditions: Any) -> Any:
-        """At least one of them."""
+        """Disjunction of all conditions."""
         return SymBool(z3.Or(*[statement(c) for c in conditions]))
 
     def negation(self, condition: Any) -> Any:
-        """Not."""
+        """Negation of a condition."""
         return SymBool(z3.Not(statement(condition)))
 
     def when(self, condition: Any, yes: Any, no: Any) -> Any:
-        """One value or the other."""
+        """`yes` where the condition holds, else `no`."""
         term = statement(condition)
         return join([(term, yes), (z3.Not(term), no)])
 
@@ -356,14 +355,14 @@ class Claim:
     ) -> None:
         """The fold equals its definition for every number of items, by induction on it.
 
-        acc and model are arbitrary accumulators of kernel and definition, which goes from `model_start` by
-        `model_step` and gives what `model_finish` makes of it, if there is one. Base: `relation` holds
-        at the start. Step: if it holds before any item it holds after it. Use: where it holds the
-        results are equal; without a finish the accumulator is the result. The three are the induction over
-        the number of items, provided that the accumulators are distinct free values which no premise
-        restricts, and that neither they nor the relation know the item: checked here (see `induction`).
-        What is to be known of the accumulators belongs into `relation`. A premise on the item is one on
-        every item; base and use do not have it, since there may be no item.
+        acc and model are arbitrary accumulators of kernel and definition; the definition starts from `model_start`,
+        proceeds by `model_step`, and its result is `model_finish` of the accumulator, if given. Base: `relation`
+        holds at the start. Step: if it holds before any item it holds after it. Use: where it holds the results are
+        equal; without a finish the accumulator is the result. The three are the induction over the number of items,
+        provided that the accumulators are distinct free values which no premise restricts, and that neither they nor
+        the relation depend on the item: checked here (see `induction`). Whatever the proof needs to know of the
+        accumulators belongs in `relation`. A premise on the item applies to every item; base and use do not have it,
+        since there may be no item.
         """
         if self.prefix:
             return  # used as a lemma, a fold has no goals to offer
@@ -377,7 +376,7 @@ class Claim:
             base = statement(relation(kernel_fold.start, model_start))
             induction.relation(before, base, start=model_start, context=context)
             self._owe("base", "relation at the start", base)
-        # both are run only where the relation holds, so what they owe is owed there
+        # both are run only where the relation holds, so their side conditions are owed there
         plain = list(self.facts)
         self._grant(before)
         after = self.use(kernel_fold.step, acc, *item, *context)
@@ -389,7 +388,7 @@ class Claim:
             wanted = model if model_finish is None else self.define(model_finish, model)
             self._owe("use", "results are equal", statement(self.same(result, wanted)))
         induction.model_only(model_after, wanted)
-        # what was shown where the relation was granted holds there alone
+        # what was shown under the relation as a hypothesis holds under it only
         there = {fact.get_id() for fact in (*self.roots, *self.congruences)}
         gained = [fact for fact in self.facts[len(plain) :] if fact.get_id() in there]
         self.facts, self.granted = [*plain, *gained], ()

@@ -1,10 +1,10 @@
-"""What is owed where a theorem uses a function that it does not look into.
+"""Side conditions of opaque functions, which a theorem uses without looking into them.
 
-Such a function gives what lemmas say and no more, but it is still called: what it divides by is not
-0, what it takes roots of is not negative, its integers stay in 64 bits. A function that owes nothing
-for any arguments is shown to do so once. Of another one it is owed at every use, with all that it
-calls looked into, unless a lemma about it is used for the same arguments: what the lemma's own
-proof has shown under its premises, which are owed there.
+Nothing is known of the result of such a function but what lemmas say. It is still called, so its side conditions are
+owed: no division by 0, no square root of a negative number, integers within 64 bits. A function whose side conditions
+hold for all arguments is proved so once. Those of any other are owed at every call, with all that it calls looked
+into, unless a lemma about it is used for the same arguments: the lemma's own proof covers them under its premises,
+which are owed there.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ Owed = tuple[str, z3.BoolRef]
 
 @dataclass(frozen=True)
 class Call:
-    """A use of a closed function: its arguments, on which path, and what is known there.
+    """A call of an opaque function: its arguments, the condition of its path, and what is known there.
 
-    key: a text that equal arguments share; machine: its integers are those of compiled code.
+    key: a text that equal arguments share; machine: its integers are 64-bit, as in compiled code.
     """
 
     function: Function
@@ -47,26 +47,26 @@ class Call:
 
     @property
     def name(self) -> str:
-        """The function for people."""
+        """The function's name, for messages."""
         return self.function.__name__
 
 
 @dataclass(frozen=True)
 class Requirements:
-    """What a function owes at some arguments; roots: what is true of the square roots in it."""
+    """A function's side conditions at some arguments; roots: defining facts of its square roots."""
 
     owed: tuple[Owed, ...]
     roots: tuple[z3.BoolRef, ...]
 
 
 def path_to(where: z3.BoolRef) -> z3.BoolRef:
-    """The condition of the path that is being explored, where it counts."""
+    """The condition of the path being explored, together with `where`."""
     return z3.simplify(z3.And(where, *[c for path in PATHS for c in path.conditions]))
 
 
 @contextmanager
 def _looked_into(closed: dict[Function, Stub]) -> Iterator[None]:
-    """In here every function but these is looked into, and nobody is told of it."""
+    """Within this, every function but those in `closed` is looked into, and no call is reported."""
     before = dict(OPAQUE), list(PATHS), list(VISITS), list(CLOSED)
     OPAQUE.clear()
     OPAQUE.update(closed)
@@ -87,7 +87,7 @@ def requirements(
     machine: bool,
     closed: dict[Function, Stub] | None = None,
 ) -> Requirements:
-    """What a function owes at these arguments, with all that it calls, but for these, looked into."""
+    """The side conditions of a function at these arguments; all that it calls is looked into, except `closed`."""
     kinds = get_type_hints(function)
     names = list(inspect.signature(function).parameters)
     given = [_symbolic(value, kinds[n]) for n, value in zip(names, args, strict=True)]
@@ -98,7 +98,7 @@ def requirements(
 
 
 def _symbolic(value: Any, kind: Any) -> Any:
-    """A value for a function to run on: Python would compute with plain numbers by itself."""
+    """A symbolic value for a function to run on; with plain numbers Python itself would compute."""
     if isinstance(value, tuple):
         kinds = get_type_hints(kind)
         parts = [_symbolic(v, kinds[f]) for f, v in zip(kind._fields, value, strict=True)]
@@ -107,9 +107,9 @@ def _symbolic(value: Any, kind: Any) -> Any:
 
 
 def everywhere(function: Function, *, machine: bool) -> Requirements | None:
-    """What a function owes at any arguments, if it seems that this always holds; else None.
+    """The side conditions of a function at arbitrary arguments, if the solver finds that they hold there; else None.
 
-    Whether it does is for the prover to say, as of every obligation.
+    This does not replace their proof: the prover decides them like every other obligation.
     """
     return _everywhere(function, machine, tuple(REPLACED.items()))
 
@@ -122,12 +122,12 @@ def _everywhere(
     stubs = {g: Stub(f"any!{g.__name__}", g) for g in total}
     kinds = get_type_hints(function)
     args = [fresh(f"any!{name}", kinds[name]) for name in inspect.signature(function).parameters]
-    # what it calls gives any value then, if that will do
+    # first with arbitrary results of the functions that it calls, if that is enough
     for closed in (stubs, {}) if stubs else ({},):
         try:
             own = requirements(function, args, machine=machine, closed=closed)
         except (LiftError, TypeError):
-            continue  # a mask, say: it is looked at where it is used
+            continue  # a mask, for example: checked at each use instead
         goal = z3.And(*[condition for _, condition in own.owed])
         for roots in ((), own.roots):
             if not own.owed or _holds(roots, goal):
@@ -143,7 +143,7 @@ def _roots(parts: Iterable[Requirements]) -> Iterator[z3.BoolRef]:
 
 
 def _called(function: Function) -> list[Function]:
-    """The functions that it calls by their names, itself apart."""
+    """The functions of the product that it calls by name, except itself."""
     if not isinstance(function, types.FunctionType):
         return []
     names = function.__code__.co_names
@@ -160,9 +160,9 @@ def _holds(given: Iterable[z3.BoolRef], goal: z3.BoolRef) -> bool:
 
 @dataclass
 class Told:
-    """What lemmas have shown of functions that they look into: by function and key, where it holds.
+    """What lemmas have shown of functions that they look into, by function and key.
 
-    found: (condition, what was given where the lemma was used) of each.
+    found: for each, (condition under which it holds, facts known where the lemma was used).
     """
 
     found: dict[tuple[Function, str], list[tuple[z3.BoolRef, tuple[z3.BoolRef, ...]]]] = field(
@@ -172,17 +172,17 @@ class Told:
     def add(
         self, function: Function, key: str, when: z3.BoolRef, given: tuple[z3.BoolRef, ...]
     ) -> None:
-        """A lemma looks into the function at these arguments, and holds where this is so."""
+        """Record that a lemma looks into the function at these arguments and holds under `when`."""
         self.found.setdefault((function, key), []).append((when, given))
 
     def through(self, other: Told, given: z3.BoolRef, under: tuple[z3.BoolRef, ...]) -> None:
-        """What a lemma was told by its own lemmas and shows itself; its premises are owed here."""
+        """Record what a lemma took over from its own lemmas; its premises are owed here."""
         for (function, key), conditions in other.found.items():
             for condition, _ in conditions:
                 self.add(function, key, z3.And(given, condition), under)
 
     def where(self, call: Call) -> list[z3.BoolRef]:
-        """The conditions under which lemmas have shown what this call owes."""
+        """The conditions under which lemmas have shown the side conditions of this call."""
         have = {term.get_id() for term in call.given}
         return [
             z3.simplify(z3.And(when, *[term for term in given if term.get_id() not in have]))
@@ -193,7 +193,7 @@ class Told:
 def owed(
     calls: Iterable[Call], told: Told
 ) -> Iterator[tuple[str, tuple[z3.BoolRef, ...], z3.BoolRef]]:
-    """(text, given, goal) of everything that these calls owe and no lemma has shown."""
+    """(text, given, goal) of every side condition of these calls that no lemma has shown."""
     done: set[Any] = set()
     for call in calls:
         once = (call.function, call.machine)

@@ -1,10 +1,9 @@
 """Counterexamples in the user's terms: the kernel's arguments with names, units and meaning.
 
-`Watched` is a claim that remembers which kernels and definitions it ran on which values. For a
-refuted obligation the solver's model gives each argument a number; names, units and meaning come
-from the kernel's signature and docstring. Kernel and definition are then run on these numbers,
-and what they say is printed beside what the proof was told, so that a reader sees at once whether
-the kernel is wrong or only a lemma or contract too weak.
+`Watched` is a claim that records which kernels and definitions it ran on which values. For a refuted obligation the
+solver's model gives each argument a number; names, units and meaning come from the kernel's signature and docstring.
+Kernel and definition are then run on these numbers, and their results are printed beside the values of the proof, so
+that a reader sees whether the kernel is wrong or a lemma or contract too weak.
 """
 
 from __future__ import annotations
@@ -40,7 +39,7 @@ TELLING_RLIMIT = 400_000
 
 @dataclass(frozen=True)
 class Run:
-    """One kernel or definition that a claim ran: on which symbolic values, with what result."""
+    """One kernel or definition that a claim ran: its symbolic arguments and its result."""
 
     role: str
     function: Callable[..., Any]
@@ -50,7 +49,7 @@ class Run:
 
 @dataclass
 class Watched(Claim):
-    """A claim that remembers the kernels and definitions it ran."""
+    """A claim that records the kernels and definitions it ran."""
 
     runs: list[Run] = field(default_factory=list)
     folds: list[Fold[Any]] = field(default_factory=list)
@@ -73,14 +72,15 @@ class Watched(Claim):
 # -- what a signature and a docstring say ----------------------------------------------------
 @dataclass(frozen=True)
 class Meaning:
-    """An argument's unit and what it is, as far as the docstring says."""
+    """An argument's unit and description, as far as the docstring gives them."""
 
     unit: str = ""
     text: str = ""
 
 
 def meanings(function: Callable[..., Any]) -> dict[str, Meaning]:
-    """Unit and meaning of every argument: from `name: text [unit]` in the docstring, else `_m`."""
+    """Unit and meaning of every argument: from `name: text [unit]` in the docstring, else from a name ending in
+    `_m`."""
     names = list(inspect.signature(function).parameters)
     found = {name: Meaning(_suffix_unit(name)) for name in names}
     body = " ".join((inspect.getdoc(function) or "").split("\n\n")[-1].split())
@@ -105,7 +105,7 @@ def _suffix_unit(name: str) -> str:
 
 
 def number_text(value: Any, unit: str = "") -> str:
-    """A value for people: finite decimals as they are, others rounded with the fraction."""
+    """A value for people: finite decimals in full, others rounded and followed by the fraction."""
     tail = f" {unit}" if unit else ""
     if isinstance(value, bool):
         return "yes" if value else "no"
@@ -136,7 +136,7 @@ def _decimal(value: Fraction) -> str:
 
 
 def verdict_text(function: Callable[..., Any], value: Any) -> str:
-    """What a function says, in its own words where it gives a truth value."""
+    """A function's result as text; a truth value in the function's own words."""
     if isinstance(value, bool):
         for part, (yes, no) in WORDS.items():
             if part in function.__name__:
@@ -146,14 +146,14 @@ def verdict_text(function: Callable[..., Any], value: Any) -> str:
 
 # -- from a model to numbers -----------------------------------------------------------------
 class Model:
-    """A solver's model as numbers; what is irrational is replaced by a near rational."""
+    """A solver's model as numbers; an irrational value is replaced by a rational near it."""
 
     def __init__(self, model: z3.ModelRef, context: z3.Context) -> None:
         self._model, self._context = model, context
         self.rounded = False
 
     def value(self, value: Any) -> Any:
-        """A symbolic value, or a tuple of such, as Python numbers."""
+        """A symbolic value, or a tuple of them, as Python numbers."""
         if isinstance(value, tuple):
             parts = [self.value(part) for part in value]
             return type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
@@ -176,7 +176,7 @@ class Model:
         return str(term)
 
     def variables(self) -> list[tuple[str, Any]]:
-        """Every free variable that a claim introduced itself, by name."""
+        """Every free variable that the claim itself introduced, by name."""
         found = [d for d in self._model.decls() if d.arity() == 0]
         named = [(str(d.name()), self._model[d]) for d in found]
         return sorted((n, self.number(v)) for n, v in named if "!" not in n and "#" not in n)
@@ -185,9 +185,9 @@ class Model:
 def telling(
     terms: list[z3.BoolRef], found: z3.ModelRef, make: Callable[[], z3.Solver]
 ) -> z3.ModelRef:
-    """A model that a reader can picture: no needless zeros, whole numbers where they will do.
+    """A readable model: no needless zeros, whole numbers where possible.
 
-    terms: what the model satisfies; make: gives a fresh solver. Without luck, the model as found.
+    terms: what the model satisfies; make: returns a fresh solver. Where none is found, the model as given.
     """
 
     def ask(extra: list[z3.BoolRef]) -> z3.ModelRef | None:
@@ -199,7 +199,7 @@ def telling(
     names = sorted((d for d in found.decls() if d.arity() == 0), key=lambda d: str(d.name()))
     reals = [d() for d in names if z3.is_real(d())]
     near = {x: z3.And(x * x >= 1, x * x <= 10**6) for x in reals}
-    # along one axis first: distances are then numbers, not roots
+    # motion along one axis first: distances are then plain numbers, without roots
     across = [x for x in reals if str(x).endswith(".y")]
     along = [x == 0 for x in across] + [near[x] for x in reals if not str(x).endswith(".y")]
     for extra in (along, list(near.values()), [x != 0 for x in reals]):
@@ -209,7 +209,7 @@ def telling(
             break
     else:
         extra = []
-    # then one after the other is put to a whole number near its value, if that can be
+    # then each value in turn is set to a nearby whole number where that is possible
     fixed: list[z3.BoolRef] = []
     for x in reals:
         value = found.eval(x, model_completion=True)
@@ -228,7 +228,7 @@ def telling(
 
 
 def story(claim: Claim, model: Model) -> list[str]:
-    """The counterexample line by line; empty for a claim that remembered nothing."""
+    """The counterexample line by line; empty for a claim that recorded no runs."""
     runs = getattr(claim, "runs", [])
     lines: list[str] = []
     shown: dict[str, None] = {}
@@ -239,7 +239,7 @@ def story(claim: Claim, model: Model) -> list[str]:
         args = tuple(model.value(arg) for arg in run.args)
         names = list(inspect.signature(run.function).parameters)
         for name, arg, symbolic in zip(names, args, run.args, strict=False):
-            # a definition's values are mostly the kernel's: each is shown once
+            # a definition mostly has the kernel's values: each is shown once
             if not _mark(shown, symbolic):
                 continue
             meaning = known[name]
@@ -266,7 +266,7 @@ def story(claim: Claim, model: Model) -> list[str]:
 
 
 def _mark(shown: dict[str, None], value: Any) -> bool:
-    """Remember the variables of a value; True iff the value itself was not shown yet."""
+    """Record the variables of a value; True iff the value itself has not been shown yet."""
     parts = value if isinstance(value, tuple) else (value,)
     terms = [part.term for part in parts if isinstance(part, Sym)]
     key = "; ".join(str(term) for term in terms)
@@ -281,7 +281,7 @@ def _mark(shown: dict[str, None], value: Any) -> bool:
 
 
 def _says(run: Run, args: tuple[Any, ...], given: Any) -> tuple[str, bool]:
-    """One line for a run, and whether the function says so when it is really run."""
+    """One line for a run, and whether running the function really gives that result."""
     home = run.function.__module__.split(".")[-1]
     name = f"{home}.{run.function.__name__}" if run.role == "definition" else run.function.__name__
     try:

@@ -1,10 +1,9 @@
-"""A block of code that may use so much CPU time and no more.
+"""Limits the CPU time of a block of code.
 
-Stating a theorem asks the solver which paths are feasible. Those questions are budgeted by effort,
-but there is work that z3 does not count, and a statement may also loop by itself. What uses too
-much is interrupted in the solver and in Python; only CPU time counts, not what else the machine
-does. What heeds no interrupt is ended by the system together with its process, where another process
-waits for that one (`may_be_killed`).
+Stating a theorem asks the solver which paths are feasible. Those questions are budgeted by effort, but there is work
+that z3 does not count, and a statement may also loop by itself. A block over its limit is interrupted in the solver
+and in Python; only CPU time counts, not the load of the machine. Code that does not react to the interrupt is ended
+by the system together with its process, provided that another process waits for that one (`may_be_killed`).
 """
 
 from __future__ import annotations
@@ -22,28 +21,28 @@ from contextlib import contextmanager
 import z3
 
 PERIOD_S = 0.25
-"""Wall seconds between two looks at the CPU clock."""
+"""Wall seconds between two readings of the CPU clock."""
 
 
 GRACE_S = 10.0
-"""CPU seconds in which an interrupt is to be heeded."""
+"""CPU seconds allowed for reacting to an interrupt."""
 _MAY_BE_KILLED: set[int] = set()
 
 
 class OutOfTime(BaseException):
-    """The CPU time is used up; not an `Exception`, so that nothing in the block keeps it."""
+    """The CPU time is used up; not an `Exception`, so that no handler in the block catches it by accident."""
 
 
 def of_the_user() -> float:
-    """CPU seconds [s] that this process was given from outside (`ulimit -t`); infinity where nothing limits it."""
+    """The CPU time limit [s] set for this process from outside (`ulimit -t`); infinity if there is none."""
     bounds = [b for b in resource.getrlimit(resource.RLIMIT_CPU) if b != resource.RLIM_INFINITY]
     return min(bounds, default=math.inf)
 
 
 def what_ended(code: int | None, seconds: float = math.inf) -> str:
-    """Which limit ended a process that was forked from this one, in words; code: its exit code.
+    """Which limit ended a process forked from this one, in words; code: its exit code.
 
-    seconds: CPU seconds [s] of `ends_within` there.
+    seconds: the limit [s] of `ends_within` in that process.
     """
     user = of_the_user()
     killed = code in (-signal.SIGXCPU, -signal.SIGKILL)
@@ -58,22 +57,22 @@ def what_ended(code: int | None, seconds: float = math.inf) -> str:
 
 
 def _throw(thread: int, error: type[BaseException] | None) -> None:
-    """Raise the error in a thread as soon as it runs Python; with None what is pending is gone."""
+    """Raise the error in a thread as soon as it runs Python; None clears a pending error."""
     pending = None if error is None else ctypes.py_object(error)
     ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), pending)
 
 
 def may_be_killed() -> None:
-    """From now on `ends_within` ends this process: another one waits for it, and knows what its end means."""
+    """From now on `ends_within` may end this process: its parent waits for it and handles its end."""
     _MAY_BE_KILLED.add(os.getpid())
     resource.setrlimit(resource.RLIMIT_CORE, (0, resource.getrlimit(resource.RLIMIT_CORE)[1]))
 
 
 @contextmanager
 def ends_within(seconds: float) -> Iterator[None]:
-    """The system ends this process (SIGXCPU) if the block uses so many CPU seconds (s) and GRACE_S more.
+    """The system ends this process (SIGXCPU) once the block has used `seconds` + GRACE_S CPU seconds.
 
-    Nothing is done in a process that may not be killed.
+    Does nothing in a process for which `may_be_killed` was not called.
     """
     if os.getpid() not in _MAY_BE_KILLED:
         yield
@@ -92,16 +91,16 @@ def ends_within(seconds: float) -> Iterator[None]:
 
 @contextmanager
 def cpu_limit(seconds: float, context: z3.Context) -> Iterator[None]:
-    """Raises OutOfTime in the block once the process has used so many CPU seconds (s) in it.
+    """Raises OutOfTime in the block once the process has used `seconds` CPU seconds [s] in it.
 
-    context: the one whose questions the block asks; what is being solved in it is interrupted.
+    context: the z3 context of the block's questions; a running query in it is interrupted.
     """
     latest = time.process_time() + seconds
     over, done = threading.Event(), threading.Event()
     thread = threading.get_ident()
 
     def watch() -> None:
-        # again until it has come through: an error raised inside a callback is lost
+        # repeated until it takes effect: an error raised inside a callback is lost
         while not done.wait(PERIOD_S):
             if time.process_time() > latest:
                 over.set()
@@ -115,11 +114,11 @@ def cpu_limit(seconds: float, context: z3.Context) -> Iterator[None]:
             with ends_within(seconds):
                 yield
         finally:
-            # if the error comes up here, the next look is yet to come
+            # if the error is raised here, the watcher has not stopped yet
             done.set()
     except Exception as error:
         if over.is_set():
-            # the solver says in its own words that it was interrupted
+            # the solver reports the interrupt as an error of its own
             raise OutOfTime from error
         raise
     finally:

@@ -1,8 +1,8 @@
-"""What a definition may contain, by permission: the kernel subset and a little more.
+"""What a definition may contain, as a list of what is permitted: the kernel subset and some more.
 
-A definition of `spec` is read by people and by the prover, never compiled. Beside what a kernel has,
-it may choose with `a if c else b`, take remainders by positive numbers and shift masks, name
-constants, and call plain functions of `spec` and `core`, also by their module's name.
+A definition of `spec` is read by people and by the prover, never compiled. Beside what a kernel has, it may choose
+with `a if c else b`, take remainders by positive numbers and shift masks, name constants, and call plain functions of
+`spec` and `core`, also by their module's name.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ MORE = (ast.Mod, ast.LShift, ast.RShift)
 
 
 class DefinitionKinds(Kinds):
-    """As of kernels; callees: the functions that are called."""
+    """Kinds of expressions in definitions; callees: the functions that are called."""
 
     several = True
 
@@ -55,12 +55,12 @@ class DefinitionKinds(Kinds):
         return super().of(node, names)
 
     def comparable(self, one: Kind, other: Kind, order: bool) -> bool:
-        """Records of one kind may be equal."""
+        """Whether two kinds may be compared: as in kernels, and records of one kind for equality."""
         same = one is other and is_kind(one)
         return super().comparable(one, other, order) or (same and not order)
 
     def _constant(self, node: ast.expr) -> Kind | None:
-        """The kind of a constant of this module or of another one; None for anything else."""
+        """The kind of a constant of this or another module; None for anything else."""
         value = self.named(node)
         if isinstance(value, bool | int | Fraction):
             self._as_written(node, value)
@@ -71,7 +71,7 @@ class DefinitionKinds(Kinds):
         return float if isinstance(value, Fraction) else None
 
     def _as_written(self, node: ast.expr, value: Any) -> None:
-        """The constant that runs is the one of the file that is hashed."""
+        """Refuse a constant whose value at run time differs from the one in the hashed file."""
         if isinstance(node, ast.Attribute):
             home, name = self.named(node.value), node.attr
         else:
@@ -84,7 +84,7 @@ class DefinitionKinds(Kinds):
             )
 
     def named(self, node: ast.expr) -> Any:
-        """What a name, or the attribute of a module, stands for; None if it is local or nothing."""
+        """The object that a name or a module's attribute refers to; None for a local or unknown name."""
         if isinstance(node, ast.Name):
             return None if node.id in self.local else self.scope.get(node.id)
         if isinstance(node, ast.Attribute):
@@ -121,7 +121,7 @@ class DefinitionKinds(Kinds):
         return result
 
     def _over(self, node: ast.Call, names: dict[str, Kind]) -> Kind:
-        """any, all or sum of what is written for each of a few written values."""
+        """The kind of any, all or sum of an expression over a written list of values."""
         name = ast.unparse(node.func)
         if self.scope.get(name, OVER[name]) is not OVER[name]:
             raise Refused(node, f"{name!r} is not Python's own here: give yours another name")
@@ -143,7 +143,7 @@ class DefinitionKinds(Kinds):
         return kind
 
     def _common(self, node: ast.Tuple | ast.List, names: dict[str, Kind]) -> Kind:
-        """The kind of all values that are written here."""
+        """The common kind of all values written here."""
         kinds = [self.of(part, names) for part in node.elts]
         both = functools.reduce(lambda a, b: None if a is None else merged(a, b), kinds)
         if both is None:
@@ -151,7 +151,7 @@ class DefinitionKinds(Kinds):
         return both
 
     def items(self, loop: ast.comprehension | ast.For, names: dict[str, Kind]) -> dict[str, Kind]:
-        """The names that a loop over written values gives, with the kinds of their values."""
+        """The names that a loop over written values binds, with the kinds of their values."""
         ways = [loop.iter]
         targets = [loop.target]
         called = ast.unparse(loop.iter.func) if isinstance(loop.iter, ast.Call) else ""
@@ -188,7 +188,7 @@ class DefinitionKinds(Kinds):
 
 @functools.cache
 def outside(function: Callable[..., Any]) -> tuple[Finding, ...]:
-    """What is outside of the subset in a function that a theorem uses.
+    """Everything outside of the subset in a function that a theorem uses.
 
     Functions of a theorem's own file are in the language of theorems (`theorem_subset`).
     """
@@ -196,7 +196,7 @@ def outside(function: Callable[..., Any]) -> tuple[Finding, ...]:
 
 
 def refusals(function: Callable[..., Any]) -> list[str]:
-    """What of a definition the subset does not have; where its file has none of it, that."""
+    """What a definition contains outside of the subset; or that its file has no such definition."""
     try:
         return list(map(str, outside(function)))
     except TypeError:
@@ -204,7 +204,7 @@ def refusals(function: Callable[..., Any]) -> list[str]:
 
 
 def of_theorems(function: Callable[..., Any]) -> bool:
-    """A function of a theorem's file, or a method of proof of the product."""
+    """Whether it is a function of a theorem's file, or one of the product's methods of proof."""
     package, _, home = str(function.__module__).partition(".")
     if package == "cratous":
         return home.startswith(("proofs.methods.", "proofs.theorems."))
@@ -216,7 +216,7 @@ OVER = {"any": any, "all": all, "sum": sum}
 
 
 def on_numbers(visit: Visit) -> bool:
-    """Plain numbers were given and came out, and do again: a table, say, that Python looks up."""
+    """Whether arguments and result are plain numbers, and Python computes the same result: a table, for example."""
     values = [leaf for value in (visit.args, visit.lifted.value) for leaf in leaves(value)]
     if not all(isinstance(value, bool | int | Fraction) for value in values):
         return False
@@ -224,7 +224,7 @@ def on_numbers(visit: Visit) -> bool:
 
 
 def check(function: Callable[..., Any]) -> list[Finding]:
-    """Everything in a definition, and in what it calls, that is outside of what definitions have."""
+    """Everything outside of the definition subset, in a definition and in what it calls."""
     found: list[Finding] = []
     seen: list[Any] = []
     todo: list[Any] = [function]

@@ -39,7 +39,7 @@ OPERATORS: dict[type[ast.operator], str] = {
 ORDER = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)
 NUMBERS = (float, int)
 OWN = {"abs": abs, "min": min, "max": max}
-"""Python's functions that every reading has, under the names that they must have."""
+"""Python's built-in functions that every reading implements, by name."""
 
 
 class Refused(Exception):
@@ -51,7 +51,7 @@ class Refused(Exception):
 
 
 class Kinds:
-    """Tells the kind of an expression, or raises Refused.
+    """Determines the kind of an expression, or raises Refused.
 
     several: whether several names may be assigned at once.
     """
@@ -62,7 +62,7 @@ class Kinds:
         self.scope, self.local = scope, local
 
     def of(self, node: ast.expr, names: dict[str, Kind]) -> Kind:
-        """The kind of an expression where the locals have these."""
+        """The kind of an expression, given the kinds of the locals."""
         match node:
             case ast.Constant():
                 return _constant(node)
@@ -86,7 +86,7 @@ class Kinds:
         raise Refused(node, INSTEAD.get(type(node), f"no {what} in kernels and definitions"))
 
     def truth(self, node: ast.expr, names: dict[str, Kind]) -> None:
-        """A condition: a truth value, nothing that Python only takes for one."""
+        """Check a condition: it must be a truth value, not merely something Python accepts as one."""
         kind = self.of(node, names)
         if kind is not bool:
             raise Refused(node, f"a condition is a truth value, this is {shown(kind)}: compare it")
@@ -146,11 +146,11 @@ class Kinds:
         return bool
 
     def items(self, loop: ast.For, names: dict[str, Kind]) -> dict[str, Kind]:
-        """The names that a loop gives: kernels have none."""
+        """The names that a loop binds: kernels have no loops."""
         raise Refused(loop, "loops over data are `fold`s over a kernel step")
 
     def comparable(self, one: Kind, other: Kind, order: bool) -> bool:
-        """Numbers of one kind; truth values unless it is asked which is less."""
+        """Whether two kinds may be compared: numbers of one kind; truth values unless for order."""
         both = merged(one, other)
         return both in NUMBERS or isinstance(both, Literal) or (both is bool and not order)
 
@@ -233,7 +233,7 @@ def _constant(node: ast.Constant) -> Kind:
 
 
 def _literal(node: ast.BinOp, left: Literal, right: Literal) -> Kind:
-    """An integer made of two that are written down: its bound is sure to be one."""
+    """The kind of an integer computed from two written ones; Refused if its bound does not fit in 64 bits."""
     match node.op:
         case ast.Add() | ast.Sub():
             bound = left.bound + right.bound

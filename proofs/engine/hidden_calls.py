@@ -1,4 +1,4 @@
-"""What a lemma shows where it is used, held against what it shows where it meets no calls.
+"""Compares what a lemma shows where it is used with what it shows where it meets no calls.
 
 Its user may have called a function that neither looks into more or less often than the lemma does by itself.
 """
@@ -12,27 +12,27 @@ import z3
 
 
 class Shown(Protocol):
-    """What a lemma gives its user."""
+    """What a lemma gives its user: premises and goals."""
 
     goals: list[z3.BoolRef]
     premises: list[z3.BoolRef]
 
 
 def alike(one: Sequence[z3.ExprRef], other: Sequence[z3.ExprRef]) -> bool:
-    """The same terms in the same order."""
+    """Whether both have the same terms in the same order."""
     return len(one) == len(other) and all(a.eq(b) for a, b in zip(one, other, strict=True))
 
 
 def same(one: Shown, other: Shown) -> bool:
-    """The same goals under the same premises."""
+    """Whether both state the same goals under the same premises."""
     return alike(one.goals, other.goals) and alike(one.premises, other.premises)
 
 
 def show_nothing_else(name: str, lemma: Shown, blind: Callable[[], Shown]) -> None:
-    """Refuse a lemma that shows something else without calls; ValueError. blind: reads it without them."""
+    """Raise ValueError for a lemma that states something else without calls. blind: states it without them."""
     try:
         without = blind()
     except (ValueError, TypeError, IndexError):
-        return  # it takes them for granted, which `lemma_calls` tells of the lemma itself
+        return  # it fails without calls, which `lemma_calls` reports of the lemma itself
     if not same(lemma, without):
         raise ValueError(f"{name} is no lemma: what it shows hangs on the calls that it meets")

@@ -1,12 +1,11 @@
-"""What an induction over the items of a fold may speak of.
+"""What an induction over the items of a fold may refer to.
 
-The rule. Let the accumulators of kernel and definition be arbitrary, and so the item. If the relation
-holds of both starts (base), if one step keeps it for any item that satisfies the premises (step), and
-if it makes the two results equal (use), then the results are equal for every list of items that
-satisfy the premises: by induction on its length. This needs that the relation is one and the same
-after every item, so it does not depend on the item; that the definition's step and result depend on
-its own accumulator; that the context is the same for all items; and that base and use hold for the
-empty list too, so they may not use that there is an item which satisfies the premises.
+The rule. Let the accumulators of kernel and definition be arbitrary, and so the item. If the relation holds between
+both starts (base), if one step preserves it for any item that satisfies the premises (step), and if it makes the two
+results equal (use), then the results are equal for every list of items that satisfy the premises: by induction on its
+length. This needs that the relation is the same after every item, so it does not depend on the item; that the
+definition's step and result depend on its own accumulator; that the context is the same for all items; and that base
+and use hold for the empty list too, so they must not use the existence of an item that satisfies the premises.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from cratous.proofs.engine.terms import Stub, free_names, known, leaves
 
 
 class Claim(Protocol):
-    """What an induction needs of a claim: what is given and known there, and its unknown functions."""
+    """What an induction needs of a claim: known facts and obligations, and its opaque functions."""
 
     premises: list[z3.BoolRef]
     facts: list[z3.BoolRef]
@@ -37,16 +36,16 @@ class _Stepwise(TypedDict):
 
 
 class DefinedBy(_Stepwise, total=False):
-    """The definition's side of a fold: its accumulator at the start and after one more item, and its result.
+    """The definition's side of a fold: its start, its step and its result.
 
-    Without a `model_finish` its accumulator is the result.
+    Without a `model_finish` the result is its accumulator.
     """
 
     model_finish: Callable[..., Any] | None
 
 
 def all_given(parts: Mapping[str, Any], kind: type) -> None:
-    """Refuse what a record of named parts (a TypedDict) has not, and a record that lacks one; TypeError."""
+    """Raise TypeError unless the parts are those of a TypedDict, none missing and none unknown."""
     needed: frozenset[str] = kind.__required_keys__  # type: ignore[attr-defined]
     allowed: frozenset[str] = needed | kind.__optional_keys__  # type: ignore[attr-defined]
     if missing := sorted(needed - parts.keys()):
@@ -67,13 +66,13 @@ def names_in(value: Any) -> set[str]:
 
 
 def spread(names: set[str], claim: Claim) -> set[str]:
-    """These names and those of all that depends on them: results of opaque functions, and roots."""
+    """These names and all that depend on them: results of opaque functions, and square roots."""
     found = set(names)
     while True:
         more: set[str] = set()
         for stub in claim.stubs.values():
             if not isinstance(stub, Stub):
-                continue  # an outline of the statement, in which nothing is proved
+                continue  # only an outline of the statement, in which nothing is proved
             for args, result in zip(stub.calls, stub.results.values(), strict=True):
                 if names_in(args) & found:
                     more |= names_in(result)
@@ -87,9 +86,10 @@ def spread(names: set[str], claim: Claim) -> set[str]:
 
 
 def arbitrary(claim: Claim, accumulators: Any, others: Any) -> None:
-    """Refuse accumulators over which no induction runs; ValueError.
+    """Raise ValueError for accumulators over which no induction is possible.
 
-    They are free values; neither premises nor others know them, nor what opaque functions make of them.
+    They must be distinct free values, and neither premises nor `others` may depend on them, not even through opaque
+    functions.
     """
     own = [known(leaf) for leaf in leaves(accumulators)]
     if any(not z3.is_const(t) or t.decl().kind() != z3.Z3_OP_UNINTERPRETED for t in own):
@@ -112,7 +112,7 @@ def arbitrary(claim: Claim, accumulators: Any, others: Any) -> None:
 
 
 def no_more_premises(claim: Claim, number: int) -> None:
-    """Refuse premises beyond so many; ValueError."""
+    """Raise ValueError if there are more than `number` premises."""
     if len(claim.premises) != number:
         raise ValueError("an induction's relation and steps state no premises")
 
@@ -137,7 +137,7 @@ class Induction:
         self.premises = list(claim.premises)
 
     def relation(self, *terms: z3.BoolRef, start: Any, context: Any) -> None:
-        """The relation, before an item and at the start, and the context do not know the item."""
+        """Check that the relation, before an item and at the start, and the context do not depend on the item."""
         item = spread(names_in(self.item), self.claim)
         for term in terms:
             shared = sorted(free_names(term) & item)
@@ -159,7 +159,7 @@ class Induction:
                 )
 
     def model_only(self, after: Any, result: Any) -> None:
-        """The definition's step and result depend on its own accumulator, not on the kernel's."""
+        """Check that the definition's step and result depend on its own accumulator, not on the kernel's."""
         acc = spread(names_in(self.acc), self.claim)
         _apart("the definition's step", after, acc)
         _apart("the definition's result", result, acc | spread(names_in(self.item), self.claim))
@@ -167,7 +167,7 @@ class Induction:
 
     @contextmanager
     def without_items(self) -> Iterator[None]:
-        """What is owed in here is owed for the empty list too: no premise on an item is given."""
+        """Obligations stated within must hold for the empty list too: premises on an item are left out."""
         claim = self.claim
         item = spread(names_in(self.item), claim)
         free = [p for p in claim.premises if not free_names(p) & item]
@@ -175,7 +175,7 @@ class Induction:
             yield
             return
         premises, facts = claim.premises, claim.facts
-        # what was shown before may rest on the premises that are left out
+        # what was shown before may depend on the premises that are left out
         claim.premises, claim.facts = free, [*claim.roots, *claim.congruences, *claim.granted]
         kept = len(claim.facts)
         try:

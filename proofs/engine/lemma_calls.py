@@ -1,8 +1,8 @@
-"""Whether what a theorem shows is the same wherever it serves as a lemma.
+"""Whether a theorem shows the same wherever it serves as a lemma.
 
-Where a caller of the lemma does not look into its kernel, the lemma meets none of the kernel's own
-calls (`Claim.calls` is empty there). It may cite lemmas about each of them, but a goal that is made
-of them would then be another goal than the one that was proved, without a word.
+Where a user of the lemma does not look into its kernel, the lemma meets none of the kernel's own calls (`Claim.calls`
+is empty there). A theorem may use lemmas about each of those calls, but a goal made of the calls themselves would
+then silently differ from the one that was proved.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from cratous.proofs.engine.theorem_files import load_claim, load_lemma
 
 
 def hangs_on_calls(name: str, folder: Path) -> bool:
-    """Does the theorem show something else, or nothing, where it meets no calls?"""
+    """Whether the theorem shows something else, or nothing, where it meets no calls."""
     statement = load_claim(name, folder)[0]
     lemma = functools.cache(lambda other: load_lemma(other, folder))
 
@@ -30,8 +30,8 @@ def hangs_on_calls(name: str, folder: Path) -> bool:
     if not plain.asked:
         return False
     try:
-        # what is not looked into has one name in both
+        # an opaque function has one name in both
         without = read(hidden=True, stubs=dict(plain.stubs))
     except (ValueError, TypeError, IndexError):
-        return True  # it takes them for granted
+        return True  # it fails without calls
     return not same(plain, without)

@@ -1,12 +1,11 @@
 """The lifter: runs a kernel on symbolic values and gives the z3 term that it computes.
 
-The function is run again and again, each time with another script of decisions, until every way
-through it has been seen; a way whose conditions contradict each other is pruned, one that the
-solver cannot judge is kept (which is sound). The results are joined into one term by
-if-then-else over the path conditions, and every side condition (no division by zero, no root of a
-negative, integers and shifts in range) comes out as an obligation. A square root is a fresh value
-with its defining fact. A call to another function is lifted on its own and enters as one joined
-term, so paths do not multiply across calls; recursion is refused.
+The function is run repeatedly, each time with another sequence of decisions, until every path through it has been
+explored; a path whose conditions contradict each other is pruned, one that the solver cannot decide is kept (which is
+sound). The results are joined into one term by if-then-else over the path conditions, and every side condition (no
+division by zero, no root of a negative number, integers and shifts in range) becomes an obligation. A square root is
+a fresh value with its defining fact. A call of another function is lifted separately and enters as one joined term,
+so paths do not multiply across calls; recursion is refused.
 """
 
 from __future__ import annotations
@@ -39,22 +38,22 @@ __all__ = ["LiftError", "Lifted", "Visit", "join", "lift"]
 
 PRUNE_RLIMIT = 200_000
 PRUNE_CPU_S = 30
-"""CPU seconds after which such a question ends: many times what any takes."""
+"""CPU seconds after which a feasibility question is ended: far above what any needs."""
 MAX_PATHS = 4096
 OPAQUE: dict[Callable[..., Any], Callable[..., Any]] = {}
-"""Functions that are not looked into at present, with what stands for them (see Claim.opaque)."""
+"""Functions that are opaque at present, each with the stub in its place (see Claim.opaque)."""
 CLOSED: list[Callable[[Callable[..., Any], tuple[Any, ...]], None]] = []
-"""Who is told of every call of such a function, the innermost last (see `closed`)."""
+"""Callbacks for calls of opaque functions, innermost last (see `closed`)."""
 REPLACED: dict[Any, Any] = {}
-"""Functions and folds in whose place another one is lifted at present (see `proofs.mutation.mutate`)."""
+"""Functions and folds for which another one is lifted at present (see `proofs.mutation.mutate`)."""
 
 
 @dataclass(frozen=True)
 class Lifted:
     """What a function computes: the joined value, its side conditions, its paths.
 
-    roots: what is true of the square roots in the value; branches, values: each path's condition
-    and value; pruned: how many decisions had one way only, because the other contradicts the path so far.
+    roots: defining facts of the square roots in the value; branches, values: each path's condition and value; pruned:
+    the number of decisions with one feasible outcome only.
     """
 
     value: Any
@@ -68,9 +67,9 @@ class Lifted:
 
 @dataclass(frozen=True)
 class Visit:
-    """One function as it was lifted: with which arguments, under which conditions, with what.
+    """One lifted call: its function, arguments, path conditions and result.
 
-    granted: what an induction takes for granted there, beside the theorem's premises.
+    granted: hypotheses of an induction that hold there, beside the theorem's premises.
     """
 
     function: Callable[..., Any]
@@ -81,7 +80,7 @@ class Visit:
 
 
 VISITS: list[list[Visit]] = []
-"""Lists to which every lifted call is added at present, innermost last (see `Claim.visits`)."""
+"""Lists to which every lifted call is appended, innermost last (see `Claim.visits`)."""
 
 _LIFTING: list[Callable[..., Any]] = []
 
@@ -93,22 +92,22 @@ _NAMES: dict[int, tuple[z3.ExprRef, frozenset[str]]] = {}
 
 
 def _names(term: z3.ExprRef) -> frozenset[str]:
-    """The names of the values in a term, looked up once for each part of it."""
+    """The names of the values in a term, computed once for each subterm."""
     known = _NAMES.get(term.get_id())
     if known is None:
         if z3.is_const(term) and term.decl().kind() == z3.Z3_OP_UNINTERPRETED:
             found = frozenset([term.decl().name()])
         else:
             found = frozenset().union(*[_names(part) for part in term.children()])
-        # the term is kept, so that its id stays its own
+        # the term is kept alive so that its id stays unique
         known = _NAMES[term.get_id()] = (term, found)
     return known[1]
 
 
 def _relevant(conditions: list[z3.BoolRef]) -> list[z3.BoolRef]:
-    """Those that share values with the last one, directly or through others.
+    """The conditions that share values with the last one, directly or through others.
 
-    The rest is about other values: it was possible before, and says nothing about the last one.
+    The rest is about other values: it was satisfiable before and does not affect the last condition.
     """
     left = conditions[:-1]
     found, names = [conditions[-1]], set(_names(conditions[-1]))
@@ -122,7 +121,7 @@ def _relevant(conditions: list[z3.BoolRef]) -> list[z3.BoolRef]:
 
 
 def _feasible(conditions: list[z3.BoolRef]) -> bool:
-    """False only if the last condition is known to contradict the others; asked once each."""
+    """False only if the last condition is known to contradict the others; each question is asked once."""
     conditions = _relevant(conditions)
     key = tuple(sorted({condition.get_id() for condition in conditions}))
     if key not in _ASKED:
@@ -131,7 +130,7 @@ def _feasible(conditions: list[z3.BoolRef]) -> bool:
         solver.add(*conditions)
         with ends_within(PRUNE_CPU_S):
             answer = solver.check()
-        # the terms are kept, so that their ids stay theirs
+        # the terms are kept alive so that their ids stay unique
         _ASKED[key] = (conditions, bool(answer != z3.unsat))
     return _ASKED[key][1]
 
@@ -139,10 +138,10 @@ def _feasible(conditions: list[z3.BoolRef]) -> bool:
 def _decider(
     context: list[z3.BoolRef], queue: list[list[bool]], pruned: list[z3.BoolRef]
 ) -> Callable[..., bool]:
-    """Follow the script; at its end take the first feasible way and queue the other."""
+    """Returns decisions from the script; after its end takes the first feasible way and queues the other."""
 
     def decide(path: Path, condition: z3.BoolRef) -> bool:
-        # a condition that was met before on this path is no decision, in a replay neither
+        # a condition met before on this path is no decision, nor is it one in a replay
         known = {c.get_id() for c in (*context, *path.conditions)}
         if condition.get_id() in known:
             return True
@@ -229,7 +228,7 @@ def lift(function: Callable[..., Any], *args: Any) -> Lifted:
             _LIFTING.pop()
         condition = z3.And(*path.conditions) if path.conditions else z3.BoolVal(True)
         branches.append((condition, value))
-        # paths with a common beginning owe the same there: once is enough
+        # paths with a common beginning have the same obligations there: stated once
         for text, owed in path.obligations:
             if (text, owed.get_id()) not in seen:
                 seen.add((text, owed.get_id()))
@@ -250,7 +249,7 @@ def lift(function: Callable[..., Any], *args: Any) -> Lifted:
 
 
 def _with_lifted_callees(function: Callable[..., Any]) -> Callable[..., Any]:
-    """A copy of the function in whose globals calls to other functions are lifted calls."""
+    """A copy of the function whose globals hold lifted versions of the functions that it calls."""
     if not isinstance(function, types.FunctionType):
         return function
     scope = dict(function.__globals__)
@@ -279,12 +278,12 @@ def _calling(callee: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _root(value: Any) -> Any:
-    """sqrt: of a number as Python takes it, of a symbolic value by its defining fact."""
+    """sqrt: Python's for a plain number; for a symbolic value a fresh value with its defining fact."""
     return root(value) if isinstance(value, Sym) else math.sqrt(value)
 
 
 def _extreme(which: Callable[..., Any]) -> Callable[..., Any]:
-    """min and max of values as if-then-else, without forking the path."""
+    """min or max of values as if-then-else, without splitting the path."""
 
     def choose(a: Any, b: Any, *more: Any) -> Any:
         if more:

@@ -1,7 +1,7 @@
-"""What a module's file says of a name: one definition at its top, one constant.
+"""What a module's file gives for a name: one top-level definition, or one constant.
 
-The code that runs is held against this, so that what a module does to itself or to another one while
-it is imported is no part of a proof.
+The running code is compared with this, so that changes which modules make to themselves or to each other on import do
+not enter a proof.
 """
 
 from __future__ import annotations
@@ -33,7 +33,8 @@ def _parsed(file: str, changed_ns: int) -> ast.Module:
 
 
 def is_top(function: types.FunctionType) -> bool:
-    """Its file has one definition of this name, at the top, and nothing else gets the name there."""
+    """Whether the function is the only top-level definition of its name in its file, and nothing else binds the
+    name."""
     file = str(inspect.getsourcefile(function))
     found = _bindings(file, os.stat(file).st_mtime_ns).get(function.__name__, [])
     return len(found) == 1 and found[0]
@@ -41,7 +42,7 @@ def is_top(function: types.FunctionType) -> bool:
 
 @functools.cache
 def _bindings(file: str, changed_ns: int) -> dict[str, list[bool]]:
-    """Whatever gives a name in a file, outside of functions and classes: is it a `def` at the top?"""
+    """All bindings of names in a file, outside of functions and classes; for each, whether it is a top-level `def`."""
     tree = _parsed(file, changed_ns)
     inner = {
         id(n)
@@ -60,7 +61,7 @@ def _bindings(file: str, changed_ns: int) -> dict[str, list[bool]]:
 
 
 def _bound_name(node: ast.AST) -> str:
-    """The name that a node gives something; empty for one that gives none."""
+    """The name that a node binds; empty if none."""
     if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
         return node.name
     if isinstance(node, ast.alias):
@@ -69,9 +70,9 @@ def _bound_name(node: ast.AST) -> str:
 
 
 def constant(module: types.ModuleType, name: str, imports: int = IMPORTS) -> Any:
-    """The value that a module's file gives a name, or that of the file from which it imports it.
+    """The constant that a module's file binds to a name, followed through imports from other files.
 
-    NOTHING where neither gives one, or more than one. imports: so many files may hand it on.
+    NOTHING where there is no such binding, or more than one. imports: the longest chain of imports that is followed.
     """
     file = str(module.__file__)
     changed_ns = os.stat(file).st_mtime_ns
@@ -105,7 +106,7 @@ def _constants(file: str, changed_ns: int) -> dict[str, Any]:
 
 
 def _imported(file: str, changed_ns: int, name: str) -> tuple[str, str] | None:
-    """The module, and the name there, from which a file imports a name, once and at its top."""
+    """Module and original name from which a file imports a name, if once and at the top level."""
     found = [
         (str(node.module), alias.name)
         for node in _parsed(file, changed_ns).body

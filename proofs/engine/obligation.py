@@ -1,4 +1,4 @@
-"""What a theorem owes: one statement for the solver."""
+"""One statement for the solver: an obligation of a theorem."""
 
 from __future__ import annotations
 

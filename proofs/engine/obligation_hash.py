@@ -1,10 +1,9 @@
-"""One hash for what an obligation says: structural, over the raw solver terms.
+"""A structural hash of an obligation, over the raw solver terms.
 
-Text of an obligation will not do: the solver's printer puts internal numbers into names and orders
-operands by them. Here a term is hashed from its operator, its parameters, its sort and the hashes
-of its operands in order; variables count by the order of their first occurrence, so renaming
-changes nothing. One `Hasher` serves all obligations of a theorem, so shared subterms are hashed
-once.
+The text of an obligation does not serve: the solver's printer puts internal numbers into names and orders operands by
+them. Here a term is hashed from its operator, its parameters, its sort and the hashes of its operands in order;
+variables count by the order of their first occurrence, so renaming changes nothing. One `Hasher` serves all
+obligations of a theorem, so shared subterms are hashed once.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ class Hasher:
     def __init__(self) -> None:
         self._known: dict[int, bytes] = {}
         self._variables: dict[int, int] = {}
-        # terms are kept alive, or their numbers would be given to others
+        # terms are kept alive, or their ids would be reused for others
         self._kept: list[z3.AstRef] = []
 
     def add(self, root: z3.ExprRef) -> bytes:

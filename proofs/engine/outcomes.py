@@ -1,4 +1,4 @@
-"""What came of a theorem: of each obligation by the solver, of the whole by running it on numbers."""
+"""Results of a theorem: for each obligation by the solver, for the whole by running it on numbers."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Owed:
-    """What was owed: its kind (goal, defined, base, step, use, lemma) and its text."""
+    """An obligation's kind (goal, defined, base, step, use, lemma) and text."""
 
     kind: str
     text: str
@@ -16,11 +16,11 @@ class Owed:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What the solver said of one obligation: proved, refuted, unknown; the effort it took.
+    """The solver's result for one obligation (proved, refuted, unknown) and its effort.
 
-    key: structural hash of the obligation; counterexample: the values of a refutation by name;
-    story: the same in the user's terms; seconds: CPU, not in the ledger; ended: which limit of time ended
-    the question, where that is why it is unknown.
+    key: structural hash of the obligation; counterexample: the values of a refutation by name; story: the same in the
+    user's terms; seconds: CPU, not in the ledger; ended: which time limit ended the question, where that is why it is
+    unknown.
     """
 
     obligation: Owed
@@ -36,12 +36,11 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Ran:
-    """A theorem that was run.
+    """The result of running a theorem on numbers.
 
-    points: numbers for its values at which its premises held and all was decided; doubles: those of them
-    that CPython's doubles are, every one; differences: what was
-    to be shown and is false there, and readings of its functions that differ; not_run: why it could not
-    be run itself; left_out: readings of its functions that could not be compared.
+    points: the number of points at which its premises held and every statement could be decided; doubles: the number
+    of those whose values are all doubles; differences: goals that are false there, and readings of its functions that
+    differ; not_run: why it could not be run; left_out: readings of its functions that could not be compared.
     """
 
     points: int = 0
@@ -52,7 +51,7 @@ class Ran:
 
 
 def restored(data: dict[str, Any] | None) -> Ran | None:
-    """The same from its fields as they were kept; KeyError, TypeError or ValueError for other data."""
+    """The result from its stored fields; raises KeyError, TypeError or ValueError for other data."""
     if data is None:
         return None
     texts = {key: tuple(map(str, data[key])) for key in ("differences", "left_out")}

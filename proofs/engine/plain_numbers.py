@@ -1,11 +1,10 @@
 """Numbers that a theorem's statement computes by itself must be computed exactly.
 
-Where a theorem gives a function plain numbers, Python computes with them, and no solver sees it:
-`1 / 49 * 49 != 1` is true of doubles, and false. Symbolic values, fractions and integers are exact,
-so nothing is wrong unless a double comes up. Mixed with symbolic values a double is refused as it
-is; here the rest is looked for. A claim in which a double could come up is stated once more, with
-functions that look at every value that they compute. The lines of the claim and of its file are
-among them; a function of another file that is called without being lifted is not looked into.
+Where a theorem gives a function plain numbers, Python computes with them and the solver does not see it: `1 / 49 * 49
+!= 1` is true of doubles but false. Symbolic values, fractions and integers are exact, so only doubles are a problem.
+A double mixed with symbolic values is refused anyway; the rest is found here. A claim in which a double could arise
+is stated once more, with functions that check every value that they compute. This covers the claim and its file; a
+function of another file that is called without being lifted is not looked into.
 """
 
 from __future__ import annotations
@@ -26,17 +25,17 @@ from cratous.proofs.engine.lift import REPLACED, Visit
 from cratous.spec.errors import BadInput
 
 COMPUTED = (ast.BinOp, ast.UnaryOp, ast.Call)
-"""What rounds. A double that is only named or compared is the rational that it is."""
+"""Operations that may round. A double that is only named or compared stands for the rational that it is."""
 HARMLESS = (abs, min, max, len, all, any, sum, range, bool, int, tuple, isinstance, zip, enumerate)
-"""What gives no double unless it is given one."""
+"""Functions that return no double unless they are given one."""
 
 
 class Inexact(BadInput):
-    """A double came up in what a theorem states."""
+    """A statement of a theorem computed a double."""
 
 
 class _Look:
-    """Hands on a value; raises Inexact for a double. No function, so that it is not lifted."""
+    """Returns a value unchanged; raises Inexact for a double. An object, not a function, so that it is not lifted."""
 
     def __init__(self, function: Callable[..., Any], texts: Sequence[str]) -> None:
         self.function, self.texts = function, texts
@@ -54,7 +53,7 @@ class _Look:
 
 
 class _Watching(ast.NodeTransformer):
-    """Puts every value that is computed through `look`."""
+    """Wraps every computed value in `look`."""
 
     def __init__(self, look: str) -> None:
         self.look = look
@@ -86,7 +85,7 @@ def _definition(function: Callable[..., Any]) -> ast.FunctionDef | None:
     if not isinstance(node, ast.FunctionDef):
         return None
     node.decorator_list, node.returns = [], None
-    # the defaults are those of the function that is there
+    # defaults are taken from the function object
     node.args.defaults, node.args.kw_defaults = [], [None] * len(node.args.kwonlyargs)
     for argument in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs):
         argument.annotation = None
@@ -94,9 +93,10 @@ def _definition(function: Callable[..., Any]) -> ast.FunctionDef | None:
 
 
 def watching(function: types.FunctionType) -> types.FunctionType:
-    """The same function, but Inexact is raised where it computes a double.
+    """The same function, raising Inexact wherever it computes a double.
 
-    A function that could make none stays as it is; Inexact if the source of another is not there.
+    A function that cannot compute one is returned as it is. Raises Inexact if the source of another function is
+    missing.
     """
     node = _definition(function)
     if node is None:
@@ -119,7 +119,7 @@ def watching(function: types.FunctionType) -> types.FunctionType:
 
 
 def _together(claim: types.FunctionType, own: dict[str, types.FunctionType]) -> types.FunctionType:
-    """The claim, watched, with the functions of its file, watched as well."""
+    """The claim with its file's functions, all instrumented."""
     made = {name: watching(function) for name, function in own.items()}
     whole = watching(claim)
     for function in (whole, *made.values()):
@@ -129,14 +129,14 @@ def _together(claim: types.FunctionType, own: dict[str, types.FunctionType]) -> 
 
 
 def _plain(value: Any, kinds: Any = int | float | Fraction) -> bool:
-    """There is a number of these kinds in the value, not a symbolic one."""
+    """Whether the value contains a plain number of these kinds."""
     if isinstance(value, tuple | list):
         return any(_plain(part, kinds) for part in value)
     return isinstance(value, kinds) and not isinstance(value, bool)
 
 
 def _codes(code: types.CodeType) -> Iterator[types.CodeType]:
-    """The code and that of the comprehensions and functions in it."""
+    """The code object and those of the comprehensions and functions in it."""
     yield code
     for part in code.co_consts:
         if isinstance(part, types.CodeType):
@@ -144,7 +144,7 @@ def _codes(code: types.CodeType) -> Iterator[types.CodeType]:
 
 
 def _divides(code: types.CodeType) -> bool:
-    """Written in it is a division, a power, or a double."""
+    """Whether the code contains a division, a power, or a double."""
     return any(
         _plain(part.co_consts, float | complex)
         or any(
@@ -160,7 +160,7 @@ def _names(function: types.FunctionType) -> set[str]:
 
 
 def _used(function: types.FunctionType) -> list[Any]:
-    """What the function can get at beside its arguments."""
+    """The objects that the function can reach beside its arguments."""
     scope = vars(builtins) | function.__globals__
     kept = [cell.cell_contents for cell in function.__closure__ or ()]
     defaults = [*(function.__defaults__ or ()), *(function.__kwdefaults__ or {}).values()]
@@ -169,7 +169,7 @@ def _used(function: types.FunctionType) -> list[Any]:
 
 @functools.cache
 def _could(function: types.FunctionType) -> bool:
-    """The function could make a double of integers and fractions."""
+    """Whether the function could make a double of integers and fractions."""
     kinds = types.ModuleType | types.BuiltinFunctionType | type
     return _divides(function.__code__) or any(
         isinstance(value, kinds)
@@ -181,14 +181,14 @@ def _could(function: types.FunctionType) -> bool:
 
 @functools.cache
 def _owns(function: types.FunctionType) -> bool:
-    """The function has a double at hand that no argument brought."""
+    """Whether the function has a double available that no argument brought."""
     constants = [code.co_consts for code in _codes(function.__code__)]
     return _plain((*_used(function), *constants), float | complex)
 
 
 @functools.cache
 def _literals(function: types.FunctionType) -> bool:
-    """The function computes with what it has written down alone, or keeps it under a name."""
+    """Whether some operation, call or assignment in the function reads none of its locals."""
     node = _definition(function)
     names = function.__code__.co_varnames
 
@@ -201,7 +201,7 @@ def _literals(function: types.FunctionType) -> bool:
 
 
 def doubtful(visits: Iterable[Visit]) -> bool:
-    """Could a double have come up in what was lifted? Never False where one did."""
+    """Whether a double could have arisen in what was lifted; False only where none did."""
     seen = [v for v in visits if isinstance(v.function, types.FunctionType)]
     given = [v.function for v in seen if _plain(v.lifted.value)]
     names = {function.__name__ for function in given}
@@ -222,10 +222,9 @@ def hold(
     claim: Callable[..., Any],
     visits: Sequence[Visit],
 ) -> None:
-    """Raises Inexact if a claim, which made these visits, was computed with a double somewhere.
+    """Raise Inexact if a claim, which made these visits, computed with a double somewhere.
 
-    state: states the claim, or one that stands for it. Nothing is done where no double can have
-    come up.
+    state: states the claim, or a claim in its place. Does nothing where no double can have arisen.
     """
     assert isinstance(claim, types.FunctionType)
     own = {

@@ -1,10 +1,9 @@
 """The prover: the only place that makes a `Theorem`.
 
-A claim is proved if its premises are satisfiable and z3 finds the negation of every obligation
-unsatisfiable, within a budget of solver resources (rlimit, never wall time). `unknown` is not
-proved. Every question is put to a solver in a context of its own, so the answer and the effort
-depend on the question alone, not on what was asked before or on how the work is spread. Each
-obligation can be written out as SMT-LIB for solvers that stand alone.
+A claim is proved if its premises are satisfiable and z3 finds the negation of every obligation unsatisfiable, within
+a budget of solver resources (rlimit, never wall time). `unknown` is not proved. Every question is put to a solver in
+a context of its own, so the answer and the effort depend on the question alone, not on what was asked before or on
+how the work is spread. Each obligation can be written out as SMT-LIB for other solvers.
 """
 
 from __future__ import annotations
@@ -43,11 +42,11 @@ FACTS_RLIMIT = 3_000_000
 PATH_RLIMIT = 1_000_000
 VALUES_RLIMIT = 300_000
 STATE_CPU_S = 300
-"""CPU seconds after which a statement is ended: many times what any takes."""
+"""CPU seconds after which stating a theorem is aborted: far above what any needs."""
 THEIRS = (
     ArithmeticError, AttributeError, LiftError, LookupError, NameError, OSError, TypeError, ValueError,
 )  # fmt: skip
-"""Errors that a theorem, a definition or a kernel brings up when it is stated."""
+"""Errors that a theorem, a definition or a kernel may raise while it is stated."""
 _KEY = object()
 _NO_CACHE = Cache(None)
 
@@ -56,10 +55,9 @@ _NO_CACHE = Cache(None)
 class Theorem:
     """A claim with its outcomes. Only `prove` can make one.
 
-    paths: of every kernel that it is about, which paths some values reach under the premises; varied:
-    how the arguments of every use of a kernel, in order, vary under them (see `reachable_paths`); ran: what came
-    of running it on numbers, None where it was not run; ended: which limits of time ended questions about
-    its premises, paths and arguments.
+    paths: for each kernel that it is about, which of its paths are reachable under the premises; varied: for each use
+    of a kernel, in order, how its arguments vary (see `reachable_paths`); ran: the result of running it on numbers,
+    None where it was not run; ended: time limits that ended questions about its premises, paths and arguments.
     """
 
     name: str
@@ -80,12 +78,12 @@ class Theorem:
             raise TypeError("only the prover makes theorems")
 
     def after(self, ran: Ran) -> Theorem:
-        """The same theorem, run."""
+        """The same theorem with the result of running it on numbers."""
         return replace(self, ran=ran, _key=_KEY)
 
     @property
     def proved(self) -> bool:
-        """True iff the premises are satisfiable, every obligation is proved, and none was false when run."""
+        """True iff the premises are satisfiable, every obligation is proved, and running it found no difference."""
         decided = all(o.status == "proved" for o in self.outcomes)
         return (
             self.premises == "satisfiable" and decided and not (self.ran and self.ran.differences)
@@ -93,7 +91,7 @@ class Theorem:
 
     @property
     def uses(self) -> dict[tuple[str, int], str]:
-        """How the arguments vary in each use of a kernel, numbered for each kernel (see `reachable_paths`)."""
+        """How the arguments vary in each use of a kernel; uses are numbered per kernel (see `reachable_paths`)."""
         counted: dict[str, int] = {}
         found = {}
         for name, how in self.varied:
@@ -108,12 +106,12 @@ class Theorem:
 
     @property
     def seconds(self) -> float:
-        """CPU seconds of the solver over all obligations, when they were last really solved."""
+        """CPU seconds of the solver over all obligations, from when each was last solved rather than recalled."""
         return sum(o.seconds for o in self.outcomes)
 
 
 def restore(data: dict[str, Any]) -> Theorem:
-    """A theorem from its fields as they were kept (`proofs.ledger.proof_recall`).
+    """A theorem from its stored fields (`proofs.ledger.proof_recall`).
 
     Raises KeyError, TypeError or ValueError for data that are not a theorem's.
     """
@@ -167,7 +165,7 @@ def _ask(
 ) -> tuple[Answer, z3.ModelRef | None, z3.Context]:
     """The answer of the first solver that decides, and a model if it is sat.
 
-    seen: what kinds of values terms have, as was found before.
+    seen: the kinds of values found in terms so far (see `smtlib.sorts`).
     """
     context = z3.Context()
     # translated in order into an empty context, terms get the same numbers wherever this runs
@@ -211,10 +209,10 @@ def _decide(claim: Claim, obligation: Obligation, rlimit: int, memory: _Memory) 
 
 
 def _premises(claim: Claim, rlimit: int, memory: _Memory) -> str:
-    """Whether some values satisfy the premises, and with them all that is taken as known.
+    """Whether the premises are satisfiable, together with everything that is taken as known.
 
-    A contradiction among premises, assumptions and what lemmas say would prove anything. Where
-    the solver cannot judge all together, the premises alone must be satisfiable.
+    A contradiction among premises, assumptions and what lemmas say would prove anything. Where the solver cannot
+    decide all together, the premises alone must be satisfiable.
     """
     for terms, budget in (
         ([*claim.premises, *claim.facts], min(rlimit, FACTS_RLIMIT)),
@@ -238,8 +236,8 @@ def prove(
 ) -> Theorem:
     """Decide a stated claim; the returned theorem says what was proved and what was not.
 
-    tell: called with (done, all) after each obligation; taken: see `argument_values`. Raises ValueError for a claim that names
-    no kernel or shows nothing.
+    tell: called with (done, all) after each obligation; taken: see `argument_values`. Raises ValueError for a claim
+    that names no kernel or shows nothing.
     """
     claim.settle()
     if not claim.kernels:
@@ -293,7 +291,7 @@ def _satisfiable(terms: list[z3.BoolRef], rlimit: int, memory: _Memory) -> str:
 
 
 def not_stated(name: str, folder: Path = FOLDER) -> BadInput:
-    """What is said of a theorem that cannot be stated within STATE_CPU_S."""
+    """The error for a theorem that cannot be stated within STATE_CPU_S."""
     return BadInput(
         "the theorem cannot be stated: its paths take too long to find",
         where=place(find(name, folder)),
@@ -303,9 +301,9 @@ def not_stated(name: str, folder: Path = FOLDER) -> BadInput:
 
 
 def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
-    """The claim of a theorem file, stated, and its sentence; the kernels must be registered."""
+    """State the claim of a theorem file; returns it and its sentence. The kernels must be registered."""
     statement, sentence = load_claim(name, folder)
-    # the statement is run more than once
+    # one lemma object each, since the statement is run more than once
     lemma = functools.cache(lambda other: load_lemma(other, folder))
 
     def stated(by: Callable[..., Any]) -> Watched:
@@ -326,7 +324,7 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
         what = f"the theorem cannot be stated: {error.where}: {error.what}"
         raise BadInput(what, where=where, expected=error.expected, got=error.got) from error
     except Exception as error:
-        # ctypes, which z3 is called through, gives it another type
+        # ctypes, through which z3 is called, changes the type of this error
         if isinstance(error, RecursionError) or "RecursionError" in str(error):
             raise BadInput(
                 "the theorem cannot be stated: a term in it is nested too deeply to be read",
@@ -336,7 +334,7 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
             ) from error
         slip = slip_in(error, folder)
         if not slip and not isinstance(error, THEIRS) and not raised_there(error, folder):
-            raise  # not the theorem's doing
+            raise  # an error of the prover, not of the theorem
         said = str(error) or f"it raises {type(error).__name__}"
         raise BadInput(f"the theorem cannot be stated: {said}", where=slip or where) from error
     symbolic = [v.function for v in claim.visits if not definition_subset.on_numbers(v)]

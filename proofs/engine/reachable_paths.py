@@ -1,8 +1,8 @@
-"""What a theorem's premises leave of the kernels that it uses: their paths, and their arguments.
+"""What a theorem's premises leave of the kernels that it uses: reachable paths and possible argument values.
 
-A theorem about a few values of an argument says nothing of the others, whatever its sentence says. So of
-each use of a kernel it is asked whether each argument can take more than that under the premises (see
-`argument_values`); what the solver cannot show to vary does not.
+A theorem about a few values of an argument does not cover the others, whatever its sentence says. So for each use of
+a kernel it is determined whether each argument can take more than a few values under the premises (see
+`argument_values`); an argument for which this is not shown counts as not varying.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from cratous.proofs.engine.terms import free_names, known, leaves
 
 
 def paths(claim: Claim, possible: Possible) -> tuple[tuple[str, tuple[bool, ...]], ...]:
-    """For each kernel that is looked into: is each of its paths possible under the premises?
+    """For each kernel that is looked into: whether each of its paths is possible under the premises.
 
-    A path that the solver cannot judge counts as possible: only a proof makes it dead.
+    A path that the solver cannot decide counts as possible: only a proof makes it dead.
     """
     found: dict[str, list[bool]] = {}
     for visit in claim.visits:
@@ -31,8 +31,8 @@ def paths(claim: Claim, possible: Possible) -> tuple[tuple[str, tuple[bool, ...]
             continue
         name, conditions = qualified(visit.function), visit.lifted.branches
         if len(conditions) == 1:
-            continue  # nothing is said of the only one
-        # arguments may be literals: the uses with the most paths are the kernel's
+            continue  # a single path is not reported
+        # arguments may be literals: the use with the most paths stands for the kernel
         if len(conditions) > len(found.get(name, [])):
             found[name] = [False] * len(conditions)
         seen = found[name]
@@ -48,7 +48,7 @@ NOT = "not"
 
 
 class Asked(NamedTuple):
-    """How it is found out what arguments take: by the solver, and by runs of the statement, if it can be run."""
+    """How argument values are determined: by the solver, and by runs of the statement if it can be run."""
 
     possible: Possible
     another: Another
@@ -56,11 +56,11 @@ class Asked(NamedTuple):
 
 
 def varied(claim: Claim, ask: Asked) -> tuple[tuple[str, str], ...]:
-    """Of every use of a kernel, in order: how its arguments vary.
+    """For every use of a kernel, in order: how its arguments vary.
 
-    ALL; or the integers and truth values that are written down, where all others vary (a row of a
-    table); or NOT, with how many values it is told of an argument that has a few (NOT 2). Of kernels whose
-    definition is not in the theorem it is not asked: NOT, since it vouches for none of them.
+    ALL; or the written integers and truth values, where all other arguments vary (a row of a table); or NOT, followed
+    by the number of values for an argument that takes a few (NOT 2). A kernel whose definition is not in the theorem
+    gets NOT unasked, since the theorem does not vouch for it.
     """
     given = Given(_restricting(claim), ask.possible)
     restricted = set().union(*[free_names(premise) for premise in given.premises])
@@ -89,14 +89,14 @@ def varied(claim: Claim, ask: Asked) -> tuple[tuple[str, str], ...]:
 
 
 def _beside_their_definitions(claim: Claim) -> set[str]:
-    """The kernels in use that implement what is defined where the theorem looks, and those that are steps."""
+    """The used kernels whose definition the theorem looks at, and those that are steps of others."""
     looked = {visit.function for visit in claim.visits} | claim.stubs.keys()
     modules = {f.__module__ for f in looked if hasattr(f, "__qualname__")}
     used = {run.function for run in getattr(claim, "runs", ()) if run.role == "kernel"}
     found = {qualified(kernel) for fold in getattr(claim, "folds", ()) for kernel in fold.kernels}
     for function in used:
         entry, name = entry_of(function), qualified(function)
-        # the module, since a fold of which it is a step may implement another definition there
+        # the module only, since a fold of which it is a step may implement another definition there
         meant = "" if entry is None else entry.implements.rpartition(".")[0]
         if entry is not None and (
             entry.supports or f"{name.partition('.')[0]}.spec.{meant}" in modules
@@ -106,7 +106,7 @@ def _beside_their_definitions(claim: Claim) -> set[str]:
 
 
 def _restricting(claim: Claim) -> list[z3.BoolRef]:
-    """The premises; with what is known of the results that they speak of, roots and closed functions."""
+    """The premises; if they involve results, also what is known of these (square roots, opaque functions)."""
     premises = list(claim.premises)
     own = {claim.prefix + name for name in claim.names}
     results = set().union(*[free_names(premise) for premise in premises]) - own
@@ -127,7 +127,7 @@ def _how(run: Any, varying: set[int], few: Mapping[int, int]) -> str:
 
 
 def values_left(how: Iterable[str]) -> int:
-    """The most values that these uses leave an argument of which they leave a few; 0 where none does."""
+    """The greatest number of values among uses that leave an argument only a few; 0 if there is none."""
     return max((int(one.removeprefix(NOT)) for one in how if one.startswith(f"{NOT} ")), default=0)
 
 
@@ -143,10 +143,10 @@ def _leaf_kinds(kind: Any) -> list[Any]:
 
 
 def of_more_than_one(how: Iterable[str]) -> bool:
-    """These uses are not all for a few values of some argument."""
+    """Whether these uses together are not limited to a few values of some argument."""
     found = set(how)
     if ALL in found:
         return True
     rows = [row.split(", ") for row in found if not row.startswith(NOT)]
-    # a table: each argument that is written down takes two values at least
+    # a table: each written argument takes two values at least
     return len(rows) > 1 and all(len(set(column)) > 1 for column in zip(*rows, strict=False))

@@ -10,13 +10,13 @@ import z3
 from cratous.proofs.engine.obligation import Obligation
 
 Seen = dict[int, tuple[z3.ExprRef, set[str]]]
-"""What `sorts` found of terms, by their id; the term beside it keeps the id its own."""
+"""Kinds of values in a term by the term's id; the term is kept alive so that its id stays unique."""
 
 
 def sorts(terms: list[z3.ExprRef], seen: Seen | None = None) -> set[str]:
-    """Which kinds of values occur: Real, Int, BitVec, quantifier, nonlinear, function.
+    """Kinds of values in the terms: Real, Int, BitVec, quantifier, nonlinear, function.
 
-    Obligations of one claim share most of their terms: what is in `seen` is not looked at again.
+    Obligations of one claim share most of their terms: terms in `seen` are not traversed again.
     """
     if seen is None:
         return _sorts(terms)
@@ -68,14 +68,14 @@ def _literal(term: z3.ExprRef) -> bool:
 
 
 def question(obligation: Obligation) -> list[z3.BoolRef]:
-    """What a solver must find unsatisfiable."""
+    """The conditions that a solver must find unsatisfiable."""
     return [*obligation.given, z3.Not(obligation.goal)]
 
 
 def logic_of(obligation: Obligation, seen: Seen | None = None) -> str:
     """The smallest SMT-LIB logic that holds the obligation, e.g. QF_NRA or QF_BV.
 
-    seen: what was found of terms before, for many obligations of one claim.
+    seen: kinds of values found in terms so far, shared by the obligations of one claim.
     """
     found = sorts(question(obligation), seen)
     prefix = "" if "quantifier" in found else "QF_"

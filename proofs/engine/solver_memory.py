@@ -1,7 +1,7 @@
-"""Memory of the solver, kept by the process that has asked.
+"""Makes the process keep memory that the solver frees.
 
-Every question has a context of its own, and each begins with a table of 16 MB. What an earlier one has
-given back is used for the next; else the system clears thousands of pages for each. Answers are the same.
+Every question has a context of its own, and each starts by allocating a table of 16 MB. Freed memory is reused for
+the next; otherwise the system would clear thousands of pages for each question. Answers do not depend on it.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ import functools
 import sys
 
 TRIM, TOP_PAD, MMAP = -1, -2, -3
-"""Settings of the C library's allocator (glibc's malloc.h): what is returned, taken at once, mapped."""
+"""Parameters of the allocator (glibc's malloc.h): trim threshold, top padding, mmap threshold."""
 HUGE_PAGES = 14
-"""Advice to the system (Linux, mman.h)."""
+"""MADV_HUGEPAGE: advice to use large pages (Linux, mman.h)."""
 MB = 2**20
 
 
@@ -21,7 +21,7 @@ MB = 2**20
 def keep() -> None:
     """From now on this process, and those forked from it, keep what the solver frees.
 
-    Nothing is done where the C library is another one.
+    Does nothing with another C library than glibc.
     """
     library = ctypes.CDLL(None) if sys.platform == "linux" else None
     if not hasattr(library, "mallopt") or not hasattr(library, "gnu_get_libc_version"):
@@ -32,11 +32,11 @@ def keep() -> None:
     library.madvise.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int]
     library.mallopt(MMAP, 32 * MB)
     library.mallopt(TRIM, 512 * MB)
-    # room that nobody has touched: whoever does takes it in large pages
+    # memory not touched so far: the first access takes it in large pages
     library.mallopt(TOP_PAD, 64 * MB)
     room = library.malloc(24 * MB)
     library.free(room)
     library.mallopt(TOP_PAD, MB)
     if room:
         start = -(-room // (2 * MB)) * 2 * MB
-        library.madvise(start, 80 * MB, HUGE_PAGES)  # refused where it is not all there
+        library.madvise(start, 80 * MB, HUGE_PAGES)  # fails if not all is mapped

@@ -1,12 +1,11 @@
 """Which solvers a question is put to, in which order, and with how much effort each.
 
-z3's own strategy for polynomials goes from one order of variables to the next by wall time, so its
-answer would depend on what else the machine does. Here each way has a share of the effort (rlimit).
-What z3 does not count as effort (arithmetic on numbers of a million digits) a guard ends, by CPU
-time: the next way is tried, and where none is left the answer is `unknown`. A question that heeds no
-interrupt ends with its process (`cpu_limit.ends_within`); whoever waits for that one has the work done
-again with each question asked in a process of its own (`ask_apart`), whose end is the answer `unknown`,
-with the limit that ended it.
+z3's own strategy for polynomials switches from one order of variables to the next by wall time, so its answer would
+depend on the load of the machine. Here each solver has a share of the effort (rlimit). Work that z3 does not count as
+effort (arithmetic on numbers of a million digits) is ended by a watchdog on CPU time: the next solver is tried, and
+where none is left the answer is `unknown`. A question that does not react to the interrupt ends with its process
+(`cpu_limit.ends_within`); the parent then repeats the work with each question in a process of its own (`ask_apart`).
+If that process is ended, the answer is `unknown`, with the limit that ended it.
 """
 
 from __future__ import annotations
@@ -26,22 +25,22 @@ from cratous.proofs.engine.cpu_limit import ends_within, what_ended
 ORDERS = (3, 0, 4)
 """Orders of variables for polynomials (z3's numbers), the most promising first."""
 SEEDS = (0, 1, 2)
-"""Random seeds of the general solver: the first has all of the effort, the others a share."""
+"""Random seeds of the general solver: the first gets the full effort, the others a share."""
 SHARES = (30, 6)
 GUARD_S, GUARD_RATE = 5.0, 200_000
-"""CPU seconds after which a question is ended, and effort that adds one: many times the usual."""
+"""CPU seconds after which a question is ended, and the effort that adds one second: far above the usual."""
 LOOK_S = 0.5
-"""Wall seconds between two looks at the CPU clock."""
+"""Wall seconds between two readings of the CPU clock."""
 _ASKS_APART: set[int] = set()
 
 
 def solvers(
     context: z3.Context, rlimit: int, *, polynomials: bool, shares: tuple[int, ...] = SHARES
 ) -> Iterator[tuple[str, z3.Solver, int]]:
-    """Logic, solver and effort of each way that is worth trying, most promising first.
+    """Logic, solver and effort of each attempt, most promising first.
 
-    polynomials: the question has reals alone, without functions and quantifiers. shares: parts of
-    the effort that each order of variables may spend before the first has all of it.
+    polynomials: the question has reals only, without functions and quantifiers. shares: divisors of the effort that
+    each order of variables may spend before the first has all of it.
     """
     if polynomials:
         ladder = [(order, rlimit // part) for part in shares for order in ORDERS]
@@ -56,10 +55,10 @@ def solvers(
 
 
 class Said(NamedTuple):
-    """`sat`, `unsat` or `unknown`, and the effort that it took (rlimit).
+    """`sat`, `unsat` or `unknown`, and the effort spent (rlimit).
 
-    ended: which limit of time ended the question, in words; the same question may have an answer
-    elsewhere, so nothing keeps this one. Nothing where the solver said it within its effort.
+    ended: which time limit ended the question, in words; another run may find an answer, so this result is not
+    cached. Empty where the solver answered within its effort.
     """
 
     result: str
@@ -73,12 +72,12 @@ def ask_apart() -> None:
 
 
 def most_cpu_s(effort: int) -> float:
-    """CPU seconds [s] after which a question of this effort is interrupted."""
+    """The CPU time [s] after which a question of this effort is interrupted."""
     return GUARD_S + effort / GUARD_RATE
 
 
 def check(solver: z3.Solver, context: z3.Context, effort: int) -> Said:
-    """What the solver says within the effort and the guard; its model, if it is sat, is the solver's."""
+    """The solver's answer within the effort and the CPU limit; if sat, the model is in the solver."""
     if os.getpid() in _ASKS_APART:
         try:
             said = worker_processes.call(partial(_check, solver, context, effort))
@@ -86,7 +85,7 @@ def check(solver: z3.Solver, context: z3.Context, effort: int) -> Said:
             return Said("unknown", 0, what_ended(error.code, most_cpu_s(effort)))
         if said.result != "sat":
             return said
-        # it ends, and a model does not come out of another process
+        # it terminates, and a model cannot be returned from another process
     return _check(solver, context, effort)
 
 
@@ -98,7 +97,7 @@ def _check(solver: z3.Solver, context: z3.Context, effort: int) -> Said:
     done, over = threading.Event(), threading.Event()
 
     def watch() -> None:
-        # again until it has come through: between two steps of the solver an interrupt is lost
+        # repeated until it takes effect: between two steps of the solver an interrupt is lost
         while not done.wait(LOOK_S):
             if time.process_time() > latest:
                 over.set()

@@ -1,4 +1,4 @@
-"""Where an error came up while a theorem was stated: in its file, in what it is about, or in the prover."""
+"""Where an error was raised while a theorem was stated: in its file, in the code it is about, or in the prover."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from cratous.proofs.engine.theorem_files import FOLDER
 
 
 def slip_in(error: BaseException, folder: Path) -> str:
-    """Where in the theorem's file, or in a lemma's, the error came up itself; nothing if elsewhere."""
+    """The place in the theorem's file, or in a lemma's, that raised the error itself; empty if elsewhere."""
     frames = [] if error.__traceback__ is None else traceback.extract_tb(error.__traceback__)
     file = Path(frames[-1].filename) if frames else Path()
     if file.parent not in (folder, FOLDER):
@@ -19,7 +19,7 @@ def slip_in(error: BaseException, folder: Path) -> str:
 
 
 def raised_there(error: BaseException, folder: Path) -> bool:
-    """A kernel or definition raised the error itself: no code of the prover's, and no library."""
+    """Whether a kernel or definition raised the error itself, and not the prover or a library."""
     frames = [] if error.__traceback__ is None else traceback.extract_tb(error.__traceback__)
     above = Path(frames[-1].filename).resolve().parents if frames else ()
     homes = (folder.parent.resolve(), *(ROOT / part for part in ("spec", "core")))

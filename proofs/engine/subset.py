@@ -1,13 +1,12 @@
-"""The kernel subset, by permission: what is not on this list is refused, with what to write instead.
+"""The kernel subset: what is not listed here is refused, with what to write instead.
 
-A kernel is one typed function of a module, marked with `@kernel(...)` alone: arguments and result are
-`float`, `int`, `bool` or records (`NamedTuple`s with such fields and no behaviour). Its body: a
-docstring, assignments to names (a record may be taken apart), `if`, `return` on every way. Its
-expressions: names of arguments and locals, integers, `True` and `False`, `+ - *` of numbers of one kind,
-`/` of reals, `& |` of masks, comparisons of numbers of one kind, `==` of truth values,
-`and or not` of truth values, fields, calls of kernels, of records and of Python's own
-`abs min max sqrt`. An integer that is written down may stand beside reals up to 2**53, where it is
-the same number in every reading. Each expression has one kind on every way (see `expressions`).
+A kernel is one typed function of a module, marked with `@kernel(...)` alone: arguments and result are `float`, `int`,
+`bool` or records (`NamedTuple`s with such fields and no behaviour). Its body: a docstring, assignments to names (a
+record may be taken apart), `if`, and `return` on every path. Its expressions: names of arguments and locals,
+integers, `True` and `False`, `+ - *` of numbers of one kind, `/` of reals, `& |` of masks, comparisons of numbers of
+one kind, `==` of truth values, `and or not` of truth values, fields, calls of kernels, of records and of Python's own
+`abs min max sqrt`. A written integer may stand beside reals up to 2**53, where it is the same number in every
+reading. Each expression has the same kind on every path (see `expressions`).
 """
 
 from __future__ import annotations
@@ -68,7 +67,7 @@ def syntax(function: Any) -> ast.FunctionDef:
 
 
 def identity(function: Any) -> str:
-    """What is wrong with how a function is named and made; nothing for a plain one of its module."""
+    """What is wrong with a function's name or origin; empty for a plain function of its module."""
     if not isinstance(function, types.FunctionType) or hasattr(function, "__wrapped__"):
         return "it is no plain function: nothing may stand around the `def`"
     module = sys.modules.get(function.__module__)
@@ -91,7 +90,7 @@ def identity(function: Any) -> str:
 
 
 def hints(function: Any) -> dict[str, Any]:
-    """The types of arguments and result, as `get_type_hints`; text where one names nothing."""
+    """The types of arguments and result, as `get_type_hints`; the annotation's text where its name is unknown."""
     try:
         return get_type_hints(function)
     except (NameError, TypeError, AttributeError, SyntaxError) as error:
@@ -121,7 +120,7 @@ def lint(function: Any) -> list[Finding]:
 
 
 def _is_written(node: ast.expr, kind: Any, scope: dict[str, Any]) -> bool:
-    """The type that a function has for an argument is the one of its text."""
+    """Whether the type at run time is the one of the annotation's text."""
     text = str(node.value) if isinstance(node, ast.Constant) else ast.unparse(node)
     known = scope.get(text, getattr(builtins, text, None))
     return known is kind or (isinstance(node, ast.Attribute) and kind is not None)
@@ -131,7 +130,7 @@ Report = Callable[[ast.AST | None, str], None]
 
 
 def _head(node: ast.FunctionDef, function: types.FunctionType, report: Report) -> None:
-    """Its mark, arguments and types."""
+    """Check decorator, arguments and types."""
     scope, marks = function.__globals__, node.decorator_list
     called = [mark.func for mark in marks if isinstance(mark, ast.Call)]
     if [isinstance(f, ast.Name) and scope.get(f.id) is kernel for f in called] != [True] * len(
@@ -161,7 +160,7 @@ def _head(node: ast.FunctionDef, function: types.FunctionType, report: Report) -
 
 
 class Body:
-    """The statements of a function, with the kinds of its locals on the way."""
+    """Checks the statements of a function, tracking the kinds of its locals."""
 
     def __init__(self, function: types.FunctionType, kinds: Kinds, report: Report) -> None:
         hints = get_type_hints(function)
@@ -177,7 +176,7 @@ class Body:
             self.report(node, "a way through it ends without `return`")
 
     def _block(self, body: list[ast.stmt], names: dict[str, Kind]) -> dict[str, Kind] | None:
-        """The locals after these statements; None if every way has returned."""
+        """The locals after these statements; None if every path has returned."""
         for number, statement in enumerate(body):
             try:
                 after = self._statement(statement, names)
@@ -222,7 +221,7 @@ class Body:
             if all(joined.get(name) == kind for name, kind in before.items()):
                 return {**after, **joined}
             rounds += 1
-            # a number that grows with each value has no bound that is written
+            # a number that grows in each pass has no written bound
             grown = [n for n in joined if rounds > 1 and joined[n] != before[n]]
             before = joined | {n: int for n in grown if isinstance(joined[n], Literal)}
 

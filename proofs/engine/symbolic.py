@@ -1,8 +1,8 @@
 """Symbolic values: what a kernel computes on when it is lifted to a z3 term.
 
-A value wraps a z3 term and behaves like a Python number or boolean in the kernel subset. Wherever
-Python needs a decision (`if`, `and`, `or`, `not`, `min`, `max`) the value asks the path that is
-being explored which way to go; `proofs.engine.lift` replays the kernel for every way.
+A value wraps a z3 term and behaves like a Python number or boolean in the kernel subset. Wherever Python needs a
+decision (`if`, `and`, `or`, `not`, `min`, `max`) the value asks the path being explored for it; `proofs.engine.lift`
+replays the kernel for every path.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ import z3
 
 
 class LiftError(Exception):
-    """A function that cannot be lifted; says which and why."""
+    """A function that cannot be lifted; the message says which and why."""
 
 
 RANGE = "integer stays in 64 bits"
-"""The side condition of machine integers; definitions, which are never compiled, do not owe it."""
+"""The side condition of 64-bit integers; definitions, which are never compiled, do not have it."""
 
 
 @dataclass
 class Path:
-    """One way through a function: decisions taken so far, their conditions, side conditions.
+    """One path through a function: decisions so far, their conditions, side conditions.
 
-    roots: what is true of the square roots met on the way (see `root`).
+    roots: defining facts of the square roots met on the path (see `root`).
     """
 
     decide: Callable[[Path, z3.BoolRef], bool]
@@ -47,12 +47,12 @@ class Path:
 
 
 PATHS: list[Path] = []
-"""The paths being explored, innermost last: a lifted call inside a lifted call has its own."""
+"""The paths being explored, innermost last: a lifted call within a lifted call has its own."""
 
 INT64 = 2**63
 BITS = 64
 EXACT = 2**53
-"""Up to here every integer is a double."""
+"""Every integer up to this magnitude is a double."""
 
 
 def _raw(value: Any) -> z3.ExprRef | None:
@@ -76,7 +76,7 @@ class Sym:
     def __init__(self, term: z3.ExprRef) -> None:
         self.term = term
 
-    # what Python would answer of the object, and not of the value that it stands for
+    # operations that Python would answer for the object instead of the value that it stands for
     def __bool__(self) -> bool:
         raise LiftError("a number is taken for a truth value: compare it with 0")
 
@@ -97,7 +97,7 @@ class Sym:
 
 
 def told(value: Any) -> str:
-    """A value for a message."""
+    """A value as text for a message."""
     return " ".join(str(value.term).split()) if isinstance(value, Sym) else repr(value)
 
 
@@ -158,7 +158,7 @@ class SymBool(Sym):
 
 
 def _pair(a: Any, b: Any) -> tuple[z3.ExprRef, z3.ExprRef] | None:
-    """Both operands as terms of one sort; None where one is no number of the subset."""
+    """Both operands as terms of one sort; None where one is not a number of the subset."""
     x, y = _raw(a), _raw(b)
     if x is None or y is None or z3.is_bool(x) or z3.is_bool(y):
         return None
@@ -174,7 +174,7 @@ def _pair(a: Any, b: Any) -> tuple[z3.ExprRef, z3.ExprRef] | None:
 def as_real(term: z3.ExprRef) -> z3.ExprRef:
     """An integer literal as a real; only literals may stand beside reals.
 
-    A 64-bit integer variable would be rounded on its way to a double, which no proof would see.
+    A 64-bit integer variable would be rounded in its conversion to a double, which no proof would account for.
     """
     if not z3.is_int(term):
         return term
@@ -203,7 +203,7 @@ def _compare(name: str) -> Callable[[Sym, Any], Any]:
         if pair is not None:
             return SymBool(relation[name](*pair))
         if name in ("eq", "ne"):
-            # Python would fall back to identity and answer without a word
+            # Python would otherwise compare identities and answer without an error
             raise LiftError(f"a number is compared with {told(other)}, which is none")
         return NotImplemented
 
@@ -273,7 +273,7 @@ def _divide(top: Any, bottom: Any) -> Any:
 
 
 class SymInt(SymNumber):
-    """An integer; every operation on it carries the obligation to stay in 64 bits."""
+    """An integer; every operation on it has the side condition that the result fits in 64 bits."""
 
     __slots__ = ()
     __hash__ = None
@@ -284,7 +284,7 @@ class SymInt(SymNumber):
         if pair is None:
             return NotImplemented
         if PATHS:
-            # Python and the solver agree on remainders by positive numbers alone
+            # Python and the solver agree only on remainders by positive numbers
             PATHS[-1].require("the modulus is positive", pair[1] > 0)
         return wrap(pair[0] % pair[1])
 
@@ -319,7 +319,7 @@ class SymMask(Sym):
     __rand__, __ror__, __rxor__ = __and__, __or__, __xor__
 
     def _shift(self, other: Any) -> z3.ExprRef | None:
-        """The amount of a shift; it is owed that it lies in 0..63."""
+        """The shift amount; that it lies in 0..63 is an obligation."""
         raw = self._with(other)
         if raw is not None and PATHS:
             PATHS[-1].require("the shift is by 0 to 63 places", z3.ULT(raw, BITS))
@@ -331,7 +331,7 @@ class SymMask(Sym):
         return NotImplemented if raw is None else SymMask(z3.LShR(self.term, raw))
 
     def __lshift__(self, other: Any) -> Any:
-        """As for `>>`; Python's result has no width, so it is owed that no bit is lost."""
+        """As for `>>`; Python's result has no fixed width, so that no bit is lost is an obligation."""
         raw = self._shift(other)
         if raw is None:
             return NotImplemented
@@ -356,7 +356,7 @@ class SymMask(Sym):
 def root(value: Any) -> Any:
     """The square root of a real: a value r of which only r >= 0 and r * r == x are known.
 
-    Such an r exists for every x >= 0, and x >= 0 is owed. Equal arguments have one name.
+    Such an r exists for every x >= 0, and x >= 0 is an obligation. Equal arguments get the same r.
     """
     term = _raw(value)
     if term is None or not (z3.is_real(term) or z3.is_int_value(term)):

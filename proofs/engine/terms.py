@@ -1,7 +1,7 @@
-"""Values of the kernel subset as solver terms, and values that stand for the unknown.
+"""Values of the kernel subset as solver terms, and arbitrary values.
 
-Small tools of `claim` and of mutation: arbitrary values of a type, the names in a term, and a stub
-that stands for a function which is not looked into.
+Utilities of `claim` and of mutation: arbitrary values of a type, the names in a term, and a stub in place of an
+opaque function.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from cratous.proofs.engine.symbolic import (
 
 
 class Stub:
-    """Stands for a function that is not looked into: same arguments, same unknown result."""
+    """In place of an opaque function: same arguments, same unknown result."""
 
     def __init__(self, name: str, function: Callable[..., Any]) -> None:
         self.name = name
@@ -54,12 +54,12 @@ class Stub:
 
 
 def normal(value: Any, kind: Any) -> str:
-    """A name that equal arguments of this type share: polynomials are expanded and sorted."""
+    """A text that equal arguments of this type share: polynomials are expanded and sorted."""
     if isinstance(value, tuple):
         kinds = get_type_hints(kind)
         fields = [kinds[part] for part in kind._fields]
         return ", ".join(normal(part, one) for part, one in zip(value, fields, strict=True))
-    # an integer literal where a real is wanted is one
+    # an integer literal where a real is expected is a real
     return canonical(as_real(known(value)) if kind is float else known(value))
 
 
@@ -83,7 +83,7 @@ def leaves(value: Any) -> list[Any]:
 
 
 def fields_of_both(a: Any, b: Any) -> list[tuple[Any, Any]]:
-    """The fields of two records of one kind, by pairs; TypeError for two kinds."""
+    """Pairs of corresponding fields of two records of one type; TypeError for two types."""
     if not (isinstance(a, tuple) and isinstance(b, tuple)) or len(a) != len(b):
         raise TypeError("a record is compared with what has other fields")
     if getattr(a, "_fields", ()) != getattr(b, "_fields", ()) and all(
@@ -100,7 +100,7 @@ def free_names(term: z3.ExprRef) -> set[str]:
 
 
 def free_values(terms: Iterable[z3.ExprRef]) -> list[z3.ExprRef]:
-    """The arbitrary values in these terms, by name."""
+    """The arbitrary values in these terms, ordered by name."""
     seen: set[int] = set()
     found: dict[str, z3.ExprRef] = {}
     todo = list(terms)
@@ -111,26 +111,26 @@ def free_values(terms: Iterable[z3.ExprRef]) -> list[z3.ExprRef]:
         seen.add(part.get_id())
         below = part.children()
         todo += below
-        # its name as it is: `str` would have the term laid out to print it
+        # the declaration's name: `str` would pretty-print the term
         if not below and z3.is_app(part) and (what := part.decl()).kind() == z3.Z3_OP_UNINTERPRETED:
             found[what.name()] = part
     return [found[name] for name in sorted(found)]
 
 
 def flatten(values: dict[str, Any]) -> dict[str, Any]:
-    """Values by name with the fields of vectors as values of their own."""
+    """Values by name, with each field of a vector under a name of its own."""
     flat: dict[str, Any] = {}
     for name, value in values.items():
         if isinstance(value, Vec2):
             flat[name + ".x"], flat[name + ".y"] = value.x, value.y
         else:
             flat[name] = value
-    # a literal is as good as a term
+    # a literal serves as well as a term
     return {k: v if isinstance(v, Sym) else wrap(known(v)) for k, v in flat.items()}
 
 
 def of_kind(value: Sym, fresh: Sym, name: str) -> Sym:
-    """A value that is given for an arbitrary one: of its kind, or an integer literal for a real."""
+    """A value to substitute for an arbitrary one: of the same kind, or an integer literal for a real."""
     wanted = fresh.term.sort()
     term = as_real(value.term) if z3.is_real(fresh.term) else value.term
     if z3.is_bv(fresh.term) and z3.is_int_value(term) and 0 <= term.as_long() < 2**64:
@@ -141,11 +141,11 @@ def of_kind(value: Sym, fresh: Sym, name: str) -> Sym:
 
 
 def of_its_kinds(function: Callable[..., Any], args: tuple[Any, ...]) -> None:
-    """Refuse arguments of other kinds than a function's types say; TypeError. Without types all pass."""
+    """Raise TypeError for arguments that do not fit a function's types. A function without types accepts all."""
     try:
         kinds = get_type_hints(function)
     except (NameError, TypeError, AttributeError):
-        return  # what is wrong with its types is told where it is looked at
+        return  # faulty types are reported where the function is linted
     names = list(inspect.signature(function).parameters)
     for name, value in zip(names, args, strict=False):
         if name in kinds and not _is_of(value, kinds[name]):
@@ -168,7 +168,7 @@ def _is_of(value: Any, kind: Any) -> bool:
         fields = get_type_hints(kind)
         parts = [fields[part] for part in kind._fields]
         if getattr(value, "_fields", kind._fields) != kind._fields:
-            return False  # a stub reads them by place, the function by name
+            return False  # a stub takes them by position, the function by name
         return (
             isinstance(value, tuple) and len(value) == len(parts) and all(map(_is_of, value, parts))
         )
@@ -176,7 +176,7 @@ def _is_of(value: Any, kind: Any) -> bool:
 
 
 def depending(args: tuple[Any, ...], names: set[str]) -> list[tuple[str, z3.ArithRef]]:
-    """The integers among the arguments that are made of these values, with what to call them."""
+    """The integer arguments that depend on these values, each with a text for messages."""
     found = []
     for leaf in leaves(args):
         if isinstance(leaf, SymInt) and not _is_literal(leaf) and free_names(leaf.term) & names:
@@ -185,7 +185,7 @@ def depending(args: tuple[Any, ...], names: set[str]) -> list[tuple[str, z3.Arit
 
 
 def _is_literal(value: Any) -> bool:
-    """An integer that is written down, or one of several such."""
+    """Whether the value is an integer literal, or a choice between literals."""
     if not isinstance(value, SymInt):
         return False
     try:

@@ -1,4 +1,4 @@
-"""The files of theorems: one file a claim, named by it, its docstring the sentence it proves."""
+"""The files of theorems: one file per claim, named after it, with the proved sentence as its docstring."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from cratous.spec.errors import BadInput
 
 FOLDER = PRODUCT.theorems
 _LISTED: dict[Path, dict[str, Path]] = {}
-"""The theorems of each folder, as they were listed last."""
+"""The theorems of each folder, as last listed."""
 
 
 def home_folder(home: Home) -> Path:
@@ -31,11 +31,11 @@ def home_folder(home: Home) -> Path:
 
 
 def theorem_files(folder: Path = FOLDER) -> dict[str, Path]:
-    """Name to file of every theorem, in order of name; raises BadInput for two of one name."""
+    """File of every theorem by name, in order of name; raises BadInput for two of one name."""
     found: dict[str, Path] = {}
     for at, folders, files in os.walk(folder):
         folders.sort()
-        # as `theorem_name` has it, which would be asked of each file for each lemma
+        # the same as `theorem_name`, computed once per folder
         around = "".join(f"{part}_" for part in Path(at).relative_to(folder).parts)
         for file in sorted(files):
             if not file.endswith(".py") or file.startswith("_"):
@@ -50,20 +50,20 @@ def theorem_files(folder: Path = FOLDER) -> dict[str, Path]:
 
 
 def _listed(name: str, folder: Path) -> Path | None:
-    """The file of this name in a folder, which is only listed anew where it was not there."""
+    """The file of this name in a folder; the folder is listed again only where the name was not found."""
     found = _LISTED.get(folder, {}).get(name)
     return found if found is not None and found.is_file() else theorem_files(folder).get(name)
 
 
 def package_of(folder: Path) -> str:
-    """The package whose theorems lie in this folder."""
+    """The package whose theorems are in this folder."""
     return PRODUCT.name if folder == FOLDER else folder.parent.name
 
 
 def find(name: str, folder: Path) -> Path:
     """The file of a theorem: of this folder, else of the product.
 
-    name: as its file is called, or `package.name`.
+    name: the name of its file, or `package.name`. Raises BadInput if there is none.
     """
     package, _, plain = name.rpartition(".")
     places = [place for place in (folder, FOLDER) if package in ("", package_of(place))]
@@ -81,9 +81,9 @@ def find(name: str, folder: Path) -> Path:
 
 
 def load_lemma(name: str, folder: Path) -> Callable[[Claim], None]:
-    """The claim of a theorem that another one of this folder uses.
+    """The claim of a theorem that another theorem of this folder uses as a lemma.
 
-    Raises BadInput where the package and the product have one of this name: one of them is meant.
+    Raises BadInput where both the package and the product have a theorem of this name.
     """
     if folder != FOLDER and all(name in theorem_files(one) for one in (folder, FOLDER)):
         raise BadInput(
@@ -95,7 +95,7 @@ def load_lemma(name: str, folder: Path) -> Callable[[Claim], None]:
 
 
 def load_claim(name: str, folder: Path = FOLDER) -> tuple[Callable[[Claim], None], str]:
-    """The function `claim` of a theorem file, and its sentence."""
+    """The function `claim` of a theorem file, and its sentence; raises BadInput for a file without them."""
     path = find(name, folder)
     try:
         module, parsed = _module(path, folder)
@@ -117,7 +117,7 @@ def load_claim(name: str, folder: Path = FOLDER) -> tuple[Callable[[Claim], None
 
 
 def _module(path: Path, folder: Path) -> tuple[types.ModuleType, ast.Module]:
-    """The module of a theorem file, which is run once, and its syntax as it stands there now."""
+    """The module of a theorem file, executed once, and its present syntax tree."""
     text = path.read_text(encoding="utf-8")
     parsed = ast.parse(text)
     inside = "cratous.proofs" if path.is_relative_to(FOLDER) else package_of(folder)
@@ -128,7 +128,7 @@ def _module(path: Path, folder: Path) -> tuple[types.ModuleType, ast.Module]:
         module = types.ModuleType(name)
         module.__file__ = str(path)
         theorem_subset.check(parsed, path)
-        # from the text, never from byte code: what is proved is what is written
+        # from source text, never from byte code: what is proved is what is written
         exec(compile(text, str(path), "exec", dont_inherit=True), module.__dict__)
         theorem_values.check_values(module.__dict__, parsed, path)
         sys.modules[name] = module

@@ -1,10 +1,9 @@
-"""The language of theorems, by permission: a claim can do what the engine offers, and no more.
+"""The language of theorems: a claim can use what the engine offers, and nothing else.
 
-A theorem's file has a docstring, imports of kernels, definitions, records and numbers, constants and
-functions. Its functions compute with the values that the claim gives them, in loops over what is
-written down; they see of the claim only its statements (`OFFERED`). What could be a value and change
-behind the prover's back, an iterator that is kept or a list that another function extends, is not in
-the list either.
+A theorem's file has a docstring, imports of kernels, definitions, records and numbers, constants and functions. Its
+functions compute with the values that the claim gives them, in loops over written values; of the claim they see only
+its statements (`OFFERED`). Values that could change unnoticed by the prover are not permitted: a stored iterator, or
+a list that another function extends.
 """
 
 from __future__ import annotations
@@ -48,7 +47,7 @@ OFFERED = frozenset(
         "fold",
     ]
 )
-"""What a claim has for a theorem."""
+"""The statements of a claim that a theorem may use."""
 HIDDEN = (frozenset(vars(Claim)) | frozenset(Claim.__dataclass_fields__) | {"term"}) - OFFERED
 METHODS = frozenset(["append", "split", "join", "items", "keys", "values"])
 BUILTINS = frozenset(
@@ -109,7 +108,7 @@ class _Refused(Exception):
 
 
 def check(tree: ast.Module, path: Path) -> None:
-    """Refuse a theorem's file that has what is not in the language; raises BadInput with the line."""
+    """Raise BadInput, with the line, for a theorem's file that is outside of the language."""
     try:
         modules = _top(tree)
         for function in tree.body:
@@ -124,7 +123,7 @@ def check(tree: ast.Module, path: Path) -> None:
 
 
 def _top(tree: ast.Module) -> set[str]:
-    """Check what stands at the top of the file; returns the imported names."""
+    """Check the top level of the file; returns the imported names."""
     names: set[str] = set()
     for number, node in enumerate(tree.body):
         if isinstance(node, ast.ImportFrom):
@@ -147,7 +146,7 @@ def _top(tree: ast.Module) -> set[str]:
 
 
 def _named(node: ast.AST) -> str:
-    """A kind of syntax for a message, as it is written."""
+    """A kind of syntax as it is called in messages."""
     return WORDS.get(type(node), f"`{type(node).__name__.lower()}`")
 
 
@@ -166,7 +165,7 @@ class _Function:
 
     def __init__(self, node: ast.FunctionDef | None, imported: set[str], *, nested: bool) -> None:
         self.node, self.imported, self.nested = node, imported, nested
-        # what an inner function is given or finds, another call of it would see changed
+        # an inner function must not change what it receives: its next call would see the change
         self.made = {
             name.id
             for part in ([] if node is None else _own(node.body))
@@ -188,7 +187,7 @@ class _Function:
         self._block(self.node.body)
 
     def _type(self, node: ast.expr) -> None:
-        """An annotation, which Python computes when the file is read: names of types alone."""
+        """Check an annotation, which Python evaluates when the file is read: names of types only."""
         for part in ast.walk(node):
             text = isinstance(part, ast.Constant) and part.value is not None and part.value != ...
             if isinstance(part, ast.expr) and (text or not isinstance(part, TYPES)):
@@ -248,12 +247,12 @@ class _Function:
             raise _Refused(node, "such an assignment", "names")
 
     def _kept(self, value: ast.expr, targets: list[ast.expr]) -> None:
-        """A value that gets a name: no iterator, which a second look would find at its end."""
+        """Check a value that is assigned or returned: no iterator, which would be exhausted when used again."""
         apart = bool(targets) and all(isinstance(t, ast.Tuple | ast.List) for t in targets)
         self.expression(value, consumed=apart)
 
     def expression(self, node: ast.expr, *, consumed: bool = False) -> None:
-        """Check an expression; consumed: it is gone through at once, so it may be an iterator."""
+        """Check an expression; consumed: it is consumed at once, so it may be an iterator."""
         if not isinstance(node, EXPRESSIONS):
             raise _Refused(node, _named(node), "numbers, records, lists and calls")
         called = node.func if isinstance(node, ast.Call) else None
@@ -297,7 +296,7 @@ class _Function:
             raise _Refused(
                 node, f"{node.attr!r} of the claim", "its statements: c.show, c.premise, ..."
             )
-        # another call of it would find more of them
+        # another call of it would find more calls
         if node.attr == "calls" and self.nested:
             raise _Refused(node, "c.calls in an inner function", "c.calls in `claim`")
 
@@ -310,7 +309,7 @@ class _Function:
 
 
 def _parts(node: ast.expr) -> Iterator[ast.expr]:
-    """The expressions in an expression, those of a comprehension's loops apart."""
+    """The subexpressions of an expression, without those that a comprehension iterates over."""
     for part in ast.iter_child_nodes(node):
         if isinstance(part, ast.expr):
             yield part
@@ -321,7 +320,7 @@ def _parts(node: ast.expr) -> Iterator[ast.expr]:
 
 
 def _targets(node: ast.stmt, *, made_here: bool) -> Iterator[ast.Name]:
-    """The names that a statement assigns; made_here: only to what it makes itself."""
+    """The names that a statement binds; made_here: only names bound to a list or dict made there."""
     if isinstance(node, ast.For) and not made_here:
         targets: list[ast.expr] = [node.target]
     elif isinstance(node, ast.Assign | ast.AnnAssign):
@@ -339,7 +338,7 @@ def _is_stored(name: ast.Name) -> bool:
 
 
 def _own(body: list[ast.stmt]) -> Iterator[ast.stmt]:
-    """The statements of a function, those of functions in it apart."""
+    """The statements of a function, without those of nested functions."""
     for node in body:
         yield node
         if not isinstance(node, ast.FunctionDef):

@@ -1,7 +1,7 @@
-"""What the names in a theorem's file stand for: kernels, definitions, records, numbers, and no more.
+"""What the names in a theorem's file may refer to: kernels, definitions, records and numbers only.
 
-`theorem_subset` says what may be written; here the values are looked at that what is written reaches: what the
-file imports, and the attributes of the modules that it imports.
+`theorem_subset` checks the syntax; this checks the values that the syntax reaches: the file's imports, and the
+attributes of imported modules.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ TOOLS = {
     "math": ("sqrt",),
     "typing": ("Any",),
 }
-"""What a theorem may import of Python."""
+"""What a theorem may import from Python's standard library."""
 WANTED = "kernels as they are registered, folds, functions and modules of `spec`, records, numbers"
 
 
 def check_values(scope: dict[str, Any], tree: ast.Module, path: Path) -> None:
-    """Refuse a file whose names stand for anything else; raises BadInput with the line.
+    """Raise BadInput, with the line, for a file whose names refer to anything else.
 
-    scope: its globals. A function of `spec` that the theorem uses otherwise than by c.define is held to
-    what definitions have; a file of theorems that it imports from is checked as a theorem is.
+    scope: its globals. A function of `spec` that the theorem uses other than by c.define is held to the definition
+    subset; a file of theorems that it imports from is checked like a theorem.
     """
 
     def refuse(node: ast.AST, what: str) -> typing.NoReturn:
@@ -63,7 +63,7 @@ def check_values(scope: dict[str, Any], tree: ast.Module, path: Path) -> None:
             refuse(node, "a theorem makes no claim of its own: it is given one")
         if isinstance(node, ast.Attribute) and not _may_be_used(value):
             refuse(node, f"a theorem's file does not use {ast.unparse(node)!r}")
-        # what is outside of the subset in a kernel is told where it is lifted
+        # what a kernel has outside of the subset is reported where it is lifted
         plain = isinstance(value, types.FunctionType) and not of_theorems(value)
         plain = plain and entry_of(value) is None
         if plain and id(node) not in defined and (out := definition_subset.outside(value)):
@@ -73,7 +73,7 @@ def check_values(scope: dict[str, Any], tree: ast.Module, path: Path) -> None:
 def _may_be_used(value: Any) -> bool:
     if isinstance(value, types.ModuleType):
         parts = value.__name__.split(".")
-        # a module of core, or of a package's kernels, has kernels and drivers; only kernels pass
+        # a module of core, or of a package's kernels, has kernels and drivers; only kernels are permitted
         return parts[0] in PACKAGES and parts[1:2] not in (["proofs"], ["services"], ["bridge"])
     entry = entry_of(value)
     if entry is not None:
@@ -91,14 +91,14 @@ def _may_be_used(value: Any) -> bool:
 
 
 def _of_methods(value: Any) -> bool:
-    """A tuple with names that a method of proof is given."""
+    """Whether the value is a named tuple of the kind that methods of proof take."""
     home = str(getattr(value, "__module__", ""))
     named = isinstance(value, type) and value.__bases__ == (tuple,)
     return named and home.startswith("cratous.proofs.methods.")
 
 
 def _meant(node: ast.AST, scope: dict[str, Any]) -> tuple[bool, Any]:
-    """Whether a name is of the file, or an attribute of a module that is, and what it stands for."""
+    """Whether a node is a name of the file or an attribute of one of its modules, and the value."""
     if isinstance(node, ast.Name):
         return node.id in scope, scope.get(node.id)
     if isinstance(node, ast.Attribute):
@@ -109,7 +109,7 @@ def _meant(node: ast.AST, scope: dict[str, Any]) -> tuple[bool, Any]:
 
 
 def _defined(tree: ast.Module) -> Iterator[ast.expr]:
-    """What is handed to c.define."""
+    """The arguments of c.define in the file."""
     for node in ast.walk(tree):
         by = node.func if isinstance(node, ast.Call) and node.args else None
         if isinstance(by, ast.Attribute) and by.attr == "define":
@@ -118,7 +118,7 @@ def _defined(tree: ast.Module) -> Iterator[ast.expr]:
 
 
 def _annotations(tree: ast.Module) -> Iterator[ast.expr]:
-    """The types that are written in a file."""
+    """The type annotations in a file."""
     for node in ast.walk(tree):
         if isinstance(node, ast.arg | ast.AnnAssign) and node.annotation is not None:
             yield node.annotation
@@ -130,7 +130,7 @@ _CHECKED: set[tuple[str, int]] = set()
 
 
 def _check_file(module: str) -> None:
-    """Check another file of theorems, of which a function is imported, as it was imported."""
+    """Check another file of theorems from which a function is imported."""
     scope = vars(sys.modules[module])
     path = Path(str(scope["__file__"]))
     known = (module, id(scope))

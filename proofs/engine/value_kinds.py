@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from typing import Any, get_type_hints
 
 EXACT = 2**53
-"""Up to here every integer is a double."""
+"""Every integer up to this magnitude is a double."""
 INT64 = 2**63
 
 
 @dataclass(frozen=True)
 class Literal:
-    """An integer that is written down, or made of such; bound: it is at most this, either sign."""
+    """An integer that is written, or computed from written ones; bound: its greatest magnitude."""
 
     bound: int
 
@@ -27,7 +27,7 @@ GENERATED = {
     "_asdict", "_field_defaults", "_fields", "_make", "_replace",
     "__classdictcell__", "__annotate__", "__annotate_func__", "__annotations_cache__", "__slotnames__",
 }  # fmt: skip
-"""What `NamedTuple` puts into a record by itself, and `copy` at the first copy of one."""
+"""Attributes that `NamedTuple`, and `copy` on first use, add to a record class."""
 
 
 def is_record(value: Any) -> bool:
@@ -48,7 +48,7 @@ def is_record(value: Any) -> bool:
 
 
 def _is_field(value: Any, number: int) -> bool:
-    """What `NamedTuple` puts under a field's name: the getter of this very place."""
+    """Whether the value is the getter that `NamedTuple` makes for the field at this index."""
     return type(value).__name__ == "_tuplegetter" and value.__reduce__()[1][0] == number
 
 
@@ -58,7 +58,7 @@ def is_kind(value: Any) -> bool:
 
 
 def shown(kind: Kind) -> str:
-    """For a message."""
+    """The kind's name, for messages."""
     if isinstance(kind, Literal):
         return "a written integer"
     return {float: "a real", int: "an integer", bool: "a truth value"}.get(
@@ -67,7 +67,7 @@ def shown(kind: Kind) -> str:
 
 
 def fits(given: Kind, wanted: Kind) -> bool:
-    """A value of the one kind may stand where the other is wanted."""
+    """Whether a value of kind `given` may stand where `wanted` is required."""
     if isinstance(given, Literal):
         return bool(
             (wanted is float and given.bound <= EXACT) or (wanted is int and given.bound < INT64)
@@ -76,7 +76,7 @@ def fits(given: Kind, wanted: Kind) -> bool:
 
 
 def merged(one: Kind, other: Kind) -> Kind | None:
-    """The kind of a value that is one or the other; None if there is none."""
+    """The common kind of two values; None if there is none."""
     if isinstance(one, Literal) and isinstance(other, Literal):
         return Literal(max(one.bound, other.bound))
     if isinstance(one, Literal):

@@ -1,8 +1,7 @@
-"""Calls in processes forked from the present state; their results come back.
+"""Calls in processes forked from the present state; their results are returned.
 
-What a theorem's statement looks like may depend on what the solver was asked before (numbers of
-terms, pruned paths). Stated in a fresh fork it is the same for the prover, the second solver and
-the export.
+The statement of a theorem may depend on what the solver was asked before (numbers of terms, pruned paths). Stated in
+a fresh fork it is the same for the prover, the second solver and the export.
 """
 
 from __future__ import annotations
@@ -68,9 +67,9 @@ def call(function: Callable[[], T]) -> T:
 
 
 def each(functions: Sequence[Callable[[], T]], jobs: int) -> Iterator[tuple[int, T]]:
-    """Number and result of every function as they are done, so many at once.
+    """Index and result of every function in the order of completion; `jobs` run at once.
 
-    Raises what the first to fail raises; what still runs is ended then.
+    Raises the error of the first to fail; those still running are terminated.
     """
     waiting = list(reversed(range(len(functions))))
     running: dict[Connection, tuple[int, Any]] = {}

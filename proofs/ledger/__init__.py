@@ -1,8 +1,8 @@
-"""Proves all theorems and writes what came of it into the ledger.
+"""Proves all theorems and writes the results into the ledger.
 
 Its files hold facts only (no times, no machine): they are the same on every machine that proves the same code with
 the same solver, so CI can compare them byte by byte. Theorems are proved on all cores, each in a process forked from
-the same state, so that the result does not depend on how they are spread.
+the same state, so that the result does not depend on how they are distributed.
 """
 
 from __future__ import annotations
@@ -43,9 +43,9 @@ from cratous.spec.errors import BadInput
 
 @dataclass(frozen=True)
 class Inventory:
-    """What a run of the prover found: theorems, lint findings, kernels without a theorem.
+    """The result of a run of the prover: theorems, lint findings, kernels without a theorem.
 
-    problems: whatever else forbids a ledger, each with its place.
+    problems: whatever else prevents writing a ledger, each with its place.
     """
 
     theorems: tuple[prover.Theorem, ...]
@@ -62,10 +62,10 @@ class Inventory:
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a theorem is: obligations done, of how many; at the end the theorem itself.
+    """Progress of a theorem: obligations done, of how many; at the end the theorem itself.
 
-    functions: what it looked into, where its functions are yet to be compared. written: what was made of its
-    claim beside.
+    functions: the functions that it looked into, where they are still to be compared. written: the result of
+    `Writer`.
     """
 
     name: str
@@ -78,7 +78,7 @@ class Progress:
 
 Listener = Callable[[Progress], None]
 Writer = Callable[[prover.Theorem, Claim, str], Any]
-"""Makes something of a theorem, its stated claim and its sentence, in the theorem's own process."""
+"""Computes something from a theorem, its stated claim and its sentence, in the theorem's own process."""
 
 
 def jobs_default() -> int:
@@ -116,7 +116,7 @@ def _work(
 
 
 def _no_answer(name: str, folder: Path, process: Any, *, again: bool) -> Exception | None:
-    """What is said of a theorem whose process ended; None if it is proved again, its questions apart."""
+    """The error for a theorem whose process ended; None if it is to be proved again with its questions apart."""
     process.join()
     user = of_the_user()
     ends = {-signal.SIGXCPU} | ({-signal.SIGKILL} if user < math.inf else set())
@@ -132,7 +132,7 @@ def _no_answer(name: str, folder: Path, process: Any, *, again: bool) -> Excepti
             expected="more CPU time for the prover (ulimit -t unlimited)",
             got=f"{user:.0f} s",
         )
-    # what is proved apart cannot end so otherwise, but for its statement
+    # with its questions apart, only stating the theorem can end this way
     return prover.not_stated(name, folder)
 
 
@@ -146,10 +146,10 @@ def prove_theorems(
     machine: bool = True,
     write: Writer | None = None,
 ) -> list[prover.Theorem]:
-    """Prove these theorems on several cores, and run what is proved; in the order of the names.
+    """Prove these theorems on several cores and run those that are proved; results in the order of the names.
 
-    machine: compare the functions' readings with machine code too; write: what else is made of each claim.
-    Raises whatever a theorem file raises, for the first such file in that order.
+    machine: compare the functions' readings with machine code too; write: called for each claim. Raises whatever a
+    theorem file raises, for the first such file in that order.
     """
     solver_memory.keep()
     wanted = list(names)
@@ -168,7 +168,7 @@ def prove_theorems(
                 target=_work,
                 args=(name, folder, store, write, there),
                 kwargs={"apart": name in apart},
-                daemon=name not in apart,  # a daemon may have no processes of its own
+                daemon=name not in apart,  # daemonic processes may not have children
             )
             process.start()
             there.close()
@@ -189,7 +189,7 @@ def prove_theorems(
                     tell(message)
                 if message.theorem is None:
                     continue
-            elif message is None:  # a question did not end
+            elif message is None:  # the process of a question was ended
                 apart.add(name)
                 queue.append(name)
             else:
@@ -223,9 +223,9 @@ def prove_all(
     machine: bool = True,
     write: Writer | None = None,
 ) -> Inventory:
-    """Prove these theorems, and look for whatever the ledger could not vouch for.
+    """Prove these theorems, and find everything that the ledger could not vouch for.
 
-    cache: solver answers; recall: theorems proved before, whose files are the same; machine, write: see
+    cache: solver answers; recall: theorems proved before, whose definitions are unchanged; machine, write: see
     `prove_theorems`, for those that are proved anew.
     """
     entries = gate.load_all(home)
@@ -250,7 +250,7 @@ def prove_all(
 
 
 def problems(entries: dict[str, Entry], home: Home = PRODUCT) -> list[str]:
-    """Kernels and drivers that no proof could be bound to, each with its place and the reason."""
+    """Kernels and drivers to which no proof can be bound, each with its place and the reason."""
     found = []
     calls = {n: _called(e) | {n} for n, e in entries.items() if e.kind == "driver"}
     if other := replaced([Fold], {}):
@@ -276,7 +276,7 @@ def problems(entries: dict[str, Entry], home: Home = PRODUCT) -> list[str]:
 
 
 def dead_paths(theorems: Iterable[prover.Theorem]) -> list[str]:
-    """Paths of kernels that no theorem's premises let anything reach: dead code, or a hole."""
+    """Paths of kernels that are not reachable under the premises of any theorem: dead code, or a gap in the proofs."""
     reached: dict[str, list[tuple[bool, ...]]] = {}
     for theorem in theorems:
         for name, seen in theorem.paths:
@@ -323,9 +323,8 @@ def records(
 ) -> dict[str, Any]:
     """The ledger as data.
 
-    grounds: by kernel, fold or driver, of `proofs.statements.status_evidence`; without them nothing is said to
-    be proved against a definition, or to be re-checked. statements: by theorem, what it says as a
-    sentence made from its claim.
+    grounds: evidence by kernel, fold or driver, from `proofs.statements.status_evidence`; without it none is recorded
+    as proved against a definition or as re-checked. statements: by theorem, its claim as a sentence.
     """
     theorems: dict[str, dict[str, Any]] = {
         t.name: {**_theorem_record(t), "statement": (statements or {}).get(t.name, "")}
@@ -372,7 +371,8 @@ def records(
 
 
 def changed_theorems(home: Home = PRODUCT) -> list[str]:
-    """Theorems that are new, about a kernel whose key differs from the ledger's, or, if any does, ask what is registered."""
+    """Theorems that are new or unproved, are about a kernel whose ledger entry is stale, or, if any is, ask what is
+    registered."""
     data, keys = gate.read(home.records), gate.Keys(home)
     entries = gate.load_all(home)
     stale, found = set(), []
@@ -396,5 +396,5 @@ def text(
     grounds: Mapping[str, Grounds] | None = None,
     statements: Mapping[str, str] | None = None,
 ) -> dict[str, str]:
-    """The ledger as it is written: the text of each file, by its place in the folder."""
+    """The text of each file of the ledger, by its path in the folder."""
     return texts(records(inventory, home, grounds, statements), home)

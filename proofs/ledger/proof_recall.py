@@ -1,10 +1,9 @@
-"""Proved theorems that nothing has touched since: recalled without lifting their kernels again.
+"""Proved theorems whose definitions have not changed: recalled without lifting their kernels again.
 
-A theorem is kept under a hash of all definitions that could change what was proved: what it says, its
-lemmas, all that these reach, the prover, the readings; and of the versions of solver and Python. A
-theorem that asks for whatever is registered depends on every kernel, fold and driver. Only proved
-theorems are kept; what is refuted or unknown is looked at anew. As with solver answers, CI begins
-with an empty cache.
+A theorem is kept under a hash of all definitions that could change the proof: its statement, its lemmas, all that
+these reach, the prover, the readings; and of the versions of solver and Python. A theorem that asks for whatever is
+registered depends on every kernel, fold and driver. Only proved theorems are kept; refuted and undecided ones are
+decided anew. As with solver answers, CI begins with an empty cache.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ from cratous.proofs.engine.prover import RLIMIT, Theorem, restore
 class Recall:
     """Proved theorems of one home in a folder; without a folder nothing is kept.
 
-    keys: by default of the files as they stand when the first theorem is asked for.
+    keys: by default computed from the files as they are when the first theorem is asked for.
     """
 
     def __init__(self, folder: Path | None, home: Home = PRODUCT, keys: Keys | None = None) -> None:
@@ -38,21 +37,21 @@ class Recall:
 
     @functools.cached_property
     def keys(self) -> Keys:
-        """The keys by which theorems are known."""
+        """The keys under which theorems are kept."""
         return self._given or Keys(self.home)
 
     @functools.cached_property
     def _registered(self) -> str:
-        """All that is registered, with what it rests on."""
+        """A hash over all that is registered, with everything it depends on."""
         entries = gate.load_all(self.home) | gate.load_all()
         return digest(f"{n}={self.keys.source(entry)}" for n, entry in sorted(entries.items()))
 
     def key(self, name: str) -> str | None:
-        """The hash under which a theorem is kept; None where its file, or a lemma's, is not there."""
+        """The hash under which a theorem is kept; None where its file, or a lemma's, is missing."""
         meaning = self.keys.theorem(name)
         if meaning == MISSING:
             return None
-        # what is kept names kernels and lemmas, which a move renames
+        # the kept data name kernels and lemmas, which a move renames
         names = sorted({*self.keys.functions(name), *self.keys.lemmas(name)})
         asked = self._registered if self.keys.asks_registry(name) else ""
         shared = [self.keys.shared[part] for part in ("prover", "readings", "solver")]
@@ -60,13 +59,13 @@ class Recall:
         return digest([self.home.name, name, meaning, *names, asked, *shared, *versions])
 
     def get(self, name: str) -> Theorem | None:
-        """The theorem, if it was proved of the very same definitions."""
+        """The theorem, if it was proved from exactly these definitions."""
         if self.folder is None:
             return None
         try:
             wanted = self.key(name)
         except SyntaxError:
-            return None  # the prover says where
+            return None  # the prover reports the place
         if wanted is None:
             return None
         try:
@@ -79,10 +78,10 @@ class Recall:
         return theorem if theorem.proved and theorem.name == name else None
 
     def put(self, theorems: Iterable[Theorem]) -> None:
-        """Keep those that are proved; a folder that cannot be written is no error.
+        """Keep the proved ones; a folder that cannot be written is no error.
 
-        A theorem with a lemma whose name cannot be read in any text is not kept, nor one of which a limit of
-        time ended a question: another run may find more.
+        Not kept: a theorem one of whose lemmas has a computed name, and one with a question ended by a time limit,
+        since another run may find more.
         """
         for theorem in theorems:
             if self.folder is None or not theorem.proved or theorem.ended:

@@ -71,7 +71,7 @@ def failure_text(theorem: Theorem) -> str:
 
 
 def example(outcome: Outcome) -> list[str]:
-    """The counterexample in the user's terms, or the solver's values where there is no more."""
+    """The counterexample in the user's terms, or else the solver's values."""
     if outcome.story:
         return list(outcome.story)
     return [f"{name} = {value}" for name, value in outcome.counterexample if "!" not in name]
@@ -120,7 +120,7 @@ def _location(where: str) -> dict[str, Any]:
 def sarif(theorems: Iterable[Theorem], problems: Iterable[str], home: Home = PRODUCT) -> str:
     """SARIF 2.1.0: one result for each theorem that is not proved and each problem.
 
-    A result points at the theorem's file and at the kernels that it is about.
+    A result points to the theorem's file and to the kernels that it is about.
     """
     files = theorem_files(home.theorems)
     results: list[dict[str, Any]] = []
@@ -161,6 +161,6 @@ def sarif(theorems: Iterable[Theorem], problems: Iterable[str], home: Home = PRO
 
 
 def write(path: Path, text: str) -> None:
-    """Write a result file, with its folder."""
+    """Write a result file; creates its folder."""
     path.parent.mkdir(parents=True, exist_ok=True)
     write_atomically(path, text)

@@ -1,7 +1,7 @@
-"""Texts that follow from the product's files alone, kept from one run to the next.
+"""Cached texts that are determined by the product's files alone.
 
-What the lint of decisions finds is a function of the bytes of the files and of the versions; where all
-are the same, so is the text. CI begins with an empty folder.
+The findings of the lint of decisions, for example, depend on the bytes of the files and on the versions only; where
+all are the same, so is the text. CI begins with an empty folder.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ INPUTS = (".py", ".lark")
 
 
 def named(file: Path) -> str:
-    """A file with the hash of its bytes."""
+    """A file's path with the hash of its bytes."""
     return f"{place(file)}={hashlib.sha256(file.read_bytes()).hexdigest()}"
 
 
 @functools.cache
 def product(home: Home) -> str:
-    """One hash over every file of the product, and of the home, that could count."""
+    """One hash over every file of the product, and of the home, that could affect a text."""
     files = {file for part in PARTS for file in (ROOT / part).rglob("*") if file.suffix in INPUTS}
     files.add(ROOT / "proofs" / "lint" / "decisions.json")
     if not home.product:
@@ -39,13 +39,13 @@ def product(home: Home) -> str:
 
 
 class Remembered:
-    """Such texts in a folder; without a folder each is made anew."""
+    """Cached texts in a folder; without a folder each is computed."""
 
     def __init__(self, folder: Path | None, home: Home) -> None:
         self.folder, self.home = folder, home
 
     def text(self, what: str, inputs: str, make: Callable[[], str]) -> str:
-        """What `make` gives; not made again where files and inputs are the same.
+        """The result of `make`, taken from the cache where files and inputs are the same.
 
         what: names the text; inputs: what it depends on beside the files.
         """

@@ -1,12 +1,10 @@
 """The lint of decisions outside of kernels and drivers.
 
-Services and bridge may measure, draw and steer, but what must hold of geometry, time or authority
-is decided by a kernel. This lint reads their syntax trees and lists every place that looks like
-such a decision: a comparison in which something measured takes part (by the naming convention
-`_m _s _ms _rad`, `owner`, `epoch`, a distance function, a cross or matrix product), and a geometric
-predicate of a library.
-Each place is either explained, with one line, in `decisions.json`, or a finding. An explanation
-that fits no place any more is a finding too.
+Services and bridge may measure, draw and steer, but what must hold of geometry, time or authority is decided by a
+kernel. This lint reads their syntax trees and lists every place that looks like such a decision: a comparison that
+involves a measured quantity (by the naming convention `_m _s _ms _rad`, `owner`, `epoch`, a distance function, a
+cross or matrix product), and a geometric predicate of a library. Each place is either explained, with one line, in
+`decisions.json`, or a finding. An explanation without a place is a finding too.
 """
 
 from __future__ import annotations
@@ -41,7 +39,7 @@ KINDS = {
 
 @dataclass(frozen=True)
 class Place:
-    """A comparison outside of kernels: where, in which function, its text and its subject."""
+    """A comparison outside of kernels: file, function, text and subject."""
 
     file: str
     line: int
@@ -70,7 +68,7 @@ class Place:
 class Explanation:
     """An entry of `decisions.json`: functions of a file, the kind of decision, the reason.
 
-    `*` as the function of a folder (its name ends in `/`) is all that stands in it: for the world alone.
+    `*` as the function of a folder (its name ends in `/`) covers all of the folder; only for the kind `world`.
     """
 
     file: str
@@ -79,7 +77,7 @@ class Explanation:
     reason: str
 
     def covers(self, place: Place) -> bool:
-        """True iff it is about this place."""
+        """True iff the entry applies to this place."""
         if self.functions == ("*",):
             return self.kind == "world" and place.file.startswith(self.file)
         return place.file == self.file and place.function in self.functions
@@ -98,7 +96,7 @@ def _zero(node: ast.AST) -> bool:
 
 
 def _product(node: ast.AST) -> bool:
-    """A cross product `a * b - c * d`, or a matrix product: how containment is done by hand."""
+    """Whether it is a cross product `a * b - c * d` or a matrix product, as used for containment tests."""
     if not isinstance(node, ast.BinOp):
         return False
     if isinstance(node.op, ast.MatMult):
@@ -109,7 +107,7 @@ def _product(node: ast.AST) -> bool:
 
 
 def _subject(node: ast.AST) -> str:
-    """What a node decides about, or nothing."""
+    """The subject of the decision that a node makes; empty if it makes none."""
     if isinstance(node, ast.Call):
         called = next(_names(node.func), "")
         return "geometry" if isinstance(node.func, ast.Attribute) and called in PREDICATES else ""
@@ -118,7 +116,7 @@ def _subject(node: ast.AST) -> str:
     if all(isinstance(o, ast.Is | ast.IsNot | ast.In | ast.NotIn) for o in node.ops):
         return ""
     if isinstance(node.ops[0], ast.Eq | ast.NotEq) and _zero(node.comparators[0]):
-        return ""  # whether there is any at all
+        return ""  # a test for zero or absence
     names = set(_names(node))
     if {name.lower() for name in names} & AUTHORITY:
         return "authority"
@@ -128,7 +126,7 @@ def _subject(node: ast.AST) -> str:
 
 
 def places(root: Path = ROOT, parts: tuple[str, ...] = PARTS) -> list[Place]:
-    """Every place in services and bridge that looks like a decision of its own."""
+    """Every place in services and bridge that looks like a decision."""
     found = []
     for file in sorted(f for part in parts for f in (root / part).rglob("*.py")):
         tree = ast.parse(file.read_text(encoding="utf-8"))
@@ -147,7 +145,7 @@ def places(root: Path = ROOT, parts: tuple[str, ...] = PARTS) -> list[Place]:
 
 
 def explanations(file: Path = FILE) -> list[Explanation]:
-    """The entries of `decisions.json`; raises ValueError for one that explains nothing."""
+    """The entries of `decisions.json`; raises ValueError for an unknown kind, or without reason or functions."""
     found = []
     for row in json.loads(file.read_text(encoding="utf-8")):
         if row["kind"] not in KINDS or not row["reason"].strip() or not row["functions"]:
@@ -172,7 +170,7 @@ def unexplained(root: Path = ROOT, file: Path = FILE, parts: tuple[str, ...] = P
 
 
 def counted() -> dict[str, int]:
-    """How many places there are of each kind."""
+    """The number of places of each kind."""
     seen, known = places(), explanations()
     counts = dict.fromkeys(KINDS, 0)
     for place in seen:

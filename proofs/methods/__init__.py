@@ -1,1 +1,1 @@
-"""Ways of proving that several theorems share: induction over chains, crossings, rounding."""
+"""Methods of proof shared by several theorems: induction over chains, crossings, rounding."""

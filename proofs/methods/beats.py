@@ -1,6 +1,6 @@
-"""One heartbeat of an ICAROUS instance as it is flown, of the kernels that fly: notice of the gate, then watch or fly.
+"""One heartbeat of an ICAROUS instance, composed of the kernels that fly: notice the gate, then monitor or fly.
 
-As `services.icarous.instance` has them, for one arbitrary intruder: what is seen of the others is one truth value.
+Follows `services.icarous.instance`, for one arbitrary intruder; all others enter as one truth value.
 """
 
 from __future__ import annotations
@@ -30,13 +30,14 @@ from cratous.spec.system import clear as system
 
 
 class Beat(NamedTuple):
-    """What one heartbeat finds of the intruder.
+    """What one heartbeat determines about the intruder.
 
-    loss: one is predicted, in first_s [s]; ahead_s: so far was looked; last_s, hard_s, persist_s, persists, in_turn,
-    gives: as of `must_act`; t_s: the instant in seconds from now on (for every number here and each of milliseconds). allowed: what was permitted still is, anew: since it
-    was asked again, up to kept_ms; back: a way was permitted at the handback, up to resumed_ms [ms]. free: the way back
-    is. way, again, whole: the vehicle is clear at the instant on the way that is predicted, on the one that is permitted
-    again, and on the whole way that is permitted at a handback; home: on the way back.
+    loss: a loss is predicted, in first_s [s]; ahead_s: look-ahead of the prediction; last_s, hard_s, persist_s,
+    persists, in_turn, gives: as for `must_act`; t_s: the instant relative to now (as an arbitrary number, for any
+    number of milliseconds). allowed: what was permitted still is; anew: because it was asked again, up to kept_ms;
+    back: a course was permitted at the handback, up to resumed_ms [ms]. free: the way back is free. way, again,
+    whole, home: the vehicle is clear at the instant on the predicted course, on the one permitted again, on the whole
+    course permitted at a handback, on the way back.
     """
 
     loss: Any
@@ -62,8 +63,8 @@ class Beat(NamedTuple):
 
 
 class Around(NamedTuple):
-    """What else a heartbeat depends on. others: another intruder or a zone has to be acted on; chosen: the takeover
-    names this one; loss: the mode without a link; the times are those of `cycle_watched` and `cycle_flown` [ms]."""
+    """The other inputs of a heartbeat. others: another intruder or a zone requires action; chosen: the takeover names
+    this intruder; loss: the mode of link loss; the times are those of `cycle_watched` and `cycle_flown` [ms]."""
 
     others: Any
     chosen: Any
@@ -75,7 +76,7 @@ class Around(NamedTuple):
 
 
 class Beaten(NamedTuple):
-    """After a heartbeat: gate, instance, encounter; and of `Sure` what a heartbeat changes."""
+    """State after a heartbeat: gate, instance, encounter, and the fields of `Sure` that a heartbeat changes."""
 
     gate: Gate
     cycle: Cycle
@@ -87,7 +88,7 @@ class Beaten(NamedTuple):
 
 
 def any_beat(c: Claim) -> Beat:
-    """Any heartbeat, its numbers named as in `Beat`."""
+    """An arbitrary heartbeat, its values named as in `Beat`."""
     first, ahead, last, hard, persist, t = c.reals("first ahead last hard persist t")
     persists, turn, gives = (c.boolean(n) for n in ("persists", "in_turn", "gives"))
     allowed, anew, kept = c.boolean("allowed"), c.boolean("anew"), c.whole("kept")
@@ -100,15 +101,15 @@ def any_beat(c: Claim) -> Beat:
 
 
 def any_surroundings(c: Claim) -> Around:
-    """Any other circumstances of a heartbeat."""
+    """Arbitrary other inputs of a heartbeat."""
     loss = Loss(c.whole("mode_without"), c.whole("since"))
     times = [c.whole(name) for name in ("heard", "bound", "least", "soon")]
     return Around(c.boolean("others"), c.boolean("chosen"), loss, *times)
 
 
 def each_beat(c: Claim, b: Beat, around: Around, now: Any, at: Any) -> Any:
-    """What is given of each heartbeat: lengths of time are not below 0 and can be counted, and what is predicted,
-    and permitted, is so."""
+    """Condition on every heartbeat: durations are not negative, numbers are within counting range, and predictions
+    and permits are correct."""
     numbers = (b.kept_ms, b.resumed_ms, now, around.heard, around.loss.mode, around.loss.since_ms)
     lengths = (around.bound, around.least, around.soon)
     return c.all_of(
@@ -130,7 +131,7 @@ def beaten(
     around: Around,
     at: Any,
 ) -> Beaten:
-    """After a heartbeat, which is at sure.now_ms. at: the instant [ms]."""
+    """The state after a heartbeat at sure.now_ms. at: the instant considered [ms]."""
     (gate, cycle, met), now = state, sure.now_ms
 
     noticed = c.use(cycle_begun, cycle, c.use(gate_accepts, gate, 1, gate.epoch), now)
@@ -140,7 +141,7 @@ def beaten(
     asked = c.all_of(b.allowed, b.anew)
     permitted = c.when(asked, b.again, c.when(back, b.whole, sure.permit))
     until = c.when(asked, b.kept_ms, c.when(back, b.resumed_ms, sure.until_ms))
-    # it watches
+    # if it monitors
     seen = c.use(encounter_looked, met, b.allowed, now)
     near = c.use(
         must_act, b.first_s, b.last_s, b.hard_s, b.persist_s, b.persists, b.in_turn, b.gives
@@ -151,7 +152,7 @@ def beaten(
     cycled = c.use(cycle_watched, noticed, takes, now, around.soon)
     named = c.use(encounter_watched, seen, True).encounter
     taken = c.when(c.all_of(acts, around.chosen), named, seen)
-    # or it flies
+    # if it flies
     free = c.use(loss_lets_go, around.loss, b.free)
     flown = c.use(cycle_flown, noticed, free, around.heard, now, around.bound, around.least)
     after = c.when(watches, cycled, flown)

@@ -1,10 +1,9 @@
 """Induction over a closed chain of edges, for folds whose items share their vertices.
 
-`Claim.fold` knows nothing of how items hang together. Here the items are the edges of a chain:
-each begins where the one before it ended, and the last ends where the first began. The induction
-is over their number, and the invariant may speak of the chain's first vertex and of the present
-one. Base: no edge yet, both are the same vertex. Step: any further edge from the present vertex to
-any other. Use: back at the first vertex, the goal follows.
+`Claim.fold` does not know how items are connected. Here the items are the edges of a chain: each begins where the
+previous one ended, and the last ends where the first began. The induction is over their number, and the invariant may
+refer to the chain's first and current vertex. Base: no edge yet, both are the same vertex. Step: one more edge from
+the current vertex to any other. Use: back at the first vertex, the goal follows.
 """
 
 from __future__ import annotations
@@ -37,9 +36,10 @@ def closed_chain(
 ) -> None:
     """Show `goal(results)` of folds that run over the edges of one closed chain, of any length.
 
-    invariant(accumulators, first, last): what holds after any number of edges; edge(a, b): uses
-    lemmas and premises on one more edge, which do not speak of accumulators; begin(first): premises on the first vertex; goal(results): what follows for the folds' results. models: folds
-    over definitions, which run along; their accumulators and results come after the others.
+    invariant(accumulators, first, last): holds after any number of edges; edge(a, b): uses lemmas and premises on one
+    more edge, which do not refer to accumulators; begin(first): premises on the first vertex; goal(results): the goal
+    for the folds' results. models: folds over definitions that run along; their accumulators and results come after
+    the others.
     """
     if c.prefix:
         return  # used as a lemma, an induction has no goals to offer, as with `Claim.fold`
@@ -62,7 +62,7 @@ def closed_chain(
     of_first = list(c.premises)
     starts = [fold.start for fold in folds]
     c._owe("base", f"{text}: a chain without edges", statement(invariant(starts, first, first)))
-    # the folds are run only where the invariant holds, so what they owe is owed there
+    # the folds are run only where the invariant holds, so their side conditions are owed there
     before = len(c.facts)
     c._grant(statement(invariant(accumulators, first, last)))
     no_more_premises(c, len(of_first))
@@ -73,7 +73,7 @@ def closed_chain(
         for read, fold, acc, context in zip(readers, folds, accumulators, contexts, strict=True)
     ]
     c._owe("step", f"{text}: one more edge", statement(invariant(after, first, to)))
-    # at the end there is no further edge, so nothing is given of one
+    # after the last edge there is no further one, so no premise on an edge may be used
     no_more_premises(c, len(of_edge))
     c.premises, c.facts = list(of_first), c.facts[:before]
     c._grant(statement(invariant(accumulators, first, first)))
@@ -84,5 +84,5 @@ def closed_chain(
     c._owe("use", f"{text}: the chain is closed", statement(goal(results)))
     no_more_premises(c, len(of_first))
     c.premises, c.facts, c.granted = of_edge, c.facts[:before], ()
-    # begin and edge restrict vertices alone
+    # begin and edge may restrict only vertices
     arbitrary(c, tuple(accumulators), tuple(contexts))

@@ -1,4 +1,4 @@
-"""What theorems on who commands are about: any gate, any ICAROUS instance, any UxAS end, any times."""
+"""Arbitrary values for theorems on authority: a gate, an ICAROUS instance, the UxAS end of a link, times."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from cratous.spec.authority import link_loss, take_off
 
 
 def any_gate(c: Claim) -> Gate:
-    """Any gate: who commands, `owner`, since which `gate_epoch`, and whether that is `offered`."""
+    """An arbitrary gate: who commands (`owner`), since which epoch (`gate_epoch`), and whether that is `offered`."""
     return Gate(c.integer("owner"), c.integer("gate_epoch"), c.boolean("offered"))
 
 
 def any_cycle(c: Claim) -> Cycle:
-    """Any ICAROUS instance between two heartbeats."""
+    """An arbitrary state of an ICAROUS instance between two heartbeats."""
     return Cycle(
         c.integer("mode"),
         c.integer("relapses"),
@@ -31,13 +31,13 @@ def any_cycle(c: Claim) -> Cycle:
 
 
 def any_link_end(c: Claim) -> LinkEnd:
-    """Any UxAS end of the link to one instance."""
+    """An arbitrary state of the UxAS end of the link to one instance."""
     return LinkEnd(c.boolean("active"), c.integer("epoch"), c.boolean("alive"))
 
 
 def any_times(c: Claim) -> tuple[Any, ...]:
-    """Any time `now`, how `soon` a loss is acted on, when UxAS was `heard` and for how long that counts,
-    `bound`, and the `least` time to the next offer [ms]; lengths of time are not below 0."""
+    """Arbitrary times [ms]: `now`; `soon`, within which a loss is acted on; `heard`, when UxAS was last heard, and
+    `bound`, for how long that counts; `least`, the time to the next offer. Durations are not negative."""
     now, soon, heard, bound, least = (
         c.integer(name) for name in ("now", "soon", "heard", "bound", "least")
     )
@@ -46,8 +46,9 @@ def any_times(c: Claim) -> tuple[Any, ...]:
 
 
 def any_loss(c: Claim) -> tuple[Loss, tuple[Any, ...]]:
-    """Any mode of a vehicle whose link may be lost, with whatever `loss_step` is told at a heartbeat: what is
-    chosen, when UxAS was heard, the time, the bound, whether a way is permitted, and whether it is ended."""
+    """An arbitrary mode of a vehicle whose link may be lost, with arbitrary inputs of `loss_step` at a heartbeat:
+    what is chosen, when UxAS was heard, the time, the bound, whether a course is permitted, and whether it is
+    ended."""
     loss = Loss(c.integer("mode_without"), c.integer("since_ms"))
     chosen, heard, now, bound = (c.integer(n) for n in ("chosen", "heard", "now", "silence"))
     c.premise(c.define(link_loss.is_mode, loss.mode))
@@ -56,8 +57,9 @@ def any_loss(c: Claim) -> tuple[Loss, tuple[Any, ...]]:
 
 
 def any_departure(c: Claim) -> tuple[Departure, tuple[Any, ...]]:
-    """Any mode of a vehicle that takes off, with whatever `departure_step` is told at a heartbeat: when UxAS was
-    heard, the time, the bound, whether the way up is permitted, whether the vehicle is off the ground, and at its end."""
+    """An arbitrary mode of a vehicle that takes off, with arbitrary inputs of `departure_step` at a heartbeat: when
+    UxAS was heard, the time, the bound, whether the climb is permitted, whether the vehicle is off the ground, and
+    at its end."""
     departure = Departure(c.integer("mode_up"), c.integer("since_ms"))
     heard, now, bound = (c.integer(n) for n in ("heard", "now", "silence"))
     c.premise(c.all_of(c.define(take_off.is_mode, departure.mode), bound >= 0))
@@ -66,14 +68,14 @@ def any_departure(c: Claim) -> tuple[Departure, tuple[Any, ...]]:
 
 
 def any_other(c: Claim, step: Any, mode: Any) -> Any:
-    """Whatever else a heartbeat might come to: records of the kinds `step` and `mode`."""
+    """An arbitrary result of a heartbeat: records of the types `step` and `mode`."""
     return step(mode(c.integer("other_mode"), c.integer("other_since")), c.integer("other_act"))
 
 
 def heartbeat_as_defined(
     c: Claim, step: Any, meant: Any, given: tuple[Any, ...], other: Any
 ) -> Any:
-    """What a heartbeat comes to: it is what its definition says of what is `given`, and no `other` is."""
+    """Show that the result of a heartbeat satisfies its definition for `given`, and that no `other` result does."""
     stepped = c.use(step, *given)
     c.show(c.define(meant, *given, stepped), "a heartbeat")
     another = c.define(meant, *given, other)
@@ -84,7 +86,7 @@ def heartbeat_as_defined(
 def takes_and_goes_as_defined(
     c: Claim, before: Any, takes: tuple[Any, Any], goes: tuple[Any, Any], when: str
 ) -> None:
-    """That ICAROUS takes the vehicle and lets it go by its definitions. takes, goes: kernel and definition."""
+    """Show that ICAROUS takes the vehicle and releases it by its definitions. takes, goes: kernel and definition."""
     reason = c.boolean("reason")
     for (kernel, meant), text in ((takes, "why ICAROUS has the vehicle"), (goes, when)):
         c.show(c.same(c.use(kernel, before, reason), c.define(meant, before, reason)), text)

@@ -1,4 +1,4 @@
-"""Premises that theorems on a leg's crossings share: a span of the leg without a crossing in it."""
+"""Premises shared by theorems on a leg's crossings: a span of the leg without a crossing."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from cratous.proofs.claim import Claim
 
 
 def undisturbed(c: Claim, p: Any, q: Any, a: Any, b: Any, low: Any, high: Any) -> None:
-    """Premise: strictly between low and high the edge a-b has no crossing, nor a foot if parallel."""
+    """Premise: strictly between low and high the edge a-b has no crossing; nor the foot of an end, if parallel."""
 
     def not_between(ratio: Any) -> Any:
         return (ratio.num - low * ratio.den) * (ratio.num - high * ratio.den) >= 0

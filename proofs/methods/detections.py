@@ -1,6 +1,6 @@
-"""Theorems on detecting a well-clear volume in [B, T], stated alike for tau_mod, tcpa and tep.
+"""Theorems on detecting a violation of well clear in [B, T], for the volumes tau_mod, tcpa and tep.
 
-Each function states one of them of any volume.
+Each function states one theorem for any of these volumes.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from cratous.proofs.methods.kinds import Volume
 from cratous.spec import well_clear
 
 LAYER = (layer_window, well_clear.layer_violation)
-"""The vertical part, which theorems on the whole know by lemmas."""
+"""The vertical part, which theorems on the whole volume use through lemmas."""
 
 
 def named_instant(
     c: Claim, volume: Volume, asked: tuple[Any, ...], limits: Thresholds, witness: Any
 ) -> None:
-    """Name the instant that stands for a detection by the equation that defines it.
+    """Premise: `witness` is the instant of the detected violation, given by the equation that defines it.
 
-    asked: the state, and the begin and the end of the window; witness: any real number.
+    asked: the state, and begin and end of the window; witness: an arbitrary real.
     """
     s, v, sz, vz, begin, end = asked
     dthr, zthr, tthr, tcoa, vmod = limits

@@ -1,4 +1,4 @@
-"""What theorems on two aircraft in straight flight are about: any relative state, any thresholds."""
+"""Arbitrary values for theorems on two aircraft in straight flight: relative states and thresholds."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from cratous.proofs.claim import Claim
 
 
 def any_state(c: Claim) -> tuple[Any, Any, Any, Any]:
-    """Any relative state: horizontal position `s` and velocity `v`, altitude `sz`, climb rate `vz`."""
+    """An arbitrary relative state: horizontal position `s` and velocity `v`, altitude `sz`, climb rate `vz`."""
     return c.vector("s"), c.vector("v"), c.real("sz"), c.real("vz")
 
 
 def any_instants(c: Claim, names: str) -> list[Any]:
-    """Any instants of these names, none before the one that is named before it."""
+    """Arbitrary instants of these names, in chronological order."""
     instants = c.reals(names)
     for earlier, later in pairwise(instants):
         c.premise(earlier <= later)
@@ -23,7 +23,7 @@ def any_instants(c: Claim, names: str) -> list[Any]:
 
 
 def any_in_the_plane(c: Claim) -> tuple[Any, Any, Any, Any]:
-    """Any horizontal state `s` and `v`, and any thresholds `dthr` and `tthr`, none below 0."""
+    """An arbitrary horizontal state `s` and `v`, and thresholds `dthr` and `tthr`, not negative."""
     s, v = c.vector("s"), c.vector("v")
     dthr, tthr = c.reals("dthr tthr")
     c.premise(dthr >= 0)
@@ -32,7 +32,7 @@ def any_in_the_plane(c: Claim) -> tuple[Any, Any, Any, Any]:
 
 
 def any_thresholds(c: Claim) -> Thresholds:
-    """Any thresholds of a volume in space, none below 0: `dthr`, `zthr`, `tthr`, `tcoa`, `vmod`."""
+    """Arbitrary thresholds of a volume in space, not negative: `dthr`, `zthr`, `tthr`, `tcoa`, `vmod`."""
     limits = Thresholds(*c.reals("dthr zthr tthr tcoa vmod"))
     for threshold in limits:
         c.premise(threshold >= 0)
@@ -40,18 +40,18 @@ def any_thresholds(c: Claim) -> Thresholds:
 
 
 def any_loss(c: Claim) -> tuple[Any, Any, Any, Any, Thresholds]:
-    """Any relative state, and any thresholds of a volume in space that it may violate."""
+    """An arbitrary relative state, and thresholds of a volume in space that it may violate."""
     return *any_state(c), any_thresholds(c)
 
 
 def by_name(limits: Thresholds) -> dict[str, Any]:
-    """Thresholds under the names that theorems give them, for lemmas."""
+    """Thresholds under the names that theorems use, for lemmas."""
     dthr, zthr, tthr, tcoa, vmod = limits
     return {"dthr": dthr, "zthr": zthr, "tthr": tthr, "tcoa": tcoa, "vmod": vmod}
 
 
 def any_by_tcoa(c: Claim) -> tuple[tuple[Any, Any, Any, Any], list[Any]]:
-    """Any relative state, and any thresholds of the standard, none below 0: `dthr`, `zthr`, `tthr`, `tcoa`."""
+    """An arbitrary relative state, and thresholds of the standard, not negative: `dthr`, `zthr`, `tthr`, `tcoa`."""
     limits = c.reals("dthr zthr tthr tcoa")
     for threshold in limits:
         c.premise(threshold >= 0)
@@ -59,7 +59,7 @@ def any_by_tcoa(c: Claim) -> tuple[tuple[Any, Any, Any, Any], list[Any]]:
 
 
 def any_nested_thresholds(c: Claim) -> tuple[Thresholds, Thresholds]:
-    """Any thresholds, none below 0, and any that are no less, named with a 2 behind."""
+    """Arbitrary thresholds, not negative, and others that are not smaller, with a 2 appended to their names."""
     names = "dthr zthr tthr tcoa vmod"
     small, great = c.reals(names), c.reals(" ".join(name + "2" for name in names.split()))
     for low, high in zip(small, great, strict=True):
@@ -69,7 +69,7 @@ def any_nested_thresholds(c: Claim) -> tuple[Thresholds, Thresholds]:
 
 
 def any_cylinder(c: Claim) -> tuple[Any, Any, Any, Any, Any, Any]:
-    """Any relative state `s`, `v`, `sz`, `vz`, and any cylinder `radius`, `half`, neither below 0."""
+    """An arbitrary relative state `s`, `v`, `sz`, `vz`, and a cylinder `radius`, `half`, neither negative."""
     radius, half = c.reals("radius half")
     c.premise(radius >= 0)
     c.premise(half >= 0)

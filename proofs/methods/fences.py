@@ -1,4 +1,4 @@
-"""What theorems on one vehicle and one zone are about: its gate, what is in hand, and what is so of the zone."""
+"""Arbitrary values for theorems on one vehicle and one zone: its gate, its certificate in hand, the true situation."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from cratous.spec.system import fenced as system
 
 
 class Fencing(NamedTuple):
-    """A vehicle: its gate, what is in hand, and what is so of the one zone: `spec.system.fenced`."""
+    """A vehicle: its gate, its hand, and the true situation regarding one zone (`spec.system.fenced`)."""
 
     gate: Gate
     hand: Hand
@@ -29,8 +29,8 @@ class Fencing(NamedTuple):
 
 
 class Turn(NamedTuple):
-    """What happens. kind: as of `happenings`; act: what ICAROUS does with its authority at a heartbeat; sender, epoch: of
-    a command that reaches the gate; way: what it commands, if UxAS sent it; of_hand: the event, if it is one of the hand."""
+    """An event. kind: as in `happenings`; act: the change of authority by ICAROUS at a heartbeat; sender, epoch: of a
+    command that reaches the gate; way: what UxAS commands, if it is the sender; of_hand: an event of the hand."""
 
     kind: Any
     now: Any
@@ -42,12 +42,12 @@ class Turn(NamedTuple):
 
 
 def any_way(c: Claim, name: str) -> system.Way:
-    """Any command of UxAS."""
+    """An arbitrary command of UxAS."""
     return system.Way(*[c.boolean(f"{name}_{part}") for part in ("kept", "near", "obeys")])
 
 
 def any_turn(c: Claim) -> Turn:
-    """Anything that may happen."""
+    """An arbitrary event."""
     now = c.whole("now")
     act, sender, epoch = (c.whole(name) for name in ("act", "sender", "command_epoch"))
     way, of_hand = any_way(c, "wanted"), any_hand_event(c, now)
@@ -55,7 +55,7 @@ def any_turn(c: Claim) -> Turn:
 
 
 def each_turn(c: Claim, one: Turn, asked: Asked) -> Any:
-    """What is given of each: numbers that a machine counts, and that what was checked, and permitted, is so."""
+    """Condition on every event: numbers are within counting range, and what was checked or permitted is so."""
     return c.all_of(
         *[counts(c, number) for number in (one.act, one.sender, one.epoch)],
         c.define(system.checked, one.way),
@@ -64,7 +64,7 @@ def each_turn(c: Claim, one: Turn, asked: Asked) -> Any:
 
 
 def no_fencing() -> Fencing:
-    """At the start: UxAS may command and has commanded nothing, nothing is in hand."""
+    """The initial state: UxAS may command and has commanded nothing, nothing is in hand."""
     nothing = system.Way(False, False, False)
     return Fencing(
         Gate(0, 0, False), Hand(0, 0, 0, 0), system.Fenced(True, True, 0, nothing, False)
@@ -72,7 +72,7 @@ def no_fencing() -> Fencing:
 
 
 def any_fencing(c: Claim) -> Fencing:
-    """Any vehicle, its numbers of any size."""
+    """An arbitrary vehicle, with numbers of any size."""
     gate = Gate(c.whole("owner"), c.whole("gate_epoch"), c.boolean("offered"))
     known = system.Fenced(
         c.boolean("counted"), c.boolean("in_order"), c.whole("then"), any_way(c, "flown"),
@@ -82,7 +82,8 @@ def any_fencing(c: Claim) -> Fencing:
 
 
 def after_turn(c: Claim, one: Fencing, what: Turn, asked: Asked) -> Fencing:
-    """The vehicle afterwards, by the kernels that fly. Of one that has changed too often to be counted nothing is said."""
+    """The vehicle after an event, by the kernels that fly. Once a number is out of counting range nothing more is
+    claimed."""
     (owner, era, offered), hand, known = one
     numbers = (owner, era, *hand, known.now_ms)
     counted = c.all_of(known.counted, *[counts(c, number) for number in numbers])

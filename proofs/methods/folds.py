@@ -1,4 +1,4 @@
-"""Folds over any number of items that are the folds of their definitions."""
+"""Shows that folds over any number of items equal the folds of their definitions."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ def verdict_is_defined(
     c: Claim, kernel: Any, item: tuple[Any, ...], context: tuple[Any, ...], model_step: Any,
     *, start: bool,
 ) -> None:  # fmt: skip
-    """A fold to a verdict is that of its definition's step, whatever the number of items."""
+    """A fold to a verdict equals that of its definition's step, for any number of items."""
     c.fold(
         kernel,
         acc=c.boolean("verdict"),
@@ -26,7 +26,7 @@ def verdict_is_defined(
 
 
 def places_are_combined(c: Claim, kernel: Any, model_step: Any, *, start: bool) -> None:
-    """A fold over places gives the place in what the step makes of open and of closed parts."""
+    """A fold over places gives the place in the combination, by the step, of open and of closed parts."""
     place = c.integer("place")
     c.premise(c.any_of(place == -1, place == 0, place == 1))
 

@@ -1,4 +1,4 @@
-"""What theorems on the certificate in hand are about: any event of it, and what is then so of what is in hand."""
+"""Arbitrary values for theorems on the certificate in hand: its events, and whether what is in hand is then clear."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ MOST = permit.MOST
 
 
 class HandEvent(NamedTuple):
-    """An event of a hand: `core.permit.hand.hand_step`. clear: of the one track or zone that is looked at, at the one
-    instant, if what is offered, or was asked about, is flown."""
+    """An event of a hand: `core.permit.hand.hand_step`. clear: the vehicle is clear of the track or zone considered,
+    at the instant considered, if what is offered, or was asked about, is flown."""
 
     kind: Any
     offer: Offer
@@ -23,22 +23,22 @@ class HandEvent(NamedTuple):
 
 
 def any_hand(c: Claim) -> Hand:
-    """Any hand, of numbers of any size: `hand_id`, `hand_knowledge`, `hand_expiry`, `hand_surprises`."""
+    """An arbitrary hand, with numbers of any size: `hand_id`, `hand_knowledge`, `hand_expiry`, `hand_surprises`."""
     return Hand(*[c.whole(f"hand_{name}") for name in ("id", "knowledge", "expiry", "surprises")])
 
 
 def any_hand_event(c: Claim, now: Any) -> HandEvent:
-    """Any event of a hand at an instant: `kind`, `offer_id` and so on, `permitted`, `offer_clear`."""
+    """An arbitrary event of a hand at an instant: `kind`, `offer_id` etc., `permitted`, `offer_clear`."""
     names = ("id", "base", "sigma", "knowledge", "expiry")
     offer = Offer(*[c.whole(f"offer_{name}") for name in names])
     return HandEvent(c.whole("kind"), offer, c.boolean("permitted"), now, c.boolean("offer_clear"))
 
 
 def each_hand_event(c: Claim, event: HandEvent, known_as: Any, at: Any) -> Any:
-    """What is given of each event: numbers that a machine counts, and that what is said to be permitted is.
+    """Condition on every event: numbers are within counting range, and permits are correct.
 
-    What is offered is clear, from its begin until its expiry, of all that it knows; what is said to be permitted
-    against news is, from now until the expiry that was asked for.
+    An offer is clear, from its start until its expiry, of all that it knows; a permit against a new track or zone
+    holds from now until the expiry that was asked for.
     """
     kind, offer, permitted, now, clear = event
     said = (*offer, now, kind)
@@ -52,10 +52,10 @@ def each_hand_event(c: Claim, event: HandEvent, known_as: Any, at: Any) -> Any:
 
 
 def in_hand_after(c: Claim, hand: Hand, was: Any, event: HandEvent, asked: tuple[Any, ...]) -> Any:
-    """Whether, flying what is in hand after an event, the vehicle is clear at the instant.
+    """Whether the vehicle, flying what is in hand after an event, is clear at the instant.
 
-    was: whether it is, flying what is in hand before; asked: the reserve [ms], as what the one track or zone is known,
-    and the instant. What begins later is until then what it begins on.
+    was: the same before the event; asked: the reserve [ms], the number of the knowledge change by which the track or
+    zone became known, and the instant. Until a later offer begins, the trajectory that it begins on is flown.
     """
     reserve, known_as, at = asked
     kind, offer, permitted, now, clear = event

@@ -1,4 +1,4 @@
-"""Whatever may happen to a vehicle, as theorems on it as a whole take it, and what it is after that."""
+"""Arbitrary events for theorems on a vehicle as a whole, and its state after one."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from cratous.proofs.methods.vehicles import Vehicle, counts, numbers_of, within_
 from cratous.spec.system import clear as system
 
 HEARTBEAT, COMMAND = 0, 1
-"""What happens; anything else is an event of the hand."""
+"""Kinds of events; any other number is an event of the hand."""
 
 
 class Happening(NamedTuple):
-    """kind: a heartbeat of its ICAROUS, a command that reaches its gate, of a sender in an epoch, or an event of the
+    """kind: a heartbeat of its ICAROUS, a command of a sender in an epoch that reaches its gate, or an event of the
     hand; now: [ms]."""
 
     kind: Any
@@ -43,7 +43,8 @@ class Happening(NamedTuple):
 
 
 class Asked(NamedTuple):
-    """reserve: of the hand [ms]; known_as: as which change of knowledge the one obstacle came; at: the instant [ms]."""
+    """reserve: of the hand [ms]; known_as: number of the knowledge change by which the obstacle became known; at: the
+    instant considered [ms]."""
 
     reserve: Any
     known_as: Any
@@ -51,14 +52,14 @@ class Asked(NamedTuple):
 
 
 def any_happening(c: Claim) -> Happening:
-    """Any of them."""
+    """An arbitrary event."""
     now = c.whole("now")
     said = (c.whole("happens"), now, c.whole("sender"), c.whole("command_epoch"))
     return Happening(*said, any_beat(c), any_surroundings(c), any_hand_event(c, now))
 
 
 def each_happening(c: Claim, one: Happening, asked: Asked) -> Any:
-    """What is given of each: numbers that a machine counts, and that what is predicted and permitted is so."""
+    """Condition on every event: numbers are within counting range, and predictions and permits are correct."""
     return c.all_of(
         *[c.all_of(n >= -MOST, n <= MOST) for n in (one.sender, one.epoch)],
         each_beat(c, one.beat, one.around, one.now, asked.at),
@@ -67,7 +68,8 @@ def each_happening(c: Claim, one: Happening, asked: Asked) -> Any:
 
 
 def after_happening(c: Claim, one: Vehicle, what: Happening, asked: Asked) -> Vehicle:
-    """The vehicle after it, by the kernels that fly. Of one that has changed too often to be counted nothing is said."""
+    """The vehicle after an event, by the kernels that fly. Once a number is out of counting range nothing more is
+    claimed."""
     counted = c.all_of(one.sure.counted, *[counts(c, n) for n in numbers_of(one)])
     gate, cycle, met, hand, sure = within_range(c, one)
     now, event = what.now, what.of_hand

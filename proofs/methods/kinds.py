@@ -1,4 +1,4 @@
-"""The volumes of well clear that theorems say the same of: with tau_mod, tcpa and tep."""
+"""The well-clear volumes about which theorems are stated alike: with tau_mod, tcpa and tep."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from cratous.spec import well_clear
 
 
 class Parts(NamedTuple):
-    """Kernels: whether it is violated now and during a window, the span in it, its first and last time."""
+    """Kernels: violation now and during a window, the span of violation in it, its first and last time."""
 
     now: Any
     during: Any
@@ -18,7 +18,7 @@ class Parts(NamedTuple):
 
 
 class Meant(NamedTuple):
-    """Definitions: in the plane now, in the plane at an instant, in space at an instant."""
+    """Definitions: violation in the plane now, in the plane at an instant, in space at an instant."""
 
     flat: Any
     flat_at: Any
@@ -26,7 +26,7 @@ class Meant(NamedTuple):
 
 
 class Volume(NamedTuple):
-    """A volume: what theorems call it, its kernels in the plane and in space, its definitions."""
+    """A volume: its name in theorems, its kernels in the plane and in space, its definitions."""
 
     name: str
     flat: Parts

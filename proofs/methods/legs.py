@@ -1,4 +1,4 @@
-"""Theorems on a leg's kernel, stated alike for keep-in and keep-out: what is accepted obeys at each point."""
+"""Theorems on the kernel that checks a leg, for keep-in and keep-out: an accepted leg obeys at each of its points."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from cratous.spec import geofence
 
 
 class Leg(NamedTuple):
-    """A leg p-q, a point m of it at the share t, altitudes (least, at m, greatest), a layer's two ends."""
+    """A leg p-q, a point m of it at the fraction t, altitudes (least, at m, greatest), and a layer's two limits."""
 
     p: Vec2
     q: Vec2
@@ -31,7 +31,7 @@ class Leg(NamedTuple):
 
 
 def any_leg(c: Claim) -> Leg:
-    """Any leg from `p`, `p_alt` to `q`, `q_alt`, any share `t` of it, any layer `floor` to `ceiling`."""
+    """An arbitrary leg from `p`, `p_alt` to `q`, `q_alt`, fraction `t` of it, and layer `floor` to `ceiling`."""
     p, q = c.vector("p"), c.vector("q")
     p_alt, q_alt, floor, ceiling, t = c.reals("p_alt q_alt floor ceiling t")
     c.premise(t >= 0)
@@ -45,7 +45,7 @@ def any_leg(c: Claim) -> Leg:
 
 
 def leg_is_clear(c: Claim, accepts: Any, obeys: Any) -> None:
-    """A leg that the kernel `accepts` has a place that `obeys` at each of its points."""
+    """If the kernel `accepts` a leg, the place at each of its points `obeys`."""
     p, q, m, t, (low, alt, high), (floor, ceiling) = any_leg(c)
     c.opaque(*PARTS)
 
@@ -78,7 +78,7 @@ def leg_is_clear(c: Claim, accepts: Any, obeys: Any) -> None:
 
 
 def leg_keeps_its_buffer(c: Claim, accepts: Any, changed: Any, obeys: Any) -> None:
-    """The same with a buffer; changed: the place in the zone that is narrowed or widened by it."""
+    """The same with a buffer; changed: the place in the zone narrowed or widened by it."""
     p, q, m, t, (low, alt, high), (floor, ceiling) = any_leg(c)
     d = c.real("d")
     c.opaque(*PARTS, edge_against, leg_within)

@@ -1,4 +1,4 @@
-"""Theorems on whether a t^2 + b t + c reaches zero or less, for parabolas of any sign or open upwards alone."""
+"""Theorems on whether a t^2 + b t + c reaches zero or less, for parabolas in general or only those open upwards."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from cratous.spec import well_clear
 
 
 def dip_has_a_witness(c: Claim, a: Any) -> None:
-    """What dips to zero on [0, h] does so at 0, at h, or at the vertex, which its equation names.
+    """A parabola that reaches zero on [0, h] does so at 0, at h, or at the vertex, which is given by its equation.
 
-    a: the coefficient `a`, with what is known of it; without a vertex (a <= 0) any value does as one.
+    a: the coefficient `a`, with its premises; without a vertex (a <= 0) its value is arbitrary.
     """
     b, k, h, vertex = c.reals("b c h vertex")
     c.premise(h >= 0)

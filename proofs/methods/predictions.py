@@ -1,4 +1,4 @@
-"""What theorems on the standard's prediction over [0, h] are about: the kernel, and the vertical window."""
+"""Arbitrary values for theorems on the standard's prediction over [0, h], with the kernel and the vertical window."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cratous.spec import well_clear
 
 
 class Prediction(NamedTuple):
-    """A state, thresholds and a time h; what the kernel predicts for [0, h]; the vertical window in it."""
+    """A state, thresholds and a time h; the kernel's prediction for [0, h]; the vertical window in it."""
 
     state: tuple[Any, Any, Any, Any]
     limits: StandardThresholds
@@ -22,7 +22,7 @@ class Prediction(NamedTuple):
 
 
 def any_prediction(c: Claim) -> Prediction:
-    """Any state, any thresholds of the standard, none below 0, and any `h`; both parts known by lemmas."""
+    """An arbitrary state, thresholds of the standard, not negative, and `h`; both parts are known through lemmas."""
     state, sizes = any_by_tcoa(c)
     h = c.real("h")
     c.opaque(

@@ -1,4 +1,4 @@
-"""What theorems on a rounded product are about."""
+"""Arbitrary values for theorems on a rounded product."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from cratous.proofs.claim import Claim
 
 
 def any_rounding(c: Claim) -> tuple[Any, Any, Any, Any]:
-    """Any `value`, any `p` of the sizes, and any `unit` and `tiny` of rounding and underflow, both above 0."""
+    """An arbitrary `value`, a product `p` of the sizes, and `unit` and `tiny` of rounding and underflow, both
+    positive."""
     value, p, unit, tiny = c.reals("value p unit tiny")
     c.premise(unit > 0)
     c.premise(tiny > 0)

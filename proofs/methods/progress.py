@@ -1,4 +1,4 @@
-"""One heartbeat of the executive with one vehicle on its chain, of the kernels that decide it."""
+"""One heartbeat of the executive with one vehicle on its task chain, composed of the kernels that decide it."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from cratous.spec.system import ending
 
 
 class Heartbeat(NamedTuple):
-    """act: of the UxAS end, on what it has heard of ICAROUS; passed: the end of the present track was; opens: the next
-    task may begin; dt_ms: since the one before."""
+    """act: of the UxAS end, on what it has heard of ICAROUS; passed: the end of the present track was passed; opens:
+    the next task may begin; dt_ms: time since the previous heartbeat [ms]."""
 
     act: Any
     passed: Any
@@ -22,7 +22,7 @@ class Heartbeat(NamedTuple):
 
 
 def any_flown(c: Claim) -> ending.Flown:
-    """Any vehicle on its chain, with `items` left."""
+    """An arbitrary vehicle on its chain, with `items` left."""
     items, phase = c.integer("items"), c.integer("phase")
     c.premise(c.all_of(phase >= executive.TRANSIT, phase <= executive.DONE))
     c.premise(c.all_of(items >= 0, c.same(phase == executive.DONE, items == 0)))
@@ -32,7 +32,7 @@ def any_flown(c: Claim) -> ending.Flown:
 
 
 def any_heartbeat(c: Claim) -> Heartbeat:
-    """Any heartbeat, some time after the one before."""
+    """An arbitrary heartbeat, at least 1 ms after the previous one."""
     dt = c.integer("dt")
     c.premise(dt >= 1)
     return Heartbeat(c.integer("act"), c.boolean("passed"), c.boolean("opens"), dt)
@@ -41,8 +41,8 @@ def any_heartbeat(c: Claim) -> Heartbeat:
 def after_heartbeat(
     c: Claim, one: ending.Flown, beat: Heartbeat, most: Any, longest: Any
 ) -> ending.Flown:
-    """The vehicle afterwards: what was heard of ICAROUS is counted, an end of the track is passed, and it is asked
-    whether the item is given up. Of another item nothing is counted yet."""
+    """The vehicle after a heartbeat: takeovers by ICAROUS are counted, a passed end of the track is processed, and
+    the item may be given up. Counts start anew with the next item."""
     suspended = c.use(suspended_after, one.suspended, beat.act)
     taken = c.all_of(suspended, c.negation(one.suspended))
     takeovers = c.when(taken, one.takeovers + 1, one.takeovers)

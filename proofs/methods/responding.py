@@ -1,4 +1,4 @@
-"""What theorems on answers to conflicts are about: any response so far, and whatever is told next."""
+"""Arbitrary values for theorems on responses to conflicts: a response so far, and the next input."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from cratous.spec.contracts import responses
 
 
 class Told(NamedTuple):
-    """What a step of a response is told, in the kernel's order."""
+    """The inputs of a step of a response, in the kernel's order."""
 
     conflict: Any
     ours: Any
@@ -22,7 +22,7 @@ class Told(NamedTuple):
 
 
 def any_response(c: Claim) -> tuple[Response, Told]:
-    """Any response that is consistent, and what the next step is told, which may be anything."""
+    """An arbitrary consistent response, and arbitrary inputs of the next step."""
     before = Response(c.integer("state"), c.boolean("off"))
     c.premise(c.define(responses.consistent, before.state, before.off))
     return before, Told(*[c.boolean(name) for name in Told._fields])

@@ -1,4 +1,4 @@
-"""A line of requests whose service may fail at a step or be started anew, with an eye on one request."""
+"""A queue of requests whose service may fail in a step or be restarted, with one request tracked."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from cratous.proofs.methods.vehicles import counts
 from cratous.spec.contracts import requests
 
 MANY = 2**60
-"""So many requests a line takes."""
+"""The most requests that a queue takes."""
 ANEW = 0
-"""The event in which the service is started anew; the others are those of `line_step`."""
+"""The event of a restart of the service; the others are those of `line_step`."""
 
 
 class Served(NamedTuple):
-    """counted: no number has grown too large to be counted on; line: as the service has it, and as it is kept beside
-    it; stage: of the one request, as whoever sent it sees it; answers: so many it has got."""
+    """counted: no number is out of counting range; line: the queue in the service; kept: as stored beside it; stage:
+    of the tracked request, as its sender sees it; answers: the number of answers it has received."""
 
     counted: Any
     line: Line
@@ -27,7 +27,7 @@ class Served(NamedTuple):
 
 
 class Event(NamedTuple):
-    """kind, ticket, now_ms, limit_ms: as of `line_step`; fails: the service breaks off before its step is done."""
+    """kind, ticket, now_ms, limit_ms: as in `line_step`; fails: the service fails before its step is complete."""
 
     kind: Any
     ticket: Any
@@ -37,7 +37,7 @@ class Event(NamedTuple):
 
 
 def any_served(c: Claim) -> Served:
-    """Any, its numbers of any size."""
+    """An arbitrary state, with numbers of any size."""
 
     def line(name: str) -> Line:
         taken, answered = c.whole(f"{name}_taken"), c.whole(f"{name}_answered")
@@ -49,7 +49,7 @@ def any_served(c: Claim) -> Served:
 
 
 def any_event(c: Claim) -> Event:
-    """Anything that may happen; a service that is started anew may have another limit."""
+    """An arbitrary event; a restarted service may have another limit."""
     kind, ticket, now_ms, limit_ms = (
         c.whole(name) for name in ("kind", "of_ticket", "now_ms", "limit_ms")
     )
@@ -57,19 +57,20 @@ def any_event(c: Claim) -> Event:
 
 
 def each_event(c: Claim, one: Event) -> Any:
-    """What is given of each: numbers that a machine counts."""
+    """Condition on every event: numbers are within counting range."""
     return c.all_of(*[counts(c, number) for number in one[:4]])
 
 
 def stage_by(c: Claim, line: Line, ticket: Any) -> Any:
-    """Where the counters of a line say that its request is."""
+    """The stage of a request according to the counters of a queue."""
     turn = c.when(c.all_of(line.busy, ticket == line.answered), requests.PUBLISHED, requests.TAKEN)
     begun = c.when(ticket < line.answered, requests.ANSWERED, turn)
     return c.when(ticket >= line.taken, requests.NEW, begun)
 
 
 def after_event(c: Claim, one: Served, event: Event, ticket: Any) -> Served:
-    """Afterwards. What fails is not done and nothing of it is sent; whoever is started anew goes on with what is kept."""
+    """The state after an event. A failed step has no effect and sends nothing; a restarted service continues from the
+    stored queue."""
 
     def small(number: Any) -> Any:
         return c.when(counts(c, number), number, 0)

@@ -1,18 +1,18 @@
-"""The float filter's proof, generated from the same graphs that its code is generated from.
+"""The float filter's proof, generated from the same graphs from which its code is generated.
 
 What is proved, in four links, of which the first and the third are obligations made here:
 
 1. `bounds`: for each rule and each pair of bounds that occurs in the filter of any kernel, the
    bound that `core.readings.exact.float_filter` computed (its count of roundings) covers what the theorems
-   `rounding_of_*` say of one operation: linear obligations in the sizes, with the very numbers.
+   `rounding_of_*` say of one operation: linear obligations in the sizes, with the same numbers.
 2. `rounding_of_a_sum|product|choice_is_bounded`, `rounding_verdict_is_certain`: one operation and
    one comparison, for all real numbers, from the model in `spec.rounding`.
 3. `verdicts`: the kernel's graph equals the lifted kernel; and if every comparison that the filter
    calls certain is right, then so is the verdict that it calls certain.
-4. Not an obligation: that the bounds of 1 follow each other along the graph (the filter hands
-   each node's bound to its users, which is checked here to be literally so), that a result which
+4. Not an obligation: that the bounds of 1 are chained correctly along the graph (the filter passes
+   each node's bound to its users, which is checked here), that a result which
    overflows makes its size infinite or NaN, that the printed code is the graph, and that numba
-   and the machine keep to the model. Tests cover these: exact rationals against the filter.
+   and the machine conform to the model. Tests cover these: exact rationals against the filter.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def _number(value: Fraction) -> Any:
 
 
 def _state(c: Claim, text: str, premises: Iterable[Any], goal: Any) -> None:
-    """One obligation that stands alone."""
+    """Add one self-contained obligation."""
     c.obligations.append(Obligation("goal", text, tuple(p.term for p in premises), goal.term))
 
 
@@ -167,7 +167,7 @@ def _literal(node: Node) -> z3.ExprRef:
 
 
 def evaluate(nodes: Iterable[Node], known: dict[int, z3.ExprRef]) -> dict[int, z3.ExprRef]:
-    """The z3 terms of a graph's nodes over real numbers; `known` are columns and what is given."""
+    """The z3 terms of a graph's nodes over real numbers; `known` holds terms of columns and given nodes."""
     made = dict(known)
     for node in nodes:
         if node.number in made:
@@ -178,7 +178,7 @@ def evaluate(nodes: Iterable[Node], known: dict[int, z3.ExprRef]) -> dict[int, z
         if node.op == "in":
             raise ValueError(f"no value for the column {node.value}")
         if any(arg.number not in made for arg in node.args):
-            continue  # it hangs on something that is not looked into
+            continue  # depends on a node that is not looked into
         made[node.number] = _operation(node.op, [made[arg.number] for arg in node.args])
     return made
 
@@ -258,7 +258,7 @@ ARBITRARY = {
 
 
 def graph_is_kernel(c: Claim, name: str, kernel: Any) -> None:
-    """Obligation: the graph computes what the lifted kernel computes, whatever + - * are.
+    """Obligation: the graph computes what the lifted kernel computes, for any meaning of + - *.
 
     So it carries out the same operations on the same operands, on doubles as on real numbers.
     """
@@ -285,8 +285,8 @@ def _constant(value: Any, kind: str) -> z3.ExprRef:
 def verdicts(c: Claim, name: str, made: Filter) -> None:
     """Obligations: certain verdicts are right if the certain comparisons are.
 
-    A comparison stands here for the sign of an arbitrary real number (the difference of its
-    sides), its float value for an arbitrary number within the bound of that.
+    A comparison is represented by the sign of an arbitrary real number (the difference of its sides), its float value
+    by an arbitrary number within the bound of it.
     """
     source = made.program
     given: list[Any] = []
@@ -317,7 +317,7 @@ def verdicts(c: Claim, name: str, made: Filter) -> None:
             value, _, bound = tested[test]
             theirs[test] = c.use(surely_above, value, bound).term
             theirs[found.below.number] = c.use(surely_below, value, bound).term
-        # one test may stand for several comparisons: x <= y, and x - y <= 0
+        # one test may represent several comparisons: x <= y, and x - y <= 0
         if (a, b, test) not in near:
             near.add((a, b, test))
             value, size, bound = tested[test]
@@ -328,7 +328,7 @@ def verdicts(c: Claim, name: str, made: Filter) -> None:
         roots += [result.yes, result.no] if isinstance(result, Certain) else [result]
     nodes = sorted(made.terms.made.values(), key=lambda node: node.number)
     for node in nodes:
-        # the only comparison of sums of sizes is the test for overflow
+        # sums of sizes are compared only to test for overflow
         if node.op == "le" and node.number not in theirs and node.args[0].kind == "float":
             theirs[node.number] = finite
     decided = [n for n in source.nodes if n.kind != "float"]

@@ -1,8 +1,8 @@
 """Induction over several folds that run over the same items at once, with any goal on their results.
 
-`Claim.fold` shows that two results are equal. Here an invariant of the accumulators of several folds, of
-kernels and of definitions, is carried along the items, and what follows from it need not be an equation. Base:
-no item yet. Step: any further item that satisfies what `Items.each` states of it. Use: the goal on the results.
+`Claim.fold` shows that two results are equal. Here an invariant of the accumulators of several folds, of kernels and
+of definitions, is carried along the items, and the goal need not be an equation. Base: no item yet. Step: any further
+item that satisfies `Items.each`. Use: the goal on the results.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Run = tuple[Fold[Any], Any, tuple[Any, ...]]
 
 
 class Beside(NamedTuple):
-    """What becomes of a state that no fold keeps: of steps of several kernels together, or of what is so out there.
+    """A state that no fold keeps: the result of steps of several kernels together, or the true situation.
 
     start: before the first item; state: an arbitrary one; step(accumulators): the state after one more item, from all
     accumulators before it.
@@ -35,8 +35,8 @@ class Beside(NamedTuple):
 
 
 class Items(NamedTuple):
-    """The arbitrary values of one item; each: what every item satisfies; more: values that no fold is given, but what
-    is beside them is."""
+    """The arbitrary values of one item; each: condition on every item; more: values that are passed to no fold, only
+    to the steps of `Beside`."""
 
     values: tuple[Any, ...]
     each: Any = True
@@ -44,10 +44,9 @@ class Items(NamedTuple):
 
 
 class Others(TypedDict, total=False):
-    """What goes along the items beside the kernels' folds.
+    """What runs along the items beside the kernels' folds.
 
-    models: folds of definitions, whose accumulators come after the kernels'; beside: states that come after
-    these.
+    models: folds of definitions, whose accumulators come after the kernels'; beside: states that come after these.
     """
 
     models: Sequence[Run]
@@ -67,9 +66,9 @@ def along_items(
 ) -> None:
     """Show `goal(results)` of folds over the same items, of any number.
 
-    invariant(accumulators): what holds after any number of items; known(accumulators): uses lemmas on one
-    more item, from the accumulators before it, and states no premises; others: what goes along beside the
-    kernels' folds (see `Others`).
+    invariant(accumulators): holds after any number of items; known(accumulators): uses lemmas on one more item, from
+    the accumulators before it, and states no premises; others: what runs along beside the kernels' folds (see
+    `Others`).
     """
     if c.prefix:
         return  # used as a lemma, an induction has no goals to offer, as with `Claim.fold`
@@ -89,7 +88,7 @@ def along_items(
     readers = [c.use] * len(runs) + [c.define] * len(models)
     arbitrary(c, tuple(accumulators), (values, tuple(contexts), each, *more))
     own = spread(names_in((values, *more)), c)
-    # base and use hold of no item at all, so nothing may be given about one
+    # base and use must hold without any item, so no premise on one may be used
     if shared := sorted(own & names_in(tuple(contexts))):
         raise ValueError(f"the context depends on the item's {shared[0]}: it is the same for each")
     if shared := sorted(own & set().union(*map(free_names, c.premises))):
@@ -107,7 +106,7 @@ def along_items(
                 f"the invariant depends on the item's {shared[0]}: it holds after each"
             )
     c._owe("base", f"{text}: no items", base)
-    # the folds are run only where the invariant holds, so what they owe is owed there
+    # the folds are run only where the invariant holds, so their side conditions are owed there
     of_any = list(c.premises)
     if each is not True:
         c.premise(each)

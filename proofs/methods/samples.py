@@ -1,4 +1,4 @@
-"""Theorems on any sample of a trace: the sample, what is asked for, and that it is judged as is meant."""
+"""For theorems on traces: an arbitrary sample, the query, and that a fold judges the sample as defined."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from cratous.proofs.claim import Claim
 from cratous.spec.requirements.operators import Meant
 
 START = -(2**62)
-"""Before every sample."""
+"""A time before every sample."""
 
 Three = tuple[Any, Any, Any]
 
 
 def any_sample(c: Claim) -> tuple[Three, Three]:
-    """Any sample `time`, `phi`, `psi`, its verdicts 0 to 2; and any `at`, `low`, `high` in order from 0."""
+    """An arbitrary sample `time`, `phi`, `psi` with verdicts 0 to 2; arbitrary `at`, and `low` <= `high` from 0."""
     time, phi, psi = c.integer("time"), c.integer("phi"), c.integer("psi")
     at, low, high = c.integer("at"), c.integer("low"), c.integer("high")
     for verdict in (phi, psi):
@@ -35,10 +35,10 @@ def judged_as_meant(
     relation: Callable[[Any, Any], Any],
     asked: tuple[Three, Three],
 ) -> None:
-    """Show that a fold over a trace judges its one sample as the definition does, step by step.
+    """Show by induction that a fold over a trace judges its samples as the definition does.
 
-    acc: any accumulator of the fold; step: of the definition; relation: of acc to the definition's
-    own state, after any number of samples; asked: the sample, and what is asked for.
+    acc: an arbitrary accumulator of the fold; step: of the definition; relation: between acc and the definition's own
+    state, after any number of samples; asked: the sample, and the query.
     """
     sample, context = asked
     c.fold(

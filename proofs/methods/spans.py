@@ -1,6 +1,6 @@
-"""Theorems on when a well-clear volume is violated, stated alike for tau_mod, tcpa and tep.
+"""Theorems on when a well-clear volume is violated, for tau_mod, tcpa and tep.
 
-Each function states one of them of any volume.
+Each function states one theorem for any of these volumes.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def horizontal_interval_lies_within(c: Claim, volume: Volume) -> None:
 
 
 def interval_ends_violate(c: Claim, volume: Volume) -> None:
-    """The first and the last instant of a span violate; an empty span is from 1 to 0."""
+    """The first and the last instant of a span violate the volume; an empty span is from 1 to 0."""
     s, v, sz, vz, limits = any_loss(c)
     dthr, zthr, tthr, tcoa, vmod = limits
     begin, end = c.reals("begin end")
@@ -93,7 +93,7 @@ def interval_is_exact(c: Claim, volume: Volume) -> None:
 
 
 def times_are_exact(c: Claim, volume: Volume) -> None:
-    """Where an instant of [B, T] violates, exactly those from the first to the last time do."""
+    """If an instant of [B, T] violates, the violating instants are those from the first to the last time."""
     s, v, sz, vz, limits = any_loss(c)
     begin, end, some, t = c.reals("begin end some t")
     for instant in (some, t):
@@ -111,7 +111,7 @@ def times_are_exact(c: Claim, volume: Volume) -> None:
 
 
 def times_are_the_interval(c: Claim, volume: Volume) -> None:
-    """Where a span is not empty, the first and last time are its ends."""
+    """Where a span is not empty, its ends are the first and last time."""
     s, v, sz, vz, limits = any_loss(c)
     dthr, zthr, tthr, tcoa, vmod = limits
     begin, end = c.reals("begin end")

@@ -1,4 +1,4 @@
-"""Encounters of one vehicle with one intruder, as claims take them."""
+"""Arbitrary encounters of one vehicle with one intruder."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from cratous.proofs.claim import Claim
 
 
 def any_encounter(c: Claim, name: str) -> Encounter:
-    """Any encounter; `name` comes before the names of its parts."""
+    """An arbitrary encounter; `name` is the prefix of the names of its parts."""
     return Encounter(
         c.integer(f"{name}takeovers"),
         c.integer(f"{name}surprises"),

@@ -1,15 +1,15 @@
 """Induction on a term of the process algebra: a task, or an operator over one or more operands.
 
-The rule. Let a kernel give every term a value and a definition give it a meaning: a task its own, an
-operator what comes of its operands, one after the other. If value and meaning of any task are related
-(task); if those of no operand yet are (none); if one operand more keeps that, for any operand whose
-own value and meaning are related (operand); and if value and meaning of the whole are related wherever
-those of its operands are (whole), then they are related for every term: by induction on the number of its
-nodes, and for each operator on the number of its operands. What else an operator has (its code, its
-timing, when its operands ran) may be anything, and another at each node.
+The rule. Let a kernel give every term a value and a definition give it a meaning: a task its own, an operator the
+result of combining its operands one after the other. If value and meaning of any task are related (task); if those of
+no operand yet are (none); if one more operand preserves that, for any operand whose own value and meaning are related
+(operand); and if value and meaning of the whole are related wherever those of its operands are (whole), then they are
+related for every term: by induction on the number of its nodes, and for each operator on the number of its operands.
+All else about an operator (its code, its timing, when its operands ran) is arbitrary, and may differ at each node.
 
-This needs that the relation is one and the same at every node, that what is known of operands is arbitrary
-but for the relation, that nothing about a task rests on premises about operators or the other way, and that the definition's side depends on meanings alone, never on a kernel's value.
+This needs that the relation is the same at every node, that the values of operands are arbitrary but for the
+relation, that nothing about a task uses premises about operators or the reverse, and that the definition's side
+depends on meanings alone, never on a kernel's value.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ def every_term(
 ) -> None:
     """Show that value and meaning of every term are related.
 
-    related(value, meaning): of a term; alike(value, meaning): of its operands so far; node: what a node
-    has beside its operands, arbitrary values, another at each node; sides: how values come about, each a
-    pair of the kernel's side and the definition's (see `Sides`).
+    related(value, meaning): of a term; alike(value, meaning): of its operands so far; node: the other parts of a
+    node, arbitrary values that differ at each node; sides: how values are computed, each a pair of the kernel's side
+    and the definition's (see `Sides`).
     """
     if c.prefix:
         return  # used as a lemma, an induction has no goals to offer, as with `Claim.fold`
@@ -69,7 +69,7 @@ def every_term(
         _apart(f"the value or meaning of {what}", values, of_operands)
     with _without(c, of_task):
         c._owe("base", f"{text}: no operand yet", statement(alike(*none)))
-        # the steps are run only where the relations hold, so what they owe is owed there
+        # the steps are run only where the relations hold, so their side conditions are owed there
         kept = len(c.facts)
         c._grant(z3.And(before, one))
         after, meant = add[0](so_far[0], operand[0]), add[1](so_far[1], operand[1])
@@ -86,10 +86,10 @@ def every_term(
 
 @contextmanager
 def _without(c: Claim, names: set[str]) -> Iterator[None]:
-    """What is owed in here is owed without the premises on these values: there may be none."""
+    """Obligations stated within are owed without the premises on these values: there may be none."""
     premises, facts = c.premises, c.facts
     c.premises = [p for p in premises if not free_names(p) & names]
-    # what was shown before may rest on the premises that are left out
+    # what was shown before may depend on the premises that are left out
     c.facts = [*c.roots, *c.congruences]
     kept = len(c.facts)
     try:

@@ -1,4 +1,4 @@
-"""Theorems on verdicts about time that speak of every instant: one of them decides."""
+"""Theorems on verdicts that speak of every instant, where one instant decides."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from cratous.proofs.claim import Claim
 def holds_at_every_instant(
     c: Claim, kernel: Any, meant: Any, asked: tuple[Any, ...], witness: Any, texts: tuple[str, str]
 ) -> None:
-    """Show that a kernel says yes exactly where the definition does at any instant `t`.
+    """Show that a kernel says yes exactly where the definition holds at every instant `t`.
 
-    witness: the instant at which the definition says no where the kernel does; texts: of both ways.
+    witness: an instant at which the definition says no if the kernel does; texts: of the two directions.
     """
     said = c.use(kernel, *asked)
     at_any = c.define(meant, c.integer("t"), *asked)

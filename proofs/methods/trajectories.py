@@ -1,5 +1,4 @@
-"""Theorems on trajectories of any number of pieces past one intruder, stated alike for all pieces and for those
-that are left."""
+"""Theorems on trajectories of any number of segments past one intruder, for all segments and for those remaining."""
 
 from __future__ import annotations
 
@@ -21,7 +20,7 @@ from cratous.spec.permit import motion
 
 
 class Asked(NamedTuple):
-    """What the kernel of a piece is asked."""
+    """The arguments of the kernel that checks a segment."""
 
     s: Vec2
     v: Vec2
@@ -33,18 +32,18 @@ class Asked(NamedTuple):
 
 
 def any_piece(c: Claim) -> Piece:
-    """Any piece of a trajectory: velocity `v` and `vz`, `duration`, and `rho` about the reference."""
+    """An arbitrary segment of a trajectory: velocity `v` and `vz`, `duration`, and `rho` about the reference."""
     return Piece(c.vector("v"), c.real("vz"), c.real("duration"), c.real("rho"))
 
 
 def as_item(c: Claim, piece: Piece) -> Items:
-    """The piece as any item of a trajectory: its duration and its rho are not below 0."""
+    """The segment as an arbitrary item of a trajectory: its duration and its rho are not negative."""
     return Items(tuple(piece), c.all_of(piece.duration_s >= 0, piece.rho_m >= 0))
 
 
 def asked(c: Claim, meeting: Meeting, piece: Piece, place: tuple[Any, ...], flown: Any) -> Asked:
-    """What the kernel is asked of a piece once `flown` seconds of it are over; place: how far the reference
-    has moved when the piece begins, north, east and up, and the time then."""
+    """The arguments of the kernel for a segment after `flown` seconds of it; place: how far the reference has moved
+    when the segment begins, north, east and up, and the time then."""
     north, east, up, begin = place
     v, vz, duration, rho = piece
     time = begin + flown
@@ -61,13 +60,13 @@ def asked(c: Claim, meeting: Meeting, piece: Piece, place: tuple[Any, ...], flow
 
 
 def later(c: Claim, tube: Tube, time: Any) -> Tube:
-    """The same tube, counted from that time on."""
+    """The same tube, with time counted from the given time on."""
     wide, high = (Growth(*c.define(motion.later, growth, time)) for growth in tube)
     return Tube(wide, high)
 
 
 def by_name(question: Asked) -> dict[str, Any]:
-    """A question under the names that theorems on pieces give its parts, for lemmas."""
+    """The arguments under the names that theorems on segments use, for lemmas."""
     state = {"s": question.s, "v": question.v, "sz": question.sz, "vz": question.vz}
     return {
         **state,
@@ -78,7 +77,7 @@ def by_name(question: Asked) -> dict[str, Any]:
 
 
 def only_grows(c: Claim, meeting: Meeting, time: Any) -> None:
-    """Steps: at a time that is not below 0 no radius or rate of the tube is below what it was."""
+    """Steps: at a time that is not negative no radius or rate of the tube is smaller than at the start."""
     for growth in (meeting.wide, meeting.high):
         faster = time * growth.gain_m_s2
         c.step(c.all_of(faster >= 0, time * growth.rate_m_s >= 0), "no growth below 0")
@@ -88,9 +87,9 @@ def only_grows(c: Claim, meeting: Meeting, time: Any) -> None:
 def is_not_hit(
     c: Claim, permitted: Fold[Any], at: Any, flown: Callable[[Any], Any], *context: Any
 ) -> None:
-    """A trajectory that is permitted does not enter the cylinder at the instant `at`, whatever places both
-    have. flown(begin): how much of a piece that begins then is over, so not asked about; context: what
-    else the fold is told."""
+    """A permitted trajectory does not enter the cylinder at the instant `at`, for any deviations of both aircraft.
+    flown(begin): the part [s] of a segment starting then that is over and so not checked; context: further
+    arguments of the fold."""
     meeting, offs, piece = any_meeting(c), any_offs(c), any_piece(c)
     c.opaque(piece_clear, motion.enters_at)
 

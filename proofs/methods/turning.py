@@ -1,4 +1,4 @@
-"""What theorems on turns are about: angles as their cosine and sine."""
+"""Arbitrary angles for theorems on turns, as cosine and sine."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from cratous.proofs.claim import Claim
 
 
 def any_angle(c: Claim, cosine: str, sine: str) -> tuple[Any, Any]:
-    """The cosine and sine of any angle, under these names."""
+    """The cosine and sine of an arbitrary angle, under these names."""
     cos, sin = c.reals(f"{cosine} {sine}")
     c.premise(cos * cos + sin * sin == 1)
     return cos, sin

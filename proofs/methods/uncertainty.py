@@ -1,4 +1,4 @@
-"""What theorems on states that are known within errors are about: discs that grow, layers, and their spans."""
+"""Arbitrary values for theorems on states known within errors: growing discs, layers, and their spans."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cratous.proofs.methods.encounters import any_state
 
 
 class Uncertain(NamedTuple):
-    """A state with its errors, thresholds and a window: what the kernels of uncertain states are asked."""
+    """A state with its errors, thresholds and a window: the arguments of the kernels for uncertain states."""
 
     s: Vec2
     v: Vec2
@@ -26,14 +26,14 @@ class Uncertain(NamedTuple):
 
 
 def any_uncertain(c: Claim) -> Uncertain:
-    """Any state, errors `es`, `ez`, `ev`, `ew`, thresholds, `begin` and `end`, whatever their signs."""
+    """An arbitrary state, errors `es`, `ez`, `ev`, `ew`, thresholds, `begin` and `end`, of any sign."""
     state, limits = any_state(c), Thresholds(*c.reals("dthr zthr tthr tcoa vmod"))
     es, ez, ev, ew, begin, end = c.reals("es ez ev ew begin end")
     return Uncertain(*state, Uncertainty(es, ez, ev, ew), limits, begin, end)
 
 
 def spans_of(c: Claim, asked: Uncertain) -> tuple[Any, Any, Any]:
-    """The spans that the whole is made of: the volume's own, the altitude's and the circle's."""
+    """The spans that the whole is composed of: the volume's own, the altitude's and the circle's."""
     s, v, sz, vz, (es, ez, ev, ew), limits, begin, end = asked
     dthr, zthr, tthr, tcoa, vmod = limits
     own = c.use(violation_interval_taumod, s, v, sz, vz, limits, begin, end)
@@ -43,7 +43,7 @@ def spans_of(c: Claim, asked: Uncertain) -> tuple[Any, Any, Any]:
 
 
 class Disc(NamedTuple):
-    """A position whose disc grows, and the quadratic that says when it is within a circle, rising at last."""
+    """A position with a growing disc, and the quadratic, eventually rising, that tells when it is within a circle."""
 
     s: Vec2
     v: Vec2
@@ -56,7 +56,7 @@ class Disc(NamedTuple):
 
 
 def any_growing_disc(c: Claim) -> Disc:
-    """Any `s`, `v`, errors `es`, `ev` and `dthr`, none below 0, where the speed is above its error."""
+    """Arbitrary `s`, `v`, errors `es`, `ev` and `dthr`, not negative, where the speed exceeds its error."""
     s, v = c.vector("s"), c.vector("v")
     es, ev, dthr = c.reals("es ev dthr")
     for least in (es, ev, dthr):
@@ -72,10 +72,10 @@ def any_growing_disc(c: Claim) -> Disc:
 def layer_lies_within(
     c: Claim, kernel: Any, names: str, inner: tuple[Any, str], inner_names: str
 ) -> None:
-    """The span of a layer over [0, T] lies within it or is empty, for what the kernel is made of is so.
+    """The span of a layer over [0, T] lies within it or is empty, since this is so for the kernel that it calls.
 
-    names: of the arguments of the kernel, the last four zthr, tcoa, vmod and end, none below 0; inner:
-    the kernel that it asks and the theorem that this one's spans lie within, inner_names: its arguments.
+    names: of the arguments of the kernel, the last four zthr, tcoa, vmod and end, not negative; inner: the kernel
+    that it calls and the theorem that this one's spans lie within the window, inner_names: its arguments.
     """
     arguments = c.reals(names)
     *_, zthr, tcoa, vmod, end = arguments

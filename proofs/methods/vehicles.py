@@ -1,4 +1,4 @@
-"""What theorems on one vehicle as a whole are about: its gate, its ICAROUS, what is in hand, and what is so out there."""
+"""Arbitrary values for theorems on one vehicle as a whole: gate, ICAROUS, certificate in hand, true situation."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cratous.spec.system import clear as system
 
 
 class Vehicle(NamedTuple):
-    """One vehicle, and of one intruder what it has met of it, and what is so: `spec.system.clear`."""
+    """One vehicle, its encounter with one intruder, and the true situation (`spec.system.clear`)."""
 
     gate: Gate
     cycle: Cycle
@@ -24,7 +24,7 @@ class Vehicle(NamedTuple):
 
 
 def numbers_of(one: Vehicle) -> tuple[Any, ...]:
-    """All numbers of a vehicle that are counted or are times."""
+    """All counters and times of a vehicle."""
     gate, cycle, met, hand, sure = one
     counted = (met.takeovers, met.surprises, met.ended, met.expiry_ms)
     times = (cycle.mode, cycle.relapses, cycle.handed_ms, cycle.free_ms)
@@ -32,7 +32,7 @@ def numbers_of(one: Vehicle) -> tuple[Any, ...]:
 
 
 def within_range(c: Claim, one: Vehicle) -> Vehicle:
-    """The vehicle with 0 for each number that is too large to be counted on from it."""
+    """The vehicle with 0 in place of each number that is out of counting range."""
     gate, cycle, met, hand, sure = one
 
     def small(number: Any) -> Any:
@@ -54,12 +54,12 @@ def within_range(c: Claim, one: Vehicle) -> Vehicle:
 
 
 def counts(c: Claim, number: Any) -> Any:
-    """A number is small enough to count on from it."""
+    """Whether a number is within counting range, so that counting on from it does not overflow."""
     return c.all_of(number >= -MOST, number <= MOST)
 
 
 def first_vehicle() -> Vehicle:
-    """At the start: UxAS commands, nothing has happened, nothing is in hand."""
+    """The initial state: UxAS commands, nothing has happened, nothing is in hand."""
     return Vehicle(
         Gate(0, 0, False),
         Cycle(0, 0, False, 0, False, 0),
@@ -70,7 +70,7 @@ def first_vehicle() -> Vehicle:
 
 
 def any_vehicle(c: Claim) -> Vehicle:
-    """Any vehicle, its numbers of any size."""
+    """An arbitrary vehicle, with numbers of any size."""
     gate = Gate(c.whole("owner"), c.whole("gate_epoch"), c.boolean("offered"))
     cycle = Cycle(
         c.whole("mode"), c.whole("relapses"), c.boolean("handed"), c.whole("handed_ms"),

@@ -1,6 +1,6 @@
-"""Theorems on well-clear volumes as sets, stated alike for tau_mod, tcpa and tep.
+"""Theorems on well-clear volumes as sets, for tau_mod, tcpa and tep.
 
-Each function states one of them of any volume.
+Each function states one theorem for any of these volumes.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def horizontal_is_its_definition(c: Claim, horizontal_now: Any, meant_horizontal
 def vertical_is_its_definition(
     c: Claim, threshold: str, vertical_now: Any, meant_vertically: Any
 ) -> None:
-    """The vertical kernel says violated exactly where its definition does; threshold: the one besides ZTHR."""
+    """The vertical kernel says violated exactly where its definition does; threshold: the one beside ZTHR."""
     sz, vz, zthr, other = c.reals(f"sz vz zthr {threshold}")
     c.premise(zthr >= 0)
     c.premise(other >= 0)
@@ -42,7 +42,7 @@ def vertical_is_its_definition(
 
 
 def decision_is_the_definition(c: Claim, decision: Any, meant_horizontally: Any) -> None:
-    """The decision on the invariants of a state is that of the definition on the state."""
+    """The decision from the invariants of a state equals that of the definition for the state."""
     s, v, dthr, tthr = any_in_the_plane(c)
     ss, vv = s.x * s.x + s.y * s.y, v.x * v.x + v.y * v.y
     sv, cross = s.x * v.x + s.y * v.y, s.x * v.y - s.y * v.x
@@ -51,7 +51,7 @@ def decision_is_the_definition(c: Claim, decision: Any, meant_horizontally: Any)
 
 
 def horizontal_scales(c: Claim, volume: Volume) -> None:
-    """Kernel and definition give the same where s, DTHR and TTHR are scaled by the same factor above 0."""
+    """Kernel and definition do not change if s, DTHR and TTHR are scaled by the same positive factor."""
     s, v, dthr, tthr = any_in_the_plane(c)
     k = c.real("k")
     c.premise(k > 0)
@@ -84,7 +84,7 @@ def horizontal_is_monotone(
 
 
 def volume_is_convex(c: Claim, volume: Volume) -> None:
-    """What violates at two instants of straight flight violates between them."""
+    """If two instants of straight flight violate the volume, so do those between them."""
     s, v, sz, vz, limits = any_loss(c)
     early, middle, late = any_instants(c, "early middle late")
     c.opaque(volume.space.interval, volume.meant.at)
@@ -115,7 +115,7 @@ def volume_is_monotone(c: Claim, volume: Volume) -> None:
 def both_parts_grow(
     c: Claim, flat: str, state: tuple[Any, Any, Any, Any], small: Thresholds, great: Thresholds
 ) -> None:
-    """Use that both parts of a volume grow with their thresholds; flat: the theorem on the horizontal one."""
+    """Use that both parts of a volume grow with their thresholds; flat: the theorem on the horizontal part."""
     s, v, sz, vz = state
     (dthr, zthr, tthr, tcoa, vmod), (dthr2, zthr2, tthr2, tcoa2, vmod2) = small, great
     c.lemma(flat, s=s, v=v, dthr=dthr, tthr=tthr, dthr2=dthr2, tthr2=tthr2)
@@ -126,7 +126,7 @@ def both_parts_grow(
 
 
 def volume_is_symmetric(c: Claim, volume: Volume) -> None:
-    """Seen from the intruder, the verdict now and the span are the same."""
+    """Seen from the intruder, the present verdict and the span are the same."""
     s, v, sz, vz, limits = any_loss(c)
     dthr, zthr, tthr, tcoa, vmod = limits
     begin, end = c.reals("begin end")

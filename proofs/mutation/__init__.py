@@ -1,1 +1,1 @@
-"""Mutation of kernels, definitions and premises: does a theorem notice?"""
+"""Mutation testing of kernels, definitions and premises: whether a theorem detects each small fault."""

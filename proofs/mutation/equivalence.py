@@ -20,7 +20,7 @@ EVERYWHERE = "equal everywhere"
 
 
 class Equality:
-    """Compares mutants of one function with it, where the theorems look into it."""
+    """Compares mutants of one function with the original, in the calls that theorems look into."""
 
     def __init__(self, original: Any, visits: Mapping[str, list[Visit]]) -> None:
         self.original, self.visits = original, visits
@@ -31,9 +31,9 @@ class Equality:
         return frozenset(k for args in calls for k, a in enumerate(args) if isinstance(a, SymMask))
 
     def equivalent(self, mutant: Any) -> tuple[str, str, tuple[Any, ...] | None]:
-        """Equal everywhere, or in all calls that the theorems make; else what is known, and where.
+        """Whether mutant and original are equal everywhere, or in all calls that the theorems make.
 
-        Gives verdict, note, and an input on which the two differ if the solver found one.
+        Returns verdict, note, and an input on which the two differ if the solver found one.
         """
         if self.everywhere(mutant, FAR):
             return "equivalent", EVERYWHERE, None
@@ -46,7 +46,7 @@ class Equality:
                 given = [*claim.premises, *claim.facts, *visit.context, *visit.granted]
                 if leaves and _lies_in(domain, leaves, visit.args, given):
                     continue
-                # where one call is not decided, the others can only show a difference
+                # once a call is undecided, the remaining ones can only show a difference
                 answer, row = self._differs(mutant, visit.args, given, NEAR if undecided else SAME)
                 if answer == "sat":
                     return "survived", "differs for values that a theorem allows", row
@@ -57,7 +57,7 @@ class Equality:
         return "undecided", "neither refuted nor proved equivalent within the budget", None
 
     def everywhere(self, mutant: Any, effort: int) -> bool:
-        """Is it proved with that effort that the two agree on all arguments?"""
+        """Whether it is proved, with this effort, that the two agree on all arguments."""
         hints = get_type_hints(self.original)
         masks = self.masks()
         symbols = tuple(
@@ -67,14 +67,13 @@ class Equality:
         try:
             return self._differs(mutant, symbols, [], effort)[0] == "unsat"
         except (LiftError, TypeError):
-            return False  # some arguments must be literals, as theorems give them
+            return False  # some arguments must be literals, as in the theorems
 
     def _domain(self, mutant: Any) -> tuple[list[z3.ExprRef], list[z3.BoolRef]]:
-        """Premises on the arguments alone under which the two agree, and the arguments' names.
+        """The arguments' names, and premises on the arguments alone under which the two agree.
 
-        They are those of a theorem about arbitrary arguments; a caller's arguments need only
-        satisfy them, which is far easier to decide than the equality itself. Empty if there are
-        none.
+        They are those of a theorem about arbitrary arguments; a caller's arguments need only satisfy them, which is
+        far easier to decide than the equality itself. Empty if there are none.
         """
         for name in self.visits:
             for visit in self.visits[name]:
@@ -91,7 +90,7 @@ class Equality:
     def _differs(
         self, mutant: Any, args: tuple[Any, ...], given: list[z3.BoolRef], rlimit: int
     ) -> tuple[str, tuple[Any, ...] | None]:
-        """`unsat` if the two agree on these arguments; with `sat`, values where they do not."""
+        """`unsat` if the two agree on these arguments; with `sat`, values for which they differ."""
         one = lift(self.original, *args)
         with in_place(self.original, mutant):
             other = lift(self.original, *args)
@@ -99,7 +98,7 @@ class Equality:
         wanted = [_raw(leaf) for leaf in flat(args)]
         answer, found = values([*facts, _unequal(one.value, other.value)], NEAR, wanted)
         if answer == "unknown":
-            # path by path the questions are more, and much easier
+            # path by path there are more questions, but much easier ones
             for condition, value in zip(one.branches, one.values, strict=True):
                 for condition_too, value_too in zip(other.branches, other.values, strict=True):
                     both = [*facts, condition, condition_too, _unequal(value, value_too)]
@@ -122,7 +121,7 @@ def _lies_in(
     args: tuple[Any, ...],
     given: list[z3.BoolRef],
 ) -> bool:
-    """Do these arguments satisfy the premises, where `given` holds?"""
+    """Whether these arguments satisfy the premises, given `given`."""
     pairs = list(zip(leaves, [known(leaf) for leaf in flat(args)], strict=True))
     if any(one.sort() != other.sort() for one, other in pairs):
         return False

@@ -1,8 +1,8 @@
 """Inputs on which a mutant is run beside its original: small grids, so that ties are frequent.
 
-A fault at a boundary shows only on it, and random doubles never lie on one; on a grid of a few
-small numbers every comparison meets equality often. The numbers are exact (integers and
-rationals), drawn in the same order in every run.
+A fault at a boundary shows only on the boundary, which random doubles practically do not hit; on a grid of a few
+small numbers comparisons meet equality often. The numbers are exact (integers and rationals), drawn in the same order
+in every run.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any, get_type_hints
 
 SAMPLES = 3000
 ENOUGH = 24
-"""So many inputs that tell the two apart are kept for the solver to start from."""
+"""The number of distinguishing inputs that are kept as starting points for the solver."""
 
 STILLBORN = (TypeError, NameError, AttributeError, RecursionError)
 
@@ -30,7 +30,7 @@ def inputs(
     rng = random.Random(f"{function.__module__}.{function.__name__}")
     made = []
     for number in range(count):
-        # 0 is a grid of three numbers, where points coincide and lines are parallel
+        # a reach of 0 gives a grid of three numbers, where points coincide and lines are parallel
         reach = (0, 1, 2, 3, 6)[number % 5]
         row = [_draw(k, rng, reach, at in masks, top=True) for at, k in enumerate(kinds)]
         made.append(tuple(row))
@@ -48,14 +48,14 @@ def _draw(kind: Any, rng: random.Random, reach: int, mask: bool, *, top: bool) -
         return Fraction(rng.randint(0, 2))
     if kind is float:
         value = Fraction(rng.randint(-2 * reach, 2 * reach), rng.choice((1, 1, 1, 2)))
-        # scalars of kernels are thresholds and times, mostly not below zero
+        # scalar arguments of kernels are thresholds and times, mostly not negative
         return abs(value) if top and rng.random() < 0.7 else value
     fields = get_type_hints(kind)
     return kind(*[_draw(fields[f], rng, reach, False, top=False) for f in fields])
 
 
 def shaped(kinds: list[Any], values: Iterator[Any]) -> tuple[Any, ...]:
-    """Arguments of these types from their scalars, in order."""
+    """Arguments of these types, built from their scalars in order."""
     row = []
     for kind in kinds:
         fields = [] if kind in (bool, int, float) else list(get_type_hints(kind).values())
@@ -72,7 +72,7 @@ class Difference:
 
 
 def run(function: Callable[..., Any], row: tuple[Any, ...]) -> Any:
-    """The result, or the name of the arithmetic error that stands in its place."""
+    """The function's result, or the name of the arithmetic error that it raised."""
     try:
         return function(*row)
     except (ZeroDivisionError, ValueError, OverflowError) as error:
@@ -82,7 +82,7 @@ def run(function: Callable[..., Any], row: tuple[Any, ...]) -> Any:
 def compare(
     mutant: Callable[..., Any], rows: list[tuple[Any, ...]], results: list[Any]
 ) -> Difference:
-    """Run the mutant on inputs whose results the original gave."""
+    """Run the mutant on these inputs and compare with the original's results."""
     found = []
     for row, wanted in zip(rows, results, strict=True):
         try:

@@ -1,8 +1,8 @@
-"""Judging mutants: one function or fold, or the premises of one theorem, at a time.
+"""Judges mutants: of one function or fold, or the premises of one theorem, at a time.
 
-A mutant is put in place of its original by `lift.REPLACED`, the theorems that look into the
-function are stated anew, and only the obligations that differ from the proved ones are decided.
-Inputs on which the two differ fix the question's variables first: such a question is small.
+A mutant replaces its original through `lift.REPLACED`, the theorems that look into the function are stated anew, and
+only the obligations that differ from the proved ones are decided. Inputs on which the two differ fix the question's
+variables first, which keeps the question small.
 """
 
 from __future__ import annotations
@@ -51,11 +51,11 @@ from cratous.proofs.mutation.terms import (
 )
 
 LOOKED_AT, MANY = 8, 100
-"""Theorems that are looked at for inputs they allow, and inputs after which that ends."""
+"""The number of theorems searched for inputs that they allow, and the number of inputs that ends the search."""
 
 
 class Target:
-    """A function or fold under mutation, with the theorems that may notice."""
+    """A function or fold under mutation, with the theorems that may detect its faults."""
 
     def __init__(self, key: str, original: Any, users: list[str], effort: Mapping[str, int]):
         self.key, self.original, self.effort = key, original, effort
@@ -74,7 +74,7 @@ class Target:
             self.results_there = [run_once(original, point.row) for point in self.points]
 
     def _points(self) -> list[Point]:
-        """Inputs that theorems allow: of those that are most likely to notice."""
+        """Inputs allowed by those theorems that are most likely to detect a fault."""
         found = []
         for name in self.users[:LOOKED_AT]:
             for visit in self.visits[name][:2]:
@@ -84,11 +84,11 @@ class Target:
         return found
 
     def learn(self, killers: Counter[str]) -> None:
-        """Theorems that killed most of the mutants so far come first from now on."""
+        """Move the theorems that killed most of the mutants so far to the front."""
         self.users = sorted(self.users, key=lambda name: (-killers[name], *self._promise(name)))
 
     def _promise(self, name: str) -> tuple[bool, bool, int, str]:
-        """Theorems that name the kernel first, those with free arguments, then the cheap ones."""
+        """Sort key: theorems that name the kernel first, then those with free arguments, then the cheap ones."""
         calls = [v.args for v in self.visits[name]]
         free = any(all(is_free(leaf) for leaf in flat(args)) for args in calls)
         named = qualified(self.original) in claim_of(name).kernels
@@ -106,23 +106,23 @@ class Target:
             return verdict("stillborn", note=seen.stillborn)
         try:
             there = compare(mutant.function, [p.row for p in self.points], self.results_there)
-            # an input that a theorem is known to allow spares the question whether one does
+            # an input that a theorem is known to allow makes that query unnecessary
             rows = list(there.inputs[:3]) or self.allowed(seen.inputs)
             if rows:
                 by = self.refuted(mutant.function, rows)
                 note = f"differs at {row_text(rows[0])}"
                 return verdict("killed", by) if by else verdict("survived", note=note)
-            # nothing tells the two apart: cheap questions first, whether nothing does or a theorem
+            # no input distinguishes the two: first cheap queries for equivalence and for a refutation
             if self.equality.everywhere(mutant.function, NEAR):
                 return verdict("equivalent", note=EVERYWHERE)
             by = self.refuted_at_a_glance(mutant.function)
             if by:
                 return verdict("killed", by)
-            # most that are left are equivalent where theorems apply
+            # most of the remaining mutants are equivalent where theorems apply
             what, note, row = self.equality.equivalent(mutant.function)
             if what == "equivalent":
                 return verdict(what, note=note)
-            # where the solver found an input that the grids have not, it starts from there
+            # an input found by the solver but not on the grids serves as a starting point
             by = self.refuted(mutant.function, [row] if row else [], glanced=True)
             if by:
                 return verdict("killed", by)
@@ -135,18 +135,18 @@ class Target:
             return verdict("stillborn", note=str(error))
 
     def refuted_at_a_glance(self, mutant: Any) -> str:
-        """The first theorem that little effort refutes with the mutant in place, or nothing."""
+        """The first theorem refuted with little effort with the mutant in place, or an empty string."""
         for name in self.users:
             if self._refutes(name, self._questions(name, mutant), [], NEAR, NEAR):
                 return name
         return ""
 
     def refuted(self, mutant: Any, rows: list[tuple[Any, ...]], glanced: bool = False) -> str:
-        """The first theorem that is refuted with the mutant in place, or nothing.
+        """The first theorem that is refuted with the mutant in place, or an empty string.
 
-        rows: inputs that tell mutant and original apart; a question about one of them is a small
-        one. Cheap questions to all theorems come before dear ones to any. glanced: those without
-        an input were asked before (`refuted_at_a_glance`).
+        rows: inputs that distinguish mutant and original; a question about one of them is small. Cheap questions to
+        all theorems come before expensive ones. glanced: questions without an input were asked before
+        (`refuted_at_a_glance`).
         """
         changed = []
         for name in self.users:
@@ -167,7 +167,7 @@ class Target:
         near: int,
         far: int,
     ) -> bool:
-        """near: the effort for a question about an input; far: for one about any, 0 for none."""
+        """Whether the theorem is refuted. near: effort with an input fixed; far: effort without one, 0 to skip."""
         starts = [[*p.values] for p in self.points if p.theorem == name and p.row in rows][:3]
         starts += [equal(v.args, row) for row in rows for v in self.visits[name][:2]]
         return any(
@@ -177,7 +177,7 @@ class Target:
         )
 
     def _questions(self, name: str, mutant: Any) -> list[list[z3.BoolRef]]:
-        """What has to be decided anew: the obligations that are not those that were proved."""
+        """The negated obligations that differ from those proved, and so have to be decided anew."""
         if (name, mutant) not in self.asked:
             self.asked[name, mutant] = self._stated_with(name, mutant)
         return self.asked[name, mutant]
@@ -194,13 +194,13 @@ class Target:
         return all(ask(question, most) == "unsat" for question in self._questions(name, mutant))
 
     def allowed(self, rows: tuple[tuple[Any, ...], ...]) -> list[tuple[Any, ...]]:
-        """Up to three of these inputs for which some theorem speaks about the function.
+        """Up to three of these inputs for which some theorem makes a statement about the function.
 
-        Most that are allowed are easily seen to be; a few get more effort where none is.
+        Most allowed inputs are recognised with little effort; if none is, a few get more.
         """
         visits = [(name, visit) for name in self.users for visit in self.visits[name][:4]]
         if self.points:
-            # none of the known points tells the two apart, so these hardly will: a glance is enough,
+            # no known point distinguishes the two, so these inputs hardly will: little effort is enough,
             # and the comparison that follows finds an input that does
             return self._allowed(rows[:6], visits, GLANCE)
         return self._allowed(rows, visits, GLANCE) or self._allowed(rows[:2], visits, NEAR)
@@ -213,7 +213,7 @@ class Target:
             for number, (name, visit) in enumerate(visits):
                 if self._allows(name, visit, row, effort):
                     found.append(row)
-                    # what allowed one input is likely to allow the next
+                    # a visit that allowed one input is likely to allow the next
                     visits.insert(0, visits.pop(number))
                     break
             if len(found) == 3:
@@ -221,16 +221,16 @@ class Target:
         return found
 
     def _allows(self, name: str, visit: Visit, row: tuple[Any, ...], effort: int) -> bool:
-        """Do the theorem's premises leave this input to the visit?"""
+        """Whether the theorem's premises admit this input at the visit."""
         conditions = [*claim_of(name).premises, *visit.context, *visit.granted]
-        # on a path of a caller, or in a theorem with other values, it may be a question
+        # on a caller's path, or with further values of the theorem, the solver may have to decide
         plain = with_values(conditions, visit.args, row)
         if plain is False or (plain and not visit.context and not visit.granted):
             return plain
         return ask([*equal(visit.args, row), *conditions], effort) == "sat"
 
     def judge_start(self, mutant: Mutant) -> Result:
-        """The verdict on another start of a fold."""
+        """The verdict on a fold with another start value."""
         by = self.refuted(mutant.function, [])
         verdict = "killed" if by else "survived"
         return Result(self.key, "fold", mutant.operator, self.place, mutant.diff, verdict, by)
@@ -265,10 +265,9 @@ def judge_target(
 ) -> list[Result]:
     """The verdicts on all mutants of one function, or on the starts of one fold.
 
-    key: the qualified name, as `targets` gives it; users: the theorems that may notice, which hold as
-    they stand; effort: the rlimit that each of them took. What `store` knows is not asked again,
-    and each verdict is stored when it is reached; each mutant is judged in a process forked from
-    the same state, so verdicts do not depend on which were known.
+    key: the qualified name, as `targets` gives it; users: the theorems that may detect a fault, all proved; effort:
+    the rlimit that each of them took. Verdicts in `store` are not recomputed, and each new verdict is stored at once;
+    each mutant is judged in a process forked from the same state, so verdicts do not depend on which were known.
     """
     gate.load_all(keys.home)
     theorems_from(keys.folder)

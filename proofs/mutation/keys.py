@@ -1,9 +1,9 @@
-"""What a mutation result depends on, as hashes; and the store of results by them.
+"""Hashes of everything that a mutation result depends on, and the store of results under them.
 
-A target's key covers the function and all that it calls, every theorem that could look into it
-(with its lemmas, definitions and kernels), the code that judges, and the solver. A mutant's adds
-its text. So a verdict is asked again exactly when something changed that could change it, and
-`proofs/mutation/mutation.json` can be held against the code without asking the solver.
+A target's key covers the function and all that it calls, every theorem that could look into it (with its lemmas,
+definitions and kernels), the code that judges, and the solver. A mutant's key adds its text. So a verdict is
+recomputed only when something it depends on has changed, and `proofs/mutation/mutation.json` can be compared with the
+code without asking the solver.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from cratous.core.ledger.package_home import PRODUCT, Home
 from cratous.proofs.engine.theorem_files import theorem_files
 
 GENERATED = "filter_*"
-"""Theorems that hold a kernel against what is generated from it. They never kill: every fault
-differs from what was generated before it was made, so they would hide each missing theorem."""
+"""Theorems that compare a kernel with code generated from it. They do not count as killing: every fault differs from
+what was generated before, so they would hide each missing theorem."""
 
 JUDGES = (
     "proofs.mutation.judgement.judge_target",
     "proofs.mutation.premises.judge_premises",
 )
-"""What reaches verdicts, with all that it rests on, the prover among it."""
+"""The functions that produce verdicts, and with them all they depend on, including the prover."""
 
 
 class Keys:
@@ -46,7 +46,7 @@ class Keys:
 
     @functools.cached_property
     def judging(self) -> str:
-        """The code that reaches verdicts, and the solver."""
+        """The key of the code that produces verdicts, and of the solver."""
         return digest([self._keys.deciding(JUDGES).digest, solver_version()])
 
     def target(self, key: str, target: Any) -> str:
@@ -62,13 +62,13 @@ class Keys:
         return digest(["mutant", target_key, text])
 
     def premises(self, theorem: str) -> str:
-        """The key of what the premises of a theorem are worth."""
+        """The key of the verdicts on a theorem's premises."""
         return digest(["premises", self._keys.theorem(theorem), self.judging])
 
     def reach(self, theorem: str) -> frozenset[str]:
-        """Qualified names of all functions and folds that a theorem or a lemma of it could look into.
+        """Qualified names of all functions and folds that a theorem or one of its lemmas could look into.
 
-        Read off the names in it, so it is more rather than less than what the theorem really uses.
+        Taken from the names in it, so it may be more than what the theorem uses.
         """
         if theorem not in self._reach:
             self._reach[theorem] = self._keys.functions(theorem)
@@ -88,13 +88,13 @@ def find(key: str) -> Any:
 
 
 class Store:
-    """Verdicts by key, one small file each; what is damaged or another's counts as absent."""
+    """Verdicts by key, one small file each; a file that is damaged or belongs to another key counts as absent."""
 
     def __init__(self, folder: Path | None) -> None:
         self.folder = folder
 
     def get(self, key: str) -> dict[str, Any] | None:
-        """What was stored under the key."""
+        """The verdict stored under the key, or None."""
         if self.folder is None:
             return None
         try:
@@ -104,7 +104,7 @@ class Store:
             return None
 
     def put(self, key: str, found: dict[str, Any]) -> None:
-        """Store it, whole or not at all."""
+        """Store a verdict atomically."""
         if self.folder is None:
             return
         file = self.folder / key[:2] / key

@@ -1,21 +1,20 @@
-"""Mutation: does some theorem notice every small fault of a kernel, of a definition, of a fold?
+"""Mutation testing: whether some theorem detects every small fault of a kernel, a definition or a fold.
 
-Each mutant of `mutation_operators` is put in place of its original wherever the theorems meet it.
-First both run on inputs of small grids; inputs that tell them apart give the solver its start.
-Then the theorems about the function are stated anew, and only what differs from the proved
-statement is decided. The verdicts:
+Each mutant of `mutation.operators` replaces its original wherever the theorems use it. First both run on inputs of
+small grids; inputs that distinguish them are starting points for the solver. Then the theorems about the function are
+stated anew, and only what differs from the proved statement is decided. The verdicts:
 
 killed      a theorem is refuted with the mutant in place
-survived    the mutant behaves otherwise, and no theorem is refuted: one is missing
+survived    the mutant behaves differently, and no theorem is refuted: one is missing
 equivalent  the solver proves that mutant and original agree, everywhere or wherever the theorems
-            (of kernel and callers) apply; which of the two is said
+            (of kernel and callers) apply; which of the two is recorded
 undecided   neither refuted nor proved equivalent within the budget; not counted as killed
-stillborn   the mutant cannot be run or lifted; apart, and not counted
+stillborn   the mutant cannot be run or lifted; listed separately, and not counted
 
 The budget is solver effort (rlimit), the order is fixed, and each mutant is judged in a process
 forked from one state: the result does not depend on the machine, on the number of processes, or
-on what was known before. Every verdict is stored when it is reached (`proofs/mutation/keys.py`), so a run
-that was stopped goes on where it was, and a change is paid for by what it touches alone.
+on what was known before. Every verdict is stored as soon as it is found (`proofs/mutation/keys.py`), so
+an interrupted run continues where it stopped, and after a change only affected verdicts are recomputed.
 """
 
 from __future__ import annotations
@@ -50,14 +49,14 @@ __all__ = [
 
 
 def standard() -> Store:
-    """The verdicts that this user and machine know."""
+    """The store of verdicts of this user and machine."""
     return Store(private_cache() / "mutation")
 
 
 def chosen(
     names: Iterable[str] = ("*",), keys: Keys | None = None, about: Iterable[str] = ()
 ) -> dict[str, list[str]]:
-    """The targets whose name, or an end of it, matches a pattern, with the theorems that may kill.
+    """The targets whose name, or an end of it, matches a pattern, with the theorems that may kill their mutants.
 
     about: theorems; the kernels and folds that they are about are chosen too.
     """
@@ -67,10 +66,10 @@ def chosen(
 def _chosen(
     names: Iterable[str], keys: Keys, about: Iterable[str], skip: Container[str]
 ) -> tuple[dict[str, list[str]], list[str]]:
-    """What `chosen` gives, and every theorem that could meet a target by what it imports.
+    """The result of `chosen`, and every theorem that could use a target, judging by what it imports.
 
-    Some of these meet none, because they do not look into it. skip: targets and theorems; a theorem
-    of these that could meet nothing but these is not stated.
+    Some of these use none, because they do not look into it. skip: targets and theorems; a theorem in `skip` whose
+    targets are all in `skip` is not stated.
     """
     patterns, theorems = list(names), set(about)
 
@@ -86,7 +85,7 @@ def _chosen(
             wanted = {k for k in keys.reach(theorem) if named(k) or k in mine}
             return bool(wanted) if theorem not in skip else any(k not in skip for k in wanted)
 
-        # only what could look into one of them is stated
+        # only theorems that could look into a target are stated
         near = [n for n in keys.theorems if could_meet(n)]
         there = targets(near, keys.home)
         return {k: users for k, (_, users) in there.items() if named(k) or k in mine}, near
@@ -108,11 +107,11 @@ def run(
 ) -> MutationReport:
     """Mutate the functions whose name, or an end of it, matches one of the patterns `names`.
 
-    tell(target, results) is called as each target or theorem is done. jobs: processes. keys: of
-    the home and of the theorems that may kill, by default all of the product that are not generated;
-    ValueError if one of them does not hold as it stands. about: mutate what these theorems look into as well. store: verdicts that are
-    known; by default those of this user and machine. skip: targets, and theorems whose premises,
-    that are not to be judged.
+    tell(target, results) is called as each target or theorem is done. jobs: processes. keys: of the home and of the
+    theorems that may kill, by default all of the product that are not generated. about: mutate what these theorems
+    look into as well. store: known verdicts; by default those of this user and machine. skip: targets, and theorems
+    for their premises, that are not to be judged. Raises ValueError if one of the theorems is not proved as it
+    stands.
     """
     keys = keys or Keys()
     home = keys.home
@@ -148,7 +147,7 @@ def _judge(
     try:
         return judge_target(key, users, effort, keys, store)
     except (ArithmeticError, TypeError) as error:
-        # a fault of a function that Python computes by itself ends it where the solver would owe it
+        # on plain numbers Python itself raises where the solver would get an obligation
         raise BadInput(
             f"its mutants cannot be judged: {error}",
             where=key,
@@ -158,14 +157,14 @@ def _judge(
 
 
 def part(name: str, results: list[Any]) -> MutationReport:
-    """What `tell` of `run` was told of one target, or of the premises of one theorem."""
+    """The results that `tell` of `run` received for one target, or for the premises of one theorem, as a report."""
     if "." in name:
         return MutationReport(tuple(results), ())
     return MutationReport((), tuple(results), (name,))
 
 
 def _effort(names: list[str], home: Home, jobs: int) -> dict[str, int]:
-    """What each theorem took to prove; all must hold as they stand."""
+    """The effort (rlimit) each theorem took to prove; raises ValueError if one is not proved as it stands."""
     kept = cache.standard()
     calls = [partial(prover.prove_file, n, folder=home.theorems, cache=kept) for n in names]
     proved = {names[number]: theorem for number, theorem in worker_processes.each(calls, jobs)}

@@ -1,10 +1,9 @@
 """Small faults in a function: each mutant differs from it in one place of its syntax tree.
 
-Operators: comparisons shifted and turned, arithmetic exchanged, signs, integer constants by one,
-truth values flipped, conjuncts and disjuncts dropped, `and`/`or` exchanged, conditions negated,
-branches (with their returns) dropped, variables and fields of one type exchanged, arguments of a
-call exchanged, min/max exchanged, abs dropped. The order is that of the source, so it is the same
-in every run; mutants with the same text are made once.
+Operators: comparisons relaxed or reversed, arithmetic operators exchanged, signs, integer constants by one, truth
+values flipped, conjuncts and disjuncts dropped, `and`/`or` exchanged, conditions negated, branches (with their
+returns) dropped, variables and fields of one type exchanged, arguments of a call exchanged, min/max exchanged, abs
+dropped. The order is that of the source, so it is the same in every run; mutants with the same text are made once.
 """
 
 from __future__ import annotations
@@ -42,12 +41,12 @@ ARITHMETIC: dict[type[ast.operator], tuple[type[ast.operator], ...]] = {
     ast.RShift: (ast.LShift,),
 }
 MOST_NAMES = 4
-"""So many other variables of the same type are tried in each place, nearest first."""
+"""The number of other variables of the same type that are tried in each place, nearest first."""
 
 
 @dataclass(frozen=True)
 class Mutant:
-    """One fault: what was done, the line of the file, the line before and after, the function.
+    """One fault: operator, line of the file, the line before and after, the mutated function.
 
     text: the whole function with the fault in it.
     """
@@ -60,7 +59,7 @@ class Mutant:
 
 
 def mutants(function: Callable[..., Any]) -> Iterator[Mutant]:
-    """Every mutant of a function, in the order of its source; each is made when it is asked for."""
+    """Every mutant of a function, in the order of its source, generated lazily."""
     source, first = inspect.getsourcelines(function)
     tree = ast.parse(textwrap.dedent("".join(source)))
     node = tree.body[0]
@@ -83,7 +82,7 @@ def mutants(function: Callable[..., Any]) -> Iterator[Mutant]:
 
 
 def _bare(node: ast.FunctionDef) -> None:
-    """Without decorators, annotations and docstring: what is left is what the function does."""
+    """Remove decorators, annotations and docstring, leaving what the function does."""
     node.decorator_list, node.returns = [], None
     for argument in node.args.args:
         argument.annotation = None
@@ -129,7 +128,7 @@ def _diff(before: str, after: str) -> str:
 
 
 class _Types:
-    """The types of names and expressions of a function, as far as they can be read off."""
+    """The types of names and expressions of a function, as far as they can be inferred."""
 
     def __init__(self, function: Callable[..., Any], node: ast.FunctionDef) -> None:
         self.scope = function.__globals__
@@ -149,7 +148,7 @@ class _Types:
                 self._learn(part, field, line)
 
     def of(self, node: ast.expr) -> Any:
-        """The type of an expression; None where it cannot be told."""
+        """The type of an expression; None where it cannot be inferred."""
         if isinstance(node, ast.Name):
             return self.names.get(node.id)
         if isinstance(node, ast.Constant):
@@ -254,7 +253,7 @@ def _not(node: Any) -> ast.expr:
 
 
 def _signs_count(node: ast.AST, within: ast.FunctionDef) -> bool:
-    """A sign inside a product is the product's sign, which is tried already."""
+    """Whether a change of sign is tried here: inside a product it would repeat that of the product."""
     for parent in ast.walk(within):
         if any(child is node for child in ast.iter_child_nodes(parent)):
             if isinstance(parent, ast.BinOp):

@@ -1,4 +1,4 @@
-"""What each premise of a theorem is worth: the theorem without it, and with a weaker one."""
+"""Whether each premise of a theorem is needed: the theorem without it, and with a weaker one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from cratous.proofs.mutation.terms import budget, premise_text
 
 
 def judge_premises(name: str, effort: int, keys: Keys, store: Store) -> list[PremiseResult]:
-    """What each premise of one theorem is worth; effort: the rlimit that the theorem took."""
+    """The results for each premise of one theorem; effort: the rlimit that the theorem took."""
     gate.load_all(keys.home)
     theorems_from(keys.folder)
     known = keys.premises(name)
@@ -58,7 +58,7 @@ def _judge(name: str, effort: int) -> list[PremiseResult]:
 
 
 def _weaker(premise: z3.BoolRef) -> z3.BoolRef | None:
-    """A premise that allows a little more: `>` becomes `>=`, `>=` allows one less."""
+    """A weaker premise: `>` becomes `>=`, `>=` allows one less; None for any other."""
     if z3.is_gt(premise):
         return premise.arg(0) >= premise.arg(1)
     if z3.is_lt(premise):

@@ -1,8 +1,8 @@
-"""The mutation results that stand beside the proofs, `proofs/mutation/mutation.json`, and their document.
+"""The recorded mutation results, `proofs/mutation/mutation.json`, and the document made from them.
 
-Each target's results are kept under the key of all that they depend on (`proofs/mutation/keys.py`). A
-result whose key is no longer that of the code is stale and listed as such; so is a kernel that
-was never mutated. A run on some targets replaces those and leaves the others alone.
+Each target's results are stored under the key of all that they depend on (`proofs/mutation/keys.py`). A result whose
+key differs from that of the present code is stale and listed as such; so is a kernel that was never mutated. A run on
+some targets replaces those and leaves the others unchanged.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ EMPTY: dict[str, Any] = {"targets": {}, "premises": {}}
 
 
 def read(path: Path = FILE) -> dict[str, Any]:
-    """What is recorded; empty where there is nothing."""
+    """The record; empty if there is none."""
     return dict(json.loads(path.read_text(encoding="utf-8"))) if path.is_file() else dict(EMPTY)
 
 
 def merged(data: dict[str, Any], report: MutationReport, keys: Keys) -> dict[str, Any]:
-    """The record with this report's targets and theorems in the place of what it said of them.
+    """The record with the entries of this report's targets and theorems replaced.
 
-    Functions and theorems that are no longer there are left out.
+    Functions and theorems that no longer exist are dropped.
     """
     there = {k: row for k, row in data["targets"].items() if find(k) is not None}
     for target in dict.fromkeys(r.target for r in report.results):
@@ -60,13 +60,13 @@ def merged(data: dict[str, Any], report: MutationReport, keys: Keys) -> dict[str
 
 
 def write(report: MutationReport, keys: Keys, path: Path = FILE) -> None:
-    """Put a report into the record."""
+    """Merge a report into the record."""
     text = json.dumps(merged(read(path), report, keys), indent=1, sort_keys=True) + "\n"
     write_atomically(path, text)
 
 
 def stale(data: dict[str, Any], keys: Keys) -> dict[str, str]:
-    """Targets whose results are not those of the code as it stands, with the reason."""
+    """Targets whose results do not belong to the present code, with the reason."""
     found = {}
     for target, row in data["targets"].items():
         function = find(target)
@@ -77,10 +77,10 @@ def stale(data: dict[str, Any], keys: Keys) -> dict[str, str]:
     for name, entry in gate.load_all().items():
         definition = f"cratous.spec.{entry.implements}"
         wanted = [name] if entry.kind != "driver" else []
-        # some definitions are kept in a file without a function of the name
+        # some definitions are in a file without a function of the name
         wanted += [definition] if entry.implements and find(definition) is not None else []
         for one in wanted:
-            # of what has nothing to change there is nothing to record
+            # a function without possible faults needs no record
             if one not in data["targets"] and _has_faults(find(one)):
                 found[one] = "it was never mutated"
     for one in _definitions(keys) - set(data["targets"]):
@@ -89,14 +89,14 @@ def stale(data: dict[str, Any], keys: Keys) -> dict[str, str]:
 
 
 def _definitions(keys: Keys) -> frozenset[str]:
-    """The functions of `spec` that these theorems could look into and in which there is something to change."""
+    """The functions of `spec` that these theorems could look into and that have possible faults."""
     names = {name for one in keys.theorems for name in keys.reach(one)}
     there = {name: find(name) for name in names if name.startswith("cratous.spec.")}
     return frozenset(n for n, f in there.items() if inspect.isfunction(f) and _has_faults(f))
 
 
 def stale_premises(data: dict[str, Any], keys: Keys) -> dict[str, str]:
-    """Theorems of whose premises the record does not say what they are worth, with the reason."""
+    """Theorems whose premises have no valid record, with the reason."""
     found = {}
     for theorem in keys.theorems:
         row = data["premises"].get(theorem)
@@ -108,9 +108,9 @@ def stale_premises(data: dict[str, Any], keys: Keys) -> dict[str, str]:
 
 
 def fresh(data: dict[str, Any], keys: Keys) -> set[str]:
-    """Targets, and theorems with their premises, of which the record holds for the code as it is.
+    """Targets, and theorems with their premises, whose record is valid for the present code.
 
-    Those in which there is nothing to change are among them.
+    Functions without possible faults are included.
     """
     old = {**stale(data, keys), **stale_premises(data, keys)}
     entries = [(n, e.function) for n, e in gate.load_all().items() if e.kind != "driver"]
@@ -130,9 +130,9 @@ def survivors(data: dict[str, Any], names: Container[str]) -> list[tuple[str, st
 
 
 def totals(data: dict[str, Any], keys: Keys) -> dict[str, int]:
-    """How many mutants have each verdict, how many functions they are of, and what is out of date.
+    """The number of mutants with each verdict, of functions, and of stale entries.
 
-    Only what holds for the code as it is counts.
+    Only results valid for the present code are counted.
     """
     old = stale(data, keys)
     rows = [row for name, row in data["targets"].items() if name not in old]
@@ -145,7 +145,7 @@ def totals(data: dict[str, Any], keys: Keys) -> dict[str, int]:
 
 
 def score_of(counts: dict[str, int]) -> Fraction | None:
-    """Killed among those that are viable and not proved equivalent; None where there are none."""
+    """The share killed among those that are viable and not proved equivalent; None where there are none."""
     viable = counts["killed"] + counts["survived"] + counts["undecided"]
     return Fraction(counts["killed"], viable) if viable else None
 
@@ -174,7 +174,7 @@ def document(data: dict[str, Any], keys: Keys) -> str:
     targets = dict(sorted(data["targets"].items()))
     old = stale(data, keys)
     loose = stale_premises(data, keys)
-    # what is no longer the code's own counts for nothing
+    # stale results do not count
     own = {name: row for name, row in targets.items() if name not in old}
     lines = [
         "# Mutation of kernels, definitions and premises",

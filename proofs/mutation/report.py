@@ -1,4 +1,4 @@
-"""What a mutation run found, counted."""
+"""The results of a mutation run, with counts."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from fractions import Fraction
 from cratous.proofs.mutation.results import VERDICTS, PremiseResult, Result
 
 ENOUGH = Fraction(98, 100)
-"""What of the viable mutants is to be killed at least."""
+"""The least share of the viable mutants that must be killed."""
 
 
 @dataclass(frozen=True)
 class MutationReport:
-    """All results, in the order of targets and source; premises of the theorems that were met.
+    """All results, in the order of targets and source; premises of the theorems that were used.
 
-    judged: the theorems whose premises were judged, those without any included.
+    judged: the theorems whose premises were judged, including those that have none.
     """
 
     results: tuple[Result, ...]
@@ -23,7 +23,7 @@ class MutationReport:
     judged: tuple[str, ...] = ()
 
     def count(self, verdict: str, kind: str = "") -> int:
-        """How many mutants (of this kind: kernel, definition or fold) have this verdict."""
+        """The number of mutants with this verdict, of one kind (kernel, definition or fold) or of all."""
         return sum(r.verdict == verdict and kind in ("", r.kind) for r in self.results)
 
     def of(self, verdict: str) -> tuple[Result, ...]:
@@ -37,7 +37,7 @@ class MutationReport:
 
     @property
     def score(self) -> Fraction:
-        """Killed among the viable ones; 1 where there are none."""
+        """The share killed among the viable ones; 1 where there are none."""
         return Fraction(self.count("killed"), self.viable) if self.viable else Fraction(1)
 
     @property
@@ -56,6 +56,6 @@ class MutationReport:
 
 
 def percent(part: Fraction) -> str:
-    """For people, rounded down: 99.96 % is not 100 %."""
+    """A percentage for people, rounded down: 99.96 % is not 100 %."""
     tenths = part * 1000 // 1
     return f"{tenths // 10}.{tenths % 10} %"

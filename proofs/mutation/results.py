@@ -1,4 +1,4 @@
-"""What came of one mutant, and of one premise."""
+"""The verdicts on one mutant and on one premise."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ VERDICTS = ("killed", "survived", "equivalent", "undecided", "stillborn")
 
 @dataclass(frozen=True)
 class Result:
-    """What came of one mutant. by: the theorem that is refuted; note: witness, or where equal."""
+    """The verdict on one mutant. by: the theorem that is refuted; note: witness, or where it is equal."""
 
     target: str
     kind: str
@@ -28,10 +28,9 @@ class Result:
 
 @dataclass(frozen=True)
 class PremiseResult:
-    """What a theorem says without one of its premises, and with that premise weakened.
+    """A theorem without one of its premises, and with that premise weakened.
 
-    dropped, weakened: `matters` (refuted), `unused` (still proved), `undecided`, or `-` (no
-    weaker form was tried).
+    dropped, weakened: `matters` (refuted), `unused` (still proved), `undecided`, or `-` (no weaker form was tried).
     """
 
     theorem: str

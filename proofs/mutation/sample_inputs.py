@@ -1,9 +1,9 @@
-"""Inputs of a function that theorems allow, found without asking: the theorems' own values drawn.
+"""Inputs of a function that theorems allow, found by drawing values for the theorems' variables.
 
-A function of derived values (a dot product, a squared distance) has few inputs that any state
-gives, and whether a given input is one of them is a hard question. So small values are drawn for
-what a theorem speaks of; where its premises hold with them, the arguments of the call are an input
-that it allows, and the values fix the question whether the theorem is refuted there.
+A function of derived values (a dot product, a squared distance) has few inputs that correspond to some state, and
+whether a given input is one of them is a hard question. So small values are drawn for the theorem's variables; where
+its premises hold, the arguments of the call are an allowed input, and the values make it easy to decide whether the
+theorem is refuted there.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from cratous.proofs.mutation.solver_queries import number
 from cratous.proofs.mutation.terms import flat
 
 TRIES, KEPT = 60, 25
-"""Draws for one call of a theorem, and inputs that are kept of them."""
+"""The number of draws for one call of a theorem, and of inputs that are kept."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Point:
 def points(
     function: Callable[..., Any], theorem: str, premises: list[z3.BoolRef], visit: Visit
 ) -> list[Point]:
-    """Inputs of this call, in a fixed order; none where draws do not meet the premises."""
+    """Allowed inputs of this call, in a fixed order; none where no draw satisfies the premises."""
     kinds = [get_type_hints(function)[name] for name in inspect.signature(function).parameters]
     args = [known(leaf) for leaf in flat(visit.args)]
     conditions = [*premises, *visit.context, *visit.granted]
@@ -63,7 +63,7 @@ def points(
 
 
 def _draw(one: z3.ExprRef, rng: random.Random, reach: int) -> z3.ExprRef | None:
-    """A small value of this sort, mostly not below zero; None for sorts that are not numbers."""
+    """A small value of this sort, mostly not negative; None for sorts that are not numbers."""
     if z3.is_bool(one):
         return z3.BoolVal(rng.random() < 0.5)
     if z3.is_int(one):

@@ -1,8 +1,7 @@
-"""Asking the solver many small questions, in a context apart from the terms'.
+"""Puts many small questions to the solver, in a context separate from that of the terms.
 
-A context is dear to make, so one serves a whole piece of work: `renew` at its start makes answers
-and effort independent of what was asked before and of the process that asks. Effort is bounded by
-rlimit, never by wall time.
+A context is expensive to create, so one serves a whole task: `renew` at its start makes answers and effort
+independent of what was asked before and of the process that asks. Effort is bounded by rlimit, never by wall time.
 """
 
 from __future__ import annotations
@@ -22,16 +21,16 @@ SHARES = (10,)
 
 
 def renew() -> z3.Context:
-    """A new context for the questions to come."""
+    """A new context for the following questions."""
     _CONTEXTS[:] = [z3.Context()]
     return _CONTEXTS[0]
 
 
 def ask(question: Iterable[z3.BoolRef], rlimit: int) -> str:
-    """`sat`, `unsat` or `unknown`: can all these conditions hold at once?
+    """`sat`, `unsat` or `unknown`: whether all these conditions can hold at once.
 
-    Reals alone are given to the solver for polynomials first, then to the general one; each may
-    spend `rlimit` (`ladder`).
+    Questions in reals only go to the solver for polynomials first, then to the general one; each may spend `rlimit`
+    (`solver_order`).
     """
     return values(question, rlimit, [])[0]
 
@@ -39,9 +38,9 @@ def ask(question: Iterable[z3.BoolRef], rlimit: int) -> str:
 def values(
     question: Iterable[z3.BoolRef], rlimit: int, wanted: Iterable[z3.ExprRef]
 ) -> tuple[str, list[Any] | None]:
-    """The answer, and what these terms are where the conditions hold.
+    """The answer, and the values of these terms where the conditions hold.
 
-    Numbers are integers or rationals; None where there is no answer `sat`, or a value is neither.
+    Numbers are integers or rationals; None unless the answer is `sat` and every value is one of these.
     """
     terms = list(question)
     context = _CONTEXTS[-1] if _CONTEXTS else renew()
@@ -60,7 +59,7 @@ def values(
 
 
 def number(term: z3.ExprRef) -> Any:
-    """A constant as Python has it; None for anything else."""
+    """A constant as a Python number; None for anything else."""
     if z3.is_true(term) or z3.is_false(term):
         return z3.is_true(term)
     if z3.is_int_value(term) or z3.is_bv_value(term):
@@ -76,7 +75,7 @@ def _reals(term: z3.ExprRef) -> bool:
     if key not in _REALS:
         own = z3.is_int(term) or z3.is_bv(term) or z3.is_quantifier(term)
         own = own or (z3.is_app(term) and term.num_args() > 0 and _function(term))
-        # the term is kept, so that its id stays its own
+        # the term is kept alive so that its id stays unique
         _REALS[key] = (term, not own and all(_reals(child) for child in term.children()))
     return _REALS[key][1]
 

@@ -1,4 +1,4 @@
-"""The theorems as mutation meets them: as they stand, and with a mutant in a function's place."""
+"""The theorems as mutation states them: unchanged, and with a mutant in a function's place."""
 
 from __future__ import annotations
 
@@ -47,13 +47,13 @@ def state(name: str, **how: Any) -> Claim:
 
 
 def ids(obligation: Obligation) -> tuple[int, ...]:
-    """What tells two obligations apart, in one process."""
+    """Identifies an obligation within one process."""
     return (obligation.goal.get_id(), *sorted({g.get_id() for g in obligation.given}))
 
 
 @cache
 def stated(name: str) -> _Stated:
-    """A theorem as it stands, with the obligations that were proved."""
+    """A theorem as it stands, with its obligations, which were proved."""
     claim = state(name)
     return _Stated(name, claim, frozenset(ids(o) for o in claim.obligations))
 
@@ -82,7 +82,7 @@ def targets(names: Iterable[str], home: Home = PRODUCT) -> dict[str, tuple[Any, 
 
 
 def claim_of(name: str) -> Claim:
-    """A theorem as it stands, stated."""
+    """The stated claim of a theorem as it stands."""
     return stated(name).claim
 
 
@@ -92,7 +92,7 @@ class Stillborn(Exception):
 
 @contextmanager
 def in_place(original: Any, mutant: Any) -> Iterator[None]:
-    """What is lifted within this takes the mutant for the original; raises Stillborn."""
+    """Within this, the original is lifted as the mutant; raises Stillborn."""
     REPLACED[original] = mutant
     try:
         yield

@@ -12,18 +12,18 @@ from cratous.proofs.engine.symbolic import SymMask, _raw
 from cratous.proofs.engine.terms import free_names, known
 
 GLANCE = 8_000
-"""Effort to see that an input is one that a theorem speaks about."""
+"""Effort for deciding whether a theorem allows an input."""
 NEAR = 120_000
 """Effort for a question whose inputs are fixed."""
 FAR = 3_000_000
-"""Effort for an open question; a theorem that was dearer to prove gets twice its own, up to MOST."""
+"""Effort for an open question; a theorem that took more to prove gets twice its own, up to MOST."""
 MOST = 10_000_000
 SAME = 12_000_000
-"""Effort to prove that a mutant is equivalent: seldom asked, and it spares a person the search."""
+"""Effort to prove a mutant equivalent: needed rarely, and it saves a manual investigation."""
 
 
 def budget(effort: int) -> int:
-    """What a question about a theorem may cost that took so much to prove."""
+    """The effort allowed for a question about a theorem that took this much to prove."""
     return max(FAR, min(2 * effort, MOST))
 
 
@@ -33,13 +33,13 @@ def flat(value: Any) -> list[Any]:
 
 
 def is_free(value: Any) -> bool:
-    """An arbitrary value, which an input fixes at once."""
+    """Whether the value is arbitrary, so that an input determines it directly."""
     term = known(value)
     return bool(z3.is_const(term) and term.decl().kind() == z3.Z3_OP_UNINTERPRETED)
 
 
 def equal(args: tuple[Any, ...], row: tuple[Any, ...]) -> list[z3.BoolRef]:
-    """The arguments of a visit have these values."""
+    """Equations of a visit's arguments with these values."""
     equations = []
     for one, value in zip(flat(args), flat(row), strict=True):
         term = _raw(one)
@@ -59,9 +59,8 @@ def with_values(
 ) -> bool | None:
     """Whether the conditions can hold where these arguments have these values.
 
-    conditions: satisfiable together, so those about other values alone leave the answer open to
-    none. None where it is a question for the solver: arguments are terms, or a condition is about
-    these and other values.
+    conditions: jointly satisfiable, so conditions about other values only do not affect the answer. None where the
+    solver must decide: arguments are terms, or a condition involves both these and other values.
     """
     if not all(is_free(value) for value in flat(args)):
         return None
@@ -73,7 +72,7 @@ def with_values(
         if not z3.is_eq(equation):
             pairs.append((leaf, z3.BoolVal(not z3.is_not(equation))))
         else:
-            # a solver's number turns `x == 2` round
+            # the solver prints `x == 2` with the constant first
             first = equation.arg(0).eq(leaf)
             pairs.append((leaf, equation.arg(1) if first else equation.arg(0)))
     names = {str(leaf) for leaf in leaves}
@@ -85,7 +84,7 @@ def with_values(
 
 
 def premise_text(term: z3.ExprRef) -> str:
-    """A premise as a reader takes it in: in one line, the range of integers in words."""
+    """A premise as readable text: in one line, the range of integers in words."""
     text = " ".join(str(term).split())
     ranged = re.fullmatch(rf"And\((\S+) >= -{2**61}, (\S+) <= {2**61}\)", text)
     turned = re.fullmatch(r"(-?\d+) (<=?) (.*)", text)
@@ -95,5 +94,5 @@ def premise_text(term: z3.ExprRef) -> str:
 
 
 def row_text(row: tuple[Any, ...]) -> str:
-    """An input for people."""
+    """An input as text for people."""
     return ", ".join(str(value) for value in flat(row))

@@ -1,4 +1,4 @@
-"""All functions that some theorems look into, each compared once, and what that says of the theorems."""
+"""Compares each function that theorems look into once, and records the results with the theorems."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from cratous.proofs.running.readings import Compared, Row, compare
 from cratous.proofs.running.theorem import Function, Functions
 
 ROWS = 24
-"""So many arguments that theorems gave a function are taken."""
+"""The most arguments taken from theorems for one function."""
 
 
 def compare_all(
     looked_into: Iterable[Functions], jobs: int, *, machine: bool = True
 ) -> dict[Function, Compared]:
-    """Compare the readings of all functions, in so many processes."""
+    """Compare the readings of all functions; jobs: number of processes."""
     masks: dict[Function, frozenset[int]] = {}
     rows: dict[Function, tuple[Row, ...]] = {}
     for one in looked_into:
@@ -32,7 +32,7 @@ def compare_all(
     names = sorted(masks)
     if machine and names:
         begin_compiler()
-    # some take far longer than others, so none is left alone with many
+    # some take far longer than others, so the work is dealt out in small parts
     count = min(PER_PROCESS * jobs, len(names))
     parts = [names[k::count] for k in range(count)]
     tasks = [partial(_some, part, masks, rows, machine) for part in parts]
@@ -60,7 +60,7 @@ def _some(
 
 
 def told(theorem: Theorem, functions: Functions, compared: Mapping[Function, Compared]) -> Theorem:
-    """The theorem with what came of comparing the functions that it looks into."""
+    """The theorem with the comparison results of the functions that it looks into."""
     ran = theorem.ran or Ran()
     some = [compared[key] for key in sorted(functions.masks)]
     differences = (*ran.differences, *(text for one in some for text in one.differences))

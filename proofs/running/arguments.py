@@ -1,6 +1,6 @@
 """Arguments on which the readings of a function are compared: special numbers, grids, random ones.
 
-All reals are doubles, so that each reading is given the same numbers. Drawn in one order in every run.
+All reals are doubles, so that each reading gets the same numbers. The order is the same in every run.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ INTEGERS = (
 )  # fmt: skip
 MASKS = (0, 1, 2, 3, 1 << 62, (1 << 62) - 1, 1 << 63, (1 << 64) - 1)
 GRID, MIXED, WILD = 40, 40, 20
-"""So many rows of each kind: small grids, special numbers among plain ones, random doubles."""
+"""The number of rows of each kind: small grids, special numbers among plain ones, random doubles."""
 
 
 def leaves_of(kinds: list[Any]) -> list[Any]:
-    """The types of the scalars that arguments of these types hold, in order."""
+    """The types of the scalars in arguments of these types, in order."""
     found: list[Any] = []
     for kind in kinds:
         fields = [] if kind in (bool, int, float) else list(get_type_hints(kind).values())
@@ -50,7 +50,7 @@ def kinds_of(function: Callable[..., Any]) -> list[Any]:
 
 
 def written(function: Callable[..., Any]) -> tuple[list[float], list[int]]:
-    """Reals and integers at and beside every number that a function, or what it calls, has."""
+    """The literals in a function and in what it calls, with neighbouring values: reals and integers."""
     numbers: list[Any] = []
     for value in reached(function).values():
         if isinstance(value, types.FunctionType):
@@ -97,7 +97,7 @@ def rows(
 
     made: list[list[Any]] = []
     most = max((len(pool(k)) for k in range(len(flat))), default=1)
-    for index in range(most):  # equal arguments, each special number for all
+    for index in range(most):  # equal arguments: the same special number for all
         made.append([pool(k)[index % len(pool(k))] for k in range(len(flat))])
     for number in range(MIXED):
         few = rng.sample(range(len(flat)), min(len(flat), 1 + number % 3))
@@ -112,7 +112,7 @@ def rows(
 
 
 def _in_doubles(row: Row, size: int) -> list[Row]:
-    """The row with each rational rounded to a double, if all reach that far."""
+    """The row with each rational rounded to a double, unless one is out of the range of doubles."""
     try:
         return [tuple(map(_double, row))] if len(row) == size else []
     except OverflowError:
@@ -126,7 +126,7 @@ def _double(value: Any) -> Any:
 
 
 def _positions(kinds: list[Any], masks: frozenset[int]) -> set[int]:
-    """The places of bit masks among the scalars."""
+    """The indices of bit masks among the scalars."""
     found, place = set(), 0
     for number, kind in enumerate(kinds):
         if number in masks:

@@ -1,7 +1,7 @@
-"""The machine code of kernels made ahead, by all cores, so that comparing it only has to load it.
+"""Compiles kernels in advance on all cores, so that their comparison only has to load the machine code.
 
-The compiler takes longer than all comparisons together, and what it makes is kept for flights too: it
-is counted apart.
+Compilation takes longer than all comparisons together, and its results are reused by flights: its time is reported
+separately.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from cratous.proofs.running import arguments
 from cratous.proofs.running.theorem import Function
 
 PER_PROCESS = 8
-"""The functions are dealt into so many parts for each process: some take far longer than others."""
+"""The number of parts per process into which the functions are divided: some take far longer than others."""
 
 
 def compile_ahead(masks: Mapping[Function, frozenset[int]], jobs: int) -> None:
-    """Compile the kernels among these functions for the arrays with which they are compared.
+    """Compile the kernels among these functions for the array types with which they are compared.
 
-    masks: positions of bit masks, by function. What cannot be compiled is left to the comparison,
-    which says why.
+    masks: positions of bit masks, by function. A kernel that cannot be compiled is left to the comparison, which
+    reports the reason.
     """
     names = sorted(masks)
     if not names:
@@ -43,7 +43,7 @@ def compile_ahead(masks: Mapping[Function, frozenset[int]], jobs: int) -> None:
 
 @functools.cache
 def begin_compiler() -> None:
-    """Have the compiler ready in this process, so that each one forked from it need not begin it again."""
+    """Load the compiler in this process, so that processes forked from it need not."""
     from numba import njit
 
     njit(lambda x: x)(0.0)

@@ -1,6 +1,6 @@
-"""A function as CPython runs it, with all that it calls, but with another square root.
+"""Copies of functions, with all that they call, that use another square root.
 
-On rationals `math.sqrt` would give a double, so that nothing after it is exact.
+On rationals `math.sqrt` would return a double, so that results would no longer be exact.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ Root = Callable[[Any], Any]
 
 
 class Undecided(Exception):
-    """These numbers decide nothing here: a result is no rational number, or stands for any value."""
+    """These numbers are inconclusive: a result is irrational, or arbitrary."""
 
 
 def rational_root(value: Any) -> Any:
-    """The square root of a rational that has a rational one; Undecided for any other.
+    """The square root of a rational if it is rational; Undecided otherwise.
 
     Raises ValueError below 0, as `math.sqrt` does.
     """
@@ -37,7 +37,7 @@ def rational_root(value: Any) -> Any:
 
 
 class _Later:
-    """Calls the copy of a function, which is made when it is called first."""
+    """Calls the copy of a function, which is made at the first call."""
 
     def __init__(self, function: types.FunctionType, root: Root) -> None:
         self.function, self.root = function, root
@@ -48,7 +48,7 @@ class _Later:
 
 @functools.cache
 def with_root(function: Callable[..., Any], root: Root) -> Callable[..., Any]:
-    """The function with another square root, in all that it calls by a name of its module too."""
+    """The function with another square root, also in everything that it calls by a name of its module."""
     if not isinstance(function, types.FunctionType):
         return function
     scope = dict(function.__globals__)

@@ -1,7 +1,7 @@
-"""Inductions of a theorem, run on numbers: at arbitrary accumulators, and along items that there are.
+"""Inductions of a theorem, run on numbers: from arbitrary accumulators, and along actual items.
 
-The methods of `proofs.methods` ask here where a theorem is run. The premises of an edge or item decide whether a
-point counts, as everywhere; the base counts at each.
+The methods of `proofs.methods` call these functions where a theorem is run. As everywhere, a point counts only where
+the premises of its edges or items hold; the base case is checked at every point.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from cratous.proofs.running.statement import OnNumbers, truth
 
 Run = tuple[Fold[Any], Any, tuple[Any, ...]]
 LONGEST = 4
-"""So many vertices, items or operands at most."""
+"""The greatest number of vertices, items or operands."""
 
 
 def _at_arbitrary_ones(c: OnNumbers) -> bool:
-    """Whether this point is about arbitrary accumulators; the solver's are."""
+    """Whether to check the step from arbitrary accumulators here; always at a solver's witness."""
     return bool(c.values.point) or c.values.rng.random() < 0.5
 
 
@@ -47,7 +47,8 @@ def closed_chain(
     text: str,
     begin: Callable[[Any], None],
 ) -> None:
-    """`proofs.methods.chains.closed_chain`: one more edge, or a whole polygon; runs: definitions too."""
+    """`proofs.methods.chains.closed_chain` on numbers: one more edge, or a whole polygon; runs: including
+    definitions."""
     first = c.vector("first")
     begin(first)
     values = [fold.start for fold, _, _ in runs]
@@ -82,9 +83,9 @@ def along_items(
     known: Callable[[list[Any]], None],
     beside: Sequence[Any] = (),
 ) -> None:
-    """`proofs.methods.runs.along_items`: one more item, or up to LONGEST of the same.
+    """`proofs.methods.runs.along_items` on numbers: one more item, or LONGEST times the same item.
 
-    item: its values, and what every item satisfies.
+    item: its values, and the condition on every item.
     """
     own, each = item
     values = [fold.start for fold, _, _ in runs] + [one.start for one in beside]
@@ -109,11 +110,11 @@ def along_items(
 
 
 class Sides(TypedDict):
-    """How values of terms come about, on the kernel's side and on the definition's.
+    """How values of terms are computed, on the kernel's side and on the definition's.
 
-    task: of an arbitrary task; none: before the first operand; so_far, operand: arbitrary values of what
-    came before and of one operand; add(so_far, operand): with that operand; whole(so_far): of the term,
-    after its last operand.
+    task: value of an arbitrary task; none: value before the first operand; so_far, operand: arbitrary values of the
+    operands before and of one operand; add(so_far, operand): value including that operand; whole(so_far): value of
+    the term after its last operand.
     """
 
     task: tuple[Any, Any]
@@ -132,7 +133,7 @@ def every_term(
     alike: Callable[[Any, Any], Any],
     text: str,
 ) -> None:
-    """`proofs.methods.terms.every_term`: one more operand, or a term of one task in two levels of operators."""
+    """`proofs.methods.terms.every_term` on numbers: one more operand, or one task below two levels of operators."""
     task, none, add, whole = sides["task"], sides["none"], sides["add"], sides["whole"]
     so_far, operand = sides["so_far"], sides["operand"]
     c.show(related(*task), f"{text}: a task")

@@ -1,7 +1,7 @@
-"""Arbitrary real values of a statement that is run, drawn no earlier than something is asked of them.
+"""Arbitrary real values of a running statement, drawn only when their value is needed.
 
-A theorem may name a value by the equation that defines it (`k * (t - begin) == first`), or bound it by another.
-A number drawn before would seldom satisfy such premises; a value of which nothing was asked yet takes one that does.
+A theorem may introduce a value by the equation that defines it (`k * (t - begin) == first`), or bound it by another.
+A number drawn in advance would seldom satisfy such premises; a value not used so far takes one that does.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any
 
 
 class Cell:
-    """One arbitrary value: the number drawn for it, or given to it by an equation."""
+    """One arbitrary value: the number drawn for it, or determined by an equation."""
 
     def __init__(self, draw: Callable[[], Fraction]) -> None:
         self._draw, self.found = draw, None
@@ -27,7 +27,7 @@ class Cell:
 
 
 def now(value: Any) -> Any:
-    """The value with a number for everything in it that is still open."""
+    """The value with all open values in it drawn."""
     if isinstance(value, Late):
         return value.number()
     if isinstance(value, Open):
@@ -39,7 +39,7 @@ def now(value: Any) -> Any:
 
 
 class Late:
-    """scale * value + offset, of one arbitrary value; every question but a comparison draws its number."""
+    """scale * value + offset of one arbitrary value; any use but addition, scaling and comparison draws its number."""
 
     __slots__ = ("_cell", "_offset", "_scale")
 
@@ -47,16 +47,16 @@ class Late:
         self._cell, self._scale, self._offset = cell, scale, offset
 
     def number(self) -> Fraction:
-        """Its number from now on."""
+        """The number; draws it if it is still open."""
         return Fraction(self._scale * self._cell.number() + self._offset)
 
     @property
     def is_open(self) -> bool:
-        """Whether an equation may still give the value a number."""
+        """Whether an equation may still determine the value."""
         return self._cell.found is None and self._scale != 0
 
     def be(self, wanted: Any) -> None:
-        """Take the number with which this is the one that is wanted."""
+        """Set the underlying value so that this expression equals `wanted`."""
         self._cell.found = Fraction(wanted - self._offset) / self._scale
 
     def __add__(self, other: Any) -> Any:
@@ -65,7 +65,7 @@ class Late:
         return Late(self._cell, self._scale, self._offset + now(other))
 
     def __mul__(self, other: Any) -> Any:
-        factor = now(other)  # it may be of the same value
+        factor = now(other)  # may refer to the same value
         if self._cell.found is not None:
             return self.number() * factor
         return Late(self._cell, self._scale * factor, self._offset * factor)
@@ -118,7 +118,7 @@ class Late:
 
 
 class Comparison:
-    """A value compared with another: true or false when it is asked for, made true by a premise."""
+    """A comparison with a late value: evaluated on use, or made true by a premise."""
 
     def __init__(self, late: Late, relation: Callable[[Any, Any], Any], other: Any) -> None:
         self._late, self._relation, self._other = late, relation, other
@@ -127,13 +127,13 @@ class Comparison:
         return bool(self._relation(self._late.number(), now(self._other)))
 
     def made_true(self) -> bool:
-        """Whether it holds, with a number that makes it so where that is open."""
+        """Whether it holds, choosing a number that makes it true if one is open."""
         ours, other = self._late, self._other
         if isinstance(other, Late) and other.is_open and not ours.is_open:
             ours, other = other, ours
         was_open, bound = ours.is_open, now(other)
         if not self and was_open:
-            # as far on the other side of the bound; on it for an equation
+            # mirrored at the bound; on the bound for an equation
             apart = 0 if self._relation is operator.eq else bound - ours.number()
             for number in (bound + apart, bound + 1, bound - 1):
                 ours.be(number)
@@ -143,7 +143,7 @@ class Comparison:
 
 
 class All:
-    """Statements of which all hold."""
+    """A conjunction of statements."""
 
     def __init__(self, statements: tuple[Any, ...]) -> None:
         self._statements = statements
@@ -152,7 +152,7 @@ class All:
         return all(list(map(bool, self._statements)))
 
     def made_true(self) -> bool:
-        """Whether all hold, one after the other made so where that is open."""
+        """Whether all hold, each in turn made true where possible."""
         return all(list(map(made_true, self._statements)))
 
 
@@ -161,5 +161,5 @@ Open = Comparison | All
 
 
 def made_true(statement: Any) -> bool:
-    """Whether a statement holds, made so where that is open."""
+    """Whether a statement holds, made true where possible."""
     return statement.made_true() if isinstance(statement, Open) else bool(statement)

@@ -1,4 +1,4 @@
-"""The lifted term as a reading: an evaluator of z3 terms on numbers that shares nothing with the lifter."""
+"""The lifted term as a reading: an evaluator of z3 terms on numbers that shares no code with the lifter."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ CHAINS = {
 
 
 def evaluator(terms: Iterable[z3.ExprRef]) -> Callable[[dict[str, Any]], list[Any]]:
-    """A Python function that computes these terms from the values of their names."""
+    """A Python function that computes these terms from the values of their variables by name."""
     lines: list[str] = []
     known: dict[int, str] = {}
 
@@ -94,12 +94,12 @@ def _modulo(a: Any, b: Any) -> Any:
 
 
 def whole_root(value: Any) -> Any:
-    """Stands for the root on both sides, so that the comparison stays rational."""
+    """An integer square root in place of the root on both sides, so that the comparison stays rational."""
     return Fraction(math.isqrt(int(max(0, value))))
 
 
 def checked_root(value: Any) -> Any:
-    """The same in the running function, which refuses a negative one."""
+    """The same for the running function; raises ValueError for a negative argument."""
     return math.sqrt(value) if value < 0 else whole_root(value)
 
 
@@ -110,7 +110,8 @@ def symbol(kind: Any, name: str, mask: bool) -> Any:
 
 @dataclass(frozen=True)
 class Term:
-    """A function's lifted term, ready for numbers: its values, what it owes, what it owes as machine code."""
+    """A function's lifted term prepared for evaluation: result, side conditions, and which of these are 64-bit
+    bounds."""
 
     names: tuple[str, ...]
     size: int
@@ -119,7 +120,7 @@ class Term:
     roots: tuple[tuple[str, Callable[[dict[str, Any]], list[Any]]], ...]
 
     def __call__(self, row: tuple[Any, ...]) -> tuple[list[Any], bool, bool]:
-        """(values, whether all that is owed holds, the same without the bounds of 64 bits)."""
+        """(values, whether all side conditions hold, whether those other than the 64-bit bounds hold)."""
         given = dict(zip(self.names, leaves(row), strict=True))
         for name, argument in self.roots:
             given[name] = whole_root(argument(given)[0])
@@ -134,7 +135,7 @@ class Term:
 
 
 def term_of(function: Callable[..., Any], masks: frozenset[int]) -> Term:
-    """The lifted term of a function; masks: positions of bit masks. LiftError where there is none."""
+    """The lifted term of a function; masks: positions of bit masks. Raises LiftError where it cannot be lifted."""
     hints = get_type_hints(function)
     parameters = list(inspect.signature(function).parameters)
     symbols = [symbol(hints[n], n, k in masks) for k, n in enumerate(parameters)]
@@ -143,7 +144,7 @@ def term_of(function: Callable[..., Any], masks: frozenset[int]) -> Term:
     terms = [_raw(value) for value in leaves(lifted.value)]
     owed = [condition for _, condition in lifted.obligations]
     whole = tuple(text.endswith(RANGE) for text, _ in lifted.obligations)
-    # the argument of each root stands in its defining fact: argument >= 0 implies r >= 0 and ...
+    # a root's argument is in its defining fact: argument >= 0 implies r >= 0 and ...
     roots = [(str(f.arg(1).arg(0).arg(0)), f.arg(0).arg(0)) for f in lifted.roots]
     return Term(
         names,
@@ -160,7 +161,7 @@ def differences(
     masks: frozenset[int] = frozenset(),
     term: Term | None = None,
 ) -> list[tuple[tuple[Any, ...], Any, Any]]:
-    """Where the lifted term, or what it owes, disagrees with the running function: row, term, function."""
+    """Rows where the lifted term or its side conditions disagree with the running function: (row, term, function)."""
     one = term or term_of(function, masks)
     return disagreeing(function, [(row, *one(row)) for row in rows])
 
@@ -168,7 +169,7 @@ def differences(
 def disagreeing(
     function: Callable[..., Any], evaluated: Iterable[tuple[tuple[Any, ...], list[Any], bool, bool]]
 ) -> list[tuple[tuple[Any, ...], Any, Any]]:
-    """The same for a term that was evaluated: each row with what the term says of it."""
+    """The same for terms already evaluated: each row with the results of `Term`."""
     running = with_root(function, checked_root)
     found: list[tuple[tuple[Any, ...], Any, Any]] = []
     for row, got, _, defined in evaluated:

@@ -1,9 +1,9 @@
-"""Which arguments of kernels move when a theorem's values are moved a little: of those its premises leave many.
+"""Which arguments of kernels change when a theorem's values are changed slightly, and so take many values.
 
-A statement is run twice, with its reals at one place and a hair away from it; what else is drawn stays.
-Where the premises hold at both and an argument differs, it is no piecewise constant function of the values:
-that one would have to jump in between, and where that is, is made of a hash of all that the statement says,
-so nobody who writes it can aim there. Nothing here asks the solver.
+A statement is run twice, with its reals at one place and at a minute offset from it; all other drawn values are the
+same. If the premises hold at both and an argument differs, the argument is not a piecewise constant function of the
+values, unless it happens to jump between the two places; these are derived from a hash of the whole statement, so an
+author cannot aim at them. The solver is not used.
 """
 
 from __future__ import annotations
@@ -38,18 +38,18 @@ from cratous.proofs.running.statement import (
 )
 
 TRIES = 40
-"""So many places are tried, where not all arguments are found to move before."""
+"""The most places tried while not all arguments have been found to change."""
 PLACE_BITS, HAIR_BITS = 128, 64
 COARSE, FINE = 140, 400
-"""A place is on a grid of 2**-COARSE; the hair is less than 2**(HAIR_BITS - FINE)."""
+"""A place is on a grid of 2**-COARSE; the offset is at most 2**(HAIR_BITS - FINE)."""
 STOPS = (Outside, Undecided, False_, NotRun, TypeError, AttributeError, *ERRORS)
-"""What ends the run of a statement; what was asked of before counts if its premises were."""
+"""Exceptions that end the run of a statement; arguments observed before count if all premises held."""
 
 
 def taken(name: str, claim: Claim, folder: Path) -> Taken | None:
-    """Finds which arguments of a theorem's uses of kernels take many values; claim: the same, stated.
+    """A function that finds which arguments of a theorem's kernel uses take many values; claim: the stated claim.
 
-    None for one that asks for the calls of a function: it may restrict them, which no run would see.
+    None for a theorem that calls `Claim.calls`: these may enter its premises, which a run would not see.
     """
     if claim.asked:
         return None
@@ -75,7 +75,7 @@ def _found(
 
 
 def _arguments(statement: Callable[[Any], None], premises: int, values: Values) -> dict[Place, Any]:
-    """The arguments of the uses of kernels, where all premises hold; nothing where they do not."""
+    """The arguments of the kernel uses if all premises hold; otherwise empty."""
     on = _Observed(values, _no_lemma)
     with contextlib.suppress(*STOPS):
         statement(on)
@@ -87,7 +87,7 @@ def _no_lemma(name: str) -> Callable[[Any], None]:
 
 
 class _Nudged(Values):
-    """Numbers that nobody can foresee who does not know the seed: at one place, and a hair beside it."""
+    """Pseudo-random numbers determined by the seed: at one place, or at a minute offset from it."""
 
     def __init__(self, seed: str, hairs: int) -> None:
         super().__init__({}, seed)
@@ -102,7 +102,7 @@ class _Nudged(Values):
 
 @dataclass
 class _Observed(OnNumbers):
-    """A run of a statement for its premises and the arguments of its kernels; what it shows is not looked at."""
+    """A run of a statement that records its premises and the arguments of its kernels; goals are ignored."""
 
     arguments: dict[Place, Any] = field(default_factory=dict)
     premises: int = 0
@@ -141,10 +141,16 @@ class _Observed(OnNumbers):
             self._observe((acc,))
 
     def show(self, goal: Any, text: str = "the claim") -> None:
-        """Whether it holds is another run's matter."""
+        """Ignored: goals are checked by another run."""
 
     def cases(self, *conditions: Any, goal: Any, text: str = "the claim") -> None:
-        """As for `show`."""
+        """Ignored, as in `show`."""
 
     def lemma(self, name: str, *, when: Any = True, **values: Any) -> None:
-        """It restricts nothing."""
+        """Ignored: a lemma restricts nothing."""
+
+
+# `proofs.statements.other_results` uses these too
+Nudged = _Nudged
+Observed = _Observed
+no_lemma = _no_lemma

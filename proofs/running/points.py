@@ -1,7 +1,7 @@
-"""Numbers at which the premises of a claim hold, as the solver finds them: its witnesses.
+"""Numbers that satisfy the premises of a claim, as the solver finds them: its witnesses.
 
-Asked for are: any, one at each bound of a premise, and one for each goal where what it is conditional
-on is true. The effort of each question is bounded, so that the points are the same on every machine.
+Queries: any point, one at each bound of a premise, and one for each goal where its condition is true. The effort of
+each query is bounded, so that the points are the same on every machine.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from cratous.proofs.engine.terms import free_values
 
 RLIMIT = 150_000
 BOUNDS, GOALS = 5, 5
-"""So many bounds of premises and conditions of goals are asked for."""
+"""The most bounds of premises, and conditions of goals, that are queried."""
 NOT_STRICT = (z3.Z3_OP_LE, z3.Z3_OP_GE)
 
 
@@ -50,10 +50,10 @@ def _wanted(claim: Claim) -> Iterator[list[z3.BoolRef]]:
 
 
 def witnesses(claim: Claim) -> list[dict[str, Any]]:
-    """Values of the claim's names, point by point, where the solver gives any within its effort."""
+    """Values of the claim's variables, point by point, where the solver finds them within its effort."""
     base = [*claim.premises, *claim.roots]
     found: list[dict[str, Any]] = []
-    # in one context, since they are asked in the same order in every run
+    # in one context, since the order of queries is the same in every run
     context = z3.Context()
     same = [term.translate(context) for term in base]
     for extra in _wanted(claim):

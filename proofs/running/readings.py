@@ -1,9 +1,8 @@
-"""The readings of a function held against each other on numbers.
+"""Compares the readings of a function with each other on numbers.
 
-CPython on rationals is what the others are held against: the lifted term and the exact reading
-everywhere, CPython on doubles where no result on the way is rounded. Machine code must give what
-CPython gives on the same doubles, everywhere. Rows for which a function owes more than holds (a division
-by zero, 64 bits) say nothing of machine code and doubles.
+The reference is CPython on rationals: the lifted term and the exact reading are compared with it everywhere, CPython
+on doubles where no intermediate result is rounded. Machine code must equal CPython on the same doubles everywhere.
+Rows that violate a side condition (a division by zero, 64 bits) are left out for machine code and doubles.
 """
 
 from __future__ import annotations
@@ -34,17 +33,17 @@ from cratous.proofs.running.tracked import Rounded, Tracked, tracked_root
 Row = tuple[Any, ...]
 ERRORS = (ZeroDivisionError, ValueError, OverflowError)
 ENOUGH = 3
-"""So many differences of a function are told."""
+"""The most differences reported per function."""
 DOUBLES, RATIONALS = "CPython on doubles", "CPython on rationals"
 MACHINE, EXACT, TERM = "machine code", "the exact reading", "the lifted term"
 
 
 @dataclass(frozen=True)
 class Compared:
-    """What came of comparing a function's readings.
+    """The result of comparing a function's readings.
 
-    differences: in words, with arguments and results; readings: which were compared, with on how many
-    rows; left_out: readings that there should be and could not be compared, with the reason.
+    differences: texts with arguments and results; readings: those compared, with the number of rows; left_out:
+    readings that could not be compared, with the reason.
     """
 
     name: str
@@ -91,7 +90,7 @@ class _Comparison:
         )
 
     def term(self, rows: list[Row]) -> list[bool]:
-        """Hold the lifted term against CPython; for each row whether all that is owed holds."""
+        """Compare the lifted term with CPython; returns for each row whether all side conditions hold."""
         try:
             term = lifted.term_of(self.function, self.masks)
         except (LiftError, KeyError, RecursionError, TypeError) as error:
@@ -104,7 +103,7 @@ class _Comparison:
         return [fits for _, _, fits, _ in evaluated]
 
     def doubles(self, rational: list[Row], fits: list[bool]) -> None:
-        """Hold doubles against rationals where nothing is rounded on the way."""
+        """Compare doubles with rationals where no intermediate result is rounded."""
         count = 0
         watched, exactly = (with_root(self.function, r) for r in (tracked_root, rational_root))
         for row, plain, good in zip(self.rows, rational, fits, strict=True):
@@ -117,14 +116,14 @@ class _Comparison:
             except (Rounded, Undecided):
                 continue
             except ERRORS:
-                continue  # not defined there: the lifted term is held to that
+                continue  # not defined there, which the comparison of the lifted term covers
             count += 1
             if not _same(got, wanted):
                 self.differs(DOUBLES, got, RATIONALS, wanted, row)
         self.counts[DOUBLES] = count
 
     def machine(self, fits: list[bool]) -> None:
-        """Hold machine code against CPython on the same doubles."""
+        """Compare machine code with CPython on the same doubles."""
         rows, wanted = [], []
         for row, good in zip(self.rows, fits, strict=True):
             if not good or any(type(v) is int and not -(2**63) <= v < 2**63 for v in leaves(row)):
@@ -143,7 +142,7 @@ class _Comparison:
             found = self._run(rows)
         except (
             Exception
-        ) as error:  # whatever the compiler says: without machine code there is none to differ
+        ) as error:  # any compiler error: without machine code there is nothing to compare
             text = str(error).strip().splitlines()
             self.left_out.append(f"{MACHINE}: {type(error).__name__}: {text[0] if text else ''}")
             return
@@ -179,11 +178,11 @@ class _Comparison:
             return found
 
     def exact(self, rational: list[Row]) -> None:
-        """Hold the exact reading against rationals, where the kernel has one."""
+        """Compare the exact reading with rationals, where the kernel has one."""
         exactly = with_root(self.function, rational_root)
         below = _below(self.function)
         if _has_root(self.function):
-            return  # there is no exact reading of a root
+            return  # the exact reading has no square root
         count = 0
         for row, plain in zip(self.rows, rational, strict=True):
             if any(type(v) is int and not -(2**63) <= v < 2**63 for v in leaves(row)) or below(
@@ -195,7 +194,7 @@ class _Comparison:
             except (Undecided, *ERRORS):
                 continue
             if any(isinstance(part, float) for part in leaves(wanted)):
-                continue  # a literal that is no rational
+                continue  # an irrational literal
             try:
                 got = exact(self.function, *_as(row, self.kinds, float))
             except NotInSubset:
@@ -212,20 +211,20 @@ class _Comparison:
 
 
 def _has_root(function: Callable[..., Any]) -> bool:
-    """A function, or one that it calls, takes a square root."""
+    """Whether a function, or one that it calls, takes a square root."""
     codes = [f.__code__ for f in reached(function).values() if isinstance(f, types.FunctionType)]
     return any("sqrt" in code.co_names for code in codes)
 
 
 def _below(function: Callable[..., Any]) -> Callable[[Row], bool]:
-    """Whether a row has a number below 0 where the kernel refuses such."""
+    """Returns a test whether a row has a negative number where the kernel refuses one."""
     names = nonnegative(function)
     places = [k for k, n in enumerate(get_type_hints(function)) if n in names]
     return lambda row: any(part < 0 for k in places for part in leaves(row[k]))
 
 
 def _as(value: Any, kinds: Any, real: Callable[[Any], Any]) -> Any:
-    """Arguments with each real number as `real` makes it."""
+    """Arguments with each real number converted by `real`."""
     return tuple(_one(part, kind, real) for part, kind in zip(value, kinds, strict=True))
 
 
@@ -272,7 +271,7 @@ def compare(
 ) -> Compared:
     """Compare all readings of a kernel or definition.
 
-    masks: positions of bit masks; more: rows beside those that are made here; machine: with machine code.
+    masks: positions of bit masks; more: additional rows; machine: include machine code.
     """
     try:
         rows = arguments.rows(function, masks, more)

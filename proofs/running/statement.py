@@ -1,9 +1,8 @@
-"""What a theorem states, run as Python on numbers: premises, kernels, definitions and goals.
+"""A theorem's statement run as Python on numbers: premises, kernels, definitions and goals.
 
-The claim is the theorem's own function; what differs is the object that it is given. Numbers stand
-for its arbitrary values, kernels and definitions are run by CPython on rationals, and where the premises hold
-each goal, each premise of a lemma and each step of an induction must be true. Nothing here asks the
-solver or the lifter, so a fault of either shows.
+The theorem's own function is run with another object in place of its claim. Numbers replace its arbitrary values,
+kernels and definitions are run by CPython on rationals, and where the premises hold each goal, each premise of a
+lemma and each step of an induction must be true. Neither solver nor lifter is used, so a fault of either shows.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ Point = Mapping[str, Any]
 ERRORS = (ZeroDivisionError, ValueError, OverflowError)
 WHOLE = 2**61
 ROWS = 6
-"""So many arguments of a function are handed on to the comparison of its readings."""
+"""The most arguments of a function that are passed on to the comparison of its readings."""
 
 
 class Outside(Exception):
@@ -31,15 +30,15 @@ class Outside(Exception):
 
 
 class NotRun(Exception):
-    """The statement cannot be run on numbers: it does something that only terms can."""
+    """The statement cannot be run on numbers: it uses operations that only terms have."""
 
 
 class False_(Exception):
-    """Something that was to be shown is not so."""
+    """A goal, or another obligation, is false."""
 
 
 class Values:
-    """Numbers for the arbitrary values of a claim: those of a point, drawn where it has none."""
+    """Numbers for the arbitrary values of a claim: from a point, or else drawn."""
 
     def __init__(self, point: Point, seed: str) -> None:
         self.point, self.rng = point, random.Random(seed)
@@ -75,7 +74,7 @@ SPECIAL = (0, 1, -1, 2**53 - 1, 2**53, 2**53 + 1, Fraction(1, 2**1074), Fraction
 
 @dataclass
 class OnNumbers:
-    """Stands for a `Claim` while its theorem is run; the names mean what they mean there."""
+    """In place of a `Claim` while its theorem is run; methods correspond to those of `Claim`."""
 
     values: Values
     load: Callable[[str], Callable[[Any], None]]
@@ -147,16 +146,16 @@ class OnNumbers:
             raise False_(f"{qualified(function)} is not defined there: {error}") from error
 
     def opaque(self, *functions: Callable[..., Any]) -> None:
-        """Nothing is closed to a function that runs."""
+        """No effect: a running function is not opaque."""
 
     def calls(self, function: Callable[..., Any]) -> Iterable[tuple[Any, ...]]:
-        """None: those of all paths are known of terms alone. What is said of each is not run."""
+        """Empty: calls on all paths are known for terms only. Statements about each call are not run."""
         return iter(())
 
     def congruence(
         self, function: Callable[..., Any], one: tuple[Any, ...], other: tuple[Any, ...]
     ) -> None:
-        """Functions that run have it."""
+        """No effect: running functions satisfy it."""
 
     def fold(
         self,
@@ -222,7 +221,7 @@ class OnNumbers:
         return then if truth(if_) else True
 
     def all_of(self, *conditions: Any) -> Any:
-        # a premise makes each true in turn
+        # a premise makes each of them true in turn
         return All(tuple(c if isinstance(c, Open) else truth(c) for c in conditions))
 
     def any_of(self, *conditions: Any) -> Any:
@@ -241,7 +240,7 @@ class OnNumbers:
 
 
 def truth(value: Any) -> bool:
-    """The value of a statement that is run; raises NotRun for what is none."""
+    """The truth value of a statement that is run; raises NotRun for any other value."""
     if isinstance(value, Open):
         return bool(value)
     if not isinstance(value, bool):
@@ -266,7 +265,7 @@ def _flat(values: dict[str, Any]) -> dict[str, Any]:
 
 
 def _of_kinds(function: Callable[..., Any], args: Iterable[Any]) -> tuple[Any, ...]:
-    """Arguments as the function's types say: an integer for a real is a fraction."""
+    """Arguments converted to the function's types: an integer for a real becomes a fraction."""
     try:
         kinds = [kind for name, kind in get_type_hints(function).items() if name != "return"]
     except (NameError, TypeError):

@@ -1,4 +1,4 @@
-"""One theorem run: at the solver's witnesses, and at special and random numbers."""
+"""Runs one theorem: at the solver's witnesses, and at special and random numbers."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from cratous.proofs.running.points import witnesses
 from cratous.proofs.running.statement import False_, NotRun, OnNumbers, Outside, Values
 
 DRAWN, FEW, DRAWN_AT_MOST = 24, 3, 400
-"""So many points are drawn beside the witnesses; more where no more than FEW of them count."""
+"""The number of points drawn beside the witnesses; more, up to DRAWN_AT_MOST, while at most FEW of them count."""
 ENOUGH = 3
-"""So many differences of a theorem are told."""
+"""The most differences reported per theorem."""
 
 Function = tuple[str, str]
-"""A function that is no part of another one: its module and its name there."""
+"""A function that is not nested in another one: its module and its name there."""
 
 
 @dataclass(frozen=True)
 class Functions:
-    """Functions that a theorem looked into: positions of bit masks, and arguments it gave them."""
+    """Functions that a theorem looked into: positions of bit masks, and arguments that it passed."""
 
     masks: dict[Function, frozenset[int]] = field(default_factory=dict)
     rows: dict[Function, tuple[tuple[Any, ...], ...]] = field(default_factory=dict)
@@ -48,14 +48,14 @@ def run(name: str, claim: Claim, folder: Path) -> tuple[Ran, Functions]:
         if _is_compared(function):
             key = (function.__module__, function.__qualname__)
             bits = {k for k, arg in enumerate(visit.args) if isinstance(arg, SymMask)}
-            # a whole number beside a mask is one too
+            # an integer literal beside a mask is a mask too
             bits |= {k for k, arg in enumerate(visit.args) if bits and type(arg) is int}
             masks[key] = masks.get(key, frozenset()) | bits
     return ran, Functions(masks, {key: tuple(rows) for key, rows in called.items() if key in masks})
 
 
 def _is_compared(function: Callable[..., Any]) -> bool:
-    """A kernel or definition: no helper of a theorem, and nothing that only another function can name."""
+    """Whether it is a kernel or definition: not a helper of a theorem, nor a nested function."""
     top, *parts = function.__module__.split(".")
     helper = "theorems" in parts or (top == "cratous" and parts[:1] == ["proofs"])
     return ours(function) and not helper and "<locals>" not in function.__qualname__
@@ -81,7 +81,7 @@ def _ran(
         try:
             statement(on)
         except (Outside, Undecided, ZeroDivisionError):
-            continue  # a statement's own division by zero stands for any number
+            continue  # a division by zero in the statement itself may have any value
         except False_ as error:
             if len(found) < ENOUGH:
                 found.append(f"run as Python: {error}: {_numbers(on.shown)}")
@@ -96,7 +96,7 @@ def _ran(
 
 
 def _is_double(value: Any) -> bool:
-    """A number that a double is, or an integer or truth value."""
+    """Whether the value is exactly a double, or an integer or truth value."""
     try:
         return not isinstance(value, Fraction) or Fraction(float(value)) == value
     except OverflowError:

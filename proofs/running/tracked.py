@@ -1,7 +1,7 @@
-"""Numbers that know whether doubles would carry the same values through a calculation.
+"""Numbers that detect whether a calculation on doubles would round.
 
-Where every result on the way is a double, nothing is rounded, so a calculation on doubles must give
-what the one on rationals gives. Where one is not, the two may differ, and nothing is asked of them.
+Where every intermediate result is a double, nothing is rounded, so a calculation on doubles must equal the one on
+rationals. Otherwise the two may differ, and they are not compared.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from cratous.proofs.running.copies import rational_root
 
 
 class Rounded(Exception):
-    """A result on the way is no double."""
+    """An intermediate result is not a double."""
 
 
 def _value(other: Any) -> Fraction:
@@ -39,7 +39,7 @@ def _comparison(operation: Callable[[Any, Any], bool]) -> Callable[..., Any]:
 
 
 class Tracked:
-    """A rational number that is a double; arithmetic raises Rounded where the result is none."""
+    """A rational number that is a double; arithmetic raises Rounded where the result is not one."""
 
     __slots__ = ("value",)
     __hash__ = None  # type: ignore[assignment]
@@ -79,5 +79,5 @@ class Tracked:
 
 
 def tracked_root(value: Any) -> Tracked:
-    """The root of a number whose root is a double; Undecided or Rounded for any other."""
+    """The root of a number if it is a double; Undecided or Rounded otherwise."""
     return Tracked(rational_root(_value(value)))

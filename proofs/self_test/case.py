@@ -1,10 +1,10 @@
-"""A case of the self-test: a package as text, and what must come of proving it.
+"""A case of the self-test: a package as text, and the required verdict.
 
-A file begins with `verdict: refused`, `accepted` or `open` (a known hole: it ought to be refused), `because:` (one plain sentence) and, if
-it is to be refused, `says:` (what the refusal must contain: words separated by commas, each with
-its alternatives separated by `|`). `without: subset` leaves out the list of permitted syntax, so that what
-else would notice is tried. Then the package's files follow, each after a line such as
-`== spec/meaning.py`. The package is called `pkg` in them.
+A file begins with `verdict: refused`, `accepted` or `open` (a known gap: it ought to be refused), `because:` (one
+plain sentence) and, if it is to be refused, `says:` (what the refusal must contain: items separated by commas, each
+with its alternatives separated by `|`). `without: subset` leaves out the list of permitted syntax, to test the checks
+behind it. Then the package's files follow, each after a line such as `== spec/meaning.py`. The package is called
+`pkg` in them.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ EMPTY = {"__init__.py": "", "spec/__init__.py": ""}
 
 @dataclass(frozen=True)
 class Case:
-    """A package, by the text of each file, with the verdict that it must get and why.
+    """A package, as the text of each file, with the required verdict and its reason.
 
-    says: all of these must be in the refusal, of each at least one alternative; without: what of the
-    prover is left out.
+    says: items that the refusal must contain, at least one alternative of each; without: the part of the prover that
+    is left out.
     """
 
     kind: str
@@ -53,13 +53,13 @@ class Case:
             file.write_text(PACKAGE.sub(package, text), encoding="utf-8")
 
     def unsaid(self, reason: str) -> list[str]:
-        """What the reason of a refusal should contain and does not."""
+        """The items of `says` that the reason of a refusal lacks."""
         said = reason.lower()
         return [" or ".join(ways) for ways in self.says if not any(w in said for w in ways)]
 
 
 def read(file: Path) -> Case:
-    """The case of a file; raises BadInput for one that is none."""
+    """The case in a file; raises BadInput for a malformed one."""
     parts = SECTION.split(file.read_text(encoding="utf-8"))
     head: dict[str, str] = {}
     for line in parts[0].splitlines():

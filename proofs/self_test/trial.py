@@ -1,7 +1,7 @@
-"""One case tried: its package is written, proved as `cratous prove --package` does it, and judged.
+"""Runs one case: its package is written, proved as by `cratous prove --package`, and judged.
 
-Each is tried in a process forked from one state: what a case does to the registry, to modules or
-to the prover itself is gone with it, and no verdict depends on the cases before.
+Each case runs in a process forked from the same state: its effects on the registry, on modules or on the prover
+itself end with the process, and no verdict depends on earlier cases.
 """
 
 from __future__ import annotations
@@ -38,14 +38,14 @@ from cratous.proofs.self_test.case import Case
 from cratous.spec.errors import BadInput, CratousError
 
 CPU_S = 60
-"""CPU seconds after which a case is ended: many times what any takes."""
+"""CPU seconds after which a case is ended: far above what any needs."""
 
 
 @dataclass(frozen=True)
 class Trial:
-    """What came of a case: accepted, refused or broken (the prover ended in an error of its own).
+    """The result of a case: accepted, refused or broken (the prover ended with an error of its own).
 
-    reason: why it was refused; vouched: a ledger was left that vouches for all of its kernels.
+    reason: why it was refused; vouched: whether a ledger was left that vouches for all of its kernels.
     """
 
     case: Case
@@ -55,7 +55,7 @@ class Trial:
 
     @property
     def wrong(self) -> str:
-        """What is not as it must be, in one line; nothing where all is."""
+        """What differs from the required verdict, in one line; empty if nothing does."""
         said = " ".join(self.reason.split())
         if self.case.verdict == "open":
             return (
@@ -81,9 +81,9 @@ def _reason(found: Judgement) -> str:
 
 
 def _vouches(package: str, folder: Path) -> bool:
-    """The gate of another process finds a ledger, and nothing against any kernel of the package."""
+    """Whether the gate, in another process, accepts the ledger and every kernel of the package."""
     _begin(folder)
-    vars(gate)["keys_of"] = made_anew  # nobody asks for this package's keys again
+    vars(gate)["keys_of"] = made_anew  # nothing else asks for this package's keys
     try:
         return not gate.check(home=gate.package(package)).problems
     except CratousError:
@@ -91,7 +91,7 @@ def _vouches(package: str, folder: Path) -> bool:
 
 
 def _begin(folder: Path) -> None:
-    """Prepare a forked process for a package that lies in this folder; what it prints is not heard."""
+    """Prepare a forked process for a package in this folder; its output is discarded."""
     silence = os.open(os.devnull, os.O_WRONLY)
     os.dup2(silence, 1)
     os.dup2(silence, 2)
@@ -101,7 +101,7 @@ def _begin(folder: Path) -> None:
 
 
 def _leave_out(what: str) -> None:
-    """Switch off a part of the prover in this process, so that a case meets what comes after it."""
+    """Switch off a part of the prover in this process, so that a case reaches the checks behind it."""
     if what == "subset":
         vars(ledger)["lint_all"] = lambda entries: []
         vars(definition_subset)["outside"] = lambda function: []
@@ -109,12 +109,11 @@ def _leave_out(what: str) -> None:
 
 
 def _proved(package: str, folder: Path, without: str) -> tuple[str, str, bool]:
-    """The verdict on a package that lies in this folder, the reason, whether a ledger could vouch.
+    """The verdict on a package in this folder, the reason, and whether a ledger could vouch for it.
 
-    Machine code takes longer than all else: it is compared where a part of the prover is left out.
-
-    A ledger is written only where it could: one that says of a kernel of the package that it is not
-    proved vouches for none, whatever its keys are.
+    Machine code takes longer than all else: it is compared only where a part of the prover is left out. A ledger is
+    written only where it could vouch: one that records a kernel of the package as not proved vouches for none,
+    whatever its keys are.
     """
     _begin(folder)
     _leave_out(without)
@@ -132,13 +131,13 @@ def _proved(package: str, folder: Path, without: str) -> tuple[str, str, bool]:
             records.write(said, home.records)
         return ("accepted" if found.holds else "refused"), _reason(found), could
     except CratousError as error:
-        return "refused", str(error), True  # it may have written one itself
-    except BaseException as error:  # a case may raise whatever it likes
+        return "refused", str(error), True  # the case may have written a ledger itself
+    except BaseException as error:  # a case may raise anything
         return "broken", f"{type(error).__name__}: {error}", True
 
 
 def attempt(case: Case) -> Trial:
-    """Try one case, in a folder and in processes of its own."""
+    """Run one case, in a folder and in processes of its own."""
     package = f"tried_{case.kind}_{case.name}"
     with tempfile.TemporaryDirectory(prefix="cratous-") as made:
         folder = Path(made).resolve()
@@ -151,21 +150,21 @@ def attempt(case: Case) -> Trial:
             vouched = (
                 could and written and worker_processes.call(partial(_vouches, package, folder))
             )
-        except Exception as error:  # it ended its process, or the gate met what it does not expect
+        except Exception as error:  # it ended its process, or the gate met something unexpected
             return Trial(case, "broken", f"{type(error).__name__}: {error}", False)
-        # as the case calls it: the package's long name has words of its own
+        # the name used in the case: the package's long name contains other words
         return Trial(case, verdict, reason.replace(package, "pkg"), vouched)
 
 
 def attempts(cases: Sequence[Case], jobs: int = 1) -> Iterator[Trial]:
-    """Try these cases, so many at once; the trials come as they are done."""
+    """Run these cases, `jobs` at once; results in the order of completion."""
     prepare()
     plain = [case for case in cases if not case.without]
-    # the compiler makes a process twice as large, and few of them need it
+    # the compiler doubles the size of a process, and few cases need it
     for some in (plain, [case for case in cases if case.without]):
         if some and some is not plain:
             importlib.import_module("numba")
-        if jobs == 1:  # each has processes of its own anyway
+        if jobs == 1:  # each case has processes of its own anyway
             yield from map(attempt, some)
             continue
         tried: Sequence[Callable[[], Trial]] = [partial(attempt, case) for case in some]
@@ -175,11 +174,11 @@ def attempts(cases: Sequence[Case], jobs: int = 1) -> Iterator[Trial]:
 
 @functools.cache
 def prepare() -> None:
-    """Read what every ledger hashes, and wake the solver, so that forked processes find it done."""
+    """Read what every ledger hashes, and initialise the solver, so that forked processes need not."""
     gate.check()
-    _ = gate.Keys().shared  # the tables of all modules that a key is made from
+    _ = gate.Keys().shared  # the tables of all modules from which keys are made
     solver_memory.keep()
     z3.Solver(ctx=z3.main_ctx()).check()
     gc.collect()
-    gc.freeze()  # else each process copies what its collector looks at
-    gc.disable()  # what is forked from here ends before its garbage is worth looking for
+    gc.freeze()  # otherwise each process copies the pages that its garbage collector visits
+    gc.disable()  # forked processes end before garbage collection pays off

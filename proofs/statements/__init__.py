@@ -1,1 +1,1 @@
-"""What theorems say of kernels: which definition each is held against, and what is restated."""
+"""Analysis of theorem statements: the definition each kernel is proved against, and which are restatements."""

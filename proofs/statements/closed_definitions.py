@@ -1,4 +1,4 @@
-"""Definitions as a statement sees them that is read without looking into them: closed, by name.
+"""Definitions as closed objects with a name, for reading a statement without looking into them.
 
 A claim gives each use of one a value (`closed_value`); see `proofs.statements.relations`.
 """
@@ -33,7 +33,7 @@ def part_of(function: Any) -> str:
 
 @dataclass(frozen=True)
 class Closed:
-    """A definition as a statement sees it: whether it is called or handed on, it stays closed."""
+    """A definition as seen by the statement: called or passed on, it stays closed."""
 
     function: Function
     claim: Any = field(compare=False, repr=False)
@@ -65,14 +65,14 @@ def closed(value: Any, claim: Any) -> Any:
 
 
 def _speaks_of_spec(value: Any) -> bool:
-    """A helper of theorems: a function of proofs in whose reach definitions are."""
+    """Whether the value is a helper of theorems: a function of proofs that can reach definitions."""
     if not isinstance(value, types.FunctionType) or part_of(value) != "proofs":
         return False
     return any(closed(each, None) is not each for each in value.__globals__.values())
 
 
 def reopened(statement: Function, claim: Any) -> Function:
-    """The statement with its helpers, in whose globals the definitions are closed."""
+    """The statement with its helpers, whose globals hold closed definitions."""
     scopes: dict[int, dict[str, Any]] = {}
 
     def copy(function: Function) -> Function:

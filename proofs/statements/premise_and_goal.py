@@ -1,8 +1,9 @@
-"""The two sides of what a theorem shows: what is given, and what follows."""
+"""Splits a goal into its conditions and its conclusions."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from collections.abc import Set as AbstractSet
 
 import z3
 
@@ -22,15 +23,26 @@ def sides(goal: z3.BoolRef) -> Iterator[tuple[list[z3.BoolRef], z3.BoolRef]]:
         yield [], goal
 
 
-def signs(term: z3.BoolRef, names: frozenset[str], sign: bool = True) -> set[bool]:
-    """How the values of these names stand in a condition: as they are (True), denied (False)."""
-    if not names & free_names(term):
+def signs(
+    term: z3.BoolRef,
+    names: frozenset[str],
+    sign: bool = True,
+    *,
+    within: Callable[[z3.ExprRef], AbstractSet[str]] = free_names,
+) -> set[bool]:
+    """How values of these names occur in a condition: positively (True), negated (False).
+
+    within: returns the names in a term.
+    """
+    if not names & within(term):
         return set()
     if z3.is_not(term):
-        return signs(term.children()[0], names, not sign)
+        return signs(term.children()[0], names, not sign, within=within)
     if z3.is_and(term) or z3.is_or(term):
-        return set().union(*[signs(part, names, sign) for part in term.children()])
+        parts = term.children()
+        return set().union(*[signs(part, names, sign, within=within) for part in parts])
     if z3.is_implies(term):
         first, second = term.children()
-        return signs(first, names, not sign) | signs(second, names, sign)
+        before = signs(first, names, not sign, within=within)
+        return before | signs(second, names, sign, within=within)
     return {sign}

@@ -1,10 +1,10 @@
-"""Whether a driver's output goes through a kernel before anyone can use it: read from its text.
+"""Whether a kernel checks a driver's output before anyone can use it: determined from the source text.
 
-A driver is re-checked by a kernel if no value leaves it that the kernel has not said yes to. Each `return`
-gives names that a condition on the way there has put to the kernel, or it refuses: it raises, or
-gives None or a `Refusal`. The condition is a call of the kernel or fold, or of a function of `core` that
-is true only where the kernel said yes. Values are of types that cannot change, so what was put to it
-is what leaves. How the value was found does not count; what yes means says the kernel's definition.
+A driver is re-checked by a kernel if it returns no value that the kernel has not accepted. Each `return` gives names
+that a condition on the path to it has passed to the kernel, or it is a refusal: it raises, or returns None or a
+`Refusal`. The condition is a call of the kernel or fold, or of a function of `core` that is true only where the
+kernel accepted. The values have immutable types, so what was checked is what is returned. How the value was computed
+does not matter; what acceptance means is given by the kernel's definition.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from cratous.core.kernel.sources import ours, text_of
 
 Names = frozenset[str]
 Said = Mapping[str, Names]
-"""Who has said yes to the value that a name has now."""
+"""For each name, the kernels that have accepted its present value."""
 NOBODY: Names = frozenset()
 DEPTH = 4
-"""So many functions are looked into, one within the other, for who says yes."""
+"""The depth to which nested calls are followed to find the accepting kernel."""
 
 
 def rechecked_by(entry: Entry) -> tuple[str, ...]:
-    """The kernels and folds that each value which a driver returns was put to; none if it is not so."""
+    """The kernels and folds that check every value that a driver returns; empty if there are none."""
     function = entry.function
     if entry.kind != "driver" or not isinstance(function, types.FunctionType):
         return ()
@@ -40,7 +40,8 @@ def rechecked_by(entry: Entry) -> tuple[str, ...]:
 
 
 class _Reader:
-    """Follows a driver's statements. results: of each return that claims something, who said yes to it."""
+    """Follows a driver's statements. results: for each return other than a refusal, the kernels that accepted the
+    value."""
 
     def __init__(self, node: ast.FunctionDef, scope: Mapping[str, Any]) -> None:
         arguments, bound = _arguments(node), _bound(node)
@@ -49,7 +50,7 @@ class _Reader:
         self.results: list[Names] = []
 
     def block(self, body: Iterable[ast.stmt], said: Said) -> Said | None:
-        """Read statements in order; who has said yes after them, None if nothing comes after them."""
+        """Read statements in order; returns who has accepted what after them, None if they do not complete."""
         now: Said = said
         for statement in body:
             match statement:
@@ -70,7 +71,7 @@ class _Reader:
                 case ast.FunctionDef() | ast.ClassDef():
                     now = _without(now, {statement.name})
                 case _:
-                    # of a loop's names nothing is known at its beginning
+                    # at the start of a loop nothing is known of the names that it binds
                     now = _without(now, _bound(statement))
                     for inner in _bodies(statement):
                         self.block(inner, now)
@@ -83,8 +84,8 @@ class _Reader:
         made: list[Names] = []
         for part in parts:
             if isinstance(part, ast.Name) and part.id in self.given:
-                continue  # what came in goes out
-            # of a constant, or what is made here, nobody was asked
+                continue  # an argument that is returned unchanged
+            # a constant, or a value built here, was not checked
             made.append(said.get(part.id, NOBODY) if isinstance(part, ast.Name) else NOBODY)
         self.results.append(frozenset.intersection(*made) if made else NOBODY)
 
@@ -99,7 +100,7 @@ class _Reader:
 
 
 def put_to(test: ast.expr, scope: Mapping[str, Any], depth: int = 0) -> dict[str, Names]:
-    """Where a condition is true: the names that were put to kernels which said yes, with those."""
+    """The names that kernels have accepted where a condition is true, with those kernels."""
     match test:
         case ast.UnaryOp(op=ast.Not(), operand=ast.UnaryOp(op=ast.Not(), operand=inner)):
             return put_to(inner, scope, depth)
@@ -131,7 +132,7 @@ def _all_put(parts: Iterable[ast.expr], scope: Mapping[str, Any], depth: int) ->
 
 
 def _yes_of(value: Any, depth: int) -> Names:
-    """Who said yes where a call of this is true: itself, or those without whom it is not true."""
+    """The kernels that have accepted where a call of this is true: itself, or those that it depends on."""
     entry = entry_of(value)
     if entry is not None:
         return NOBODY if entry.kind == "driver" else frozenset([entry.name])
@@ -146,16 +147,16 @@ def _yes_of(value: Any, depth: int) -> Names:
 
 
 def _in_core(function: Callable[..., Any]) -> bool:
-    # a package with kernels of its own has no such folder
+    # in a package with kernels of its own, all folders but `spec`
     return ours(function) and function.__module__.split(".")[1:2] != ["spec"]
 
 
 def _truths(
     body: Iterable[ast.stmt], known: Names, scope: Mapping[str, Any], depth: int
 ) -> list[Names]:
-    """For each return of a function that may be true: who has said yes by then.
+    """For each return of a function that may be true: the kernels that have accepted by then.
 
-    known: who has on the way to here.
+    known: those that have accepted on the path to here.
     """
     found: list[Names] = []
     for statement in body:
@@ -195,7 +196,7 @@ def _result(function: Callable[..., Any]) -> Any:
 
 
 def _is_fixed(kind: Any) -> bool:
-    """No value of this type can change: numbers, and records and tuples of such."""
+    """Whether values of this type are immutable: numbers, and records and tuples of such."""
     if kind in PLAIN:
         return True
     if get_origin(kind) in (Union, types.UnionType):
@@ -228,7 +229,7 @@ def _arguments(node: ast.FunctionDef) -> Names:
 
 
 def _bound(node: ast.AST) -> Names:
-    """Names that a statement may bind, to whatever."""
+    """Names that a statement may bind."""
     found = {
         n.id for n in ast.walk(node) if isinstance(n, ast.Name) and not isinstance(n.ctx, ast.Load)
     }
@@ -273,6 +274,6 @@ def _more(said: Said, new: Said) -> dict[str, Names]:
 
 
 def _common(ways: list[Said]) -> dict[str, Names]:
-    """What is so on each of these ways."""
+    """What all of these paths have in common."""
     shared = set.intersection(*[set(way) for way in ways])
     return {name: frozenset.intersection(*[way[name] for way in ways]) for name in shared}

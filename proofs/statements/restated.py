@@ -1,8 +1,8 @@
-"""Whether a definition has its kernel's own formula: then a proof of their equality says little.
+"""Whether a definition has its kernel's own formula, in which case a proof of their equality says little.
 
-Both bodies are brought into one form: names by position, a value named once put where it is used,
-branches as one condition, operands that may change places in order, fields of records by number,
-constants by value, and in place of a call what is called.
+Both bodies are brought to a normal form: names by position, a named value substituted where it is used, branches as
+one conditional, operands of commutative operators in a fixed order, fields of records by number, constants by value,
+and calls replaced by what is called.
 """
 
 from __future__ import annotations
@@ -17,25 +17,25 @@ from typing import Any, cast, get_type_hints
 from cratous.core.kernel.sources import text_of
 
 Form = tuple[Any, ...]
-"""A node: what it is, then its parts."""
+"""A node: its kind, followed by its parts."""
 
 COMMUTE = {"Add", "Mult", "And", "Or", "Eq", "NotEq", "BitAnd", "BitOr", "BitXor", "min", "max"}
 NESTED = {"Add", "Mult", "And", "Or", "min", "max"}
-"""Also grouped as one likes: a + (b + c)."""
+"""Operators that are also associative: a + (b + c)."""
 TURNED = {"Gt": "Lt", "GtE": "LtE"}
 CONSTANTS = (bool, int, float, str)
 
 
 DEPTH = 4
-"""Calls within calls that are looked into; what goes deeper is no formula but a computation."""
+"""The depth to which nested calls are followed; beyond it the body counts as a computation, not a formula."""
 
 
 class NoForm(Exception):
-    """The body has statements that this comparison does not read."""
+    """The body has statements that this comparison does not support."""
 
 
 def restates(kernel: Callable[..., Any], definition: Callable[..., Any]) -> bool | None:
-    """True iff both have the same formula; None where one of them is more than a formula."""
+    """True iff both have the same formula; None where one of them is not a formula."""
     try:
         return form(kernel) == form(definition)
     except (NoForm, OSError, TypeError):
@@ -51,7 +51,7 @@ def form(function: Callable[..., Any]) -> Form:
 
 
 def _called(function: Callable[..., Any], arguments: list[Form], circle: tuple[Any, ...]) -> Form:
-    """What a function gives for these arguments."""
+    """The form of a function's result for these arguments."""
     if function in circle or len(circle) > DEPTH:
         raise NoForm
     node = _definition(function)
@@ -69,7 +69,7 @@ def _definition(function: Callable[..., Any]) -> ast.FunctionDef:
 
 
 class _Record(tuple[Any, ...]):
-    """The form of a record: equal to one of other names for the same fields."""
+    """The form of a record: equal to a record with other field names and the same fields."""
 
     names: tuple[str, ...]
 
@@ -81,7 +81,7 @@ def _record(parts: list[Form], names: tuple[str, ...] = ()) -> _Record:
 
 
 def _argument(at: Form, kind: Any) -> Form:
-    """An argument; a record is the tuple of its fields."""
+    """The form of an argument; a record is the tuple of its fields."""
     names = getattr(kind, "_fields", None)
     if names is None:
         return at
@@ -96,7 +96,7 @@ class _Reader:
         self.globals, self.circle = function.__globals__, circle
 
     def block(self, body: list[ast.stmt], scope: dict[str, Form]) -> Form:
-        """What is returned from here on."""
+        """The form of the result of these statements."""
         if not body:
             raise NoForm
         first, rest = body[0], body[1:]
@@ -116,7 +116,7 @@ class _Reader:
         raise NoForm
 
     def named(self, target: ast.expr, value: ast.expr, scope: dict[str, Form]) -> dict[str, Form]:
-        """What an assignment names."""
+        """The forms of the names that an assignment binds."""
         made = self.value(value, scope)
         if isinstance(target, ast.Name):
             return {target.id: made}
@@ -173,7 +173,7 @@ class _Reader:
         return ("field", inner, attr)
 
     def call(self, called: ast.expr, args: list[Form]) -> Form:
-        """A call: of a record's class its fields, of a function its form."""
+        """The form of a call: for a record class its fields, for a function its body's form."""
         target: Any = None
         if isinstance(called, ast.Name):
             target = self.globals.get(called.id, called.id)
@@ -188,11 +188,11 @@ class _Reader:
         return self.refuse()
 
     def constant(self, known: Any) -> Form:
-        """A number from outside."""
+        """The form of a constant from outside the function."""
         return ("constant", repr(known)) if isinstance(known, CONSTANTS) else self.refuse()
 
     def refuse(self) -> Form:
-        """What is not compared."""
+        """Raise NoForm for anything that is not compared."""
         raise NoForm
 
 
@@ -221,7 +221,7 @@ def _negated(part: Form) -> Form:
 
 
 def _either(condition: Form, yes: Form, no: Form) -> Form:
-    """yes where the condition holds, else no; of truth values, as the logic that it is."""
+    """The form of a conditional; for truth values, as and/or/not."""
     if yes == TRUE:
         return condition if no == FALSE else _joined("Or", [condition, no])
     if yes == FALSE:

@@ -1,7 +1,7 @@
-"""What a theorem says, as a sentence made from its statement: for any ..., given ..., then ...
+"""A theorem's statement as a sentence: for any ..., given ..., then ...
 
-It is read off the outline of the claim (`proofs.statements.relations`), in which kernels and definitions
-stay closed, so it names them as the statement uses them; the author's words are no part of it.
+It is derived from the outline of the claim (`proofs.statements.relations`), in which kernels and definitions stay
+closed, so it names them as the statement uses them; the author's own sentence is not used.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from cratous.proofs.engine.obligation import Obligation
 from cratous.proofs.engine.terms import known
 
 CLAUSES_MAX = 12
-"""So many premises or goals that stand together are written out; the others are counted."""
+"""The most premises or goals in one list that are written out; the others are counted."""
 CLAUSE_MAX, SENTENCE_MAX = 400, 1500
-"""A clause or a sentence that is longer is cut, and says so [characters]."""
+"""A longer clause or sentence is truncated with a note [characters]."""
 UNREAD = (
     "no sentence could be made from its statement, which looks into its functions: read its file"
 )
 VALUES_MAX, OBLIGATIONS_MAX = 200, 300
-"""A statement of more than these is about many functions at once, and would change with each of them."""
+"""Limits beyond which a statement is about many functions at once, and would change with each of them."""
 MANY = "no sentence could be made from its statement, which is about many functions at once: read its file"
 JOINED = {
     z3.Z3_OP_OR: (" or ", 1), z3.Z3_OP_AND: (" and ", 2), z3.Z3_OP_ADD: (" + ", 5),
@@ -33,7 +33,7 @@ JOINED = {
     z3.Z3_OP_LT: (" < ", 4), z3.Z3_OP_GT: (" > ", 4), z3.Z3_OP_DISTINCT: (" != ", 4),
     z3.Z3_OP_BAND: (" & ", 5), z3.Z3_OP_BOR: (" | ", 5), z3.Z3_OP_BXOR: (" ^ ", 5),
 }  # fmt: skip
-"""How an operation is written between its operands, and how tightly it binds."""
+"""The symbol of an operation between its operands, and its precedence."""
 DENIED = {
     z3.Z3_OP_EQ: " != ", z3.Z3_OP_LE: " > ", z3.Z3_OP_GE: " < ", z3.Z3_OP_LT: " >= ",
     z3.Z3_OP_GT: " <= ", z3.Z3_OP_DISTINCT: " = ",
@@ -42,20 +42,20 @@ TURNED = {
     z3.Z3_OP_EQ: z3.Z3_OP_EQ, z3.Z3_OP_LE: z3.Z3_OP_GE, z3.Z3_OP_GE: z3.Z3_OP_LE,
     z3.Z3_OP_LT: z3.Z3_OP_GT, z3.Z3_OP_GT: z3.Z3_OP_LT,
 }  # fmt: skip
-"""A comparison with its sides the other way round: a number is written last."""
+"""The comparison with its sides exchanged: a number is written last."""
 
 
 class Call(NamedTuple):
-    """A closed function's use: what it was, and what it was given."""
+    """A use of a closed function: the function and its arguments."""
 
     function: Any
     args: tuple[Any, ...]
 
 
 class Stated(NamedTuple):
-    """A claim as it was read. kinds: of the arbitrary values, by name; calls: what a value stands for,
-    by the name that all its parts begin with; given: premises at each obligation, by its number;
-    items: by induction, what an item is made of; relation: what holds before an item."""
+    """A claim's content. kinds: of the arbitrary values, by name; calls: the use behind a value, by the prefix of the
+    names of its parts; given: premises at each obligation, by its number; items: parts of an item of each
+    induction; relation: the hypothesis before an item."""
 
     kinds: Mapping[str, str]
     calls: Mapping[str, Call]
@@ -67,14 +67,14 @@ class Stated(NamedTuple):
 
 
 def sentence(stated: Stated) -> str:
-    """The statement in one line; `UNREAD` for one that is nested too deeply, or no term of the subset, and
-    `MANY` for one about many functions at once."""
+    """The statement in one line; `UNREAD` for one that is nested too deeply or outside of the subset, and `MANY` for
+    one about many functions at once."""
     if len(stated.kinds) > VALUES_MAX or len(stated.obligations) > OBLIGATIONS_MAX:
         return MANY
     try:
         return _sentence(stated)
     except (RecursionError, ctypes.ArgumentError, z3.Z3Exception):
-        return UNREAD  # ctypes, which z3 is called through, gives too deep a call another type
+        return UNREAD  # ctypes, through which z3 is called, changes the type of the recursion error
 
 
 def _sentence(stated: Stated) -> str:
@@ -120,7 +120,7 @@ def _examples(count: int) -> str:
 
 
 def _goal(owed: Obligation, relation: z3.BoolRef | None, text: _Text) -> str:
-    """What is shown; of an induction with what is known there."""
+    """A goal; in an induction together with the hypothesis."""
     if owed.kind == "base":
         is_known = z3.is_true(z3.simplify(owed.goal))
         return "the relation holds at the start" + ("" if is_known else f": {text.of(owed.goal)}")
@@ -132,14 +132,14 @@ def _goal(owed: Obligation, relation: z3.BoolRef | None, text: _Text) -> str:
 
 
 def _conditions(premises: Sequence[z3.BoolRef], text: _Text) -> list[str]:
-    """Premises in words; values that lie between the same two numbers stand together."""
+    """Premises in words; values with the same two bounds are listed together."""
     found: list[str] = []
     ranges: dict[tuple[str, str], list[str]] = {}
     for premise in premises:
         limits = _limits(premise)
         if limits is None:
             found.append(text.of(premise, 2))
-        elif limits[1:] != (-(2**61), 2**61):  # every integer of a machine has these
+        elif limits[1:] != (-(2**61), 2**61):  # every machine integer has these bounds
             low, high = map(_whole, limits[1:])
             ranges.setdefault((low, high), []).append(text.of(limits[0], 5))
     between = [f"{', '.join(v)} in [{low}, {high}]" for (low, high), v in ranges.items()]
@@ -147,7 +147,7 @@ def _conditions(premises: Sequence[z3.BoolRef], text: _Text) -> list[str]:
 
 
 def _limits(premise: z3.BoolRef) -> tuple[z3.ExprRef, int, int] | None:
-    """(value, least, most) of a premise that says just this."""
+    """(value, least, most) of a premise that states just such bounds."""
     if not z3.is_and(premise) or premise.num_args() != 2:
         return None
     low, high = (_bound(side) for side in premise.children())
@@ -180,7 +180,7 @@ def _cut(text: str, most: int) -> str:
 
 
 def _values(kinds: Mapping[str, str]) -> str:
-    """The arbitrary values, by kind; a vector as one."""
+    """The arbitrary values by kind; a vector as one value."""
     found: dict[str, list[str]] = {}
     for name, kind in kinds.items():
         root, _, part = name.rpartition(".")
@@ -202,10 +202,10 @@ class _Text:
         self.kept: list[z3.ExprRef] = []
 
     def of(self, term: z3.ExprRef, outer: int = 0) -> str:
-        """outer: how tightly what stands around binds."""
+        """The text of a term; outer: precedence of the surrounding operation."""
         key = (term.get_id(), outer)
         if key not in self.made:
-            self.kept.append(term)  # its number is not given to another term
+            self.kept.append(term)  # kept alive so that its id is not reused
             self.made[key] = self._of(term, outer)
         return self.made[key]
 
@@ -241,7 +241,7 @@ class _Text:
         return f"{term.decl().name()}({', '.join(map(self.of, parts))})" if parts else str(term)
 
     def chosen(self, condition: z3.ExprRef, yes: z3.ExprRef, no: z3.ExprRef, *, outer: int) -> str:
-        """One value or the other; of truth values what Python's `and` and `or` are."""
+        """A choice of two values; for truth values, as Python's `and` and `or`."""
         said, one, other = (self.of(part, 2) for part in (condition, yes, no))
         if other == said:
             return _within(f"{said} and {one}", 2, outer)
@@ -250,7 +250,7 @@ class _Text:
         return _within(f"{one} if {said} else {other}", 1, outer)
 
     def alike(self, one: z3.ExprRef, other: z3.ExprRef, *, outer: int) -> str:
-        """Two truth values are equal."""
+        """Equality of two truth values."""
         for value, rest in ((one, other), (other, one)):
             if z3.is_true(value):
                 return self.of(rest, outer)
@@ -259,14 +259,14 @@ class _Text:
         return _within(f"{self.of(one, 2)} exactly where {self.of(other, 2)}", 1, outer)
 
     def denied(self, term: z3.ExprRef, outer: int) -> str:
-        """A condition does not hold."""
+        """The negation of a condition."""
         kind = term.decl().kind()
         if kind in DENIED and term.num_args() == 2 and not z3.is_bool(term.arg(0)):
             return _within(DENIED[kind].join(self.of(p, 5) for p in term.children()), 4, outer)
         return _within(f"not {self.of(term, 4)}", 3, outer)
 
     def value(self, name: str) -> str:
-        """An arbitrary value, or what a closed function gives."""
+        """An arbitrary value, or the use of a closed function."""
         head, mark, rest = name.partition("#")
         number, dot, field = rest.partition(".")
         call = self.calls.get(f"{head}{mark}{number}") if mark else None
@@ -282,7 +282,7 @@ class _Text:
             fields: tuple[str, ...] = getattr(value, "_fields", ())
             whole = [t.removesuffix(f".{f}") for t, f in zip(inside, fields, strict=False)]
             if len(set(whole)) == 1 and whole[0] not in inside and len(fields) > 1:
-                return whole[0]  # all fields of one record: it is that record
+                return whole[0]  # all fields of one record are written as that record
             return f"({', '.join(inside)})"
         return self.of(known(value))
 
@@ -300,7 +300,7 @@ def _called(function: Any) -> str:
 
 
 def _whole(number: int) -> str:
-    """A large power of two as one."""
+    """A number; a large power of two as a power."""
     size = abs(number)
     if size >= 2**20 and size & (size - 1) == 0:
         return f"{'-' if number < 0 else ''}2^{size.bit_length() - 1}"

@@ -1,4 +1,4 @@
-"""What the status of each kernel, fold and driver rests on, as `core.ledger.status` words it."""
+"""The evidence for the status of each kernel, fold and driver (`core.ledger.status`)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cratous.proofs.statements.rechecked import rechecked_by
 
 
 def grounds(entries: Mapping[str, Entry], home: Home, proofs: Proofs) -> dict[str, Grounds]:
-    """By name; proofs: of all theorems of the home."""
+    """The evidence by name; proofs: of all theorems of the home."""
     return {
         name: Grounds(rechecked_by=rechecked_by(entry))
         if entry.kind == "driver"

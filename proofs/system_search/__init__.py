@@ -1,1 +1,1 @@
-"""Bounded search through the composition of the steps that run, for designs that are broken. No proof."""
+"""Bounded search for faults in the composition of the running steps. Not a proof."""

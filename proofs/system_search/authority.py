@@ -1,9 +1,9 @@
-"""Authority over one vehicle as a transition system: the kernels that run, and messages that get lost.
+"""Authority over one vehicle as a transition system: the kernels that run, and messages that may be lost.
 
-A message that was sent stays in the channel, so it may come late, twice, in any order or never; SETMOD lines
-may even be forged. Time is not searched: every wait is over and every peer is heard (`proofs/theorems/system`
-has the clocks). `changes` numbers the changes of authority that there really were; no design sees it. What
-is checked is `spec.system.authority` and `spec.authority`.
+A message once sent stays in the channel, so it may arrive late, twice, in any order or never; SETMOD lines may even
+be forged. Time is not searched: every wait is over and every peer is heard (`proofs/theorems/system` has the clocks).
+`changes` counts the actual changes of authority; no design reads it. The properties checked are those of
+`spec.system.authority` and `spec.authority`.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ NAMES = ("UxAS", "ICAROUS")
 
 
 class Command(NamedTuple):
-    """A command in the channel; changes: how many changes of authority there had been when it was made."""
+    """A command in the channel; changes: the number of changes of authority when it was made."""
 
     sender: int
     epoch: int
@@ -36,10 +36,10 @@ class Command(NamedTuple):
 
 
 class State(NamedTuple):
-    """One state: the parts, what UxAS was told last of the gate, and all that was ever sent.
+    """One state: the parts, the last report of the gate to UxAS, and everything sent so far.
 
-    taken: the epoch in which UxAS has last taken the vehicle, 0 at first, as its executive remembers it;
-    commanded: who had a command accepted last; returned: UxAS has flown again after ICAROUS had.
+    taken: the epoch in which UxAS last took the vehicle, 0 at first, as its executive remembers it; commanded: who
+    last had a command accepted; returned: UxAS has flown again after ICAROUS had.
     """
 
     gate: Gate = Gate(0, 0, False)
@@ -56,9 +56,9 @@ class State(NamedTuple):
 
 
 class Step(NamedTuple):
-    """What happens, as a user reads it; the state afterwards; and what is wrong with it, or nothing.
+    """One step: its description, the state afterwards, and the fault, if any.
 
-    event: the same as data; accepted: the command that arrives acts; sent: the epoch of a command that UxAS
+    event: the same as data; accepted: the arriving command takes effect; sent: the epoch of a command that UxAS
     sends, or NOTHING.
     """
 
@@ -80,13 +80,13 @@ class Step(NamedTuple):
 
 
 def taken_epoch(state: State) -> int:
-    """The epoch that a new track of UxAS names: the one in which it took the vehicle."""
+    """The epoch that a new track of UxAS carries: the one in which UxAS took the vehicle."""
     return state.taken
 
 
 @dataclass(frozen=True)
 class Design:
-    """The steps of the composition. As it stands: the kernels that run; a seeded fault replaces some."""
+    """The steps of the composition: by default the kernels that run; a seeded fault replaces some."""
 
     accepts: Callable[[Gate, int, int], bool] = gates.gate_accepts
     commanded: Callable[[Gate, int, int], Gate] = gates.gate_after
@@ -101,16 +101,16 @@ class Design:
     names: Callable[[State], int] = taken_epoch
 
     def first(self) -> State:
-        """UxAS flies."""
+        """The initial state: UxAS flies."""
         return State()
 
     def steps(self, state: State) -> Iterator[Step]:
-        """Everything that can happen next."""
+        """All possible next steps."""
         return steps(self, state)
 
 
 def steps(design: Design, state: State) -> Iterator[Step]:
-    """Everything that can happen next."""
+    """All possible next steps."""
     for free in (False, True):
         yield _heartbeat(design, state, free)._replace(event=trace.Event(trace.HEARTBEAT, free))
     for report in sorted(state.reports):
@@ -137,7 +137,7 @@ def steps(design: Design, state: State) -> Iterator[Step]:
 
 
 def _heartbeat(design: Design, state: State, free: bool) -> Step:
-    """One heartbeat of ICAROUS; free: nothing is foreseen, and the way back is free."""
+    """One heartbeat of ICAROUS; free: no conflict is predicted and the way back is free."""
     gate = state.gate
     cycle = design.begun(state.cycle, design.accepts(gate, ICAROUS, gate.epoch), 0)
     flies = instance.steers(_cycle_of(cycle))
@@ -166,7 +166,7 @@ def _heartbeat(design: Design, state: State, free: bool) -> Step:
 
 
 def _mode(design: Design, state: State, active: bool, epoch: int) -> Step:
-    """Any SETMOD line arrives at the UxAS end."""
+    """A SETMOD line, genuine or forged, arrives at the UxAS end."""
     linked = design.mode(state.end, state.known, active, epoch)
     held = design.suspends(state.suspended, linked.act)
     after = state._replace(end=linked.end, suspended=held)
@@ -217,14 +217,14 @@ def _arrives(design: Design, state: State, command: Command) -> Step:
 
 
 def _changed(state: State, gate: Gate) -> State:
-    """The state with another gate, which is reported."""
+    """The state with another gate, which is reported to UxAS."""
     if gate == state.gate:
         return state
     return state._replace(gate=gate, reports=state.reports | {gate}, changes=state.changes + 1)
 
 
 def _checked(text: str, before: State, after: State) -> Step:
-    """The step, with what is wrong afterwards."""
+    """The step, with the fault in the state afterwards, if any."""
     if after.gate.epoch < before.gate.epoch:
         return Step(text, after, "the gate's epoch goes back")
     if after.end.epoch < before.end.epoch:
@@ -232,7 +232,7 @@ def _checked(text: str, before: State, after: State) -> Step:
     gate, end = _gate_of(after.gate), _end_of(after.end)
     if not system.end_holds(gate, end, after.suspended):
         return Step(text, after, "UxAS believes of the present epoch, or does, what is not so")
-    # ICAROUS takes notice at its next heartbeat; at a heartbeat `_heartbeat` has asked already
+    # ICAROUS notices at its next heartbeat; at a heartbeat `_heartbeat` has checked already
     cycle = cycles.cycle_begun(after.cycle, authority.may_command(gate, ICAROUS), 0)
     if not system.holds(gate, _cycle_of(cycle), end, after.suspended):
         return Step(text, after, "ICAROUS and the gate disagree on who commands")
@@ -242,7 +242,7 @@ def _checked(text: str, before: State, after: State) -> Step:
 
 
 def _gate_of(gate: Gate) -> authority.State:
-    """What the definitions call a gate."""
+    """The gate as a state of the definitions."""
     return authority.State(*gate)
 
 

@@ -1,4 +1,4 @@
-"""Breadth-first search: the shortest way to a fault, within a bound that the answer states."""
+"""Breadth-first search for the shortest trace to a fault, within a bound that the result states."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ class Composition(Protocol):
     """A design to search: states with `returned`, and steps with `entry`, `after` and `wrong`."""
 
     def first(self) -> Any:
-        """The state at the start."""
+        """The initial state."""
 
     def steps(self, state: Any) -> Iterator[Any]:
-        """Everything that can happen next."""
+        """All possible next steps."""
 
 
 class Found(NamedTuple):
-    """trace: what happens up to the fault, or nothing; wrong: what is wrong then.
+    """trace: the events up to the fault, or empty; wrong: the fault.
 
-    states: how many were seen; complete: every state within the bound was; back: the shortest way to a
-    state that says that it has `returned` (UxAS flies again after ICAROUS has flown), or nothing.
+    states: the number of states visited; complete: every state within the bound was visited; back: the shortest trace
+    to a state with `returned` (UxAS flies again after ICAROUS has flown), or empty.
     """
 
     trace: tuple[Any, ...]
@@ -35,7 +35,7 @@ class Found(NamedTuple):
 
     @property
     def returned(self) -> bool:
-        """What was lost has come back, in one of the states."""
+        """Whether some state was reached in which authority or certainty has been regained."""
         return bool(self.back)
 
 
@@ -74,7 +74,7 @@ def search(design: Composition, most_steps: int, most_states: int = 100_000) -> 
 
 
 def _way(came: dict[Hashable, tuple[Any, Any] | None], state: Any) -> tuple[Any, ...]:
-    """What happened on the way to a state, in order."""
+    """The events on the path to a state, in order."""
     found: list[Any] = []
     at = came[state]
     while at is not None:

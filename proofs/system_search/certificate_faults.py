@@ -1,4 +1,4 @@
-"""Designs of the certificate in hand that are broken on purpose, one step each, to see that the search finds it."""
+"""Designs of the certificate in hand with one seeded fault each, to check that the search finds it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class HandFault(NamedTuple):
 
 
 def _as_if(**changed: str) -> HandDesign:
-    """An offer is looked at as if one of its fields were that of the hand."""
+    """A design that checks an offer with some of its fields replaced by those of the hand."""
 
     def step(hand: Hand, kind: int, offer: Offer, permitted: bool, now: int, reserve: int) -> Hand:
         if kind == OFFERED:
@@ -118,4 +118,4 @@ HAND_FAULTS = {
         HandDesign(unnoticed=True),
     ),
 }
-"""By name, as `cratous search-faults` takes it."""
+"""The faults by name, as `cratous search-faults` takes it."""

@@ -1,8 +1,9 @@
-"""The certificate in hand of one vehicle, offers of ICAROUS on their way to it, and what is flown and clear out there.
+"""The certificate in hand of one vehicle, offers of ICAROUS in transit, and what is really flown and clear.
 
-The steps are those of the kernel `hand_step`. Offers may arrive late, twice or never; what becomes known is seen on board, so
-each answer arrives once, at once or later. Beside the hand stands what is so: which trajectory is flown, and until when it is clear of all that is known, by what each
-offer was permitted for. A certificate is wrong when the hand says more than that. Times are heartbeats.
+The steps are those of the kernel `hand_step`. Offers may arrive late, twice or never; new tracks are detected on
+board, so each answer arrives once, at once or later. Beside the hand the search keeps the true situation: which
+trajectory is flown, and until when it is clear of all that is known, according to what each offer was permitted for.
+A certificate is wrong when the hand claims more than that. Times are in heartbeats.
 """
 
 from __future__ import annotations
@@ -13,22 +14,23 @@ from typing import NamedTuple
 
 from cratous.core.permit import hand as hands
 from cratous.core.permit.hand import KNOWN, LEFT, OFFERED, Hand, Offer
+from cratous.spec.system import hand_trace
 
 RESERVE = 2
-"""So many heartbeats at least are certain after an offer, if more than that was."""
+"""The least number of heartbeats that remain certain after an offer, if more than that was certain before."""
 LONG, SHORT, LATER = 4, 1, 5
-"""How long a manoeuvre that is offered is permitted; one that begins later does so after so many heartbeats."""
+"""How long an offered manoeuvre is permitted (long, short), and after how many heartbeats a later one begins."""
 MOST_OFFERS, MOST_NEWS, MOST_LEFT, LAST = 2, 2, 1, 5
 """Bounds of the search: offers, tracks that become known, trajectories left, and the last heartbeat."""
 TIME = 3
-"""Of `hand_step`: time passes alone."""
+"""An event of `hand_step`: only time passes."""
 NO_OFFER = Offer(0, 0, 0, 0, 0)
 HandStep = Callable[[Hand, int, Offer, bool, int, int], Hand]
 
 
 class Sent(NamedTuple):
-    """offer: as the hand gets it; flies: its trajectory, by a number of its own; begins_on: the trajectory that was
-    flown when it was made; knows: so many tracks had become known then."""
+    """offer: as the hand receives it; flies: number of its trajectory; begins_on: the trajectory flown when it was
+    made; knows: the number of tracks known then."""
 
     offer: Offer
     flies: int
@@ -37,7 +39,8 @@ class Sent(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """asked: the certificate that was asked about; flies: its trajectory; permitted: against the track that is new."""
+    """asked: the certificate that was asked about; flies: its trajectory; permitted: whether it is, against the new
+    track."""
 
     asked: Offer
     flies: int
@@ -45,9 +48,9 @@ class Answer(NamedTuple):
 
 
 class Held(NamedTuple):
-    """hand: as the kernels have it; flies, clear_until: which trajectory is flown, and until when it is clear of all
-    that is known; known: so many tracks are; made: trajectories so far; lost: nothing was certain once; returned: after that
-    something was again."""
+    """hand: the state of the kernel; flies, clear_until: the trajectory flown, and until when it is clear of all that
+    is known; known: number of known tracks; made: number of trajectories so far; lost: at some time nothing was
+    certain; returned: something was certain again afterwards."""
 
     now: int = 0
     hand: Hand = Hand(0, 0, 0, 0)
@@ -62,54 +65,56 @@ class Held(NamedTuple):
     returned: bool = False
 
 
-class Told(NamedTuple):
-    """An entry of a trace, as a user reads it."""
-
-    text: str
-
-
 class HandEvent(NamedTuple):
-    """What happens, the state afterwards, and what is wrong with it, or nothing."""
+    """One event: its description, the state afterwards, the fault, if any, and the event as data."""
 
     text: str
     after: Held
     wrong: str = ""
+    event: hand_trace.Event = hand_trace.Event("")
 
     @property
-    def entry(self) -> Told:
+    def entry(self) -> hand_trace.Entry:
         """The step as an entry of a trace."""
-        return Told(self.text)
+        now, hand = self.after.now, self.after.hand
+        return hand_trace.Entry(
+            self.text, self.event, hand_trace.InHand(now, max(now, hand.expiry_ms))
+        )
 
 
 @dataclass(frozen=True)
 class HandDesign:
-    """As it stands: the kernel that runs; a seeded fault replaces it. unnoticed: the hand is not told that UxAS,
-    after a handback, flies another trajectory."""
+    """The steps: by default the kernel that runs; a seeded fault replaces it. unnoticed: the hand is not told that
+    UxAS flies another trajectory after a handback."""
 
     step: HandStep = hands.hand_step
     unnoticed: bool = False
 
     def first(self) -> Held:
-        """Nothing is in hand."""
+        """The initial state: nothing is in hand."""
         return Held()
 
     def steps(self, state: Held) -> Iterator[HandEvent]:
-        """Everything that can happen next."""
+        """All possible next steps."""
         if len(state.offers) < MOST_OFFERS:
             for begins in (0, LATER):
                 for lasts in (SHORT, LONG):
                     yield _offers(state, begins, lasts)
         for sent in sorted(state.offers):
-            yield self._arrives(state, sent)
+            arrives = hand_trace.Event(hand_trace.ARRIVES, sent.flies)
+            yield self._arrives(state, sent)._replace(event=arrives)
         if state.known < MOST_NEWS:
-            yield _becomes_known(state, True)
-            yield _becomes_known(state, False)
+            known = hand_trace.Event(hand_trace.KNOWN, state.flies)
+            yield _becomes_known(state, True)._replace(event=known)
+            yield _becomes_known(state, False)._replace(event=known)
         for answer in sorted(state.answers):
-            yield self._told(state, answer)
+            told = hand_trace.Event(hand_trace.ANSWER, answer.flies, permitted=answer.permitted)
+            yield self._told(state, answer)._replace(event=told)
         if state.left < MOST_LEFT:
-            yield self._leaves(state)
+            left = hand_trace.Event(hand_trace.LEFT, state.made + 1)
+            yield self._leaves(state)._replace(event=left)
         if state.now < LAST:
-            yield self._passes(state)
+            yield self._passes(state)._replace(event=hand_trace.Event(hand_trace.TIME))
 
     def _arrives(self, state: Held, sent: Sent) -> HandEvent:
         offer, now, before = sent.offer, state.now, state.hand
@@ -165,17 +170,18 @@ def _named(sent: Sent) -> str:
 
 
 def _offers(state: Held, begins: int, lasts: int) -> HandEvent:
-    """ICAROUS makes an offer on the hand as it is, for all that is known to it."""
+    """ICAROUS makes an offer on the basis of the present hand, for all that it knows."""
     hand, made = state.hand, state.made + 1
     sigma = state.now + begins
     offer = Offer(hand.id + 1, hand.id, sigma, hand.knowledge, sigma + lasts)
     sent = Sent(offer, made, state.flies, state.known)
     after = state._replace(made=made, offers=state.offers | {sent})
-    return HandEvent(f"ICAROUS makes {_named(sent)}", after)
+    event = hand_trace.Event(hand_trace.OFFER, made, sigma, offer.expiry_ms)
+    return HandEvent(f"ICAROUS makes {_named(sent)}", after, event=event)
 
 
 def _becomes_known(state: Held, permitted: bool) -> HandEvent:
-    """A track becomes known; what is in hand is asked about, and the hand is told at once or later."""
+    """A track becomes known; the trajectory in hand is checked against it, and the hand is told at once or later."""
     hand, known = state.hand, state.known + 1
     asked = Offer(hand.id, hand.id, state.now, hand.knowledge + 1, hand.expiry_ms)
     answer = Answer(asked, state.flies, permitted)
@@ -187,7 +193,7 @@ def _becomes_known(state: Held, permitted: bool) -> HandEvent:
 
 
 def _judged(text: str, before: Held, after: Held, wrong: str = "") -> HandEvent:
-    """The hand may not say that what is flown is clear for longer than it is, once it has been told of all tracks."""
+    """The step, with a fault if the hand, once told of all tracks, claims a clear time beyond the true one."""
     hand, now = after.hand, after.now
     says = f"{text}; in hand until {hand.expiry_ms}, {hand.knowledge} tracks"
     told = hand.knowledge >= after.known

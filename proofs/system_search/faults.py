@@ -1,4 +1,4 @@
-"""Designs of authority that are broken on purpose, one step each, to see that the search finds it."""
+"""Designs of authority with one seeded fault each, to check that the search finds it."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def _any_command_takes(gate: Gate, sender: int, epoch: int) -> Gate:
 
 
 def _same_epoch(of: int) -> Design:
-    """The gate begins no epoch when ICAROUS does this."""
+    """A design in which the gate begins no new epoch on this change of authority."""
 
     def wished(gate: Gate, act: int) -> Gate:
         after = gate_wished(gate, act)
@@ -212,4 +212,4 @@ FAULTS = {
         Design(names=_reported_epoch),
     ),
 }
-"""By name."""
+"""The faults by name."""

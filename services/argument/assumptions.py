@@ -1,4 +1,4 @@
-"""What the theorems on the composed system assume, and how each assumption was watched in a run."""
+"""The assumptions of the theorems on the composed system, and what was observed of each in a run."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Data = dict[str, Any]
 SECTION = "assumptions"
 HELD, BROKEN = "held", "broken"
 FOLDERS = ("", "system_", "permit_")
-"""The section names files of theorems, a record the folder as well."""
+"""Prefixes of theorem names: the listing has names without a folder, records have the folder's prefix."""
 AUTHORITY = (
     "system_authority_starts_as_it_must_be",
     "system_authority_is_kept_by_the_gate",
@@ -31,27 +31,30 @@ LOOKED = "system_a_way_that_is_looked_ahead_at_is_clear"
 FENCED = "system_no_zone_is_entered_until_a_surprise_or_an_expiry"
 NEAR_LEGS = "system_whoever_is_near_a_checked_leg_obeys_the_zones"
 RANK = "system_the_rank_of_a_mission_falls_at_each_heartbeat"
+SERVED = "system_a_chain_is_served_where_takeovers_and_stays_are_bounded"
+FEW = "system_uxas_counts_a_takeover_once_for_each_intruder_and_surprise"
 BEARS_ON: dict[str, tuple[str, ...]] = {
     "G1": (FENCED, NEAR_LEGS, HAND),
     "G2": (CLEAR, LOOKED, HAND),
-    "G3": (MISSION_ENDS, RANK, TAKEOVER_LASTS),
+    "G3": (MISSION_ENDS, RANK, TAKEOVER_LASTS, SERVED, FEW),
     "G4": (*AUTHORITY, TAKEOVER_ENDS, TAKEOVER_LASTS),
     "G5": (SILENCE,),
 }
-"""Which theorem on the composed system says something of which guarantee."""
+"""The theorems on the composed system that support each guarantee."""
 UP_TO = {
     "G1": "its theorems speak of zones alone: while UxAS flies, near legs that keep them; while ICAROUS does, up to the "
     "first surprise, declaration or expiry",
     "G2": "its theorems speak of the cylinder of the volume alone, of what is seen, and up to the first surprise, "
     "declaration or expiry",
 }
-"""How much of a guarantee its theorems say, where that is not all."""
+"""How far the theorems cover a guarantee, if not completely."""
 PLACED = frozenset(name for names in BEARS_ON.values() for name in names)
 
 
 class Assumed(NamedTuple):
-    """An assumption in a run. theorems: that need it; guarantees: it concerns; watched: in words;
-    broken: in words, empty unless it broke."""
+    """An assumption in a run. theorems: those that need it; guarantees: those it concerns; watched:
+    observation in words; broken: in words, empty unless it broke.
+    """
 
     text: str
     theorems: frozenset[str]
@@ -61,7 +64,7 @@ class Assumed(NamedTuple):
 
 
 def assumed(report: Data) -> list[Assumed]:
-    """The assumptions of a run, in the order of the report. Raises BadInput for a report without them."""
+    """The assumptions of a run, in report order. Raises BadInput for a report without them."""
     if SECTION not in report:
         raise BadInput(
             "the report says nothing of assumptions",
@@ -76,7 +79,7 @@ def _of_report(row: Data) -> Assumed:
     when = f" at {row['since_ms'] / 1000:.2f} s" if state == BROKEN else ""
     said = f"{state}{when}{f': {note}' if note else ''}"
     said += f" ({worst})" if (worst := measured(row)) else ""
-    # anything but a plain yes is no yes
+    # any other value counts as not watched
     word = "Watched" if state in (HELD, BROKEN) else "Not watched"
     names = frozenset(f"{folder}{name}" for name in row["theorems"] for folder in FOLDERS)
     return Assumed(
@@ -89,6 +92,6 @@ def _of_report(row: Data) -> Assumed:
 
 
 def elements(found: list[Assumed]) -> Iterator[Element]:
-    """An element for each assumption, in their order."""
+    """An element for each assumption, in order."""
     for number, one in enumerate(found, 1):
         yield Element(f"A-{number}", Kind.ASSUMPTION, f"{one.text}. {one.watched}")

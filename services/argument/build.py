@@ -1,4 +1,4 @@
-"""The argument of one run, made from its report alone and held against the ledger as it is now."""
+"""Builds the argument of one run from its report alone, and checks it against the current ledger."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ def argument(
 ) -> dict[str, Element]:
     """The elements by id, from the top goal down.
 
-    report: confirmed from its log; unshown: what no row of it speaks of, or nothing vouches for (what, why);
-    kept: the ledger as it is now, of `ledger.read`; read here if it is not given.
+    report: confirmed from its log; unshown: what no row of it covers, or nothing vouches for (what,
+    why); kept: the current ledger, of `ledger.read`; read here if not given.
     """
     found = Argument()
     kept = ledger.read() if kept is None else kept
@@ -61,10 +61,10 @@ def argument(
 def _top(
     found: Argument, report: Data, goals: list[str], own: Own, unshown: Iterable[tuple[str, str]]
 ) -> None:
-    """The goal over all, with what it is about and what is trusted."""
+    """Add the top goal, with its context and what is trusted."""
     states = [found.state(goal) for goal in goals]
     of_own = own.add()
-    # the report's own verdict counts too: kernels without a proof make it unknown
+    # the report's own verdict counts too: unproved kernels make it unknown
     verdict = OF_VERDICT[Outcome(report["verdict"])]
     state = worst([*states, *map(found.state, of_own), verdict])
     context = [*_subject(report), trust.trusted(), *trust.limits(report), *trust.not_shown(unshown)]
@@ -90,7 +90,7 @@ def _top(
 
 
 def _subject(report: Data) -> list[Element]:
-    """What the argument is about: the run, and the ledger that it was flown with."""
+    """The context of the argument: the run, and the ledger with which it was flown."""
     protected = [
         str(vehicle["id"])
         for vehicle in report["mission"]["vehicles"]
@@ -113,7 +113,7 @@ def _subject(report: Data) -> list[Element]:
 
 
 def _reachable(elements: dict[str, Element]) -> dict[str, Element]:
-    """What the top goal leads to, in this order: what is above stands before what is below it."""
+    """The elements reachable from the top goal, parents before children."""
     found: dict[str, Element] = {}
     todo = [ROOT]
     while todo:

@@ -1,4 +1,4 @@
-"""argument.svg: the argument drawn, one drawing of the top and one of each guarantee, in one file."""
+"""argument.svg: drawings of the argument, one of the top level and one of each guarantee, in one file."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cratous.services.argument.plain_text import plain_text
 from cratous.services.argument.wrapping import LINE, SIZE, Line, width
 
 EDGE, HEAD = 24.0, 34.0
-"""Around all, and above each drawing."""
+"""Margin around all drawings, and space above each."""
 COLOURS = {
     State.SUPPORTED: ("#ffffff", "#1b1b1b"),
     State.NOTHING: ("#f0f0f0", "#6b6b6b"),
@@ -23,12 +23,12 @@ COLOURS = {
     State.UNKNOWN: ("#fdeed2", "#a15c00"),
     State.VIOLATED: ("#fbdcdc", "#b00020"),
 }
-"""Filling and outline; the state stands in the text as well."""
+"""Fill and outline; the text states the state as well."""
 FONT = "'DejaVu Sans', Verdana, Arial, sans-serif"
 
 
 class Panel:
-    """One drawing: what a goal leads to. cut: goals that are developed in drawings of their own."""
+    """One drawing: a goal and what supports it. cut: goals developed in drawings of their own."""
 
     def __init__(self, elements: dict[str, Element], root: str, cut: Iterable[str] = ()) -> None:
         self.root = root
@@ -53,7 +53,7 @@ class Panel:
         self.layout: Layout = laid_out(root, lines, sizes)
 
     def boxes(self) -> dict[str, tuple[float, float, float, float]]:
-        """Left, upper, right and lower edge of each figure with what hangs below it."""
+        """Left, upper, right and lower edge of each figure with its decoration below."""
         return {
             name: (
                 x,
@@ -66,7 +66,7 @@ class Panel:
 
 
 def panels(elements: dict[str, Element]) -> list[Panel]:
-    """The drawing of the top, and one for each goal below its strategies."""
+    """The drawing of the top level, and one for each goal below its strategies."""
     root = next(iter(elements))
     strategies = elements[root].supported_by
     goals = [goal for strategy in strategies for goal in elements[strategy].supported_by]
@@ -74,7 +74,7 @@ def panels(elements: dict[str, Element]) -> list[Panel]:
 
 
 def svg(elements: dict[str, Element], title: str, remarks: Iterable[str]) -> str:
-    """The text of the file. title: what it is about; remarks: lines below the title."""
+    """The SVG text. title: its subject; remarks: lines below the title."""
     drawn = panels(elements)
     said = [plain_text(line) for line in remarks]
     legend = Panel(_legend(), "G-legend")
@@ -110,7 +110,7 @@ def _headline(goal: Element) -> str:
 
 
 def _legend() -> dict[str, Element]:
-    """One figure of each kind, as a small argument of its own."""
+    """One figure of each kind, as a small argument."""
     one = [
         Element("G-legend", Kind.GOAL, "Goal: what is claimed", ("S-legend",), ("C-legend", "A-legend")),
         Element("C-legend", Kind.CONTEXT, "Context (line with an open head)"),
@@ -140,7 +140,7 @@ def _panel(panel: Panel) -> Iterator[str]:
 
 
 def _line(panel: Panel, start: str, end: str, heights: list[float]) -> str:
-    """From the right edge of a figure to the left one of another, bending between columns alone."""
+    """A line from the right edge of a figure to the left edge of another, bending only between columns."""
     places, figures = panel.layout.places, panel.figures
     x, y = places[start][0] + figures[start].width, places[start][1] + figures[start].height / 2
     path = [f"M{_n(x)} {_n(y)}"]
@@ -205,5 +205,5 @@ def _text(
 
 
 def _n(value: float) -> str:
-    """A number of the drawing, to a tenth."""
+    """A coordinate of the drawing, to a tenth."""
     return f"{value:.1f}".removesuffix(".0")

@@ -1,6 +1,6 @@
 """Elements of an argument in the Goal Structuring Notation (GSN community standard, version 3).
 
-What they are called in YAML is what gsn2x reads: the beginning of an id says the kind.
+Names in YAML are those that gsn2x reads: the prefix of an id gives the kind.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from cratous.spec.mission.guarantees import Outcome
 
 
 class Kind(StrEnum):
-    """What an element is; the value is how its ids begin."""
+    """Kind of an element; the value is the prefix of its ids."""
 
     GOAL = "G"
     STRATEGY = "S"
@@ -23,7 +23,7 @@ class Kind(StrEnum):
 
 
 class State(StrEnum):
-    """How a goal, or all below a strategy, stands in this run. What is not supported is said before anything else of the text."""
+    """State of a goal or strategy in this run. Any state other than supported is put before the text."""
 
     SUPPORTED = "supported"
     NOTHING = "nothing to check"
@@ -36,8 +36,9 @@ class State(StrEnum):
 
 
 WORSE = (State.VIOLATED, State.UNKNOWN, State.EXCUSED, State.NOT_PROVED, State.NO_GROUND)
-"""What a goal takes over from those below it, the worst first. NOTHING and NO_THEOREM it does not: they
-support nothing, and the goal has to stand without them."""
+"""States that a goal inherits from those below it, worst first. NOTHING and NO_THEOREM are not
+inherited: such goals support nothing, and the parent goal has to hold without them.
+"""
 OF_VERDICT = {
     Outcome.HOLDS: State.SUPPORTED,
     Outcome.VIOLATED: State.VIOLATED,
@@ -48,9 +49,10 @@ OF_VERDICT = {
 
 @dataclass(frozen=True)
 class Element:
-    """One element. supported_by, in_context_of: ids; state: of goals and strategies, SUPPORTED for all else.
+    """One element. supported_by, in_context_of: ids; state: of goals and strategies, SUPPORTED for
+    all others.
 
-    A goal or strategy with nothing below it is undeveloped.
+    A goal or strategy without supporting elements is undeveloped.
     """
 
     id: str
@@ -62,22 +64,22 @@ class Element:
 
     @property
     def undeveloped(self) -> bool:
-        """Whether nothing below it supports it."""
+        """Whether it has no supporting elements."""
         return self.kind in (Kind.GOAL, Kind.STRATEGY) and not self.supported_by
 
     @property
     def shown(self) -> str:
-        """The text with its state before it, unless it is supported."""
+        """The text, preceded by its state unless it is supported."""
         return self.text if self.state is State.SUPPORTED else f"{self.state.upper()}: {self.text}"
 
 
 def counted(number: int, what: str) -> str:
-    """A number and what there is of it, as `1 call` or `2 calls`."""
+    """A count with its noun, as `1 call` or `2 calls`."""
     return f"{number} {what}{'' if number == 1 else 's'}"
 
 
 def worst(states: Iterable[State]) -> State:
-    """The state of what rests on all of these; NOTHING where not one of them supports it."""
+    """The state of an element supported by all of these; NOTHING if none supports it."""
     found = set(states)
     for state in WORSE:
         if state in found:
@@ -86,20 +88,20 @@ def worst(states: Iterable[State]) -> State:
 
 
 class Argument:
-    """The elements of an argument by id, each once, in the order in which they were added."""
+    """The elements of an argument by id, in the order of addition, without duplicates."""
 
     def __init__(self) -> None:
         self.elements: dict[str, Element] = {}
 
     def add(self, element: Element) -> str:
-        """Add an element, or find the same one again; returns its id.
+        """Add an element unless it is already there; returns its id.
 
-        RuntimeError if another element has the id: what made them is wrong.
+        RuntimeError if a different element has the id: this is a program error.
         """
         if self.elements.setdefault(element.id, element) != element:
             raise RuntimeError(f"two elements of the argument are called {element.id}")
         return element.id
 
     def state(self, name: str) -> State:
-        """The state of a goal that was added, see `State`."""
+        """The state of an added goal, see `State`."""
         return self.elements[name].state

@@ -1,4 +1,4 @@
-"""The form of argument.yaml: written as gsn2x reads it, and checked before it is written."""
+"""Format of argument.yaml: as gsn2x reads it, and validated before it is written."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Data = dict[str, Any]
 
 
 def schema_text() -> str:
-    """The schema as it is published (JSON Schema, draft 2020-12)."""
+    """The schema as published (JSON Schema, draft 2020-12)."""
     return files("cratous.services.argument").joinpath(SCHEMA_NAME).read_text("utf-8")
 
 
@@ -53,13 +53,13 @@ def document(elements: Iterable[Element]) -> Data:
 
 
 def yaml_text(data: Data, header: Iterable[str] = ()) -> str:
-    """The text of argument.yaml; header: lines of comment. The same data gives the same bytes."""
+    """The text of argument.yaml; header: comment lines. The same data gives the same bytes."""
     head = "".join(f"# {plain_text(line)}\n" for line in header)
     return head + yaml.safe_dump(data, sort_keys=False, allow_unicode=True, width=100)
 
 
 def faults(data: Any) -> list[str]:
-    """Where an argument is not well formed: of its schema, every id resolves, one top goal, no circle."""
+    """Where an argument is malformed: violates its schema, has unresolved ids, several top goals, or cycles."""
     found: list[str] = []
     if not _check()(data):
         found = [f"{_path(e.absolute_path)}: {e.message}" for e in _validator().iter_errors(data)]
@@ -82,7 +82,7 @@ def _unresolved(data: Data) -> Iterator[str]:
 
 
 def _circles(data: Data) -> Iterator[str]:
-    """Elements that lead back to themselves: each is taken away once all above it are."""
+    """Elements on cycles, found by removing each element once all its parents are removed."""
     above = dict.fromkeys(data, 0)
     for entry in data.values():
         for other in _below(entry):
@@ -99,7 +99,7 @@ def _circles(data: Data) -> Iterator[str]:
 
 
 def _tops(data: Data) -> Iterator[str]:
-    """All that nothing leads to, if it is not one goal alone."""
+    """All elements without a parent, unless there is a single one and it is a goal."""
     led_to = {other for entry in data.values() for other in _below(entry)}
     tops = [name for name in data if name not in led_to]
     if len(tops) != 1 or not tops[0].startswith("G"):

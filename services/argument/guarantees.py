@@ -1,4 +1,4 @@
-"""Goals on one guarantee: its rows in this run, and what is proved of the composed system."""
+"""Goals on one guarantee: its rows in this run, and the theorems on the composed system."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from cratous.spec.mission.guarantees import Outcome, Requirement
 
 Data = dict[str, Any]
 TOGETHER = 10
-"""So many rows of one kind that hold by the same kernels stand in one goal; more are several goals."""
+"""Maximum number of rows of one kind, decided by the same kernels, in one goal; more are split."""
 SOURCES = {"plan": "In the plan", "flight": "In the flight"}
 
 
 class Guarantees:
     """Adds guarantees to an argument.
 
-    rows: of the report, each with its chains (`trace.traced`); names: shorter ones of kernels; assumed:
-    by the id of its element.
+    rows: of the report, each with its chains (`trace.traced`); names: short names of kernels;
+    assumed: by element id.
     """
 
     def __init__(
@@ -45,12 +45,12 @@ class Guarantees:
                 drivers |= {self._names.get(chain["by"], chain["by"])} - {""}
 
     def add(self, wanted: Requirement, rows: list[tuple[Data, Data]]) -> str:
-        """The goal that a guarantee held in this run; rows: (row of the report, its chains)."""
+        """The goal that a guarantee held in this run; rows: (report row, its chains)."""
         goals = [
             self._rows(wanted.id, number, group) for number, group in enumerate(_groups(rows), 1)
         ]
         state = worst(self._argument.state(goal) for goal in goals)
-        state = State.UNKNOWN if state is State.NOTHING else state  # nothing was seen of it
+        state = State.UNKNOWN if state is State.NOTHING else state  # nothing of it was observed
         system = self._system(wanted.id)
         below: tuple[str, ...] = (system,)
         if goals:
@@ -72,7 +72,7 @@ class Guarantees:
         )  # fmt: skip
 
     def _rows(self, of: str, number: int, group: list[tuple[Data, Data]]) -> str:
-        """The goal that some rows hold; its state where they do not (then it is one row)."""
+        """The goal that some rows hold, or that a single row does not."""
         row, chained = group[0]
         state, why = _state(row, chained)
         where = SOURCES.get(row["source"], row["source"])
@@ -88,7 +88,7 @@ class Guarantees:
                 self._proofs.kernel(chain, self._names[name], sorted(self._drivers[name]))
                 for name, chain in kernels.items()
             ]
-            # the ledger of now may lack what the report's had
+            # the current ledger may lack what the report's had
             if any(self._argument.state(goal) is not State.SUPPORTED for goal in below):
                 state = State.NOT_PROVED
         if state is State.SUPPORTED:
@@ -98,11 +98,11 @@ class Guarantees:
         )
 
     def _system(self, of: str) -> str:
-        """The goal on what is proved of the composed system, whatever run it is."""
+        """The goal on the theorems about the composed system, independent of the run."""
         goals = tuple(self._proofs.theorem(theorem) for theorem in BEARS_ON[of])
         of_this = {name: one for name, one in self._assumed.items() if of in one.guarantees}
         broken = [one for one in of_this.values() if one.broken]
-        # what stands at a theorem above need not stand here again, unless it broke
+        # an assumption shown at a theorem above is not repeated here, unless it broke
         context = tuple(
             name for name, one in of_this.items() if one.broken or not one.theorems & PLACED
         )
@@ -118,7 +118,7 @@ class Guarantees:
 
 
 def _state(row: Data, chained: Data) -> tuple[State, str]:
-    """How one row stands, and why it is not supported, in words."""
+    """The state of one row, and why it is not supported, in words."""
     state = OF_VERDICT[Outcome(row["verdict"])]
     if state is not State.SUPPORTED:
         return state, "" if row["time_ms"] is None else f"At {row['time_ms'] / 1000:.2f} s"
@@ -130,7 +130,7 @@ def _state(row: Data, chained: Data) -> tuple[State, str]:
 
 
 def _groups(rows: list[tuple[Data, Data]]) -> list[list[tuple[Data, Data]]]:
-    """Rows that hold by the same kernels together, TOGETHER at most; each other row by itself."""
+    """Groups of at most TOGETHER rows that hold by the same kernels; every other row forms its own group."""
     found: list[list[tuple[Data, Data]]] = []
     for key, run in groupby(rows, lambda pair: _kind(*pair)):
         group = list(run)
@@ -140,13 +140,13 @@ def _groups(rows: list[tuple[Data, Data]]) -> list[list[tuple[Data, Data]]]:
 
 
 def _kind(row: Data, chained: Data) -> tuple[str, ...]:
-    """What rows have in common that stand in one goal; empty for a row that is not supported."""
+    """Key of rows that may share a goal; empty for a row that is not supported."""
     state, _ = _state(row, chained)
     return (row["source"], *row["kernels"]) if state is State.SUPPORTED else ()
 
 
 def _evidence(of: str, number: int, rows: list[Data]) -> Element:
-    """That the rows are in the report, and were found in the log again."""
+    """Evidence that the rows are in the report, and were confirmed from the log."""
     kinds = ", ".join(sorted({row["kind"] for row in rows}))
     checks = sum(row["checks"] for row in rows)
     margins = [row for row in rows if row["margin"] is not None]
@@ -160,7 +160,7 @@ def _evidence(of: str, number: int, rows: list[Data]) -> Element:
 
 
 def _counted(rows: list[tuple[Data, Data]]) -> str:
-    """How many rows there are of each state."""
+    """Number of rows by state."""
     if not rows:
         return "nothing was observed"
     found = [_state(*pair)[0] for pair in rows]

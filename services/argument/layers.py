@@ -1,7 +1,7 @@
-"""Figures in columns, from the goal on the left to what it rests on: no figure on another, no line over one.
+"""Layered layout: figures in columns from the goal on the left to its support, without overlaps.
 
-A figure stands one column to the right of the last that leads to it. A line that passes a column has a place
-of its own between its figures, so lines cross each other only between columns.
+A figure is one column to the right of its rightmost parent. A line that passes a column has its own
+slot between the column's figures, so lines cross each other only between columns.
 """
 
 from __future__ import annotations
@@ -11,18 +11,20 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 GAP, GUTTER = 16.0, 84.0
-"""Between figures of a column, and between columns."""
+"""Space between the figures of a column, and between columns."""
 PASSING = 2.0
-"""Height that a line has which passes a column."""
+"""Height of the slot of a line that passes a column."""
 SWEEPS = 12
 Node = tuple[str, int]
-"""A figure (its name, -1), or where a line passes a column (a name for the line, the column)."""
+"""A figure (its name, -1), or a line passing a column (a name for the line, the column)."""
 
 
 @dataclass(frozen=True)
 class Layout:
-    """places: left upper corner of each figure; columns: (left, right) of each; routes: for each line
-    (from, to) the heights at which it passes the columns between; size: width and height of all."""
+    """places: upper left corner of each figure; columns: (left, right) of each; routes: for each
+    line (from, to) the heights at which it passes the columns between; size: total width and
+    height.
+    """
 
     places: dict[str, tuple[float, float]]
     columns: list[tuple[float, float]]
@@ -34,7 +36,7 @@ class Layout:
 def laid_out(
     root: str, lines: dict[str, list[str]], sizes: dict[str, tuple[float, float]]
 ) -> Layout:
-    """Places for all that `root` leads to by `lines`; sizes: width and height of each figure."""
+    """Layout of all figures reachable from `root` by `lines`; sizes: width and height of each figure."""
     column_of = _columns(root, lines)
     columns: list[list[Node]] = [[] for _ in range(max(column_of.values()) + 1)]
     for name, number in column_of.items():
@@ -71,7 +73,7 @@ def laid_out(
 
 
 def _columns(root: str, lines: dict[str, list[str]]) -> dict[str, int]:
-    """The column of each figure, in the order in which one meets them on the way down."""
+    """The column of each figure, in depth-first order."""
     order: dict[str, int] = {}
     todo = [root]
     while todo:
@@ -98,7 +100,7 @@ def _columns(root: str, lines: dict[str, list[str]]) -> dict[str, int]:
 def _ordered(
     columns: list[list[Node]], left: dict[Node, list[Node]], right: dict[Node, list[Node]]
 ) -> list[list[Node]]:
-    """The columns with few crossings of lines: each figure goes where those beside it are."""
+    """The columns, ordered for few line crossings: figures are placed near their neighbours in adjacent columns."""
     best, fewest = columns, _crossings(columns, right)
     now = [list(column) for column in columns]
     for sweep in range(SWEEPS):
@@ -125,7 +127,7 @@ def _middle(places: list[int], default: float) -> float:
 
 
 def _crossings(columns: list[list[Node]], right: dict[Node, list[Node]]) -> int:
-    """How many pairs of lines cross each other."""
+    """Number of crossing pairs of lines."""
     found = 0
     for one, other in pairwise(columns):
         place = {node: at for at, node in enumerate(other)}
@@ -144,7 +146,7 @@ def _placed(
     right: dict[Node, list[Node]],
     heights: dict[Node, float],
 ) -> dict[Node, float]:
-    """The middle of each node: as near as can be to the middle of those beside it."""
+    """The centre height of each node: as close as possible to the mean of its neighbours."""
     found: dict[Node, float] = {}
     for column in columns:
         found.update(_spread(column, dict.fromkeys(column, 0.0), heights))
@@ -163,10 +165,10 @@ def _placed(
 def _spread(
     column: list[Node], wish: dict[Node, float], heights: dict[Node, float]
 ) -> dict[Node, float]:
-    """The middles of a column that are nearest to what is wished, in order and GAP apart.
+    """The centre heights of a column closest to the desired ones, in order and at least GAP apart.
 
-    With the least distances taken off it is an isotonic regression: neighbours that would lie in the
-    wrong order are pooled at their mean.
+    After subtracting the minimum distances this is an isotonic regression: neighbours that would be
+    in the wrong order are pooled at their mean.
     """
     offsets = [0.0]
     for before, node in pairwise(column):

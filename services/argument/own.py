@@ -1,7 +1,8 @@
-"""Goals on requirements of the user's own: verdict over the log as evidence, its file as context, and no more than that.
+"""Goals on user requirements: the verdict over the log as evidence, the file as context.
 
-The monitor judged them after the flight, so the kernels that decided them are none of the run's: they are held against
-the ledger as it is now. Of the composed system nothing is proved about them, and the strategy above them says so.
+The monitor evaluated them after the flight, so their kernels are not among those of the run: they
+are checked against the current ledger. No theorem on the composed system concerns them, and their
+strategy says so.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ STRATEGY = "S-own"
 
 
 class Own:
-    """Adds the requirements of one's own of a report to an argument. kept: the ledger as it is now."""
+    """Adds the user requirements of a report to an argument. kept: the current ledger."""
 
     def __init__(self, argument: elements.Argument, report: Data, kept: Data) -> None:
         self.rows = own_requirements(report)
@@ -82,7 +83,7 @@ class Own:
             kernels = tuple(self._kernel(name) for name in row["kernels"])
             if any(self._argument.state(one) is not elements.State.SUPPORTED for one in kernels):
                 state, below = elements.State.NOT_PROVED, kernels
-            elif not (row["checks"] and kernels):  # what reads no signal is decided by none
+            elif not (row["checks"] and kernels):  # no signals: decided by no kernel
                 state = elements.State.NOTHING
                 text += ". Nothing in the flight tested it"
             else:
@@ -114,12 +115,12 @@ class Own:
         )
 
     def _whole(self, name: str) -> Data | None:
-        """The record of a kernel, or of the fold that it is a step of."""
+        """The record of a kernel, or of the fold to which it belongs."""
         one: Data | None = self._known.get(name)
         return one and self._known.get(one["supports"], one)
 
     def _kernel(self, name: str) -> str:
-        """The goal that a kernel of the monitor is what its definition says."""
+        """The goal that a monitor kernel implements its definition."""
         whole = self._whole(name)
         missing = ["it is not in the ledger"] if whole is None else []
         against = [] if whole is None else whole["against"]
@@ -144,7 +145,7 @@ def _id(number: int) -> str:
 
 
 def _file_said(file: Data, findings: list[Data]) -> str:
-    """A file of requirements, the exports that it takes, and what is wrong with the samples for it."""
+    """A requirements file, the exports that it imports, and the faults of its samples, in words."""
     text = f"{file['file']}, whole in report.json, SHA-256 {file['sha256']}"
     for one in file["imports"]:
         text += f"; it takes {one['file']}, SHA-256 {one['sha256']}"

@@ -1,4 +1,4 @@
-"""Text that stands in YAML and in XML as it is: what either refuses is written out."""
+"""Text that can stand unchanged in YAML and XML: characters that either refuses are escaped."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ REFUSED = re.compile("[^\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def plain_text(text: object) -> str:
-    r"""The text, with every character written out that does not stand for itself.
+    r"""The text with every character escaped that YAML or XML cannot contain.
 
     >>> plain_text("ok\n\ufffe")
     'ok\\n\\ufffe'

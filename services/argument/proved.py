@@ -1,4 +1,4 @@
-"""Goals on what is proved: kernels against their definitions, theorems, and the records behind them."""
+"""Goals on proofs: kernels against their definitions, theorems, and their records."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from cratous.services.argument.elements import Argument, Element, Kind, State, c
 
 Data = dict[str, Any]
 SAME = ("sentence", "statement", "status", "obligations", "premises")
-"""What a record of now has to say as the report does."""
+"""Fields of a current record that must agree with the report."""
 
 
 def plain(name: str) -> str:
@@ -18,10 +18,10 @@ def plain(name: str) -> str:
 
 
 class Proofs:
-    """Adds what is proved to an argument.
+    """Adds proofs to an argument.
 
-    argument: that it is added to; proofs: of the report; records: the theorems of the ledger as it is now; ran: what
-    those kernels of a theorem did that are among the proofs'.
+    argument: to which they are added; proofs: of the report; records: theorems of the current
+    ledger; ran: evidence of the calls of a theorem's kernels.
     """
 
     def __init__(
@@ -38,10 +38,10 @@ class Proofs:
         self._whole: set[str] = set()
 
     def kernel(self, chain: Data, name: str, drivers: Iterable[str]) -> str:
-        """The goal that a kernel is what its definition says; returns its id.
+        """The goal that a kernel implements its definition; returns its id.
 
-        chain: of `trace`, from the kernel to theorems and definition; name: a shorter one; drivers: in
-        which it decides.
+        chain: of `trace`, from the kernel to theorems and definition; name: short name; drivers:
+        those in which it decides.
         """
         calls = (
             counted(chain["calls"], "call") if chain["calls"] else "compiled into what was called"
@@ -69,9 +69,11 @@ class Proofs:
         theorems: Iterable[str],
         missing: list[str],
     ) -> str:
-        """The goal on a kernel with this id: by its theorems, in the context of its definition; returns the id.
+        """The goal on a kernel with this id, supported by its theorems, with its definition as
+        context; returns the id.
 
-        definition: its name and its file, which may be empty; missing: what its chain lacks but for theorems.
+        definition: its name and its file, which may be empty; missing: other missing links of its
+        chain.
         """
         below = tuple(self.theorem(theorem) for theorem in theorems)
         if not missing:
@@ -84,7 +86,7 @@ class Proofs:
             context = (self._argument.add(element),)
         if missing:
             text += f". Missing: {'; '.join(dict.fromkeys(missing))}"
-        # a theorem that is there supports nothing where another part of the chain is missing
+        # theorems support nothing if another link of the chain is missing
         below, state = ((), State.NOT_PROVED) if missing else (below, State.SUPPORTED)
         return self._argument.add(Element(key, Kind.GOAL, text, below, context, state))
 
@@ -114,13 +116,13 @@ class Proofs:
         return self._argument.add(Element(key, Kind.GOAL, text, below, context, state))
 
     def _rests(self, name: str) -> bool:
-        """Whether a theorem that the report does not have is on record, and about no kernel that ran."""
+        """Whether a theorem missing in the report is on record, and concerns no kernel that ran."""
         record = self._records.get(name)
         return record is not None and not set(record["kernels"]) & set(self._called)
 
     def _lacks(self, name: str, above: tuple[str, ...] = ()) -> str:
-        """What a theorem, or a lemma that it rests on, lacks; empty if it is proved."""
-        if name in self._whole:  # many theorems rest on the same lemmas
+        """What a theorem, or a lemma it depends on, lacks; empty if it is proved."""
+        if name in self._whole:  # many theorems depend on the same lemmas
             return ""
         said, record = self._theorems.get(name), self._records.get(name)
         if said is None or said["status"] != "proved":
@@ -152,7 +154,7 @@ class Proofs:
         )
 
     def _assumptions(self, name: str) -> tuple[str, ...]:
-        """What the proof itself assumes, as its record says."""
+        """Assumptions of the proof itself, from its record."""
         return tuple(
             self._argument.add(
                 Element(

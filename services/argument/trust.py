@@ -1,4 +1,4 @@
-"""What remains to be trusted: the limits of the report, and the parts that a proof rests on."""
+"""What remains to be trusted: the limits of the report, and the trusted base of the proofs."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ TRUSTED = (
     "straight flight between samples",
     "operating system, network",
 )
-"""The parts of docs/proofs/trusted-base.md, which says why each is trusted and what checks it."""
+"""The parts of docs/proofs/trusted-base.md, which explains why each is trusted and how it is checked."""
 
 
 def limits(report: dict[str, Any]) -> Iterator[Element]:

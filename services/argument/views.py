@@ -1,4 +1,4 @@
-"""The argument of a run as the two files that are written: GSN in YAML, and drawn."""
+"""The argument of a run as two files: GSN in YAML, and as a drawing."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from cratous.services.argument.drawing import svg
 from cratous.services.argument.form import document, faults, yaml_text
 
 LEDGER = "Held against the ledger with the seal "
-"""How the line of both files begins that names the ledger that they were made with."""
+"""Prefix of the line in both files that identifies the ledger with which they were made."""
 
 
 def views(report: dict[str, Any], unshown: Iterable[tuple[str, str]]) -> tuple[str, str]:
     """The texts of argument.yaml and argument.svg; the same report and ledger give the same bytes.
 
-    report: confirmed from its log; unshown: what no row of it speaks of, or nothing vouches for (what, why).
-    BadInput for a report that says nothing of assumptions, Refused if the ledger cannot be read;
-    RuntimeError if the argument is not well formed: then what made it is wrong.
+    report: confirmed from its log; unshown: what no row of it covers, or nothing vouches for (what,
+    why). BadInput for a report without assumptions, Refused if the ledger cannot be read;
+    RuntimeError if the argument is malformed, which is a program error.
     """
     kept = ledger.read()
     elements = argument(report, unshown, kept)

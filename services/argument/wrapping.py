@@ -1,7 +1,7 @@
-"""Text broken into lines of a given width, without asking a font: the same lines on every machine.
+"""Breaks text into lines of a given width without font files: the same lines on every machine.
 
-Widths are those of DejaVu Sans, rounded up, which is wider than Arial, Helvetica and Verdana's text: what
-fits here fits there. Any character that is not in the table counts as a square.
+Widths are those of DejaVu Sans, rounded up, which is wider than Arial, Helvetica and Verdana: what
+fits here fits with these. Characters that are not in the table count as a square.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from functools import lru_cache
 from typing import NamedTuple
 
 SIZE, LINE = 11.0, 14.0
-"""Height of the letters, and from line to line."""
+"""Font size and line spacing."""
 BOLD = 1.27
-"""So much wider than plain letters is no bold one."""
+"""Upper bound of the width of bold text relative to regular text."""
 FIRST = 32
 HUNDREDTHS = (
     32, 41, 46, 84, 64, 96, 78, 28, 40, 40, 50, 84, 32, 37, 32, 34, 64, 64, 64, 64, 64, 64, 64, 64,
@@ -22,21 +22,22 @@ HUNDREDTHS = (
     61, 79, 70, 64, 62, 74, 69, 99, 69, 62, 69, 40, 34, 40, 84, 50, 50, 62, 64, 55, 64, 62, 36, 64,
     64, 28, 28, 58, 28, 98, 64, 62, 64, 64, 42, 53, 40, 64, 60, 82, 60, 60, 53, 64, 34, 64, 84,
 )  # fmt: skip
-"""Width of each character from FIRST on, in hundredths of the height."""
+"""Width of each character from FIRST on, in hundredths of the font size."""
 WIDEST, LONGEST = 180.0, 12
-"""A word that may be wider than this is broken, at a mark or else after so many letters: no more than this
-is that many of the widest, bold."""
+"""A word that may be wider than this is broken, at punctuation or otherwise after this many
+letters: that many of the widest bold letters are no wider.
+"""
 
 
 class Line(NamedTuple):
-    """One line as it is drawn."""
+    """One line as drawn."""
 
     text: str
     bold: bool = False
 
 
 def width(text: str, *, bold: bool = False) -> float:
-    """No less than a text is wide, in drawing units."""
+    """An upper bound of a text's width, in drawing units."""
     return _wide(_hundredths(text), bold)
 
 
@@ -53,7 +54,7 @@ def _wide(units: int, bold: bool) -> float:
 
 
 class _Piece(NamedTuple):
-    """What stands before it unless it begins a line, the piece, and how wide both are in hundredths."""
+    """Preceding space (omitted at the start of a line), the piece of text, and the width of both in hundredths."""
 
     before: str
     text: str
@@ -63,7 +64,7 @@ class _Piece(NamedTuple):
 
 @lru_cache(maxsize=256)  # one text is tried in circles of many sizes
 def _pieces(text: str) -> tuple[_Piece, ...]:
-    """Words, and of long ones what may stand on a line of its own."""
+    """Words, with long ones split into parts that may be on separate lines."""
     found = []
     for word in text.split():
         parts = [word]
@@ -77,16 +78,17 @@ def _pieces(text: str) -> tuple[_Piece, ...]:
 
 
 def least_width(line: Line) -> float:
-    """What the lines of a paragraph are wide together at least, wherever it is broken, in drawing units."""
+    """Minimum total width of a paragraph's lines, wherever it is broken, in drawing units."""
     return sum(_wide(piece.units, line.bold) for piece in _pieces(line.text))
 
 
 def wrapped(
     paragraphs: Iterable[Line], fits: Callable[[int], float], most: int | None = None
 ) -> list[Line] | None:
-    """The lines of some paragraphs; None if more than `most` are needed, or one piece fits no line.
+    """The lines of some paragraphs; None if more than `most` are needed, or a piece fits on no
+    line.
 
-    fits: how wide the line of a number may be.
+    fits: maximum width of a line, by its number.
     """
     found: list[Line] = []
     for paragraph in paragraphs:
@@ -98,7 +100,7 @@ def wrapped(
                 continue
             if line:
                 found.append(Line(line, bold))
-                if len(found) == most:  # and there is more
+                if len(found) == most:  # more text is left
                     return None
             line, units = piece.text, piece.units
             if _wide(units, bold) > fits(len(found)):

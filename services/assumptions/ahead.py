@@ -1,8 +1,9 @@
-"""The assumption that what was looked at at a heartbeat is flown until the next. Decided by the kernels `disc_within`
-and `in_time`.
+"""The assumption that aircraft fly between two heartbeats as predicted at the first. Decided by the
+kernels `disc_within` and `in_time`.
 
-The way that an instance predicts is not in the log: what can be seen is how far each aircraft is from flying straight on,
-which the prediction of another aircraft is, and the first piece of its own way wherever that leads on.
+The prediction of an ICAROUS instance is not in the log. What can be observed is each aircraft's
+deviation from straight flight: the prediction for other aircraft, and the first piece of the
+vehicle's own path, wherever that leads on.
 """
 
 from __future__ import annotations
@@ -19,15 +20,16 @@ from cratous.spec.mission import Mission
 
 
 class AheadWatch:
-    """Every aircraft, from one heartbeat to the next."""
+    """Compares every aircraft with straight flight from one heartbeat to the next."""
 
     kinds = ("TruthState",)
 
-    def __init__(self, mission: Mission) -> None:
+    def __init__(self, mission: Mission, positions: Positions | None = None) -> None:
+        """positions: shared with other watches of the same samples."""
         self._room = room_of(mission.daa)
         self._period_ms = mission.simulation.heartbeat_ms
         self._step_ms = mission.simulation.step_ms
-        self._positions = Positions()
+        self._positions = positions or Positions()
         self._last_ms = {v.id: 0 for v in mission.vehicles}
         self._last_ms |= {t.id: t.appears_ms for t in mission.traffic}
         self._gone_ms = gone_ms(mission)
@@ -37,7 +39,7 @@ class AheadWatch:
         self._record = Record("m", self._room.wide_m, kernels, none, waits="no aircraft was seen")
 
     def message(self, message: Message) -> None:
-        """Where an aircraft is."""
+        """Process the true state of an aircraft."""
         if message.kind != "TruthState" or self._record.unseen:
             return
         number, here = message.body.VehicleID, self._positions.seen(message)
@@ -59,7 +61,7 @@ class AheadWatch:
             self._base[number] = here
 
     def end(self, at_ms: int) -> None:
-        """Every aircraft is to have been seen until the end, or until it is not there."""
+        """Check that every aircraft was observed until at_ms [ms], or until it disappeared."""
         for number, last_ms in self._last_ms.items():
             until_ms = max(last_ms, min(at_ms, self._gone_ms.get(number, at_ms)))
             self._record.unseen_between(f"aircraft {number}", last_ms, until_ms, self._step_ms)

@@ -10,20 +10,20 @@ from cratous.services.assumptions.observed import Message, Record
 from cratous.spec.mission import Mission
 
 UNTOUCHED = Gate(UXAS, 0, False)
-"""UxAS commands, and has always done so."""
+"""The initial gate: UxAS commands, and always has."""
 COMMANDS = ("MissionCommand", "VehicleActionCommand", "FollowPathCommand")
-"""What an autopilot flies by when it stands alone."""
+"""Commands that an autopilot follows without a gate."""
 NUMBERS = {"UxAS": UXAS, "ICAROUS": ICAROUS}
 EXECUTIVE, LINK = "uxas/executive", "uxas/ics"
 
 
 def icarous_has(body: Any) -> bool:
-    """Whether ICAROUS has the vehicle of an `AuthorityChange`."""
+    """Whether an `AuthorityChange` gives the vehicle to ICAROUS."""
     return has_it(Gate(NUMBERS.get(body.Owner.name, UXAS), body.Epoch, False))
 
 
 def reported(body: Any) -> Gate:
-    """The gate of a `GateState`."""
+    """The gate that a `GateState` reports."""
     return Gate(NUMBERS.get(body.Owner.name, UXAS), body.Epoch, body.Offered)
 
 
@@ -38,7 +38,7 @@ def has_it(gate: Gate) -> bool:
 
 
 class CommandWatch:
-    """Commands and reports of every protected vehicle."""
+    """Checks commands and reports of every protected vehicle."""
 
     kinds = (*COMMANDS, "GatedCommand", "GateState", "TaskProgress")
 
@@ -59,7 +59,7 @@ class CommandWatch:
         self._counts = dict.fromkeys(("reports", "told", "alone", "suspended"), 0)
 
     def message(self, message: Message) -> None:
-        """A command, a report of the gate, or a task that is suspended."""
+        """Process a command, a gate report, or the suspension of a task."""
         kind, _, _, body = message
         if kind in COMMANDS:
             self._bare(message)
@@ -102,7 +102,9 @@ class CommandWatch:
         self._while_suspended(message, number)
 
     def _while_suspended(self, message: Message, number: int) -> None:
-        """The command that takes the vehicle back ends it; before it the executive says nothing."""
+        """A suspension ends with the command that takes the vehicle back; before it the executive
+        sends no command.
+        """
         if number not in self._suspended or sender_of(message.body) == ICAROUS:
             return
         if message.source == LINK:
@@ -131,7 +133,7 @@ class CommandWatch:
         self._gates[number] = gate
 
     def end(self, at_ms: int) -> None:
-        """A vehicle that got no command was not watched."""
+        """Report vehicles without any command as not observed."""
         if self._first and self._begun.checks:
             names = ", ".join(map(str, sorted(self._first)))
             self._begun.gaps.append(f"no command to vehicle {names} was seen")
@@ -149,7 +151,7 @@ class CommandWatch:
 
 
 class SteeringWatch:
-    """While ICAROUS has a vehicle it commands at each heartbeat: it has looked at the gate then."""
+    """Checks that ICAROUS commands a vehicle under its control at each heartbeat, having read the gate."""
 
     kinds = ("GateState", "GatedCommand", "Heartbeat")
 
@@ -161,7 +163,7 @@ class SteeringWatch:
         self._record = Record("s", self._period_ms / 1000, (in_time,), none, waits="no takeover")
 
     def message(self, message: Message) -> None:
-        """A change of the gate, or a command of ICAROUS; with each message time goes on."""
+        """Process a gate change or a command of ICAROUS; every message advances the time."""
         kind, now_ms, _, body = message
         if kind == "GateState" and body.VehicleID in self._instances:
             self._look(now_ms)
@@ -185,7 +187,7 @@ class SteeringWatch:
             self._record.check(ok, last_ms + self._period_ms, number, text)
 
     def end(self, at_ms: int) -> None:
-        """A takeover that is still open counts up to here."""
+        """End of the messages at at_ms [ms]: an open takeover counts up to here."""
         self._look(at_ms)
 
     def records(self) -> dict[str, Record]:

@@ -1,4 +1,4 @@
-"""The assumption that the executive counts takeovers on an item, and gives up one on which there are too many."""
+"""The assumption that the executive counts takeovers on each item and gives up an item with too many."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from cratous.spec.mission.changes import VEHICLE_HOLDS
 
 TO_ITEM, SETTLED = ("Transit", "Active"), ("Complete", "Failed")
 LATE_BEATS = 4
-"""UxAS hears of a takeover, and of its end, within two heartbeats each."""
+"""Heartbeats by which UxAS may learn late of a takeover: two for its start, two for its end."""
 UNHEARD, LINKED, BEAT = "LinkLossState", "Linked", "Heartbeat"
 
 
 @dataclass
 class _Leg:
-    """task_id: of the item, 0 if there is none; since_ms: when ICAROUS took over, None while UxAS flies."""
+    """One vehicle on an item. task_id: 0 if there is none; since_ms: time of the takeover, None under UxAS."""
 
     task_id: int = 0
     takeovers: int = 0
@@ -30,17 +30,18 @@ class _Leg:
     since_ms: int | None = None
 
     def flown_ms(self, now_ms: int) -> int:
-        """How long ICAROUS has flown on it [ms]."""
+        """Total time under ICAROUS on the item up to now_ms [ms]."""
         return self.under_ms + (now_ms - self.since_ms if self.since_ms is not None else 0)
 
 
 class GivenUpWatch:
-    """On each item as many takeovers, and as much time under ICAROUS, as the executive allows, and no more.
+    """Checks takeovers, and time under ICAROUS, on each item against the executive's limits.
 
-    One that stands on the ground at first is not held to its time, nor is one that flies without its link; one that holds by
-    command is held to neither: while it holds no item is given up. Where one of these is flown for longer, that is not observed.
-    What is taken over without the link UxAS does not hear of, and it counts on no item. Where lines of ICAROUS came late,
-    or not, UxAS knew less than is seen here: more than is allowed is then not observed.
+    Vehicles that start on the ground or fly without their link are not subject to the time limit;
+    vehicles that hold by command to neither limit, since no item is given up while they hold.
+    Excess in these cases is not observed. UxAS does not hear of takeovers without the link, so they
+    count on no item. If lines of ICAROUS came late or were lost, UxAS knew less than is seen here:
+    excess is then not observed.
     """
 
     kinds = ("AuthorityChange", "TaskProgress", UNHEARD, BEAT)
@@ -88,7 +89,7 @@ class GivenUpWatch:
             self._left(message.body.TaskID, now_ms, vid)
 
     def _left(self, task_id: int, now_ms: int, only: int = 0) -> None:
-        """A task is settled for a vehicle that was on its way to it, or waits and is nobody's."""
+        """A task is settled: ends the item of each vehicle on its way to it, or waiting with it unassigned."""
         for vid, leg in self._legs.items():
             if leg.task_id == task_id and vid == (only or vid):
                 self._time(vid, leg, now_ms)
@@ -113,7 +114,7 @@ class GivenUpWatch:
         self._allowed(not given_up, now_ms, vid, text)
 
     def _time(self, vid: int, leg: _Leg, now_ms: int) -> None:
-        """Whether ICAROUS has flown for too long on an item that is left now."""
+        """Check the time under ICAROUS on an item that ends now."""
         if not leg.task_id:
             return
         flown_ms = leg.flown_ms(now_ms)
@@ -126,7 +127,7 @@ class GivenUpWatch:
         self._allowed(not given_up, now_ms, vid, text)
 
     def _allowed(self, holds: bool, now_ms: int, vid: int, text: str) -> None:
-        """What the executive allows by what it has heard."""
+        """Record an excess as a break if UxAS had heard what is seen here; otherwise as not observed."""
         if not holds:
             self._delivery.end(now_ms)
         (delivery,) = self._delivery.records().values()

@@ -1,7 +1,9 @@
-"""Assumptions of takeovers that end: UxAS is heard on board, and the way back is free. Decided by `in_time` and the gate's.
+"""Assumptions for takeovers to end: UxAS is heard on board, and the return path is clear. Decided
+by `in_time` and the gate kernels.
 
-An ICAROUS says when it no longer hears UxAS (`UxasHeard`). That its way back is free it does not say, but it offers control
-when it has been free for long enough: where it hears UxAS and offers nothing for longer than that, the way was not free.
+An ICAROUS reports when it no longer hears UxAS (`UxasHeard`). It does not report that its return
+path is clear, but offers control once it has been clear for long enough: if it hears UxAS and
+offers nothing for longer than that, the path was not clear.
 """
 
 from __future__ import annotations
@@ -17,10 +19,10 @@ from cratous.spec.mission import Mission
 from cratous.spec.system.ending import MOST_PATIENCE
 
 LEAST_MS = 1500
-"""The way back has to be free for so long at least [ms]; a test holds it to that of the instance."""
+"""Time for which the return path has to be clear [ms]; a test compares it with the instance's value."""
 LINKED = "Linked"
 HEARD_MS = 2000
-"""UxAS counts as heard by ICAROUS for so long after a line [ms]; a test holds it to that of the instance."""
+"""Time after a line for which ICAROUS counts UxAS as heard [ms]; a test compares it with the instance's value."""
 
 
 def not_told(mission: Mission, told: bool) -> str:
@@ -31,7 +33,7 @@ def not_told(mission: Mission, told: bool) -> str:
 
 
 def coarse(mission: Mission) -> str:
-    """Why a silence may not have been told, "" if each is: who acts without the link tells of those that last."""
+    """Why a silence may not have been reported, "" if each is: with a lost-link procedure only long ones are."""
     loss = mission.link_loss
     if loss is None or in_time(0, loss.after_ms, HEARD_MS):
         return ""
@@ -39,7 +41,7 @@ def coarse(mission: Mission) -> str:
 
 
 class HeardWatch:
-    """Each ICAROUS hears UxAS at each of its heartbeats."""
+    """Checks that each ICAROUS hears UxAS at each of its heartbeats."""
 
     kinds = ("Heartbeat", "UxasHeard", "LinkLossState")
 
@@ -52,7 +54,7 @@ class HeardWatch:
         self._record.gaps += [why for why in (coarse(mission),) if why and not none]
 
     def message(self, message: Message) -> None:
-        """A heartbeat that came from an ICAROUS, or what one says of UxAS."""
+        """Process a heartbeat of an ICAROUS, or its report of whether it hears UxAS."""
         kind, _, source, body = message
         if kind not in self.kinds or body.VehicleID not in self._instances:
             return
@@ -81,14 +83,16 @@ class HeardWatch:
 
 
 class Away(NamedTuple):
-    """State of one takeover. since_ms: start of the wait for a free way back [ms]; offered: ICAROUS offers control."""
+    """State of one takeover. since_ms: start of the wait for a clear return path [ms]; offered:
+    ICAROUS offers control.
+    """
 
     since_ms: int
     offered: bool = False
 
 
 class WayBackWatch:
-    """Checks of each takeover whether control was offered, and if not by the end, for how long it was not."""
+    """Checks for each takeover whether control was offered, and if not by the end, for how long it was not."""
 
     kinds = ("GateState", "UxasHeard", "LinkLossState")
 
@@ -97,7 +101,8 @@ class WayBackWatch:
         self._instances = frozenset(mission.instances)
         self._unheard: set[int] = set()
         self._gone_ms, self._coarse = gone_ms(mission), coarse(mission)
-        # the way is first looked at one heartbeat after the takeover, and control is offered at one
+        # the path is first checked one heartbeat after the takeover, and control is offered at a
+        # heartbeat
         self._wait_ms = MOST_PATIENCE * LEAST_MS + 2 * mission.simulation.heartbeat_ms
         none = not_told(mission, told)
         self._record = Record(
@@ -105,7 +110,7 @@ class WayBackWatch:
         )
 
     def message(self, message: Message) -> None:
-        """A change of a gate, or what an ICAROUS hears."""
+        """Process a gate change, or a report of whether an ICAROUS hears UxAS."""
         kind, now_ms, _, body = message
         if kind not in self.kinds or body.VehicleID not in self._instances:
             return
@@ -122,7 +127,7 @@ class WayBackWatch:
                 self._away[number] = Away(now_ms, gate.offered)
 
     def _over(self, number: int) -> None:
-        """UxAS has the vehicle: the way was free when it was offered."""
+        """End a takeover: UxAS commands the vehicle, so the return path was clear when control was offered."""
         if self._away.pop(number, None) is not None:
             self._record.see(None)
 
@@ -136,7 +141,7 @@ class WayBackWatch:
             self._away[number] = away._replace(since_ms=now_ms)
 
     def end(self, at_ms: int) -> None:
-        """A takeover that is open and not offered is one whose way back was not free, if that can be told."""
+        """A takeover still open without an offer counts as a blocked return path, if that can be determined."""
         for number, away in sorted(self._away.items()):
             until_ms = max(away.since_ms, min(at_ms, self._gone_ms.get(number, at_ms)))
             waited_ms = until_ms - away.since_ms

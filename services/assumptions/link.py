@@ -1,4 +1,4 @@
-"""Assumptions on the link and on clocks: periods, delivery, and times that do not go back. Decided by `in_time`."""
+"""Assumptions on link and clocks: periods, delivery, and times that never decrease. Decided by `in_time`."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from cratous.services.assumptions.observed import ANY_LATER, EVERY, Message, Rec
 from cratous.spec.mission import Mission
 
 OWN_TIME = ("Heartbeat", "GateState", "TruthState", "CommandDropped", "BridgeStatus")
-"""Messages that say the instant at which they are sent; others name earlier ones too."""
+"""Messages whose own time is their sending time; others contain earlier times too."""
 PERIODS = 2
-"""A line is late when it has not come after this many heartbeats: as G5 has it of heartbeats."""
+"""Heartbeats after which a line that has not come is late, as in G5."""
 NO_INSTANCE = "no vehicle has an ICAROUS instance"
 
 
@@ -20,25 +20,34 @@ def _s(time_ms: int) -> str:
 
 
 class ClockWatch:
-    """Times of messages do not go back, neither that of the log nor the sender's own."""
+    """Checks that message times never decrease, neither the log's nor each sender's own."""
 
     kinds = EVERY
 
     def __init__(self) -> None:
         self._last_ms = 0
+        self._asked_ms: int | None = None
         self._record = Record("s back", 0, (in_time,), waits="no message was seen")
 
     def message(self, message: Message) -> None:
-        """Any message; those that say their own time are counted."""
-        own = message.kind in OWN_TIME
-        for time_ms in (message.time_ms, message.body.Time) if own else (message.time_ms,):
+        """Process any message; those with a time of their own are counted."""
+        own, now_ms = message.kind in OWN_TIME, message.time_ms
+        asked = self._asked_ms is not None and in_time(self._asked_ms, now_ms, 0)
+        if asked and (not own or in_time(now_ms, message.body.Time, 0)):
+            if own:  # compared with itself at this instant: both checks hold
+                self._record.see_again(0.0, 2)
+            return
+        all_ok = True
+        for time_ms in (now_ms, message.body.Time) if own else (now_ms,):
             ok = in_time(self._last_ms, time_ms, ANY_LATER)
             if own or not ok:
                 self._record.see(max(0, self._last_ms - time_ms) / 1000)
             if not ok:
                 text = f"a {message.kind} of {_s(time_ms)} after a message of {_s(self._last_ms)}"
                 self._record.check(ok, self._last_ms, 0, text)
-        self._last_ms = message.time_ms
+            all_ok = all_ok and ok
+        self._asked_ms = now_ms if all_ok and in_time(self._last_ms, now_ms, 0) else None
+        self._last_ms = now_ms
 
     def end(self, at_ms: int) -> None:
         """End of the messages at at_ms [ms]: no check is pending."""
@@ -49,7 +58,7 @@ class ClockWatch:
 
 
 class PeriodWatch:
-    """Heartbeats that UxAS sends to each ICAROUS come at most a period apart."""
+    """Checks that heartbeats from UxAS to each ICAROUS come at most one period apart."""
 
     kinds = ("Heartbeat", "TruthState")
 
@@ -67,7 +76,7 @@ class PeriodWatch:
         kind, now_ms, _, body = message
         if kind not in ("Heartbeat", "TruthState"):
             return
-        if now_ms not in self._looked:  # at one instant a heartbeat can only make it later
+        if now_ms not in self._looked:  # at the same instant the answer cannot change
             self._looked = (now_ms,)
             self._look(now_ms)
         down = kind == "Heartbeat" and body.Direction.name == "Down"
@@ -84,7 +93,7 @@ class PeriodWatch:
                 self._record.check(ok, last_ms + self._period_ms, number, text)
 
     def end(self, at_ms: int) -> None:
-        """The time since the last one counts too."""
+        """End of the messages at at_ms [ms]: the time since the last heartbeat counts too."""
         self._look(at_ms)
 
     def records(self) -> dict[str, Record]:
@@ -93,7 +102,7 @@ class PeriodWatch:
 
 
 class DeliveryWatch:
-    """Heartbeats of ICAROUS come within two periods: the k-th is sent k - 1 periods after the start."""
+    """Checks that ICAROUS heartbeats arrive within two periods: the k-th is sent k - 1 periods after the start."""
 
     kinds = ("Heartbeat", "TruthState")
 
@@ -103,6 +112,8 @@ class DeliveryWatch:
         self._next = dict.fromkeys(mission.instances, 1)
         self._came: dict[int, set[int]] = {number: set() for number in mission.instances}
         self._looked: tuple[int, ...] = ()
+        self._late = False
+        """Whether one was late when all were last checked."""
         none = "" if self._next else NO_INSTANCE
         self._record = Record("s", self._bound_ms / 1000, (in_time,), none)
         self._record.waits = "no heartbeat was seen"
@@ -115,8 +126,12 @@ class DeliveryWatch:
         kind, now_ms, _, body = message
         if kind not in ("Heartbeat", "TruthState"):
             return
-        if kind == "Heartbeat" and body.Direction.name == "Up" and body.VehicleID in self._next:
+        if kind == "Heartbeat" and body.VehicleID in self._next and body.Direction.name == "Up":
             self._come(body.VehicleID, body.Sequence, now_ms)
+            if now_ms in self._looked and not self._late:
+                # nothing has changed for the others
+                self._late = self._is_late(body.VehicleID, self._next[body.VehicleID], now_ms)
+                return
             self._looked = ()
         if now_ms not in self._looked:
             self._looked = (now_ms,)
@@ -124,7 +139,7 @@ class DeliveryWatch:
 
     def _come(self, vehicle: int, number: int, now_ms: int) -> None:
         sent_ms, came = self._sent_ms(number), self._came[vehicle]
-        # one that comes again, or was never sent, says nothing of delivery
+        # a duplicate, or one never sent, says nothing about delivery
         fresh = in_time(self._sent_ms(self._next[vehicle]), sent_ms, ANY_LATER)
         if number in came or not fresh or not in_time(sent_ms, now_ms, ANY_LATER):
             return
@@ -138,17 +153,22 @@ class DeliveryWatch:
             self._next[vehicle] += 1
 
     def _look(self, now_ms: int) -> None:
-        """The first heartbeat that has not come: is it late?"""
+        self._late = False
         for vehicle, number in self._next.items():
-            sent_ms = self._sent_ms(number)
-            ok = in_time(sent_ms, max(sent_ms, now_ms), self._bound_ms)
-            if not ok:
-                self._record.see((now_ms - sent_ms) / 1000)
-                text = f"heartbeat {number} of {_s(sent_ms)} had not come by {_s(now_ms)}"
-                self._record.check(ok, sent_ms + self._bound_ms, vehicle, text)
+            self._late |= self._is_late(vehicle, number, now_ms)
+
+    def _is_late(self, vehicle: int, number: int, now_ms: int) -> bool:
+        """Whether the first heartbeat that has not arrived is late."""
+        sent_ms = self._sent_ms(number)
+        if in_time(sent_ms, max(sent_ms, now_ms), self._bound_ms):
+            return False
+        self._record.see((now_ms - sent_ms) / 1000)
+        text = f"heartbeat {number} of {_s(sent_ms)} had not come by {_s(now_ms)}"
+        self._record.check(False, sent_ms + self._bound_ms, vehicle, text)
+        return True
 
     def end(self, at_ms: int) -> None:
-        """What has not come by now, and is late, has not been delivered."""
+        """End of the messages at at_ms [ms]: heartbeats late and not arrived count as not delivered."""
         self._look(at_ms)
 
     def records(self) -> dict[str, Record]:
@@ -157,8 +177,9 @@ class DeliveryWatch:
 
 
 class ChangeWatch:
-    """Changes of authority are told: an offer does not stay open longer than line and command take, and UxAS
-    sends no command of an epoch that has been over for longer than a line takes."""
+    """Checks that authority changes are communicated: an offer stays open no longer than line and
+    command take, and UxAS sends no command in an epoch that ended longer ago than a line takes.
+    """
 
     kinds = ("Heartbeat", "TruthState", "GateState", "GatedCommand")
 
@@ -166,6 +187,7 @@ class ChangeWatch:
         self._line_ms = PERIODS * mission.simulation.heartbeat_ms
         self._gates = dict.fromkeys(mission.instances, UNTOUCHED)
         self._since = dict.fromkeys(mission.instances, 0)
+        self._offers: list[int] = []
         none = "" if self._gates else NO_INSTANCE
         taken_s, told_s = 2 * self._line_ms / 1000, self._line_ms / 1000
         self._taken = Record("s", taken_s, (in_time,), none, waits="no offer was made")
@@ -173,7 +195,7 @@ class ChangeWatch:
         self._told = Record("s", told_s, (in_time, epoch_given), none, waits=waits)
 
     def message(self, message: Message) -> None:
-        """A state of the gate, or a command; with each heartbeat and sample time goes on."""
+        """Process a gate state or a command; heartbeats and samples advance the time."""
         kind, now_ms, _, body = message
         if kind in ("Heartbeat", "TruthState"):
             self._look(now_ms)
@@ -183,11 +205,12 @@ class ChangeWatch:
             if not epoch_given(before, gate.epoch):
                 self._since[body.VehicleID] = now_ms
             self._gates[body.VehicleID] = gate
+            self._offers = [number for number, one in self._gates.items() if one.offered]
         elif kind == "GatedCommand" and body.VehicleID in self._gates:
             self._command(message)
 
     def _command(self, message: Message) -> None:
-        """Of UxAS, in an epoch before the present one: it has not been told of that."""
+        """Check a UxAS command in an old epoch: it has not been told of the change."""
         body, now_ms = message.body, message.time_ms
         number, gate = body.VehicleID, self._gates[body.VehicleID]
         past = epoch_given(Gate(gate.owner, gate.epoch - 1, False), body.Epoch)
@@ -203,9 +226,7 @@ class ChangeWatch:
         self._told.check(ok, since_ms + self._line_ms, number, text)
 
     def _look(self, now_ms: int) -> None:
-        for number, gate in self._gates.items():
-            if not gate.offered:
-                continue
+        for number in self._offers:
             since_ms = self._since[number]
             open_ms = max(0, now_ms - since_ms)
             self._taken.see(open_ms / 1000)
@@ -214,7 +235,7 @@ class ChangeWatch:
             self._taken.check(ok, since_ms + 2 * self._line_ms, number, text)
 
     def end(self, at_ms: int) -> None:
-        """An offer that is open still counts up to here."""
+        """End of the messages at at_ms [ms]: an open offer counts up to here."""
         self._look(at_ms)
 
     def records(self) -> dict[str, Record]:

@@ -1,6 +1,7 @@
-"""The assumptions of the system theorems: which theorems rest on each, and what is lost when it breaks.
+"""The assumptions of the system theorems: which theorems depend on each, and what is lost when it
+breaks.
 
-`docs/proofs/assumptions.md` has the same rows; a test holds them together.
+`docs/proofs/assumptions.md` has the same rows; a test compares them.
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ CLEAR = ("a_vehicle_is_clear_until_a_surprise_or_an_expiry",)
 LOOKED = ("a_way_that_is_looked_ahead_at_is_clear",)
 FENCED = ("no_zone_is_entered_until_a_surprise_or_an_expiry",)
 RANK = ("the_rank_of_a_mission_falls_at_each_heartbeat",)
+SERVED = ("a_chain_is_served_where_takeovers_and_stays_are_bounded",)
+FEW = ("uxas_counts_a_takeover_once_for_each_intruder_and_surprise",)
 NEAR_LEGS = ("whoever_is_near_a_checked_leg_obeys_the_zones",)
 ONE_COMMANDER = "exactly one commander at any time"
 REPLAYED = "the replay of the gate (G4) judges each command and each report by itself"
@@ -33,7 +36,7 @@ BY_EPOCH = "one commander at any time: it needs no clock and no delivery"
 
 
 class State(StrEnum):
-    """The three answers. What was not watched to the end of the mission did not hold: it is not observed."""
+    """The three results. What was not observed to the end of the mission is not observed, never held."""
 
     HELD = "held"
     BROKEN = "broken"
@@ -41,9 +44,10 @@ class State(StrEnum):
 
 
 class Assumption(NamedTuple):
-    """text: what is assumed; theorems: files of `proofs/theorems` (system or permit); guarantees: G1 to G5;
-    lost: what of them has no ground any more when it is broken; stands: what still holds then; watch: what is
-    looked at in a flight."""
+    """text: what is assumed; theorems: files of `proofs/theorems` (system or permit); guarantees:
+    G1 to G5; lost: what is no longer guaranteed when it breaks; stands: what still holds then;
+    watch: what is observed in a flight.
+    """
 
     name: str
     text: str
@@ -67,8 +71,8 @@ LISTING = (
     Assumption(
         "reports of the gate",
         "a report of the gate is one that the vehicle has made",
-        UXAS_END,
-        ("G4",),
+        (*UXAS_END, *FEW),
+        ("G3", "G4"),
         "that UxAS believes of the gate what is so",
         REPLAYED,
         "who sends each report",
@@ -85,8 +89,8 @@ LISTING = (
     Assumption(
         "epochs kept",
         "the gate keeps its epoch (no restart that forgets it)",
-        AUTHORITY,
-        ("G4",),
+        (*AUTHORITY, *FEW),
+        ("G3", "G4"),
         "that a late command of an earlier epoch does not act",
         REPLAYED,
         "epochs that go back",
@@ -103,8 +107,8 @@ LISTING = (
     Assumption(
         "ICAROUS at each heartbeat",
         "ICAROUS looks at the gate at each heartbeat before it does anything",
-        (*GATE, *CLEAR, *FENCED),
-        ("G1", "G2", "G4"),
+        (*GATE, *CLEAR, *FENCED, *FEW),
+        ("G1", "G2", "G3", "G4"),
         "that ICAROUS commands while it has the vehicle",
         BY_EPOCH,
         "the longest time between its commands while it has the vehicle",
@@ -184,7 +188,7 @@ LISTING = (
     Assumption(
         "end of the flight",
         "the executive asks `flight_outcome` at the end of each step",
-        ("a_mission_ends", "a_takeover_that_lasts_is_declared"),
+        ("a_mission_ends", "a_takeover_that_lasts_is_declared", *SERVED),
         ("G3", "G4"),
         "that the mission ends by its limit, served or declared",
         "G3 counts what was served",
@@ -202,7 +206,7 @@ LISTING = (
     Assumption(
         "settled tasks",
         "another plan brings no task back that has ended or failed",
-        ("a_mission_ends", *RANK),
+        ("a_mission_ends", *RANK, *SERVED),
         ("G3",),
         "that less is left after each step, so that the mission ends before its limit",
         "the limit ends the mission; G3 counts what was served",
@@ -211,11 +215,40 @@ LISTING = (
     Assumption(
         "items given up",
         "the executive counts each takeover on an item, at most one between two heartbeats, and asks `leg_given_up` at each",
-        RANK,
+        (*RANK, *SERVED, *FEW),
         ("G3",),
         "that less is left at each heartbeat, so that takeovers on an item have an end",
         "the limit ends the mission; G3 counts what was served",
         "takeovers on the way to each item and the time under ICAROUS: no more than are allowed, one between two heartbeats",
+    ),
+    Assumption(
+        "stays bounded",
+        "on each item of a chain takeovers are no more than are allowed, and it is allowed that ICAROUS stays as long as its "
+        "longest stay on any item, as often as takeovers come on the worst one, and once more",
+        SERVED,
+        ("G3",),
+        "that no item is given up for what ICAROUS flies, so that each is served",
+        "the mission ends, served or declared; G3 counts what was served",
+        "the most takeovers and withdrawn offers on the way to one item, and one more, times the longest stay on any",
+    ),
+    Assumption(
+        "flown in time",
+        "UxAS flies each chain so soon that with the longest stays of ICAROUS at all of its items it ends before the limit",
+        SERVED,
+        ("G3",),
+        "that each chain is at its end before the limit",
+        "the limit ends the mission; G3 counts what was served",
+        "how long UxAS flies each chain, and beside it the longest stay, as often as takeovers come on one item and once "
+        "more, on each of its items",
+    ),
+    Assumption(
+        "no other failure",
+        "no task fails but one whose item is given up: each is planned, has a way, and can keep its deadlines",
+        SERVED,
+        ("G3",),
+        "that each item is served",
+        "the mission ends, served or declared; G3 counts what was served",
+        "tasks that fail, and why; tasks that are not seen to their end",
     ),
     Assumption(
         "intruder in its tube",
@@ -280,4 +313,4 @@ LISTING = (
         "while all others fly as was predicted (what was looked at is not in the log)",
     ),
 )
-"""All of them, in the order in which they are shown."""
+"""All assumptions, in display order."""

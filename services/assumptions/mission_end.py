@@ -1,4 +1,4 @@
-"""Assumptions on the executive: it asks for the end at each step, and settled tasks stay settled."""
+"""Assumptions on the executive: it checks for the end at each step, and settled tasks stay settled."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from cratous.spec.mission import Mission
 
 SETTLED = ("Complete", "Failed")
 COUNTED = ("complete", "failed")
-"""So a flight ends that nobody is waited for; the limit and an operator end it whoever is away."""
+"""Outcomes with which a flight ends only when no vehicle is awaited; a limit or operator ends it regardless."""
 AT_WORK = ("Transit", "Waiting", "Active", "Suspended")
 
 
 class EndWatch:
-    """No message comes later than the limit and one step."""
+    """Checks that no message comes later than the time limit plus one step."""
 
     kinds = EVERY
 
@@ -24,7 +24,7 @@ class EndWatch:
         self._record = Record("s", self._most_ms / 1000, (in_time,), waits="no message was seen")
 
     def message(self, message: Message) -> None:
-        """Take any message; position messages are counted, since one comes at each step."""
+        """Process any message; position messages are counted, since one comes at each step."""
         now_ms = max(0, message.time_ms)
         ok = in_time(0, now_ms, self._most_ms)
         if message.kind == "TruthState" or not ok:
@@ -42,7 +42,7 @@ class EndWatch:
 
 
 class AwayWatch:
-    """A flight that ends before its limit ends with no vehicle in the air under ICAROUS."""
+    """Checks that a flight that ends before its limit ends with no vehicle in the air under ICAROUS."""
 
     kinds = ("AuthorityChange", "TruthState", "MissionEnd")
 
@@ -67,7 +67,7 @@ class AwayWatch:
             self._ends(message)
 
     def _ends(self, message: Message) -> None:
-        """One that stands, before its take-off or after its landing, is not waited for."""
+        """Check the end of the flight: a vehicle at rest before take-off or after landing is not awaited."""
         at_ms = message.time_ms
         there = [
             vid for vid in self._away if in_time(at_ms, self._lost_ms.get(vid, at_ms), ANY_LATER)
@@ -89,7 +89,7 @@ class AwayWatch:
 
 
 class SettledWatch:
-    """A task that is complete or has failed is not flown again."""
+    """Checks that a completed or failed task is not flown again."""
 
     kinds = ("TaskProgress",)
 
@@ -99,7 +99,7 @@ class SettledWatch:
         self._record = Record("tasks", 0, waits="no task was seen")
 
     def message(self, message: Message) -> None:
-        """The phase of a task."""
+        """Process a change of a task's phase."""
         if message.kind != "TaskProgress":
             return
         body, phase = message.body, message.body.Phase.name

@@ -1,8 +1,9 @@
-"""Assumptions on motion during a takeover: an intruder in its tube, a vehicle on its path. Decided by `disc_within`.
+"""Assumptions on motion during a takeover: an intruder in its tube, a vehicle on its path. Decided
+by `disc_within`.
 
-ICAROUS keeps a volume that is `buffer` times the mission's. What that leaves of DTHR and ZTHR is shared: half of
-it for the intruder, half for the vehicle. While both are within theirs, a prediction that keeps the buffered
-cylinder means that the mission's own is kept.
+ICAROUS keeps a volume that is `buffer` times the mission's. The excess over DTHR and ZTHR is
+divided: half for the intruder, half for the vehicle. While both deviate by no more than that, a
+prediction that keeps the buffered cylinder clear implies that the mission's own is clear.
 """
 
 from __future__ import annotations
@@ -28,34 +29,34 @@ from cratous.spec.mission import Daa, Mission, Position, Velocity
 
 GRAVITY_M_S2 = 9.80665
 ACCELERATION_M_S2 = 1.0
-"""What an airframe changes its speed by, at most: the simulator has the same."""
+"""Maximum acceleration of an airframe [m/s2], the same as in the simulator."""
 SHARE = 0.5
-"""Of what the buffer leaves: as much for the intruder as for the vehicle."""
+"""Each aircraft's share of the buffer's excess: half for the intruder, half for the vehicle."""
 ROUNDED_M = 1e-3
-"""Where nothing is left: positions are sums of rounded steps, so so much is no deviation [m]."""
+"""Minimum tolerance [m]: positions are sums of rounded steps, so this much is no deviation."""
 
 
 class Room(NamedTuple):
-    """How far off a prediction may be: horizontally and in altitude [m]."""
+    """Permitted deviation from a prediction: horizontally and in altitude [m]."""
 
     wide_m: float
     high_m: float
 
 
 def room_of(daa: Daa) -> Room:
-    """The share of one aircraft."""
+    """The permitted deviation of one aircraft."""
     left, volume = SHARE * (daa.buffer - 1), daa.well_clear
     return Room(max(ROUNDED_M, left * volume.dthr_m), max(ROUNDED_M, left * volume.zthr_m))
 
 
 def is_within(off: Position, room: Room) -> bool:
-    """Whether something is off its prediction by no more; exact on the given numbers."""
+    """Whether a deviation from a prediction is within its limits; exact on the given numbers."""
     numbers = (*off, *room)
     if not all(map(math.isfinite, numbers)):
         return False
     ratios = [x.as_integer_ratio() for x in numbers]
-    unit = math.lcm(*(below for _, below in ratios))
-    # whole numbers of one unit: exact, and CPython's fastest
+    unit = max(below for _, below in ratios)  # powers of two
+    # integers in one unit: exact, and fastest in CPython
     whole: list[Any] = [above * (unit // below) for above, below in ratios]
     north, east, up, wide, high = whole
     nothing: Any = 0
@@ -64,8 +65,9 @@ def is_within(off: Position, room: Room) -> bool:
 
 
 def look(record: Record, off: Position, room: Room, seen: tuple[int, int], what: str) -> None:
-    """Hold how far something is off its prediction against its room. seen: when [ms], and whose takeover it is; what:
-    is off what prediction, in words, with "{off}" where by how much belongs."""
+    """Record a deviation from a prediction and check it. seen: time [ms], and the vehicle taken
+    over; what: break text with "{off}" in place of the deviation.
+    """
     at_ms, number = seen
     beside_m = math.hypot(off.north_m, off.east_m)
     record.see(beside_m)
@@ -74,7 +76,7 @@ def look(record: Record, off: Position, room: Room, seen: tuple[int, int], what:
 
 
 class Seen(NamedTuple):
-    """Where an aircraft is and the velocity with which it came there: what its observers know."""
+    """Position of an aircraft, and the velocity with which it arrived there: what observers know."""
 
     time_ms: int
     position: Position
@@ -82,7 +84,7 @@ class Seen(NamedTuple):
 
 
 def off_by(here: Position, predicted: Position) -> Position:
-    """How far something is from where it was predicted [m]."""
+    """Difference between actual and predicted position [m]."""
     return Position(
         here.north_m - predicted.north_m,
         here.east_m - predicted.east_m,
@@ -91,31 +93,37 @@ def off_by(here: Position, predicted: Position) -> Position:
 
 
 class Positions:
-    """Puts the samples of an aircraft together; the velocity in a sample is that of the step to come."""
+    """Combines successive samples of an aircraft: the velocity in a sample is that of the next step."""
 
     def __init__(self) -> None:
         self._coming: dict[int, Velocity] = {}
+        self._newest: tuple[Message, Seen] | None = None
 
     def seen(self, message: Message) -> Seen:
-        """The sample, with the velocity that led there."""
+        """The sample with the velocity that led to it; repeated calls with the newest message give the same."""
+        if self._newest is not None and self._newest[0] is message:
+            return self._newest[1]
         body = message.body
         coming = Velocity(body.VelocityNorth, body.VelocityEast, body.VelocityDown)
         came = self._coming.get(body.VehicleID, coming)
         self._coming[body.VehicleID] = coming
         place = Position(body.North, body.East, body.Altitude)
-        return Seen(message.time_ms, place, came)
+        seen = Seen(message.time_ms, place, came)
+        self._newest = message, seen
+        return seen
 
 
 class IntruderWatch:
-    """The intruder of each takeover, until the vehicle is handed back."""
+    """Observes the intruder of each takeover, until the vehicle is handed back."""
 
     kinds = ("AuthorityChange", "SensedState", "TruthState")
 
-    def __init__(self, mission: Mission) -> None:
+    def __init__(self, mission: Mission, positions: Positions | None = None) -> None:
+        """positions: shared with other watches of the same samples."""
         self._room = room_of(mission.daa)
         self._ahead_ms = round(1000 * mission.daa.lookahead_s)
         self._instances = frozenset(mission.instances)
-        self._positions = Positions()
+        self._positions = positions or Positions()
         self._avoided: dict[int, set[int]] = {}
         self._sources: dict[tuple[int, int], int] = {}
         self._base: dict[tuple[int, int], Seen] = {}
@@ -134,7 +142,7 @@ class IntruderWatch:
             if not icarous_has(body):
                 self._forget(own, now_ms)
             elif body.IntruderID:
-                # a track of radar has a number of its own
+                # a radar track has its own number
                 other = self._sources.get((own, body.IntruderID), body.IntruderID)
                 self._record.waits = "the intruder was not seen during the takeover"
                 self._avoided.setdefault(own, set()).add(other)
@@ -150,7 +158,7 @@ class IntruderWatch:
             self._base.pop((own, other), None)
 
     def _was_seen(self, own: int, other: int, now_ms: int) -> None:
-        """From the last sample to now, no step of which it was not seen."""
+        """Note a gap between the last sample and now."""
         last_ms = self._last[own, other]
         who = f"aircraft {other}, which {own} avoids,"
         self._record.unseen_between(who, last_ms, now_ms, self._step_ms)
@@ -176,7 +184,7 @@ class IntruderWatch:
         look(self._record, off, self._room, (here.time_ms, own), f"{who}, is {{off}} {since}")
 
     def end(self, at_ms: int) -> None:
-        """Takeovers that are open end here."""
+        """End of the messages at at_ms [ms]: open takeovers end here."""
         for own in list(self._avoided):
             self._forget(own, at_ms)
 
@@ -186,7 +194,7 @@ class IntruderWatch:
 
 
 class Order(NamedTuple):
-    """What ICAROUS has commanded, and when: heading [rad], ground speed and climb [m/s]."""
+    """A command of ICAROUS and its time: heading [rad], ground speed and climb rate [m/s]."""
 
     at_ms: int
     heading_rad: float
@@ -195,7 +203,7 @@ class Order(NamedTuple):
 
 
 class Path(NamedTuple):
-    """What a vehicle is predicted to fly from an instant on, until another [ms]."""
+    """Predicted path of a vehicle between two instants [ms]."""
 
     since_ms: int
     until_ms: int
@@ -211,16 +219,17 @@ class Path(NamedTuple):
 
 
 class TrackingWatch:
-    """Every vehicle under ICAROUS, from each of its commands to the next heartbeat."""
+    """Observes every vehicle under ICAROUS, from each of its commands to the next heartbeat."""
 
     kinds = ("GateState", "GatedCommand", "TruthState")
 
-    def __init__(self, mission: Mission) -> None:
+    def __init__(self, mission: Mission, positions: Positions | None = None) -> None:
+        """positions: shared with other watches of the same samples."""
         self._room = room_of(mission.daa)
         self._period_ms = mission.simulation.heartbeat_ms
         self._bank = {v.id: v.max_bank_rad for v in mission.vehicles}
         self._gates = dict.fromkeys(mission.instances, UNTOUCHED)
-        self._positions = Positions()
+        self._positions = positions or Positions()
         self._ordered: dict[int, Order] = {}
         self._paths: dict[int, Path] = {}
         none = "" if mission.instances else NO_INSTANCE
@@ -228,7 +237,7 @@ class TrackingWatch:
         self._record = Record("m", self._room.wide_m, kernels, none, waits="no takeover")
 
     def message(self, message: Message) -> None:
-        """A state of the gate, a command, or where an aircraft is."""
+        """Process a gate state, a command, or the true state of an aircraft."""
         kind, _, _, body = message
         if kind not in ("GateState", "GatedCommand", "TruthState"):
             return
@@ -247,7 +256,7 @@ class TrackingWatch:
         if not gate_accepts(gate, sender, body.Epoch):
             return
         unseen = self._ordered.pop(number, None)
-        # of two commands at one instant the second is flown
+        # the second of two commands at one instant is flown
         if unseen is not None and not in_time(message.time_ms, unseen.at_ms, 0):
             self._record.gaps = [f"vehicle {number} was not seen after each command of ICAROUS"]
         path = self._paths.get(number)

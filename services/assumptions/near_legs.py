@@ -1,8 +1,9 @@
-"""The assumption that a vehicle under UxAS stays near the legs that it was commanded, nearer than they are to a zone.
+"""The assumption that a vehicle under UxAS stays closer to its commanded legs than these are to a
+zone.
 
-What is flown between two samples is straight. It is held against one leg: how far both of its ends are from it, to the
-side and in altitude, says with which margin the leg has to keep every zone that binds. Decided by the kernels
-`edge_against` and those of `leg_keeps`.
+Flight between two samples is straight. It is compared with one leg: the lateral and vertical
+distance of both ends from it gives the margin with which the leg has to keep every active zone.
+Decided by the kernels `edge_against` and those of `leg_keeps`.
 """
 
 from __future__ import annotations
@@ -26,23 +27,25 @@ from cratous.services.mission.zones import exact_leg_keeps
 from cratous.spec.mission import Mission, Position, Zone
 
 MARGINS_M = (1.0, 2.0, 5.0, 10.0, 20.0)
-"""The least of these that is enough is the margin; the last is what routes keep from zones where there is room [m]."""
+"""Candidate margins: the smallest sufficient one is used; the last is the routes' clearance from
+zones where there is room [m].
+"""
 KERNELS = (
     comes_within, edge_against, gate_accepts, in_time, keep_in_leg_ok, keep_out_leg_ok, locate,
 )  # fmt: skip
 Leg = tuple[Position, Position]
 Asked = dict[tuple[Position, Leg, float], bool]
-"""Places that were held against legs, each with a margin, and whether they are near."""
+"""Cached results: whether a position is within a margin of a leg."""
 Levels = dict[tuple[float, float, float, float], bool]
-"""Altitudes that were held against those of the ends of legs, each with a margin, and whether they are near."""
+"""Cached results: whether an altitude is within a margin of those of a leg's ends."""
 LEVELS_MOST = 1000
-"""So many are remembered: level flight asks the same all the while."""
+"""Maximum number of cached altitudes: level flight repeats the same question."""
 ROUNDING_M = 1e-3
-"""How far a distance is off at most that is about right [m]."""
+"""Maximum rounding error of an approximate distance [m]."""
 
 
 class Path(NamedTuple):
-    """What UxAS commanded last, and when; s_m: how far it has been flown [m]."""
+    """The last command of UxAS and its time; s_m: distance flown along it [m]."""
 
     since_ms: int
     track: Track
@@ -79,7 +82,7 @@ class NearLegsWatch:
         self._record = Record("m", MARGINS_M[-1], KERNELS, none, waits=waits)
 
     def message(self, message: Message) -> None:
-        """A state of the gate, a command, or where an aircraft is."""
+        """Process a gate state, a command, or the true state of an aircraft."""
         kind, now_ms, _, body = message
         if self._record.unseen or kind not in self.kinds:
             return
@@ -98,7 +101,7 @@ class NearLegsWatch:
             self._sample(number, now_ms, Position(body.North, body.East, body.Altitude))
 
     def _command(self, number: int, now_ms: int, body: Any) -> None:
-        """Of what the gate lets through the last is flown."""
+        """Start a commanded path; the last command that the gate accepts at an instant is flown."""
         sender = sender_of(body)
         if not gate_accepts(self._gates[number], sender, body.Epoch):
             return
@@ -117,13 +120,15 @@ class NearLegsWatch:
         self._paths[number] = Path(now_ms, track)
 
     def _end_path(self, number: int, now_ms: int) -> None:
-        """What was flown until now was flown on the path that ends here, the first of those that end at this instant."""
+        """End the path: flight up to now was on it; of paths ending at this instant the first counts."""
         path, ended = self._paths.pop(number, None), self._ended.get(number)
         if path is not None and (ended is None or not in_time(ended[0], now_ms, 0)):
             self._ended[number] = now_ms, path
 
     def _flown(self, number: int, since_ms: int, now_ms: int) -> Path | None:
-        """The path on which all was flown since then, until now."""
+        """The path on which the vehicle flew throughout, from since_ms to now_ms; None if there is
+        no single one.
+        """
         ended = self._ended.get(number)
         just = ended[1] if ended is not None and in_time(ended[0], now_ms, 0) else None
         for path in (self._paths.get(number), just):
@@ -152,7 +157,7 @@ class NearLegsWatch:
         self._hold(number, path, before, here)
 
     def _without_path(self, number: int, before: tuple[int, Position], here: Position) -> None:
-        """What flies under UxAS though no one path was commanded all the while is not seen to be near a leg."""
+        """Note flight under UxAS without one path commanded throughout: closeness to a leg is not observed."""
         since_ms = before[0]
         if has_it(self._gates[number]) or not in_time(self._free_ms[number], since_ms, ANY_LATER):
             return
@@ -160,7 +165,7 @@ class NearLegsWatch:
             self._gap(f"vehicle {number} flew on no one path of UxAS from {since_ms / 1000:.2f} s")
 
     def _hold(self, number: int, path: Path, before: tuple[int, Position], here: Position) -> None:
-        """What was flown since the last sample, against the nearest leg that keeps the zones."""
+        """Compare the flight since the last sample with the nearest leg that keeps the zones."""
         track, window = path.track, 2 * math.dist(before[1], here) + MARGINS_M[-1]
         first, last = (track.nearest(p, path.s_m, window).s_m for p in (before[1], here))
         if not all(map(math.isfinite, (first, last))):
@@ -172,9 +177,9 @@ class NearLegsWatch:
         asked = self._near.get(number, {})
         near, why = self._beside(ends, path.legs(min(first, last), max(first, last)), zones, asked)
         if why and self._record.broken is None:
-            # a lap that is commanded anew begins ahead: the vehicle is on its last legs
+            # a lap commanded anew begins ahead: the vehicle is on its last legs
             near, why = self._beside(ends, path.legs(0.0, track.length_m), zones, asked)
-        # where it is now it was before the next sample
+        # the current position is the previous one at the next sample
         self._near[number] = {key: is_near for key, is_near in asked.items() if key[0] == here}
         if why:
             text = f"vehicle {number} is {near:.4g} m off the leg that UxAS commanded at {path.since_ms / 1000:.2f} s"
@@ -184,16 +189,18 @@ class NearLegsWatch:
     def _beside(
         self, ends: Leg, legs: list[Leg], zones: list[Zone], asked: Asked
     ) -> tuple[float, str]:
-        """How far the nearest leg that keeps the zones is [m]; else the nearest, and why none will do."""
+        """Distance of the nearest leg that keeps the zones [m]; otherwise of the nearest, and why
+        none qualifies.
+        """
         found = sorted(((_off_m(ends, leg), leg) for leg in legs), key=lambda one: one[0])
         why = ""
         for off_m, leg in found:
-            # a margin that is less than the distance is not enough, and need not be asked for
+            # a margin smaller than the distance cannot suffice and is not tried
             margins = (m for m in MARGINS_M if m >= off_m - ROUNDING_M)
             margin = next((m for m in margins if self._are_near(ends, leg, m, asked)), None)
             if margin is None:
                 if off_m > 2 * MARGINS_M[-1]:
-                    break  # nor are the others
+                    break  # the larger margins fail too
                 continue
             bad = [zone.id for zone in zones if not self._keeps(leg, zone, margin)]
             if not bad:
@@ -202,7 +209,7 @@ class NearLegsWatch:
         return found[0][0], why or "more than any margin of a leg"
 
     def _are_near(self, ends: Leg, leg: Leg, margin_m: float, asked: Asked) -> bool:
-        """Whether both ends of what was flown are no farther from the leg than the margin; of each it is asked once."""
+        """Whether both ends of the flown segment are within the margin of the leg; each is checked once."""
         for p in ends:
             key = (p, leg, margin_m)
             if key not in asked:
@@ -212,7 +219,9 @@ class NearLegsWatch:
         return True
 
     def _is_near(self, p: Position, leg: Leg, margin_m: float) -> bool:
-        """Whether a place is no farther from a leg than the margin, beside and in altitude; exact on the given numbers."""
+        """Whether a position is within the margin of a leg, laterally and vertically; exact on the
+        given numbers.
+        """
         if not all(map(math.isfinite, p)):
             return False
         key = (p.alt_m, leg[0].alt_m, leg[1].alt_m, margin_m)
@@ -223,14 +232,14 @@ class NearLegsWatch:
         return self._level[key] and _is_beside(p, leg, margin_m)
 
     def _keeps(self, leg: Leg, zone: Zone, margin_m: float) -> bool:
-        """Whether a leg keeps a zone by a margin; asked once."""
+        """Whether a leg keeps a zone by a margin; cached."""
         key = (leg, zone, margin_m)
         if key not in self._kept:
             self._kept[key] = exact_leg_keeps(*leg, zone, margin_m)
         return self._kept[key]
 
     def end(self, at_ms: int) -> None:
-        """What was on a path is to have been seen until the end, or until it was lost."""
+        """Check that vehicles on a path were observed until at_ms [ms], or until they were lost."""
         gone = gone_ms(self._mission)
         for number, path in self._paths.items():
             last_ms = self._before[number][0] if number in self._before else path.since_ms
@@ -243,7 +252,9 @@ class NearLegsWatch:
 
 
 def _off_m(ends: Leg, leg: Leg) -> float:
-    """About how far the ends of what was flown are from a leg, to the side or in altitude [m]; to choose by, and to show."""
+    """Approximate distance of a flown segment's ends from a leg, lateral or vertical [m]; for
+    selection and display.
+    """
     low, high = sorted((leg[0].alt_m, leg[1].alt_m))
     return max(max(_aside_m(p, leg), low - p.alt_m, p.alt_m - high) for p in ends)
 
@@ -258,14 +269,14 @@ def _aside_m(p: Position, leg: Leg) -> float:
 
 
 def _is_beside(p: Position, leg: Leg, margin_m: float) -> bool:
-    """Whether a place is horizontally no farther from a leg than the margin."""
+    """Whether a position is horizontally within the margin of a leg."""
     a, b = (Vec2(end.north_m, end.east_m) for end in leg)
     place = exact(edge_against, Vec2(p.north_m, p.east_m), a, b, margin_m)
     return bool(place != FARTHER)
 
 
 def _is_level(alt_m: float, begins_m: float, ends_m: float, margin_m: float) -> bool:
-    """Whether an altitude is no farther from those between the ends of a leg than the margin."""
+    """Whether an altitude is within the margin of the altitudes between the ends of a leg."""
     low, high = Vec2(begins_m, 0.0), Vec2(ends_m, 0.0)
     place = exact(edge_against, Vec2(alt_m, 0.0), low, high, margin_m)
     return bool(place != FARTHER)

@@ -1,4 +1,4 @@
-"""What was observed of one assumption: held, broken since an instant, or not observed, and why."""
+"""Observations of one assumption: held, broken since an instant, or not observed with the reason."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from cratous.spec.mission import Mission
 from cratous.spec.mission.changes import VEHICLE_LOST
 
 ANY_LATER = 2**60
-"""As a bound of `in_time`: not before, and however much later [ms]."""
+"""As a bound of `in_time`: no upper limit [ms], so it only tests the order of two times."""
 EVERY: tuple[str, ...] = ()
 """As `Watch.kinds`: messages of every type."""
 
 
 class Break(NamedTuple):
-    """When an assumption broke first [ms after mission start], on which vehicle (0: on none), and how."""
+    """First break of an assumption: time [ms after mission start], vehicle (0: none), and description."""
 
     since_ms: int
     vehicle_id: int
@@ -28,8 +28,9 @@ class Break(NamedTuple):
 
 
 class Observed(NamedTuple):
-    """extreme: the worst that was seen, and bound: the worst that is assumed, in `unit`; None where there is
-    no measure; checks: how often it was looked at; note: why it is not observed, or how it broke."""
+    """extreme: worst observed value, and bound: worst assumed value, in `unit`; None without a
+    measure; checks: number of observations; note: why it is not observed, or how it broke.
+    """
 
     state: State
     broken: Break | None
@@ -43,7 +44,7 @@ class Observed(NamedTuple):
 
 @dataclass
 class Record:
-    """What a watch keeps. unseen: why nothing is watched at all, empty if something is; extreme: so far."""
+    """The record of a watch. unseen: why nothing can be observed, empty otherwise; extreme: worst value so far."""
 
     unit: str = ""
     bound: float | None = None
@@ -54,20 +55,30 @@ class Record:
     broken: Break | None = None
     waits: str = "nothing that rests on it has happened"
     gaps: list[str] = field(default_factory=list)
+    fresh: list[Record] = field(default_factory=list, repr=False, compare=False)
+    """List to which the record appends itself when it breaks."""
 
     def see(self, value: float | None) -> None:
-        """One look, and what was measured in it."""
+        """Count one observation and its measured value, if any."""
         self.checks += 1
         if value is not None:
-            # what no number says is as far off as can be
+            # NaN counts as the largest deviation
             value = float_info.max if value != value else value
             most = value if self.extreme is None else max(self.extreme, value)
             self.extreme = min(most, float_info.max)
 
+    def see_again(self, value: float, times: int) -> None:
+        """Count `times` further observations whose value does not exceed the extreme, unless it is the first."""
+        if self.extreme is None:
+            self.see(value)
+            times -= 1
+        self.checks += times
+
     def check(self, holds: bool, since_ms: int, vehicle_id: int, text: str) -> None:
-        """What a kernel has answered; the first time that it was no is kept."""
+        """Record the answer of a kernel; the first negative one is kept."""
         if not holds and self.broken is None:
             self.broken = Break(since_ms, vehicle_id, text)
+            self.fresh.append(self)
 
     def unseen_between(self, who: str, last_ms: int, now_ms: int, step_ms: int) -> None:
         """Note a gap of more than one step [ms] between two samples of an aircraft; only the first is kept."""
@@ -77,7 +88,7 @@ class Record:
             )
 
     def observed(self, at_ms: int, over: bool) -> Observed:
-        """The answer. at_ms: when the messages end; over: the mission has ended by then."""
+        """The result. at_ms: end of the messages [ms]; over: the mission has ended by then."""
         names = tuple(sorted(map(qualified, self.kernels))) if self.checks else ()
         measures = (self.extreme, self.bound if self.checks else None, self.unit)
         if self.broken is not None:
@@ -93,15 +104,16 @@ class Record:
 
 
 def gone_ms(mission: Mission) -> dict[int, int]:
-    """From when on an aircraft that is lost or vanishes is not there [ms]; those that stay are left out."""
+    """Time at which each aircraft that is lost or vanishes disappears [ms]; the others are omitted."""
     lost = {c.vehicle: c.at_ms for c in mission.changes if c.kind == VEHICLE_LOST}
     vanish = {t.id: t.vanishes_ms for t in mission.traffic if t.vanishes_ms is not None}
     return {**lost, **vanish}
 
 
 class Message(NamedTuple):
-    """A message as a watch sees it. kind: its type without the series; source: who sent it, empty if that is
-    not known; body: with the fields of its type."""
+    """A message as a watch receives it. kind: its type without the series; source: sender, empty if
+    unknown; body: object with the fields of its type.
+    """
 
     kind: str
     time_ms: int
@@ -110,17 +122,17 @@ class Message(NamedTuple):
 
 
 class Watch(Protocol):
-    """One assumption, or more that are seen in the same messages. kinds: the types of these, or EVERY."""
+    """Watches one assumption, or several observed in the same messages. kinds: their types, or EVERY."""
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """Nothing follows from messages of other types, so they need not come."""
+        """The message types that the watch needs; others have no effect on it."""
 
     def message(self, message: Message) -> None:
-        """The next message of the log."""
+        """Process the next message of the log."""
 
     def end(self, at_ms: int) -> None:
-        """The mission has ended."""
+        """The messages end at at_ms [ms]."""
 
     def records(self) -> dict[str, Record]:
         """The observations so far, by name of the assumption."""

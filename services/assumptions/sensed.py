@@ -1,7 +1,8 @@
-"""Assumption on what sensors see: an aircraft is within the bound of its track. Decided by `disc_within`.
+"""The assumption that each sensed aircraft is within the bound of its track. Decided by
+`disc_within`.
 
-ICAROUS is given a place and how far off the aircraft may be (`SensedState`); the true place of the same instant stands
-beside it in the log. Bounds of the velocity are of where the aircraft will be, so they are not looked at by themselves.
+ICAROUS receives a position and a bound on its error (`SensedState`); the true position at the same
+instant is in the log. Velocity bounds concern future positions, so they are not checked separately.
 """
 
 from __future__ import annotations
@@ -18,11 +19,11 @@ from cratous.spec.mission.sensing import EXACT_STATES
 
 NAME = "sensed within its bound"
 FEW = 5
-"""So many instants without a true state are told, and so many aircraft that were never sensed."""
+"""Number of instants without a true state, and of aircraft never sensed, that are listed."""
 
 
 class SensedWatch:
-    """Each state that was sensed, at each heartbeat."""
+    """Checks each sensed state, at each heartbeat."""
 
     kinds = ("SensedState", "TruthState")
 
@@ -38,7 +39,7 @@ class SensedWatch:
         self._record = Record("", 1.0, (disc_within,), none, waits=waits)
 
     def message(self, message: Message) -> None:
-        """What was sensed waits for the true state of its instant."""
+        """Process a message; a sensed state waits for the true state of its instant."""
         body = message.body
         if message.kind == "SensedState":
             self._waiting.setdefault((body.Time, body.VehicleID), []).append(message)
@@ -60,13 +61,14 @@ class SensedWatch:
             f"what {body.ObserverID} sensed of aircraft {body.VehicleID} is {beside:.4g} m beside and "
             f"{abs(off.alt_m):.4g} m above or below it, with bounds of {room.wide_m:.4g} m and {room.high_m:.4g} m"
         )
-        # a bound below 0 bounds nothing
+        # a negative bound bounds nothing
         holds = min(0.0, *room) == 0 and is_within(off, room)
         self._record.check(holds, body.Time, body.ObserverID, text)
 
     def end(self, at_ms: int) -> None:
-        """What was sensed of an aircraft of which no true state came was not looked at, unless it has vanished; nor was
-        one that was never sensed."""
+        """End of the messages: notes sensed states without a true state, unless the aircraft has
+        vanished, and aircraft that were never sensed.
+        """
         left = [
             (time_ms, number)
             for time_ms, number in sorted(self._waiting)

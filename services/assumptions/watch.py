@@ -1,4 +1,4 @@
-"""The watch of all assumptions in the messages of one flight."""
+"""Watches all assumptions in the messages of one flight."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from cratous.services.assumptions.link import (
 )
 from cratous.services.assumptions.listing import LISTING, Assumption
 from cratous.services.assumptions.mission_end import AwayWatch, EndWatch, SettledWatch
-from cratous.services.assumptions.motion import IntruderWatch, TrackingWatch
+from cratous.services.assumptions.motion import IntruderWatch, Positions, TrackingWatch
 from cratous.services.assumptions.near_legs import NearLegsWatch
 from cratous.services.assumptions.observed import (
     Message,
@@ -26,20 +26,22 @@ from cratous.services.assumptions.observed import (
 )
 from cratous.services.assumptions.permitted import PermittedWatch
 from cratous.services.assumptions.sensed import SensedWatch
+from cratous.services.assumptions.served import ServedWatch
 from cratous.spec.mission import Mission
 
 
 class AssumptionWatch:
     """All assumptions of one flight. Feed it messages with `tap`, ask for `rows` at the end.
 
-    on_board: each ICAROUS says what it hears, as those of `cratous run` in one process do.
+    on_board: each ICAROUS reports what it hears, as in `cratous run` in one process.
     """
 
     def __init__(self, mission: Mission, on_board: bool = True) -> None:
+        positions = Positions()
         ahead, intruder, tracking = (
-            AheadWatch(mission),
-            IntruderWatch(mission),
-            TrackingWatch(mission),
+            AheadWatch(mission, positions),
+            IntruderWatch(mission, positions),
+            TrackingWatch(mission, positions),
         )
         sensed = SensedWatch(mission)
         others = (ahead, intruder, tracking, sensed)
@@ -54,6 +56,7 @@ class AssumptionWatch:
             AwayWatch(mission),
             SettledWatch(),
             GivenUpWatch(mission),
+            ServedWatch(mission),
             HeardWatch(mission, on_board),
             WayBackWatch(mission, on_board),
             *others,
@@ -63,16 +66,19 @@ class AssumptionWatch:
         self._records: dict[str, Record] = {}
         for watch in self._watches:
             self._records |= watch.records()
-        self._whole = {name for name, one in self._records.items() if one.broken is None}
+        self._fresh: list[Record] = []
+        for one in self._records.values():
+            one.fresh = self._fresh
         self._by_kind: dict[str, tuple[Watch, ...]] = {}
         self._ended = False
 
     def tap(self, kind: str, envelope: Any) -> list[dict[str, Any]]:
-        """The next message, of this type; returns the rows of the assumptions that it breaks."""
+        """Process the next message, of type kind; returns the rows of the assumptions that it breaks."""
         if self._ended:
             return []
         source = getattr(envelope, "source", "")
-        message = Message(kind, envelope.time_ms, source, envelope.body)
+        # as Message(...), in a third of the time
+        message = tuple.__new__(Message, (kind, envelope.time_ms, source, envelope.body))
         watches = self._by_kind.get(kind)
         if watches is None:
             asked = (w for w in self._watches if not w.kinds or kind in w.kinds)
@@ -83,19 +89,17 @@ class AssumptionWatch:
             self._ended = True
             for watch in self._watches:
                 watch.end(envelope.time_ms)
-        return self._newly_broken(envelope.time_ms)
+        return self._newly_broken(envelope.time_ms) if self._fresh else []
 
     def _newly_broken(self, at_ms: int) -> list[dict[str, Any]]:
-        fresh = [name for name in self._whole if self._records[name].broken is not None]
-        if not fresh:
-            return []
-        self._whole.difference_update(fresh)
+        fresh = {name for name, one in self._records.items() for new in self._fresh if one is new}
+        self._fresh.clear()
         return [row for row in self.rows(at_ms, self._ended) if row["name"] in fresh]
 
     def rows(self, at_ms: int, over: bool) -> list[dict[str, Any]]:
         """One row for each assumption, as plain data, in the order of the listing.
 
-        at_ms: when the messages end; over: the mission has ended by then.
+        at_ms: end of the messages [ms]; over: the mission has ended by then.
         """
         return [_row(one, self._records[one.name].observed(at_ms, over)) for one in LISTING]
 

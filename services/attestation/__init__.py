@@ -1,1 +1,1 @@
-"""A confirmed report for other tools: JUnit XML, SARIF, CSV, and a signed statement over all of it."""
+"""A confirmed report for other tools: JUnit XML, SARIF, CSV, and a signed statement on all of it."""

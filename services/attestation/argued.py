@@ -1,4 +1,4 @@
-"""Is the assurance argument that was signed the one that its report gives, with the ledger as it is now?"""
+"""Checks that the signed assurance argument is the one that its report and the current ledger give."""
 
 from __future__ import annotations
 
@@ -14,19 +14,20 @@ from cratous.services.results.names import REPORT_NAME
 from cratous.spec.errors import BadInput, Refused
 
 BOTH = (ARGUMENT_NAME, DRAWING_NAME)
-"""They are written together."""
+"""The files, which are always written together."""
 SEAL = re.compile(
     rf"^(# |<text [^<>]*>){re.escape(LEDGER)}([0-9a-f]{{64}}|none)(?=$|</text>$)".encode(),
     re.MULTILINE,
 )
-"""The line that names the ledger, in YAML and in SVG."""
+"""The line that identifies the ledger, in YAML and in SVG."""
 SHOWN = 16
-"""So many digits of a seal are said."""
+"""Number of digits of a seal that are shown."""
 
 
 class Argued(NamedTuple):
-    """What came of it, in words. refused: what was tampered with; undecided: what cannot be made again
-    here; not_judged: what was not looked into of what is the same."""
+    """Findings in words. refused: tampering; undecided: what cannot be rebuilt here; not_judged:
+    files equal except for the name of the ledger.
+    """
 
     refused: list[str]
     undecided: list[str]
@@ -34,10 +35,10 @@ class Argued(NamedTuple):
 
 
 def argued(folder: Path, named: dict[str, str], subject: Subject) -> Argued:
-    """Make the argument again and hold its files against it, byte for byte.
+    """Rebuild the argument and compare its files byte for byte.
 
-    folder: of the views; named: what was signed, whose files are there. An argument that was made with
-    another ledger is the same but for the name of that, or is left undecided.
+    folder: of the views; named: signed files that exist. An argument made with another ledger must
+    be equal except for the ledger's name; otherwise it is undecided.
     """
     signed = [name for name in BOTH if f"{MADE}/{name}" in named]
     if not signed:
@@ -79,7 +80,7 @@ def _hold(called: str, file: Path, made: bytes, found: Argued) -> None:
 
 
 def _seal(data: bytes) -> bytes:
-    """The seal of the ledger that a file names; empty if it names none."""
+    """The ledger seal in a file; empty if there is none."""
     found = SEAL.search(data)
     return found[2] if found else b""
 

@@ -1,6 +1,6 @@
-"""Are the assumptions that a report lists those that there are, and broken as the log recorded it?
+"""Checks that a report lists exactly the existing assumptions, broken as the log recorded.
 
-What was seen of one that held, or was not observed, only the watch itself can say (`cratous certify`).
+What was observed of the others can only be confirmed by the watch itself (`cratous certify`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from cratous.services.results.names import ASSUMPTIONS, REPORT_NAME
 
 
 def assumption_faults(report: Data, meta: Mapping[str, Any]) -> list[str]:
-    """What the report says otherwise than the listing and the log. meta: what the log recorded."""
+    """Where the report contradicts the listing or the log. meta: recorded in the log."""
     if ASSUMPTIONS not in report:
         told = ASSUMPTIONS in meta
         return [f"{REPORT_NAME}: it lacks the assumptions that the log recorded"] if told else []
@@ -29,7 +29,7 @@ def assumption_faults(report: Data, meta: Mapping[str, Any]) -> list[str]:
 
 
 def _listed(rows: list[Data]) -> Iterator[str]:
-    """The rows are those of the listing, in its order: the first that is not."""
+    """The first row that is not that of the listing, in its order."""
     for row, one in zip_longest(rows, LISTING):
         if row is None or one is None or row["name"] != one.name:
             got, expected = row["name"] if row else "none", one.name if one else "none"
@@ -38,7 +38,7 @@ def _listed(rows: list[Data]) -> Iterator[str]:
 
 
 def _of(row: Data, one: Assumption) -> Iterator[str]:
-    """What one row says that no watch writes."""
+    """Contents of a row that no watch writes."""
     if row["name"] != one.name:
         return
     name = f"the assumption {one.name}"

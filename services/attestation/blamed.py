@@ -1,7 +1,7 @@
-"""Is the blame in a report what its rows, its changes of command and its assumptions give?
+"""Checks that the blame in a report follows from its rows, changes of command and assumptions.
 
-Made again here in plain Python, since a process that verifies imports no kernel. That the changes of command
-are those of the flight only the log shows (`cratous certify`).
+It is recomputed here in plain Python, since a verifying process imports no kernel. Only the log
+shows that the changes of command are those of the flight (`cratous certify`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from cratous.spec.mission.guarantees import Outcome
 
 
 def blame_faults(report: Data) -> list[str]:
-    """What the report blames otherwise than it has to, by constraint. report: of its schema."""
+    """Faults of the report's blame, by constraint. report: valid by its schema."""
     if BLAME not in report:
         return []
     made = blame_of(report)
@@ -32,7 +32,7 @@ def blame_faults(report: Data) -> list[str]:
 
 
 def blame_of(report: Data) -> list[Data]:
-    """The rows that a report has to have."""
+    """The blame rows that a report must have."""
     return [
         _made(row, report)
         for row in report["constraints"]

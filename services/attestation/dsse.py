@@ -1,9 +1,9 @@
 """DSSE envelopes (Dead Simple Signing Envelope, version 1) with one Ed25519 signature.
 
-What is signed is the pre-authentication encoding of payload and payload type, so that nothing of an
-envelope is read before it is known who signed it. Ed25519 is deterministic: same key and payload, same
-bytes. Keys are PEM (PKCS #8 and SubjectPublicKeyInfo, as openssl writes them); no text of an error and
-no output holds anything of a private key.
+The pre-authentication encoding of payload and payload type is signed, so that nothing of an
+envelope is interpreted before its signature is verified. Ed25519 is deterministic: same key and
+payload, same bytes. Keys are PEM (PKCS #8 and SubjectPublicKeyInfo, as openssl writes them); errors
+and output never contain anything of a private key.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from cratous.spec.files.text_file import text_of
 PAYLOAD_TYPE = "application/vnd.in-toto+json"
 KEY_VARIABLE = "CRATOUS_SIGNING_KEY"
 KEY_BYTES = 10_000
-"""No PEM of one key is a tenth as long."""
+"""Maximum size of a key file [bytes]; a PEM key has less than a tenth."""
 ENVELOPE_BYTES = 10_000_000
 PRIVATE = "an Ed25519 private key in PEM, without a password"
 PUBLIC = "an Ed25519 public key in PEM"
@@ -35,7 +35,7 @@ def pre_authentication_encoding(payload: bytes, payload_type: str = PAYLOAD_TYPE
 
 
 def private_key(file: Path | None) -> Any:
-    """The key of a file, or without one of the environment variable CRATOUS_SIGNING_KEY (the PEM)."""
+    """The key in a file, or otherwise in the environment variable CRATOUS_SIGNING_KEY (PEM)."""
     from cryptography.exceptions import UnsupportedAlgorithm
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
     from cryptography.hazmat.primitives.serialization import load_pem_private_key
@@ -50,7 +50,7 @@ def private_key(file: Path | None) -> Any:
     try:
         key = load_pem_private_key(text.encode(), None)
     except (ValueError, TypeError, UnsupportedAlgorithm):
-        # what the library says may quote the key
+        # the library's message may quote the key
         raise BadInput("not a key", where=where, expected=PRIVATE, got="something else") from None
     if not isinstance(key, Ed25519PrivateKey):
         raise BadInput("a key of another kind", where=where, expected=PRIVATE)
@@ -75,12 +75,12 @@ def public_key(file: Path) -> Any:
 
 
 def key_id(public: Any) -> str:
-    """SHA-256 of the 32 bytes of a public key, in hexadecimal: a hint, nothing is decided by it."""
+    """SHA-256 of the 32 bytes of a public key, in hexadecimal: a hint only, not used for decisions."""
     return hashlib.sha256(public.public_bytes_raw()).hexdigest()
 
 
 def signed(payload: bytes, key: Any) -> str:
-    """The text of an envelope."""
+    """The JSON text of an envelope with the signed payload."""
     signature = key.sign(pre_authentication_encoding(payload))
     envelope = {
         "payloadType": PAYLOAD_TYPE,
@@ -93,7 +93,7 @@ def signed(payload: bytes, key: Any) -> str:
 
 
 def opened(text: str, public: Any) -> tuple[bytes, str]:
-    """(payload, what is wrong): the payload of an envelope that this key signed, else empty and why."""
+    """(payload, fault): the payload of an envelope signed by this key; otherwise empty, with the reason."""
     from cryptography.exceptions import InvalidSignature
 
     try:

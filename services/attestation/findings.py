@@ -1,4 +1,4 @@
-"""What a report shows of each constraint, as tools ask: shown, not shown, or not checked at all."""
+"""What a report shows of each constraint, as tools need it: shown, not shown, or not checked."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Data = dict[str, Any]
 
 
 class Subject(NamedTuple):
-    """What views are made of. report: confirmed from its log; unchecked: what nothing vouched for."""
+    """Input of the views. report: confirmed from its log; unchecked: what nothing vouched for."""
 
     report: Data
     unchecked: tuple[str, ...]
@@ -31,7 +31,7 @@ def doubt(row: Data) -> str:
 
 
 def unshown(subject: Subject) -> list[tuple[str, str]]:
-    """What no row of the report speaks of, or nothing vouches for: (what, why)."""
+    """What no row of the report covers, or nothing vouches for: (what, why)."""
     report = subject.report
     found = [
         (f"{row['requirement']}: {row['title']}", "unknown: nothing was observed")

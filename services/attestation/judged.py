@@ -1,7 +1,7 @@
-"""The verdicts of a report on the flight, held against those of the judge.
+"""Compares a report's verdicts on the flight with those of the judge.
 
-The judge knows no excuses. Where it finds a loss of well clear that the report excuses, the evidence in
-the report must be about that loss and complete; whether there was no way out it cannot confirm.
+The judge has no excuses. Where it finds a loss of well clear that the report excuses, the report's
+evidence must concern that loss and be complete; the judge cannot confirm that there was no way out.
 """
 
 from __future__ import annotations
@@ -17,9 +17,10 @@ NO_WAY = "no way out"
 
 
 class Held(NamedTuple):
-    """What came of it. expected: rows that the judge expects; confirmed: those of which it says the same;
-    verdict: `holds` only if both say so of every row, `violated` if the report states it and nothing refutes
-    it, else `unknown`."""
+    """Result. expected: number of rows that the judge expects; confirmed: those on which it agrees;
+    verdict: `holds` only if both agree on it for every row, `violated` if the report states it and
+    nothing refutes it, otherwise `unknown`.
+    """
 
     refused: list[str]
     undecided: list[str]
@@ -29,7 +30,7 @@ class Held(NamedTuple):
 
 
 def held(report: Data, judgement: Any) -> Held:
-    """The report beside a judgement (`cratous.judge.Judgement`) of its log."""
+    """Compare the report with a judgement (`cratous.judge.Judgement`) of its log."""
     refused = [f"{REPORT_NAME}: {one.line()}" for one in judgement.disagreements]
     if sorted(report["not_covered"]) != sorted(judgement.not_covered):
         refused.append(
@@ -75,7 +76,7 @@ def _unconfirmed(one: Any, report: Data, judgement: Any) -> tuple[bool, str]:
 
 
 def _excuse_fault(one: Any, report: Data, judgement: Any) -> str:
-    """Why a row's evidence is none of an excuse of the loss that the judge found; empty if it may be one."""
+    """Why a row's evidence does not excuse the loss that the judge found; empty if it may."""
     row = next(
         r for r in report["constraints"]
         if (r["requirement"], r["source"], r["item"]) == ("G2", "flight", one.item)
@@ -101,15 +102,16 @@ def _excuse_fault(one: Any, report: Data, judgement: Any) -> str:
 
 
 def _no_way_out(loss: Data) -> bool:
-    """Whether every manoeuvre that was tried at some instant was refused, by the bands and by the check."""
+    """Whether every manoeuvre tried at some instant was refused, by the bands and by the check."""
     counts = [instant[1:] for instant in loss["instants"]]
     refused = all(a == b > 0 and c == d > 0 for a, b, c, d in counts)
     return loss["answer"] == NO_WAY and bool(counts) and refused
 
 
 def _shown(report: Data, judgement: Any, undecided: list[str]) -> str:
-    """What may be said of the flight by both: that a requirement is violated, if the report states it and
-    nothing refutes it; that all hold, only if both say so of every row."""
+    """The verdict supported by both: violated if the report states it and nothing refutes it; holds
+    only if both agree on it for every row; otherwise unknown.
+    """
     if report["verdict"] == Outcome.VIOLATED:
         return str(Outcome.VIOLATED)
     sure = report["verdict"] == judgement.verdict == Outcome.HOLDS and not undecided

@@ -1,8 +1,9 @@
-"""JUnit XML of a report: one suite a requirement, one test case a constraint; of one's own requirements each is a case.
+"""JUnit XML of a report: one suite per requirement, one test case per constraint or user
+requirement.
 
-A case passes only if its constraint was checked and holds. One that is violated is a failure; one that
-is unknown, excused or was never checked is skipped, with the reason. Each suite has the digest of the
-message log as a property. There is no time stamp: the same subject gives the same bytes.
+A case passes only if its constraint was checked and holds. A violation is a failure; unknown,
+excused and unchecked cases are skipped, with the reason. Each suite has the digest of the message
+log as a property. There is no time stamp: the same subject gives the same bytes.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 PROPERTIES = ("margin", "unit", "time_ms", "kind", "method", "checks")
 OF_OWN = ("severity", "source", "text")
 Case = tuple[str, list[str]]
-"""How it ended, and its lines."""
+"""Result element of a case, and its lines."""
 
 
 def junit(subject: Subject) -> str:
@@ -91,6 +92,6 @@ def _counts(cases: list[Case]) -> str:
 
 
 def _quoted(text: str) -> str:
-    """An attribute; what XML cannot hold is written out."""
+    """An attribute value; characters that XML cannot contain are escaped."""
     shown = NOT_XML.sub(lambda found: found[0].encode("unicode_escape").decode(), printable(text))
     return quoteattr(shown)

@@ -1,4 +1,4 @@
-"""On which line of its mission file the subject of a constraint stands, if the file is the one flown."""
+"""Finds the line of a mission file that a constraint concerns, if the file is the one flown."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ SUBJECTS = (
     (r"heartbeat (?:from|to) the ICAROUS instance of (-?\d+)", ("vehicles",)),
 )
 ROWS = re.compile(r"(?:flight|plan): ")
-"""A constraint of the relations."""
+"""Prefix of constraints from the task relations."""
 
 
 def lines_of(report: Data, file: Path | None) -> tuple[LineOf, str]:
-    """Finds the lines, and why there are none (empty if there are).
+    """A function that finds the lines, and why there are none (empty if there are).
 
-    file: the mission file; None for the path that the report names. A file that does not give the
-    mission that was flown has other lines, so none is told; BadInput if the user named it.
+    file: the mission file; None for the path in the report. A file that does not give the mission
+    flown has other lines, so none is returned; BadInput if the user named it.
     """
     from cratous.services.certify.report import mission_hash
     from cratous.services.loading import load
@@ -52,7 +52,7 @@ def _nowhere(_item: str) -> int | None:
 
 
 def line(document: Document, item: str) -> int:
-    """The line of what a constraint is about; the first line of the file for one about all of it."""
+    """The line of a constraint's subject; the first line of the file if it concerns the whole mission."""
     for pattern, sections in SUBJECTS:
         found = re.match(pattern, item)
         if found:

@@ -1,8 +1,8 @@
-"""Requirements of the user's own in a report, judged again from the log: their texts stand in the report.
+"""Evaluates the user requirements of a report again from the log: the report contains their texts.
 
-What judges here imports neither planner nor pilot nor monitor of G1 to G5: it is the reader of the language, the log,
-and the operators' kernels. Who was in command and what had broken is held against what the report says of
-changes of command and of assumptions, in plain Python.
+The code used here imports neither planner nor pilot nor the monitor of G1 to G5: only the
+language's reader, the log, and the operators' kernels. Commander and broken assumption are compared
+with the report's changes of command and assumptions, in plain Python.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ LINT = "lint"
 
 
 def own_faults(report: Data, meta: Mapping[str, Any], log: Path) -> tuple[list[str], int]:
-    """(What is not as files and log give it, how many verdicts were made again).
+    """(Differences from what files and log give, number of verdicts evaluated again).
 
-    report: of its schema; meta: what the log recorded; log: the raw evidence.
+    report: valid by its schema; meta: recorded in the log; log: the raw evidence.
     """
     if OWN not in report and OWN not in meta:
         return [], 0
@@ -36,7 +36,7 @@ def own_faults(report: Data, meta: Mapping[str, Any], log: Path) -> tuple[list[s
     if wrong:
         return [f"{REPORT_NAME}: {text}" for text in wrong], 0
     made = json.loads(json.dumps(own_section(files, log, _told(report), None)))
-    # a log may name an empty list of files, and then the report has none
+    # a log may name an empty list of files; the report then has none
     there = report.get(OWN, {part: [] for part in made})
     wrong = _rows(there["requirements"], made["requirements"])
     for part in ("files", "findings"):
@@ -45,7 +45,7 @@ def own_faults(report: Data, meta: Mapping[str, Any], log: Path) -> tuple[list[s
 
 
 def _rows(there: list[Data], made: list[Data]) -> list[str]:
-    """Where the rows differ, but for the lint, which is z3's; a row is known by its id."""
+    """Differences of the rows, apart from z3's lint; rows are matched by id."""
     from cratous.services.certify.differences import differences
 
     names, wanted = [one["requirement"] for one in there], [one["requirement"] for one in made]
@@ -77,7 +77,7 @@ def own_not_judged(report: Data) -> list[str]:
     said = "lint of requirements of the user's own (cratous certify asks z3 again)"
     try:
         files = files_of(report[OWN].get("files"))
-    except BadInput:  # which is refused as such
+    except BadInput:  # refused elsewhere
         return [said]
     return [said, *other_libraries(files)]
 

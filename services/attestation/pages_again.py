@@ -1,8 +1,8 @@
-"""Makes pages, map, SARIF, full report, PDF and MCAP again, and holds the signed files against them.
+"""Rebuilds pages, map, SARIF, full report, PDF and MCAP, and compares the signed files with them.
 
-All but MCAP, which has the messages of the log, are made from the report alone. What differs was tampered with, if
-the code that runs here is that of the report. Other code may make other pages:
-then it is said that nobody looked into them.
+All except MCAP, which contains the log's messages, are made from the report alone. A difference is
+tampering if the running code is that of the report. Other code may make other pages: then they are
+reported as not examined.
 """
 
 from __future__ import annotations
@@ -34,21 +34,21 @@ from cratous.spec.files.limits import DOCUMENT_BYTES, json_of
 from cratous.spec.mission.guarantees import REQUIREMENTS
 
 WITH_LEDGER = (FULL_NAME, FULL_PDF_NAME)
-"""What these say of the assurance argument is made from the ledger as it was when they were written."""
+"""Views whose section on the assurance argument depends on the ledger at the time of writing."""
 OF_MISSION = {one.id for one in REQUIREMENTS}
 View = Callable[[Subject, str], bytes]
-"""Makes one of the views for people, or MCAP, by its name."""
+"""Makes one of the human-readable views, or MCAP, by its name."""
 
 
 class Again(NamedTuple):
-    """What came of it, in words. refused: what was tampered with; not_judged: what could not be made here."""
+    """Findings in words. refused: tampering; not_judged: what could not be rebuilt here."""
 
     refused: list[str]
     not_judged: list[str]
 
 
 def pages_again(place: Place, named: dict[str, str], subject: Subject, view: View) -> Again:
-    """Hold each of these files that was signed, and is there, against what the report gives."""
+    """Compare each of these signed files, if present, with what the report gives."""
     found = Again([], [])
     for called, make in _makers(named, subject, view):
         try:
@@ -85,7 +85,7 @@ def _makers(
 
 
 def _of(called: str) -> str:
-    """What a file is made from."""
+    """The source from which a file is made."""
     return LOG_NAME if called.endswith(MCAP_NAME) else REPORT_NAME
 
 
@@ -95,7 +95,7 @@ def _is(place: Place, called: str, made: bytes) -> bool:
 
 
 def _other(called: str, subject: Subject) -> str:
-    """Why a file may differ honestly; empty if it may not."""
+    """Why a file may legitimately differ; empty if it may not."""
     told = subject.report["environment"].get("code")
     if told is None or told["digest"] != code_digest():
         return "the code that runs here, which is not that of the report,"
@@ -116,7 +116,7 @@ def _seal() -> str:
 
 
 def sarif_faults(place: Place, named: dict[str, str], subject: Subject) -> list[str]:
-    """Whether a signed SARIF file says what the report gives, at whichever lines of the mission file it names."""
+    """Whether a signed SARIF file contains what the report gives, with any line numbers of the mission file."""
     called = f"{MADE}/{SARIF_NAME}"
     if called not in named:
         return []
@@ -128,7 +128,7 @@ def sarif_faults(place: Place, named: dict[str, str], subject: Subject) -> list[
 
 
 def _lines(text: bytes) -> dict[str, int | None]:
-    """By constraint, the line that a SARIF file names; nothing of what is no such file."""
+    """By constraint, the line in a SARIF file; empty for an invalid file."""
     try:
         results: Any = json_of(text, SARIF_NAME)["runs"][0]["results"]
         found = {}

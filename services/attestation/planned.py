@@ -1,8 +1,9 @@
-"""Are the rows of a report on its plan those that the check of a plan writes of mission and plan?
+"""Checks that a report's rows on its plan are those that the plan check writes for mission and
+plan.
 
-Mission and plan are what the log recorded, so which rows there must be follows from them; whether a
-row holds is the kernels' matter (`cratous certify`). The rows on order and timing are those of the
-flight, which the judge knows, unless the mission changes or leaves a choice.
+Mission and plan are recorded in the log and determine which rows must exist; whether a row holds is
+decided by kernels (`cratous certify`). The rows on order and timing are those of the flight, which
+the judge knows, unless the mission changes or leaves a choice.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ PART = "plan: a part that the relations permit"
 AT_ONCE = "plan: all order and timing rows at once"
 PLAN, FLIGHT = "plan: ", "flight: "
 SENTENCE = re.compile(r"plan: `[^`]+`: p[0-9]+ (starts|ends) ")
-"""How a row on order or timing begins."""
+"""Prefix of a row on order or timing."""
 
 
 def plan_faults(report: Data) -> list[str]:
@@ -45,12 +46,12 @@ def is_settled(report: Data) -> bool:
 
 
 def _expected(report: Data) -> set[str]:
-    """The rows that there must be besides those of tasks, order and timing as a whole."""
+    """The rows that must exist, apart from those on tasks, order and timing as a whole."""
     mission, items = report["mission"], report["plan"]["items"]
     vehicles = {item["vehicle_id"] for item in items}
     must = {AT_ONCE} | {f"chain: vehicle {number}" for number in vehicles}
     must |= {f"eligibility: task {item['task_id']}" for item in items}
-    # the plan is made with what is known at its beginning
+    # the plan is made with what is known at the start
     begun = [change for change in mission["changes"] if change["at_ms"] <= 0]
     over = {change["zone_id"] for change in begun if change.get("zone_id")}
     appeared = [change["zone"] for change in begun if change.get("zone")]
@@ -63,8 +64,9 @@ def _expected(report: Data) -> set[str]:
 
 
 def _tasks(report: Data, there: set[str]) -> list[str]:
-    """Said to be whole is a plan whose tasks are not all that there are, or a part one whose tasks are;
-    where nothing is chosen."""
+    """Faults of the rows on completeness: a plan without all tasks stated as whole, or a whole one
+    stated as partial. Empty if the mission leaves a choice.
+    """
     if not is_settled(report):
         return []
     plan = report["plan"]
@@ -81,7 +83,7 @@ def _tasks(report: Data, there: set[str]) -> list[str]:
 
 
 def _sentences(report: Data, said: set[str]) -> list[str]:
-    """The rows on order and timing are those of the flight."""
+    """Differences between plan and flight in the rows on order and timing."""
     flown = {
         PLAN + row["item"].removeprefix(FLIGHT)
         for row in report["constraints"]

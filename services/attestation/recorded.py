@@ -1,4 +1,4 @@
-"""Is a report about the mission, the plan and the circumstances that the log of the flight recorded?"""
+"""Checks that a report has the mission, the plan and the circumstances that the log recorded."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from cratous.services.results.names import REPORT_NAME
 ALIKE = ("command", "avoidance", "environment", "mission_hash")
 PROOFS = ("line", "problems", "seal", "solver")
 ADDED = {"mission": "source", "plan": "hash"}
-"""What a report says of them in its own way."""
+"""Fields that a report adds to them."""
 
 
 def recorded_faults(report: Data, meta: Mapping[str, Any]) -> list[str]:
-    """What the report says otherwise than the log. meta: what the log recorded, by name."""
+    """Where the report contradicts the log. meta: recorded in the log, by name."""
     told, logged = _parts(report), _parts(meta)
     return [
         f"{REPORT_NAME}: {name} is not what the log recorded"
@@ -25,12 +25,12 @@ def recorded_faults(report: Data, meta: Mapping[str, Any]) -> list[str]:
 
 
 def not_recorded(meta: Mapping[str, Any], report: Data) -> list[str]:
-    """What the log says nothing of: it was made before that was recorded."""
+    """Parts that the log lacks, since it was made before they were recorded."""
     return sorted(_parts(report).keys() - _parts(meta).keys())
 
 
 def _parts(data: Mapping[str, Any]) -> dict[str, Any]:
-    """What both have, by name; nothing of what is no mapping where one is expected."""
+    """The parts common to both, by name; values of a wrong type are skipped."""
     found = {name: data[name] for name in ALIKE if name in data}
     for name, added in ADDED.items():
         if isinstance(data.get(name), dict):

@@ -1,9 +1,10 @@
-"""SARIF 2.1.0 of a report: each constraint that is not shown to hold, at its place in the mission file.
+"""SARIF 2.1.0 of a report: each constraint not shown to hold, with its position in the mission
+file.
 
-Requirements of the user's own are rules as G1 to G5 are, at their place in their file.
-The rule of G1 to G5 is that its constraints are shown to hold: a violation is an error, an unknown one
-a warning, an excused one and one of which nothing was checked a note. What no row speaks of is a
-notification of the run. There is no time stamp: the same subject and lines give the same bytes.
+User requirements are rules like G1 to G5, with positions in their files. The rule of G1 to G5 is
+that its constraints are shown to hold: a violation is an error, an unknown constraint a warning, an
+excused or unchecked one a note. What no row covers is a notification of the run. There is no time
+stamp: the same subject and lines give the same bytes.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ SCHEMA = (
 )
 LEVELS = {Outcome.VIOLATED: "error", Outcome.UNKNOWN: "warning"}
 LineOf = Callable[[str], int | None]
-"""The line of the mission file that a constraint is about, by its name; None where it is not known."""
+"""The line of the mission file that a constraint concerns, by its name; None if unknown."""
 
 
 def sarif(subject: Subject, line_of: LineOf) -> str:
@@ -67,7 +68,7 @@ def sarif(subject: Subject, line_of: LineOf) -> str:
 
 
 def _own_rule(one: Data, sha: dict[str, str]) -> Data:
-    """The rule of a requirement of the user's own."""
+    """The rule of a user requirement."""
     said = {"severity": one["severity"], "source": one["source"], "file": one["file"]}
     return {
         "id": one["requirement"],

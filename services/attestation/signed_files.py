@@ -1,4 +1,4 @@
-"""Are the files of results and views those that were signed, and are the views those of the report?"""
+"""Checks that the files of results and views are the signed ones, and that the views follow from the report."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ from cratous.services.results.names import (
 from cratous.services.results.ownership import digest_of
 
 NEEDED = (REPORT_NAME, HTML_NAME, MAP_NAME, LOG_NAME, MANIFEST_NAME)
-"""What every statement covers of the results."""
+"""Files of the results that every statement covers."""
 MADE_AGAIN: dict[str, Callable[[Subject], str]] = {JUNIT_NAME: junit, CSV_NAME: table}
-"""The views that report and statement alone give; the argument needs the ledger (`argued`)."""
+"""Views determined by report and statement alone; the argument needs the ledger (`argued`)."""
 
 
 class Place(NamedTuple):
-    """Where the files are. results: the folder of the run; views: that of views and statement."""
+    """Folders. results: of the run; views: of views and statement."""
 
     results: Path
     views: Path
@@ -46,8 +46,9 @@ class Place(NamedTuple):
 
 
 def file_faults(place: Place, named: dict[str, str]) -> list[str]:
-    """What is not as it was signed: every file that is named is there with its SHA-256, and none that
-    should be named is not. named: by subject, the SHA-256 that was signed."""
+    """Files that differ from the signed ones: every named file must exist with its SHA-256, and no
+    required file may be unnamed. named: signed SHA-256 by subject.
+    """
     found = []
     for name, stated in named.items():
         try:
@@ -72,7 +73,7 @@ def file_faults(place: Place, named: dict[str, str]) -> list[str]:
 
 
 def view_faults(place: Place, named: dict[str, str], subject: Subject) -> list[str]:
-    """The views that are not, byte for byte, what the report gives; and a certificate that is not there."""
+    """Views that differ from what the report gives, byte for byte; and a missing certificate."""
     found = []
     for name, make in MADE_AGAIN.items():
         if f"{MADE}/{name}" not in named:

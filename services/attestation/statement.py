@@ -1,7 +1,8 @@
-"""An in-toto statement (version 1) on a report: digests of the evidence and of all views, and the claim.
+"""An in-toto statement (version 1) on a report: digests of the evidence and of all views, and the
+claim.
 
-Subjects are `results/NAME` for the files of the results folder, the message log among them, and
-`views/NAME` for those that were made from its report for other tools.
+Subjects are `results/NAME` for the files of the results folder, including the message log, and
+`views/NAME` for those made from its report for other tools.
 """
 
 from __future__ import annotations
@@ -19,11 +20,11 @@ STATEMENT_TYPE = "https://in-toto.io/Statement/v1"
 PREDICATE_TYPE = "urn:cratous:constraint-satisfaction:1"
 RESULTS, VIEWS = "results", "views"
 CLAIMED = ("verdict", "exit_code", "counts", "mission_hash", "not_covered", "limits")
-"""What the statement says again of report.json."""
+"""Entries of report.json that the statement repeats."""
 
 
 def claim(report: Data) -> Data:
-    """What a statement claims, as report.json says it."""
+    """The claim of a statement, as in report.json."""
     return {
         **{key: report[key] for key in CLAIMED},
         "product": report["product"],
@@ -34,7 +35,7 @@ def claim(report: Data) -> Data:
 
 
 def _own(own: Data) -> Data:
-    """Of requirements of the user's own: digests of the files, verdicts by id."""
+    """For user requirements: digests of the files, verdicts by id."""
     return {
         "files": [{"file": one["file"], "sha256": one["sha256"]} for one in own["files"]],
         "verdicts": {one["requirement"]: one["verdict"] for one in own["requirements"]},
@@ -42,9 +43,9 @@ def _own(own: Data) -> Data:
 
 
 def statement(subject: Subject, results: Iterable[Path], views: Iterable[Path]) -> bytes:
-    """The statement as it is signed: canonical JSON. unchecked is part of what is claimed.
+    """The statement to be signed: canonical JSON. unchecked is part of the claim.
 
-    BadInput for a file that cannot be read or is no plain one.
+    BadInput for a file that cannot be read or is no regular file.
     """
     files = [(RESULTS, path) for path in results] + [(VIEWS, path) for path in views]
     subjects = [

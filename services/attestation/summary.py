@@ -1,4 +1,4 @@
-"""Does a report say what its statement claims, and do its summary and its rows belong together?"""
+"""Checks that a report agrees with its statement, and its summary with its rows."""
 
 from __future__ import annotations
 
@@ -22,8 +22,9 @@ OF_FRAME = re.compile(
 
 
 def summary_faults(report: Data, predicate: Data) -> list[str]:
-    """What is wrong: the report is of its schema, says what the statement claims, and agrees with its
-    own rows. predicate: of the statement."""
+    """Faults: the report must satisfy its schema, agree with the statement's claim, and be
+    consistent with its own rows. predicate: of the statement.
+    """
     if report["format"] == FORMER:
         return [f"{REPORT_NAME}: a report of {FORMER} has no schema"]
     wrong = [f"{REPORT_NAME}, by its schema: {line}" for line in departures(report)]
@@ -40,8 +41,9 @@ def summary_faults(report: Data, predicate: Data) -> list[str]:
 
 
 def _rows(report: Data) -> list[str]:
-    """Requirements and limits are those that there are, and no row is strange, or twice. Which rows there
-    must be, `planned` and the judge say."""
+    """Faults of requirements, limits and rows: unknown or duplicate ones. `planned` and the judge
+    check which rows must exist.
+    """
     found = []
     known = [(one.id, one.title, one.text) for one in REQUIREMENTS]
     listed = [(one["requirement"], one["title"], one["text"]) for one in report["requirements"]]
@@ -69,7 +71,7 @@ def _rows(report: Data) -> list[str]:
 
 
 def _sums(report: Data) -> list[str]:
-    """What is summed up otherwise than the rows say."""
+    """Summary entries that contradict the rows."""
     rows, found = report["constraints"], []
     outcomes = []
     for wanted in report["requirements"]:

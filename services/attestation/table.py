@@ -1,4 +1,4 @@
-"""The constraints of a report as CSV, for spreadsheets: no cell of it is run as a formula."""
+"""The constraints of a report as CSV, for spreadsheets: no cell is interpreted as a formula."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ NOT_SHOWN = "not shown"
 
 
 def table(subject: Subject) -> str:
-    """The text of the file: a row a constraint, then one for each thing that nothing was shown of."""
+    """The text of the file: a row per constraint, then one per item that was not shown."""
     stream = io.StringIO()
     out = csv.writer(stream, lineterminator="\n")
     out.writerow(COLUMNS)

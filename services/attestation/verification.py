@@ -1,10 +1,11 @@
-"""Verifies what was signed: signature, digests of evidence and views, and the verdicts, judged again.
+"""Verifies signed results: signature, digests of evidence and views, and the verdicts, judged
+again.
 
-The process that does this imports neither planner nor pilot nor monitor nor a kernel: the verdicts on
-the flight are those of the independent judge (`cratous.judge`), which is handed in. Of the core it reads
-the ledger's records alone, for the argument, and the operators' kernels where a report has requirements of
-the user's own, which are judged again from their texts. What it cannot decide, or what it has no counterpart of,
-is listed and never taken as shown.
+The verifying process imports neither planner nor pilot nor monitor nor a kernel: the verdicts on
+the flight are those of the independent judge (`cratous.judge`), which is passed in. From the core
+it reads only the ledger's records, for the argument, and uses the operators' kernels if a report
+has user requirements, which are evaluated again from their texts. What it cannot decide, or has no
+counterpart for, is listed and never taken as shown.
 """
 
 from __future__ import annotations
@@ -42,14 +43,14 @@ MOST_SUBJECTS = 100
 
 @dataclass
 class Verification:
-    """What verifying found. refused: what is not as it was signed, or not as the evidence says.
+    """The findings. refused: what differs from what was signed, or from the evidence.
 
-    own: requirements of the user's own whose verdict, margins and blame were made again from the log;
-    expected: rows on the flight that the judge expects; recomputed: those that it confirms; undecided:
-    those that it cannot, and an argument that this ledger does not give, in words; not_checked: what
-    certifying could not check, by the statement; not_judged: what nobody looked into here. verdict: of
-    the report; verified_verdict: that of the flight as far as the judge confirms it (of `judged.Held`), no
-    better than unknown where anything is undecided, empty if refused.
+    own: number of user requirements whose verdict, margins and blame were recomputed from the log;
+    expected: rows on the flight that the judge expects; recomputed: those that it confirms;
+    undecided: those that it cannot decide, and an argument that this ledger does not give, in
+    words; not_checked: what certifying could not check, by the statement; not_judged: what was not
+    examined here. verdict: of the report; verified_verdict: verdict confirmed by the judge
+    (`judged.Held`), at best unknown if anything is undecided, empty if refused.
     """
 
     refused: list[str] = field(default_factory=list)
@@ -66,11 +67,11 @@ class Verification:
 
 
 def verify(place: Place, public: Any, judged: Any, view: View) -> Verification:
-    """Hold results and views against their statement and against the judge.
+    """Check results and views against their statement and against the judge.
 
-    public: of `dsse.public_key`; judged: gives the judgement of a results folder (`cratous.judge.judge`);
-    view: makes the views for people (`full_report.views.view`).
-    BadInput where there is nothing to verify: no statement, or no results.
+    public: of `dsse.public_key`; judged: returns the judgement of a results folder
+    (`cratous.judge.judge`); view: makes the human-readable views (`full_report.views.view`).
+    BadInput if there is nothing to verify: no statement, or no results.
     """
     envelope = text_of(place.views / STATEMENT_NAME, ENVELOPE_BYTES, "a signed statement")
     payload, wrong = opened(envelope, public)
@@ -81,7 +82,7 @@ def verify(place: Place, public: Any, judged: Any, view: View) -> Verification:
         return Verification([f"{STATEMENT_NAME}: {wrong}"])
     named, predicate = statement["subject"], statement["predicate"]
     found = Verification(file_faults(place, named), files=len(named))
-    if found.refused:  # nothing that they say is what was signed
+    if found.refused:  # their contents are not what was signed
         return found
     report = read_report(place.results)
     found.refused = summary_faults(report, predicate)
@@ -92,7 +93,7 @@ def verify(place: Place, public: Any, judged: Any, view: View) -> Verification:
     judgement = judged(place.results)
     answer = held(report, judgement)
     recorded = [*recorded_faults(report, judgement.meta), *plan_faults(report)]
-    # of a plan or mission that was never flown no page needs to be made, nor can be of any
+    # a plan or mission that was not flown needs no pages
     pages = Again([], []) if recorded else pages_again(place, named, subject, view)
     found.refused = view_faults(place, named, subject) + argument.refused + pages.refused
     found.refused += [*sarif_faults(place, named, subject), *recorded]
@@ -121,7 +122,7 @@ def verify(place: Place, public: Any, judged: Any, view: View) -> Verification:
 
 
 def _read(payload: bytes) -> tuple[Data, str]:
-    """(statement, what is wrong with it)."""
+    """(statement, fault)"""
     try:
         data = json.loads(payload)
         subjects = data["subject"]
@@ -142,7 +143,7 @@ def _read(payload: bytes) -> tuple[Data, str]:
 
 
 def signed_folder(results: Path, out: Path | None, default: str) -> Place:
-    """Where results and views are; BadInput if there are no results."""
+    """The folders of results and views; BadInput if there are no results."""
     if not results.is_dir():
         raise BadInput(
             "there is no such folder",

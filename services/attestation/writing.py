@@ -1,4 +1,4 @@
-"""Writes the views of a confirmed report, and the signed statement over them and the evidence."""
+"""Writes the views of a confirmed report, and the signed statement on them and the evidence."""
 
 from __future__ import annotations
 
@@ -27,8 +27,9 @@ from cratous.spec.errors import BadInput
 
 
 class Wanted(NamedTuple):
-    """What is written. names: of the views; mission: the mission file; key: signs, None: unsigned; more:
-    makes a view that is none of the tools' (`full_report.views`), by its name."""
+    """What to write. names: of the views; mission: the mission file; key: for signing, None:
+    unsigned; more: makes a view not implemented here (`full_report.views`), by name.
+    """
 
     names: tuple[str, ...]
     mission: Path | None = None
@@ -37,17 +38,18 @@ class Wanted(NamedTuple):
 
 
 class Written(NamedTuple):
-    """The paths that were written, and in words what was left out."""
+    """The paths written, and what was left out, in words."""
 
     files: list[str]
     left_out: list[str]
 
 
 def write_views(subject: Subject, results: Path, target: Path, wanted: Wanted) -> Written:
-    """Write what is wanted into a folder that is made for it.
+    """Write the wanted views into a new folder.
 
-    results: the folder of the run, whose files a statement covers. BadInput if the folder is that of
-    the results itself, or holds anything that is not written anew: a statement would not cover it.
+    results: the folder of the run, whose files a statement covers. BadInput if the target is the
+    results folder itself, or contains anything that is not overwritten: a statement would not cover
+    it.
     """
     _refuse_others(results, target, wanted)
     texts: dict[str, str | bytes] = {}
@@ -80,7 +82,7 @@ def write_views(subject: Subject, results: Path, target: Path, wanted: Wanted) -
 
 
 def earlier(target: Path) -> list[str]:
-    """The views and the statement that stand in a folder, as paths."""
+    """Paths of existing views and statement in a folder."""
     return [str(target / name) for name in (*ALL_VIEWS, STATEMENT_NAME) if (target / name).exists()]
 
 
@@ -103,7 +105,7 @@ def _refuse_others(results: Path, target: Path, wanted: Wanted) -> None:
         return
     written = {*wanted.names, STATEMENT_NAME}
     strange = sorted(entry.name for entry in target.iterdir() if entry.name not in written)
-    # without a new statement one that is there is about other bytes
+    # without a new statement an existing one would cover other bytes
     if wanted.key is None and (target / STATEMENT_NAME).exists():
         strange.append(STATEMENT_NAME)
     if strange:

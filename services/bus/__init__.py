@@ -1,18 +1,18 @@
 """The message bus of one process: total order, virtual time, pure handlers.
 
-A service is a pure step `handle(state, envelope, now_ms) -> (state, bodies)`; the bus owns the
-states, the order and the clock. Messages are delivered one at a time in the order in which they
-were published; a message's own publications follow everything that is already queued. Nothing
-here reads a wall clock or a random number, so the same inputs give the same log.
+A service is a pure step `handle(state, envelope, now_ms) -> (state, bodies)`; the bus owns the states, the
+order and the clock. Messages are delivered one at a time in the order in which they were published; a
+message's own publications follow everything already queued. Nothing here reads a wall clock or a random
+number, so the same inputs give the same log.
 
-Topics are full type names (`afrl.cmasi.AirVehicleState`); a subscription to a base type receives
-its descendants. A message may bear an address of its own instead (`Send`): that of one service
-(`eid100.sid55`), of all services of an entity (`eid100.sidall`) or of their group, who get it if
-they subscribe to its type; or any other, whose subscribers get it. Bodies are LMCP objects of `cratous.bridge.lmcp`.
+Topics are full type names (`afrl.cmasi.AirVehicleState`); a subscription to a base type receives its
+descendants. A message may carry an address instead (`Send`): that of one service (`eid100.sid55`), of all
+services of an entity (`eid100.sidall`) or of their group, which receive it if they subscribe to its type; or
+any other address, whose subscribers receive it. Bodies are LMCP objects of `cratous.bridge.lmcp`.
 
-A service may also have `prefixes`: it gets every message whose address begins with one of them
-(bridges, loggers); `wake(state, key, now_ms)`, called when a `Wake` that it gave is due; and
-`stop(state)`, called when it leaves. Wakes are due in virtual time: by time, then by age.
+A service may also have `prefixes`: it receives every message whose address begins with one of them (bridges,
+loggers); `wake(state, key, now_ms)`, called when a `Wake` that it requested is due; and `stop(state)`, called
+when it leaves. Wakes are due in virtual time, ordered by time, then by age.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ from cratous.spec.records import replace
 
 @dataclass(frozen=True)
 class Envelope:
-    """A message on its way: sequence number, virtual time [ms], sender, topic and body.
+    """A message in transit: sequence number, virtual time [ms], sender, topic and body.
 
-    address: where it is sent if not to the subscribers of its type; group, entity_id, service_id:
-    the sender as UxAS names it; raw: the body's bytes as they came in from outside, if they did.
+    address: destination if not the subscribers of its type; group, entity_id, service_id: the sender as UxAS
+    names it; raw: the body's bytes as received from outside, if they were.
     """
 
     seq: int
@@ -60,7 +60,7 @@ class Send(NamedTuple):
 
 
 class Wake(NamedTuple):
-    """A service's wish to be called again after some virtual time [ms], with a key of its own."""
+    """Request to be called again after some virtual time [ms], with a key of the service's own."""
 
     after_ms: int
     key: Any = None
@@ -75,7 +75,7 @@ class Identity(NamedTuple):
 
     @property
     def addresses(self) -> tuple[str, ...]:
-        """The addresses at which it is reached: alone, with all of its entity, with its group."""
+        """The addresses at which it is reached: its own, that of its entity, that of its group."""
         group = (self.group,) if self.group else ()
         if not self.service_id:
             return group
@@ -88,7 +88,7 @@ def unicast(entity_id: int, service_id: int) -> str:
 
 
 class Service(Protocol):
-    """Anything with a name, subscriptions, a first state and a pure handler."""
+    """A service: name, subscriptions, initial state and a pure handler."""
 
     name: str
     subscribes: tuple[str, ...]
@@ -115,8 +115,8 @@ class Bus:
     ) -> None:
         """topics_of(body) gives the full type name of a body, then those of its bases.
 
-        on_fault(name, envelope, error) gets what a handler raises, and the service keeps its
-        state; without it errors go up to the caller. echo: a service gets its own messages too.
+        on_fault(name, envelope, error) receives exceptions of handlers, and the service keeps its state;
+        without it they propagate to the caller. echo: a service also receives its own messages.
         """
         self._topics_of = topics_of
         self._on_fault = on_fault
@@ -133,7 +133,9 @@ class Bus:
         self.now_ms = 0
 
     def add(self, service: Service, identity: Identity = Identity()) -> None:
-        """Join a service; its name must be new. What `begin(state)` of it gives is published."""
+        """Add a service, whose name must be new (ValueError otherwise), and publish what its `begin(state)`
+        returns.
+        """
         if service.name in self._states:
             raise ValueError(f"a service named {service.name!r} is already on the bus")
         self._services[service.name] = service
@@ -145,7 +147,7 @@ class Bus:
             self._step(service, None, lambda: begin(self._states[service.name]))
 
     def remove(self, name: str) -> None:
-        """Let a service leave: its `stop(state)` is called; state, wakes and routes are gone."""
+        """Remove a service: its `stop(state)` is called; its state, wakes and routes are dropped."""
         service = self._services.pop(name)
         state = self._states.pop(name)
         self._identities.pop(name)
@@ -160,7 +162,7 @@ class Bus:
                 self._fault(name, None, error)
 
     def tap(self, listener: Callable[[Envelope], None]) -> None:
-        """Call listener with each message, in order, before any service gets it (the log)."""
+        """Call listener with each message, in order, before any service receives it (the log)."""
         self._taps.append(listener)
 
     def state(self, name: str) -> Any:
@@ -195,7 +197,7 @@ class Bus:
         )
 
     def put(self, envelope: Envelope) -> None:
-        """Queue a message from outside under the sender that it names, with a new sequence number."""
+        """Queue a message from outside under its own sender, with a new sequence number."""
         if envelope.seq != self._seq:
             envelope = replace(envelope, seq=self._seq)
         self._seq += 1
@@ -211,15 +213,16 @@ class Bus:
                 listener(envelope)
             for service in self._receivers(envelope):
                 if not self._here(service):
-                    continue  # it has left while this message was delivered
+                    continue  # it left while this message was being delivered
                 if not self._echo and service.name == envelope.source:
                     continue
                 self._hand(service, envelope)
         return delivered
 
     def call(self, name: str, step: Callable[[Any], tuple[Any, Iterable[Any]]]) -> None:
-        """A step of a service that no message has caused (its port has something): `step(state)` gives what
-        a handler gives, and is treated as one."""
+        """Run a step that no message has caused (e.g. input at its port): `step(state)` returns the same as a
+        handler.
+        """
         state = self._states[name]
         self._step(self._services[name], None, lambda: step(state))
 
@@ -228,9 +231,10 @@ class Bus:
         return self._wakes[0][0] if self._wakes else None
 
     def run_until(self, time_ms: int) -> int:
-        """Deliver, and let time go on to `time_ms`, one wake after the other; messages delivered.
+        """Deliver messages and advance time to `time_ms`, one wake at a time; returns how many messages were
+        delivered.
 
-        Each wake happens at its own time, however late this is called.
+        Each wake runs at its own time, however late this is called.
         """
         delivered = self.run()
         while self._wakes and self._wakes[0][0] <= time_ms:
@@ -266,7 +270,7 @@ class Bus:
             return True
         if address and address not in self._identities[service.name].addresses:
             return False
-        # by its own address too it gets only what it knows
+        # messages to its own address are limited to its subscriptions too
         return any(topic in service.subscribes for topic in topics)
 
     def _hand(self, service: Any, envelope: Envelope) -> None:

@@ -1,4 +1,4 @@
-"""Conducting a campaign: what is stored is not flown again, what is lost costs one attempt."""
+"""Conducts a campaign: stored runs are not flown again, a lost attempt costs only itself."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Tell = Callable[[str], None]
 
 @dataclass
 class Course:
-    """How far a campaign is: runs in all, stored before, flown now, attempts lost now."""
+    """Progress of a campaign: all runs, stored before, flown now, attempts lost now."""
 
     total: int
     stored: int = 0
@@ -30,11 +30,11 @@ class Course:
     began: float = field(default_factory=time.monotonic)
 
     def count(self, outcome: str) -> None:
-        """One more run that is known."""
+        """Count one more run with a known outcome."""
         self.outcomes[outcome] = self.outcomes.get(outcome, 0) + 1
 
     def line(self) -> str:
-        """One line for people: what is done, how fast, and how long it will take."""
+        """One line of text: progress, speed, and remaining time."""
         known = self.stored + self.flown
         spent = time.monotonic() - self.began
         parts = [f"{known} of {self.total} runs"]
@@ -48,7 +48,7 @@ class Course:
 
 
 def duration(seconds: float) -> str:
-    """A time that is left, in words."""
+    """A remaining time in words."""
     minutes = round(seconds / 60)
     if minutes < 2:
         return f"{seconds:.0f} s"
@@ -56,12 +56,12 @@ def duration(seconds: float) -> str:
 
 
 class Conduct:
-    """One campaign with its store; `fly` makes what is missing, `rows` gives everything."""
+    """One campaign with its store; `fly` flies missing runs, `rows` returns all results."""
 
     def __init__(
         self, campaign: Campaign, store: Store, function: str, version: str, allow_unproved: bool
     ) -> None:
-        """function: `module:name` of what flies a run; version: digest of what flies it."""
+        """function: `module:name` of the function that flies a run; version: digest of the flying code."""
         self._campaign, self._store = campaign, store
         self._function, self._version = function, version
         self._allow_unproved = allow_unproved
@@ -74,7 +74,7 @@ class Conduct:
         return runs_of(self._campaign, self._version, self._allow_unproved, self._ids)
 
     def task(self, run: Run, **more: Any) -> Attempt:
-        """The attempt at a run, as a worker takes it."""
+        """The task of a run, as a worker receives it."""
         limits = self._campaign.limits
         return {
             "id": run.id, "function": self._function, "version": self._version,
@@ -85,9 +85,9 @@ class Conduct:
     def fly(
         self, engine: Engine, course: Course, tell: Tell, runs: Iterable[Run] | None = None
     ) -> None:
-        """Fly what is not stored, of all runs or of some.
+        """Fly the runs that are not stored, of all runs or of some.
 
-        Refused if a worker will not fly, BadInput if a result cannot be stored.
+        Raises Refused if a worker refuses to fly, BadInput if a result cannot be stored.
         """
         missing = self._missing(course, self.runs() if runs is None else runs)
 

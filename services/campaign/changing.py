@@ -1,5 +1,6 @@
-"""Missions of two or three vehicles with changes in flight, by seed: vehicles that are lost or join, zones on
-tasks and ways, wind, late and withdrawn tasks, at once or apart."""
+"""Random missions of two or three vehicles with changes in flight: vehicles that are lost or join,
+zones on tasks and routes, wind, late and withdrawn tasks, at the same time or apart.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +9,7 @@ from random import Random
 from typing import Any
 
 ALTITUDES_M = (300.0, 500.0, 700.0)
-"""A layer for each vehicle, so that they meet each other seldom."""
+"""One altitude layer per vehicle, so that encounters are rare."""
 KINDS = ("must_fly",) * 4 + ("point_search",) * 2 + ("line_search",) * 3 + ("area_search",)
 SQUARE = ((0, 0), (0, 500), (500, 500), (500, 0))
 
@@ -24,7 +25,7 @@ def changing_mission(name: str, seed: int, most_changes: int) -> dict[str, Any]:
     while len(changes) < wanted:
         _change(changes, ids, tasks, random)
     late = {c["task_added"] for c in changes if "task_added" in c}
-    if late >= {t["id"] for t in tasks}:  # a mission begins with a task
+    if late >= {t["id"] for t in tasks}:  # a mission must begin with a task
         changes = [c for c in changes if c.get("task_added") != tasks[0]["id"]]
     return {
         "name": f"{name}-{seed}",
@@ -71,7 +72,7 @@ def _task(number: int, vehicles: list[int], random: Random) -> dict[str, Any]:
 def _change(
     changes: list[dict[str, Any]], vehicles: list[int], tasks: list[dict[str, Any]], random: Random
 ) -> None:
-    """One more change; at the instant of the last one now and then."""
+    """Append one more change, sometimes at the same time as the last one."""
     at = random.choice((0, 5, 20, 40, 70, 110, 160))
     if changes and random.random() < 0.3:
         at = changes[-1]["at_s"]
@@ -104,7 +105,7 @@ def _change(
 
 
 def _relations(ids: list[int], random: Random) -> str:
-    """Some text over all tasks, with a window now and then; empty now and then."""
+    """Relations of all tasks, sometimes with a time window; sometimes empty."""
     if random.random() < 0.15:
         return ""
     rest = list(ids)

@@ -25,14 +25,14 @@ from cratous.spec.files.text_file import text_of
 MOST_RUNS = 1_000_000
 ALL = ("G1", "G2", "G3", "G4", "G5")
 MISSIONS, ENCOUNTERS = "missions", "encounters"
-"""Kinds: whole flights, or short ones by the steps of avoidance and motion alone."""
+"""Kinds: whole flights, or short encounters with avoidance and motion only."""
 DURATION_S = 60.0
 """How long an encounter is flown [s]."""
 
 
 @dataclass(frozen=True)
 class Option:
-    """A way to run each mission: avoidance or not, and values that it changes by their path."""
+    """A configuration for each mission: avoidance on or off, and changed values by their path."""
 
     name: str = "as-written"
     daa: bool = True
@@ -41,7 +41,7 @@ class Option:
 
 @dataclass(frozen=True)
 class Variable:
-    """A value of the mission that is drawn for each seed: between two bounds, or one of some values."""
+    """A mission value drawn for each seed: from a range, or from a list of values."""
 
     item: str
     bounds: tuple[float, float] | None = None
@@ -50,7 +50,7 @@ class Variable:
 
 @dataclass(frozen=True)
 class Limits:
-    """What an attempt may cost: wall time [s], memory [MB]; and how many attempts a run has."""
+    """Limits of an attempt: wall time [s], memory [MB]; and the number of attempts per run."""
 
     time_s: float = 600.0
     memory_mb: int = 4096
@@ -59,7 +59,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class Source:
-    """A mission file: its name in tables, its text, and the same as data."""
+    """A mission file: its name in tables, its text, and its data."""
 
     name: str
     text: str
@@ -73,10 +73,10 @@ class Source:
 
 @dataclass(frozen=True)
 class Campaign:
-    """All that a campaign file says. seeds: empty if every mission is run once, as it is written.
+    """Content of a campaign file. seeds: empty if every mission is run once, unvaried.
 
-    requirements: what every run has to hold, guarantees first; own: files that the others of them are in.
-    model: the log of every flight is held against the proved steps of authority.
+    requirements: what every run has to satisfy, guarantees first; own: files that contain the other
+    ones. model: the log of every flight is checked against the proved steps of authority.
     """
 
     name: str
@@ -96,7 +96,7 @@ class Campaign:
 
     @property
     def random(self) -> bool:
-        """Whether its runs are draws of something, so that a rate can be spoken of."""
+        """Whether its runs are random draws, so that rates can be estimated."""
         return len(self.seeds) > 0
 
 
@@ -111,9 +111,10 @@ def campaign_schema() -> dict[str, Any]:
 def load_campaign(
     path: Path, seeds: range | None, options: tuple[Option, ...], own: tuple[OwnFile, ...] = ()
 ) -> Campaign:
-    """The campaign in a file, or of one mission file with the seeds and options given.
+    """The campaign in a file, or of one mission file with the given seeds and options.
 
-    own: requirements of the user's own that every run has to hold besides. BadInput with file, line, item, expected and got.
+    own: user requirements that every run also has to satisfy. BadInput with file, line, item,
+    expected and got.
     """
     if path.is_dir() and (path / "mission.yaml").is_file():
         path = path / "mission.yaml"
@@ -137,7 +138,7 @@ def load_campaign(
 
 
 def _with_own(campaign: Campaign, more: tuple[OwnFile, ...]) -> Campaign:
-    """The campaign that asks for the requirements in these files too."""
+    """The campaign with the requirements in these files added."""
     files = (*campaign.own, *more)
     refuse_clashes(files)
     names = [one.name for file in files for one in file.specification().requirements]
@@ -155,7 +156,7 @@ def _source(path: Path, kind: str = MISSIONS, duration_s: float = DURATION_S) ->
         return Source(data["name"], "", Document(str(path), data, {}))
     text = text_of(path, MISSION_BYTES, "a mission file")
     document = parse_document(text, str(path))
-    load(path)  # what is wrong with it as it is written is said before anything is flown
+    load(path)  # errors of the unvaried mission are reported before anything is flown
     return Source(document.data["name"], text, document)
 
 
@@ -254,7 +255,9 @@ def _check_ranges(document: Document, key: tuple[str | int, ...], made: dict[str
 
 
 def _check_cases(document: Document, things: dict[str, Any], vary: tuple[Variable, ...]) -> None:
-    """What two things say, or what has its column already, would be one of them and be told as both."""
+    """Refuse cases that set a value set by another case group, or that have the name of a drawn
+    parameter: both would share a column in the results.
+    """
     drawn = {*PARAMETERS, *(one.item for one in vary)}
     said: dict[str, str] = {}
     for what, cases in things.items():
@@ -278,12 +281,14 @@ def _check_cases(document: Document, things: dict[str, Any], vary: tuple[Variabl
 
 
 def _within(item: str, other: str) -> bool:
-    """Whether one item is another or a part of it."""
+    """Whether one item equals another or is a part of it."""
     return f"{item}.".replace("[", ".[").startswith(f"{other}.".replace("[", ".["))
 
 
 def _check_kind(campaign: Campaign, document: Document) -> None:
-    """Encounters are held to what can be seen of them, and always judged; whole flights end by themselves."""
+    """Refuse options that do not suit the kind: encounters have no bridge, log or changes and are
+    always judged; whole flights have no duration.
+    """
     if campaign.kind == MISSIONS:
         if isinstance(document.data, dict) and "duration_s" in document.data:
             what = "a whole flight has no duration"

@@ -1,7 +1,7 @@
-"""What a flown encounter comes to: the monitor's verdicts with margins, and the judge's beside them.
+"""Evaluates a flown encounter: the monitor's verdicts with margins, compared with the judge's.
 
-The monitor's are those of a whole flight, on zones and well clear; whether the points of the way were passed, the
-judge alone says.
+The monitor's verdicts are those of a whole flight, on zones and well clear; only the judge checks
+whether the points of the route were passed.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import Outcome, Verdict, worst
 
 REQUIREMENTS = ("G1", "G2", "G3")
-"""What an encounter can be held to: zones, well clear, and the points of its way."""
+"""Requirements that apply to an encounter: zones, well clear, and the points of its route."""
 States = dict[int, list[list[float]]]
 
 
 class Judged(NamedTuple):
-    """A row of the judge's."""
+    """A row of the judge's result."""
 
     guarantee: str
     item: str
@@ -49,7 +49,7 @@ def states_of(flown: Encounter) -> States:
 
 
 def digest_of(states: States) -> str:
-    """SHA-256 of all that was flown, every double to the bit."""
+    """SHA-256 of all recorded states, with every double bit-exact."""
     found = hashlib.sha256()
     for number, told in sorted(states.items()):
         flat = tuple(chain.from_iterable(told))
@@ -90,8 +90,9 @@ def result_of(
     proved: bool,
     name: str,
 ) -> dict[str, Any]:
-    """The result of the run as plain data. states: of `flown`; judged: the judge's rows; proved: by proved kernels
-    alone; name: what the mission is named by."""
+    """The result of the run as plain data. states: of `flown`; judged: the judge's rows; proved:
+    only proved kernels ran; name: digest of the mission.
+    """
     verdicts = verdicts_of(mission, flown)
     rows = [*map(_row, verdicts), *(_Row(*j) for j in judged if j.guarantee == "G3")]
     return {
@@ -110,7 +111,7 @@ def result_of(
 
 
 class _Row(NamedTuple):
-    """A verdict on one thing, the monitor's or (without a margin) the judge's."""
+    """A verdict on one subject, from the monitor or (without a margin) the judge."""
 
     requirement: str
     item: str
@@ -126,7 +127,7 @@ def _row(v: Verdict) -> _Row:
 
 
 def _requirement(name: str, rows: list[_Row]) -> dict[str, Any]:
-    """The worst of its rows, of these the one with the least margin."""
+    """The worst of its rows; of these the one with the least margin."""
     mine = [row for row in rows if row.requirement == name]
     outcome = _worst(row.verdict for row in mine)
     telling = [row for row in mine if row.verdict == outcome]
@@ -138,18 +139,18 @@ def _requirement(name: str, rows: list[_Row]) -> dict[str, Any]:
 
 
 def _worst(verdicts: Iterable[str]) -> str:
-    """The worst; nothing at all, as on zones where there are none, holds."""
+    """The worst verdict; `holds` if there is none, for example without zones."""
     return str(worst([Outcome.HOLDS, *map(Outcome, verdicts)]))
 
 
 def _nearest_m(mission: Mission, verdicts: list[Verdict]) -> float | None:
-    """The least margin of a pair, as a distance."""
+    """The least distance of any pair."""
     margins = [v.margin for v in verdicts if v.requirement == "G2" and v.margin is not None]
     return min(margins) + mission.daa.well_clear.dthr_m if margins else None
 
 
 def _beside(judged: list[Judged], verdicts: list[Verdict]) -> dict[str, Any]:
-    """What the judge says, and where that is not what monitor or flight say."""
+    """The judge's verdicts, and where they differ from the monitor's or the flight's."""
     theirs = {(v.requirement, v.item): str(v.outcome) for v in verdicts}
     mine = {(row.guarantee, row.item): row for row in judged if row.guarantee != "G3"}
     for key in _met_nobody(mine, verdicts):
@@ -177,7 +178,7 @@ def _beside(judged: list[Judged], verdicts: list[Verdict]) -> dict[str, Any]:
 def _met_nobody(
     mine: dict[tuple[str, str], Judged], verdicts: list[Verdict]
 ) -> list[tuple[str, str]]:
-    """The monitor's rows that a vehicle met nobody, which holds; the judge says that of each pair."""
+    """The monitor's rows that a vehicle met no traffic, where the judge's rows on each pair hold."""
     if any(row.guarantee == "G2" and row.verdict != Outcome.HOLDS for row in mine.values()):
         return []
     return [
@@ -190,7 +191,7 @@ def _met_nobody(
 
 
 EXCUSED = (str(Outcome.VIOLATED), str(Outcome.EXCUSED))
-"""The judge knows no excuses, so this is no disagreement."""
+"""Not a disagreement: the judge has no verdict `excused`."""
 
 
 def _agree(judge: str, monitor: str) -> bool:

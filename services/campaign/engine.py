@@ -1,4 +1,4 @@
-"""Who makes the attempts: one flier of this process, or the workers of dask.distributed."""
+"""Executes attempts: in one flier of this process, or on workers of dask.distributed."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from cratous.spec.errors import BadInput, Refused
 
 Attempt = dict[str, Any]
 Feed = Callable[[], Attempt | None]
-"""The next attempt to make, None while there is none."""
+"""Returns the next attempt, None while there is none."""
 WINDOW = 2
-"""Attempts that are under way for each worker, so that none waits for the next."""
+"""Attempts in progress per worker, so that no worker idles."""
 LOOK = 0.5
-"""Seconds after which whoever waits looks up."""
+"""Polling interval while waiting [s]."""
 
 
 CHANGED = (
     "this machine, where CRATOUS, Python or its packages have changed since the campaign was begun,"
 )
-"""Who has another version, where that is the machine that asks."""
+"""Description of this machine in errors on another version."""
 
 
 class Answer(NamedTuple):
@@ -35,11 +35,11 @@ class Answer(NamedTuple):
 
 
 Engine = Callable[[Feed], Iterator[Answer | None]]
-"""Makes attempts as they are fed, and gives answers in any order, None now and then while it waits."""
+"""Executes attempts from a feed, and yields answers in any order, None from time to time while waiting."""
 
 
 def refuse_other_version(answer: dict[str, Any], who: str) -> None:
-    """Raise if it was another version that was asked."""
+    """Raise if the answer came from another version."""
     if "other version" in answer:
         raise Refused(
             f"{who} has another version ({answer['other version'][:12]}): results of two versions are "
@@ -89,7 +89,7 @@ def _cluster(workers: int, scheduler: str | None) -> Iterator[Engine]:
         "distributed.scheduler.worker-ttl": "60s",
         "distributed.comm.timeouts.connect": "20s",
     }
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what matters is told by us
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # we report what matters
     with dask.config.set(settings):
         cluster = None
         try:
@@ -109,9 +109,10 @@ def _cluster(workers: int, scheduler: str | None) -> Iterator[Engine]:
 
 
 def _ended(closable: Any, timeout: int) -> None:
-    """Close a client or cluster; what it does not manage in time ends with this process.
+    """Close a client or cluster; what does not end in time ends with this process.
 
-    Results are taken by then, and an error here would hide why it is closed, a signal to stop say.
+    The results have been received by then, and an error here would hide the reason for closing, for
+    example a stop signal.
     """
     with suppress(Exception):
         closable.close(timeout=timeout)
@@ -154,7 +155,7 @@ def announced(topic: str, key: str, task: Attempt) -> dict[str, Any]:
 def _made(distributed: Any, client: Any, where: str, feed: Feed) -> Iterator[Answer | None]:
     import uuid
 
-    starts = _Starts(client, f"cratous-{uuid.uuid4().hex}")  # no other client's events
+    starts = _Starts(client, f"cratous-{uuid.uuid4().hex}")  # distinct from other clients' events
     running: dict[Any, Attempt] = {}
     count = 0
     try:
@@ -174,15 +175,15 @@ def _made(distributed: Any, client: Any, where: str, feed: Feed) -> Iterator[Ans
             if client.status != "running":
                 raise _gone(where)
     except (CancelledError, OSError, distributed.client.ClosedClientError):
-        raise _gone(where) from None  # all that is under way is cancelled where a scheduler ends
+        raise _gone(where) from None  # a scheduler that ends cancels all work in progress
     finally:
         if client.status == "running":
-            with suppress(Exception):  # no more than `_ended` may
+            with suppress(Exception):  # the same as in `_ended`
                 client.cancel(list(running), force=True)
 
 
 def _done(distributed: Any, running: Iterable[Any]) -> list[Any]:
-    """Those that are done, after a while at most."""
+    """The finished attempts, after a bounded wait."""
     futures = list(running)
     try:
         distributed.wait(futures, timeout=LOOK, return_when="FIRST_COMPLETED")
@@ -192,7 +193,7 @@ def _done(distributed: Any, running: Iterable[Any]) -> list[Any]:
 
 
 def _answer(future: Any, task: Attempt, starts: _Starts, where: str) -> Answer:
-    """What became of an attempt at the hands of dask."""
+    """The result of an attempt from dask, or how it failed."""
     if future.status in ("cancelled", "lost"):
         raise _gone(where)
     begun = starts.taken(future.key)

@@ -1,7 +1,9 @@
-"""A process that flies one run after another and stays warm, and what becomes of it is said by kind.
+"""A persistent process that flies one run after another; losses of the process are reported by
+kind.
 
-A flight may crash its process, hang, or take all memory: that costs the process and one attempt, and
-whoever asked goes on. Between the two go lines of JSON; the function that flies is named by its module.
+A flight may crash its process, hang, or exhaust memory: that costs the process and one attempt, and
+the caller continues. Both communicate by JSON lines; the function that flies is given by its module
+and name.
 """
 
 from __future__ import annotations
@@ -21,16 +23,16 @@ HUNG = "took longer than its limit"
 DIED = "its process died"
 NO_START = "its process did not start"
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-"""Fliers share the cores among themselves."""
+"""Fliers share the cores, so each uses one thread."""
 START = 120.0
-"""Seconds until a process that begins must have said so."""
+"""Time limit for the start of a process [s]."""
 
 
 class Flier:
     """One process; a context manager. Not for several threads."""
 
     def __init__(self, function: str, memory_mb: int) -> None:
-        """function: `module:name` of what is called with a task and gives plain data."""
+        """function: `module:name` of the function that is called with a task and returns plain data."""
         self._command = [sys.executable, "-m", __name__, function, str(memory_mb)]
         self._process: subprocess.Popen[bytes] | None = None
         self._said = tempfile.TemporaryFile()  # noqa: SIM115, closed with the flier
@@ -45,7 +47,7 @@ class Flier:
 
     @property
     def pid(self) -> int | None:
-        """The number of the process that is there now."""
+        """The pid of the current process."""
         return None if self._process is None else self._process.pid
 
     def fly(self, task: Any, time_s: float) -> dict[str, Any]:
@@ -68,7 +70,7 @@ class Flier:
         return answer
 
     def end(self) -> None:
-        """End the process, whatever it is doing."""
+        """End the process, whatever its state."""
         if self._process is None:
             return
         self._process.kill()
@@ -80,7 +82,7 @@ class Flier:
         self._process = None
 
     def begin(self) -> str:
-        """Have a process, and know its version; why not, if it cannot be had."""
+        """Start a process if there is none, and learn its version; returns the reason if that fails."""
         if self._process is not None and self._process.poll() is None:
             return ""
         self.end()
@@ -98,7 +100,7 @@ class Flier:
         return ""
 
     def _line(self, seconds: float) -> dict[str, Any] | str:
-        """What it says next, or why there is nothing."""
+        """Its next message, or why there is none."""
         assert self._process is not None
         assert self._process.stdout is not None
         handle, until, parts = self._process.stdout.fileno(), time.monotonic() + seconds, b""
@@ -114,7 +116,7 @@ class Flier:
         return found
 
     def _ended(self, why: str) -> str:
-        """The reason, with what the process left: its signal and its last words."""
+        """The reason, with the signal and last output of the process."""
         process = self._process
         if process is None:
             return why
@@ -137,7 +139,7 @@ def main(function: str, memory_mb: int) -> None:
     import threading
 
     answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what anything prints goes where errors go
+    os.dup2(2, 1)  # all printed output goes to stderr
     _limit_memory(memory_mb)
     from cratous.services.campaign.identity import version_digest
 
@@ -150,11 +152,11 @@ def main(function: str, memory_mb: int) -> None:
     def read() -> None:
         for line in asked.buffer:
             tasks.put(line)
-        os._exit(0)  # whoever asked is gone, so nobody waits for what is being flown
+        os._exit(0)  # the caller is gone, so nobody waits for the result
 
     _say(answers, {"version": version_digest()})
     threading.Thread(target=read, daemon=True).start()
-    gc.set_threshold(20_000, 5, 10)  # as in a command that flies alone
+    gc.set_threshold(20_000, 5, 10)  # as in a command that flies a single run
     loading = True
     while True:
         task = json.loads(tasks.get())
@@ -165,7 +167,7 @@ def main(function: str, memory_mb: int) -> None:
         except OSError as error:
             answer = {"lost": f"the machine failed it: {error.strerror or error}"}
         _say(answers, answer)
-        if loading:  # what the first has loaded stays: nobody looks for garbage in it again
+        if loading:  # what the first run has loaded stays: exclude it from garbage collection
             gc.freeze()
             loading = False
 
@@ -179,7 +181,7 @@ def _limit_memory(memory_mb: int) -> None:
     import resource
 
     size = memory_mb * 1_000_000
-    with suppress(ValueError, OSError):  # a lower limit of the system's stays
+    with suppress(ValueError, OSError):  # keep a lower limit of the system
         resource.setrlimit(resource.RLIMIT_DATA, (size, size))
 
 

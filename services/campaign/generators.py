@@ -1,10 +1,11 @@
-"""Missions that are made, of most kinds: one protected vehicle that flies north, others that meet it, zones about its way.
+"""Generated missions: mostly one protected vehicle that flies north, traffic that meets it, and
+zones about its route.
 
-The vehicle would be at the frame's origin after `time_s`, and goes on to a point as far behind it. `cases` are
-alternatives by name, of which one is drawn for each seed: other counts, ranges and values of the mission. An
-intruder's course is `angle_deg` against the vehicle's; it passes the origin at the same instant,
-`miss_m` beside it and `height_m` above. Each parameter of a seed has a draw of its own, so that another
-range of one leaves the others as they were.
+The vehicle would be at the frame's origin after `time_s`, and continues to a point as far behind
+it. `cases` are named alternatives, of which one is drawn for each seed: other counts, ranges and
+values of the mission. An intruder's course is `angle_deg` relative to the vehicle's; it passes the
+origin at the same instant, `miss_m` beside it and `height_m` above. Each parameter of a seed has
+its own random stream, so that changing the range of one leaves the others unchanged.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from cratous.spec.errors import BadInput
 Ranges = dict[str, tuple[float, float]]
 ALTITUDE_M = 300.0
 FRAME = {"latitude_deg": 45.0, "longitude_deg": -120.0}
-"""Where missions that are made lie."""
+"""Location of generated missions."""
 COMMON: Ranges = {
     "own_speed_m_s": (18, 28), "speed_m_s": (15, 40), "time_s": (70, 110), "miss_m": (-50, 50),
     "height_m": (-20, 20), "area_m": (-3000, 3000), "zone_gap_m": (100, 600), "zone_size_m": (200, 600),
@@ -36,20 +37,20 @@ KINDS: dict[str, Ranges] = {
     "random": {"angle_deg": (0, 360), "height_m": (-150, 150)},
 }
 PARAMETERS = frozenset(COMMON) | {name for ranges in KINDS.values() for name in ranges}
-"""All that has a range."""
+"""All parameters with a range."""
 CHANGES, MOST_CHANGES = "changes", 6
-"""The kind of `services.campaign.changing`, which has no ranges; it draws so many changes at most."""
+"""The kind of `services.campaign.changing`, which has no ranges, and its maximum number of changes."""
 COUNTS = (
     "intruders", "zones_beside", "zones_across", "bends", "keep_in", "cooperative", "apart_m",
 )  # fmt: skip
-"""What a case may change beside ranges and values of the mission."""
+"""What a case may change besides ranges and values of the mission."""
 CASES = "cases"
 AGAIN = 100
-"""So often an intruder is drawn at most where it would start nearer than it may."""
+"""Maximum number of draws of an intruder that would start too close."""
 KEEP_IN = 50
-"""The number of the keep-in."""
+"""Id of the keep-in zone."""
 BEND = 1000
-"""Tasks where the way bends are numbered from here on."""
+"""First id of tasks at bends of the route."""
 SIDES = (-1, 1)
 """Left and right."""
 MIRRORED = ("converging",)
@@ -57,9 +58,9 @@ MIRRORED = ("converging",)
 
 
 class Draw:
-    """The parameters of one seed, and what was drawn; `given` are not drawn but taken.
+    """The parameters of one seed, and the values drawn; those in `given` are used instead of draws.
 
-    bounds: between which each is drawn, before it is mirrored; choices: of what each of the others is drawn.
+    bounds: range of each drawn number, before mirroring; choices: alternatives of each other draw.
     """
 
     def __init__(
@@ -81,8 +82,9 @@ class Draw:
         self._ranges = {**COMMON, **KINDS.get(self.kind, {}), **own}
 
     def __call__(self, name: str, number: int = 0, again: int = 0) -> float:
-        """A parameter; number: of which intruder or zone, from 1, 0 if there is one for all; again: how often it was drawn
-        before."""
+        """A parameter; number: of the intruder or zone, from 1, 0 if common to all; again: number
+        of earlier draws.
+        """
         low, high = self._ranges[name]
         key = f"{name}[{number}]" if number else name
         once = f" again {again}" * bool(again)
@@ -94,7 +96,7 @@ class Draw:
         return value
 
     def chosen(self, what: str, names: tuple[str, ...]) -> str:
-        """Which of some cases."""
+        """The drawn one of some cases."""
         self.choices[what] = names
         drawn = Random(f"{self.seed} case {what}").choice(names)
         self.drawn[what] = self._given.get(what, drawn)
@@ -111,7 +113,7 @@ class Draw:
 def mission_of(
     data: dict[str, Any], name: str, seed: int, given: Mapping[str, Any] | None = None
 ) -> tuple[dict[str, Any], Draw]:
-    """The mission file of a seed as data, and its parameters; those `given` are taken as they are."""
+    """The mission file of a seed as data, and its parameters; values in `given` are used as they are."""
     draw = Draw(data, seed, given)
     if draw.kind == CHANGES:
         made = changing_mission(name, seed, data.get("most_changes", MOST_CHANGES))
@@ -149,8 +151,9 @@ Point = tuple[float, float, float]
 
 
 def _far_intruder(draw: Draw, k: int, time: float, way: float) -> tuple[Point, float, float]:
-    """The first that is drawn of those that start at least `apart_m` from the vehicle; BadInput if none of AGAIN
-    does."""
+    """The first draw of an intruder that starts at least `apart_m` from the vehicle; BadInput if
+    none of AGAIN does.
+    """
     apart_m = float(draw.data.get("apart_m", 0.0))
     for again in range(AGAIN):
         found = _intruder(draw, k, time, again)
@@ -166,7 +169,7 @@ def _far_intruder(draw: Draw, k: int, time: float, way: float) -> tuple[Point, f
 
 
 def _intruder(draw: Draw, k: int, time: float, again: int) -> tuple[Point, float, float]:
-    """Where it starts, its course [degrees] and its speed [m/s]."""
+    """Start position, course [degrees] and speed [m/s] of an intruder."""
     course_deg, fast = draw("angle_deg", k, again), draw("speed_m_s", k, again)
     alt = ALTITUDE_M + draw("height_m", k)
     if draw.kind == "random":
@@ -201,7 +204,7 @@ def _zones(draw: Draw, data: dict[str, Any], way: float) -> Iterator[dict[str, A
 
 
 def _keep_in(draw: Draw, data: dict[str, Any], way: float) -> Iterator[dict[str, Any]]:
-    """A rectangle about the whole straight path, with as much room at its ends as at its sides."""
+    """A rectangle around the whole straight path, with the same clearance at its ends as at its sides."""
     if data.get("keep_in", False):
         room = draw("room_m")
         north, east = round(way + room, 3), round(room, 3)
@@ -210,7 +213,9 @@ def _keep_in(draw: Draw, data: dict[str, Any], way: float) -> Iterator[dict[str,
 
 
 def vehicle_at(number: int, start: Point, course_deg: float, speed: float) -> dict[str, Any]:
-    """A vehicle of a mission file, with the limits that all made ones have, on a course [degrees] at a speed [m/s]."""
+    """A vehicle of a mission file with the common limits of generated ones, with course [degrees]
+    and speed [m/s].
+    """
     return {
         "id": number, "position": _at(start), "heading_deg": _turned(course_deg), "speed_m_s": speed,
         "min_speed_m_s": round(0.7 * speed, 3), "max_speed_m_s": round(1.4 * speed, 3),
@@ -219,12 +224,12 @@ def vehicle_at(number: int, start: Point, course_deg: float, speed: float) -> di
 
 
 def _turned(course_deg: float) -> float:
-    """The same course between -180 and 180 degrees."""
+    """The equivalent course between -180 and 180 degrees."""
     return round((course_deg + 180) % 360 - 180, 3)
 
 
 def _bends(draw: Draw, data: dict[str, Any], way: float) -> Iterator[dict[str, Any]]:
-    """Tasks on the vehicle's way, evenly spaced to its end, each beside the straight path."""
+    """Tasks evenly spaced along the vehicle's route, each offset from the straight path."""
     bends = data.get("bends", 0)
     for k in range(1, bends + 1):
         place = (2 * k / (bends + 1) - 1) * way, draw("bend_m", k), ALTITUDE_M

@@ -1,4 +1,4 @@
-"""What names a run and the version that flies it, so that no result passes for that of another."""
+"""Identifies a run and the version that flies it, so that results are never confused."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import Any
 from cratous.core.kernel.sources import ROOT
 
 PARTS = ("spec", "core", "bridge", "services", "judge")
-"""What a flight and its judgement are made of; proofs/ is asked by the gate, by core/ledger."""
+"""Source folders of flight and judgement; the proof gate in core/ledger covers proofs/."""
 ENDINGS = {".py", ".json", ".lark", ".conf", ".case"}
 PACKAGES = ("numpy", "numba", "llvmlite", "shapely", "pyproj", "lark", "lxml", "z3-solver")
 
@@ -26,7 +26,7 @@ def fingerprint(data: Any) -> str:
 
 @cache
 def version_digest() -> str:
-    """SHA-256 of our sources as they were when first asked, of Python's version and the packages'."""
+    """SHA-256 of our sources at the first call, and of the versions of Python and the packages."""
     return fingerprint(
         {
             "sources": sources_digest(ROOT),

@@ -1,4 +1,4 @@
-"""What became of a run, in one word, from its result and what the campaign requires."""
+"""The outcome of a run in one word, from its result and the campaign's requirements."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ ORDER = (
     DISAGREE, MISFIT, str(Outcome.VIOLATED), NO_PLAN, FAILED, LOST, str(Outcome.UNKNOWN),
     str(Outcome.EXCUSED), IMPOSSIBLE, str(Outcome.HOLDS),
 )  # fmt: skip
-"""The outcomes, the worst first."""
+"""The outcomes, worst first."""
 BAD = (DISAGREE, MISFIT, str(Outcome.VIOLATED), NO_PLAN)
-"""These make a campaign's exit code 1; all others but `holds` make it 3."""
+"""Outcomes that give a campaign the exit code 1; all others except `holds` give 3."""
 MEANING = {
     DISAGREE: "judge and monitor do not say the same: one of them is wrong",
     MISFIT: "an event of its log is no step of the proved system, so no theorem on authority speaks of it",
@@ -34,7 +34,7 @@ MEANING = {
 
 @dataclass(frozen=True)
 class Row:
-    """A run and its result (None: every attempt was lost), and what became of it."""
+    """A run with its result (None: every attempt was lost) and its outcome."""
 
     run: Run
     result: dict[str, Any] | None
@@ -54,7 +54,7 @@ class Row:
 
     @property
     def drawn(self) -> dict[str, Any]:
-        """What was drawn for it, by the campaign or by the mission's own variants."""
+        """Values drawn for it, by the campaign or by the mission's own variants."""
         own = self.result.get("drawn", {}) if self.result else {}
         return {**self.run.drawn, **own}
 
@@ -85,9 +85,9 @@ def row_of(run: Run, result: dict[str, Any] | None, requirements: tuple[str, ...
 
 
 def outcome_of(result: dict[str, Any] | None, requirements: tuple[str, ...]) -> str:
-    """The outcome of a result: what is not decided is never called holding.
+    """The outcome of a result; undecided never counts as holding.
 
-    A guarantee has to hold for the judge too; of requirements of the user's own the judge knows nothing.
+    A guarantee has to hold for the judge too; the judge does not know user requirements.
     """
     if result is None:
         return LOST
@@ -108,14 +108,15 @@ def outcome_of(result: dict[str, Any] | None, requirements: tuple[str, ...]) -> 
 
 
 def _disagrees(judge: dict[str, Any], requirements: tuple[str, ...]) -> bool:
-    """Whether it does so on what is required, or on which log it is."""
+    """Whether the judge disagrees on a requirement, or on the identity of the log."""
     return any(d["guarantee"] in ("", *requirements) for d in judge.get("disagreements", []))
 
 
 def code_of(outcomes: set[str], asked: bool = True) -> int:
     """The exit code: 0 if every run holds, 1 if something is violated, 3 if something is not known.
 
-    asked: False if logs were to be held against the proved steps of authority, and not one could be.
+    asked: False if logs were to be checked against the proved steps of authority, and none could
+    be.
     """
     if outcomes & set(BAD):
         return 1

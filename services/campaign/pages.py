@@ -1,4 +1,4 @@
-"""`campaign.html` from campaign.json and maps of flights: one file, nothing is loaded from elsewhere."""
+"""Renders `campaign.html` from campaign.json and flight maps as one file without external resources."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def _template() -> Any:
 
 
 def share(rate: dict[str, Any]) -> str:
-    """A rate in words, with what it says of more than this sample."""
+    """A rate in words, with its confidence interval."""
     text = f"{rate['count']} of {rate['of']}"
     if "at_most" in rate:
         return f"{text}: at most {100 * rate['at_most']:.3g} % (95 %)"
@@ -43,7 +43,7 @@ def share(rate: dict[str, Any]) -> str:
 
 
 def model_line(model: dict[str, int]) -> str:
-    """In words, how many logs are runs of the proved steps of authority. model: as in campaign.json."""
+    """How many logs are runs of the proved steps of authority, in words. model: as in campaign.json."""
     asked = model["fits"] + model["does_not_fit"]
     if not asked:
         return f"No log was held against the proved steps of authority: {model['not_asked']} without ICAROUS"
@@ -54,8 +54,9 @@ def model_line(model: dict[str, int]) -> str:
 def page(
     summary: dict[str, Any], links: dict[str, str], maps: Mapping[str, bytes] | None = None
 ) -> str:
-    """The page. By the name of a run, links: its report, or the mission of what has none, relative to the page; maps: an
-    SVG picture of its flight, which the page then holds."""
+    """The page. Both by the name of a run, links: its report, or otherwise its mission, relative to
+    the page; maps: an SVG map of its flight, embedded in the page.
+    """
     runs = {run["name"]: run for run in summary["runs"]}
     text: str = _template().render(
         c=summary,
@@ -128,7 +129,7 @@ def _histograms(name: str, unit: str, groups: dict[str, list[float]]) -> Any:
 
 
 def _places(summary: dict[str, Any]) -> Any:
-    """For each number that was drawn: each run's value and least margin, coloured by outcome."""
+    """For each drawn number: each run's value and least margin, coloured by outcome."""
     for name, span in list(summary["covered"].items())[:MOST_PICTURES]:
         points = [
             (run["drawn"][name], least, run["outcome"], run["name"])
@@ -140,7 +141,7 @@ def _places(summary: dict[str, Any]) -> Any:
             continue
         bottom = min(0.0, *(p[1] for p in points))
         top = max(1.0, *(p[1] for p in points))
-        drawn = sorted(points, key=lambda p: p[2] == "holds")  # what fails is never thinned out
+        drawn = sorted(points, key=lambda p: p[2] == "holds")  # failures are never thinned out
         drawn = drawn[:: max(1, ceil(len(drawn) / MOST_POINTS))] if _all_hold(drawn) else drawn
         yield {
             "name": name, "low": f"{span['low']:.4g}", "high": f"{span['high']:.4g}",

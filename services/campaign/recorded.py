@@ -1,7 +1,8 @@
-"""An encounter from a file of states (`.daa`, `.xyz`): everybody begins as in its first step and flies straight on.
+"""An encounter from a file of states (`.daa`, `.xyz`): each aircraft starts as in its first step
+and flies straight on.
 
-The ownship is a protected vehicle that flies level, on its course; the others are traffic and keep their velocity,
-climb included. What the file says of later instants, of wind and of its parameters is not flown.
+The ownship is a protected vehicle in level flight on its course; the others are traffic and keep
+their velocity, including climb. Later states, wind and parameters of the file are not used.
 """
 
 from __future__ import annotations
@@ -19,12 +20,13 @@ from cratous.spec.errors import BadInput
 ENDINGS = (".daa", ".xyz")
 FIRST_TRAFFIC = 101
 FARTHER = 1.5
-"""The vehicle's point lies this much farther than it flies in the time."""
+"""Distance of the vehicle's target point, as a multiple of the distance flown in the time."""
 
 
 def mission_of_states(file: Path, duration_s: float) -> dict[str, Any]:
-    """The mission file of an encounter, as data; BadInput if the file is none, or nobody is met
-    in its first step."""
+    """The mission file of an encounter, as data; BadInput if the file is invalid, or has no traffic
+    in its first step.
+    """
     encounters = read(file)
     rows = encounters.steps[0][1]
     (own, *others), wind = aircraft(rows)

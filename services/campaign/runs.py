@@ -1,4 +1,4 @@
-"""The runs of a campaign: each with the text of its mission, its seed and its options, and a name from these."""
+"""The runs of a campaign: each with mission text, seed and options, and an id derived from these."""
 
 from __future__ import annotations
 
@@ -24,10 +24,11 @@ from cratous.spec.errors import BadInput
 
 @dataclass(frozen=True)
 class Run:
-    """One run. id: a digest of all that decides its result, `decides`.
+    """One run. id: digest of `decides`, all inputs that determine its result.
 
-    deciding gives: mission (text of the file), seed (of the mission's own variants, 0 for none), daa,
-    allow_unproved, judge, model, version, kind, own (files of requirements of the user's own, as a report keeps them). drawn: what was drawn for it, by name.
+    deciding gives: mission (text of the file), seed (of the mission's own variants, 0 for none),
+    daa, allow_unproved, judge, model, version, kind, own (user requirement files as stored in a
+    report). drawn: values drawn for it, by name.
     """
 
     id: str
@@ -39,23 +40,25 @@ class Run:
 
     @property
     def decides(self) -> dict[str, Any]:
-        """The inputs that determine a run, computed again each time: a mission's text takes longer to write than to draw."""
+        """The inputs that determine a run, computed again each time: writing a mission's text takes
+        longer than drawing it.
+        """
         return self.deciding()
 
     @property
     def name(self) -> str:
-        """A name for people and folders; unique in the campaign."""
+        """Display and folder name, unique in the campaign."""
         return f"{self.mission}-{self.option}" + (f"-seed{self.seed}" if self.seed else "")
 
 
 Ids = dict[tuple[str, str, int], str]
-"""Of runs that were named before, by mission, option and seed."""
+"""Ids of runs identified before, by mission, option and seed."""
 
 
 def runs_of(
     campaign: Campaign, version: str, allow_unproved: bool, ids: Ids | None = None
 ) -> Iterator[Run]:
-    """All runs, in the order of missions, seeds and options. ids: of what was named before, which grows."""
+    """All runs, in the order of missions, seeds and options. ids: known ids, to which new ones are added."""
     for seed in campaign.seeds or (0,):
         for source in campaign.missions or (None,):
             for option in campaign.options:
@@ -64,10 +67,10 @@ def runs_of(
 
 
 class Made:
-    """The mission file of one seed under one option, and what was drawn for it.
+    """The mission file of one seed under one option, and the values drawn for it.
 
-    given: values that would be drawn, by name, which are taken instead. bounds: between which each
-    number of `drawn` was drawn; choices: of what that was drawn which has no bounds, sides too.
+    given: values by name that are used instead of draws. bounds: range of each drawn number;
+    choices: alternatives of each other draw, including sides.
     """
 
     def __init__(
@@ -110,7 +113,7 @@ class Made:
         for item, value in option.changes:
             put(self.data, item, value)
         if source is None and isinstance(self.data.get("sensing"), dict):
-            # each mission that is made has errors of its own, the same under all options
+            # each generated mission has its own sensor errors, the same under all options
             self.data["sensing"].setdefault("seed", seed)
 
     def of(self, data: dict[str, Any]) -> Made:
@@ -120,7 +123,7 @@ class Made:
         return other
 
     def run(self, version: str, allow_unproved: bool, ids: Ids | None = None) -> Run:
-        """The run of the mission as it is now."""
+        """The run of the current mission."""
 
         def decides() -> dict[str, Any]:
             return {
@@ -149,7 +152,7 @@ def _text(data: dict[str, Any]) -> str:
 
 
 def _drawn(variable: Variable, seed: int) -> Any:
-    """The value for a seed; each item has draws of its own."""
+    """The value for a seed; each item has its own random stream."""
     random = Random(f"{seed} {variable.item}")
     if variable.bounds is None:
         return random.choice(variable.values)
@@ -157,7 +160,7 @@ def _drawn(variable: Variable, seed: int) -> Any:
 
 
 def put(data: Any, item: str, value: Any) -> None:
-    """Set a value of a mission by its path; a mapping on the way is made if it is not there."""
+    """Set a value of a mission by its path; missing mappings on the path are created."""
     *way, last = item_key(item) or ("",)
     at = data
     for k, part in enumerate((*way, last)):

@@ -1,9 +1,11 @@
-"""Towards small margins: which values of what is drawn make a requirement fail, and how small a mission does.
+"""Search for small margins: values of the drawn parameters for which a requirement fails, and a
+simplified mission.
 
-Cross entropy: a first batch of missions is drawn evenly from the whole space, then the best of all so far (those
-with the least margins) say around which values the next batch is drawn, with a spread that is theirs; what is no number (sides, values of a
-list) is chosen as often as they have it. A batch is complete before the next begins, and its draws follow
-from its number, so that workers and losses change nothing.
+Cross-entropy method: a first batch of missions is drawn uniformly from the whole space; then the
+best so far (those with the least margins) determine mean and spread for the next batch; non-numeric
+parameters (sides, values of a list) are drawn with their frequency among the best. A batch is
+complete before the next begins, and its draws depend only on its number, so that workers and losses
+have no influence.
 """
 
 from __future__ import annotations
@@ -24,33 +26,35 @@ from cratous.spec.mission.guarantees import Outcome
 
 BATCH, ELITE = 10, 3
 LEAST_SPREAD = 0.03
-"""Share of a range that the spread keeps at least, so that the search goes on."""
+"""Minimum spread as a fraction of a range, so that the search continues."""
 UNIFORM = 2
-"""In each batch so many are drawn from the whole space, so that no part of it is given up."""
+"""Missions per batch drawn from the whole space, so that no part of it is abandoned."""
 OTHERWISE = 0.1
-"""How often a choice is made anew."""
+"""Probability of drawing a choice uniformly again."""
 DIGITS = (-1, 0, 1, 2)
 PARTS = ("traffic", "zones", "changes")
 
 Fly = Callable[[Iterable[Run]], list[Row]]
-"""Flies runs and gives their rows in order."""
+"""Flies runs and returns their rows in order."""
 
 
 @dataclass
 class Found:
-    """What a search came to: every point with its margin, and the failing run if there is one."""
+    """The result of a search: every point with its margin, and the failing run if there is one."""
 
     requirement: str
     points: list[dict[str, Any]] = field(default_factory=list)
     failing: Row | None = None
     small: dict[str, Any] | None = None
-    """The mission of the failing run, made smaller: it fails as well."""
+    """The simplified mission of the failing run, which fails too."""
 
 
 class Search:
-    """One search: for a requirement, under the first option, over the first mission or the generator.
+    """One search: for a requirement, under the first option, over the first mission or the
+    generator.
 
-    Its missions are numbered from the campaign's first seed on, and another first seed is another search.
+    Its missions are numbered from the campaign's first seed on; another first seed gives another
+    search.
     """
 
     def __init__(
@@ -138,7 +142,7 @@ class Search:
         return point
 
     def _part(self, name: str, place: int) -> int:
-        """Which tenth of a range a point of the first batch is in: each has one (Latin hypercube)."""
+        """The stratum of a range for a point of the first batch: each is used once (Latin hypercube)."""
         parts = list(range(BATCH))
         Random(f"search {self._first} parts {name}").shuffle(parts)
         return parts[place]
@@ -146,7 +150,7 @@ class Search:
     def _small(
         self, fly: Fly, made: Made, point: dict[str, Any], number: int, budget: int
     ) -> dict[str, Any]:
-        """The failing mission with rounder values and less in it, as long as it fails."""
+        """The failing mission with rounder values and fewer parts, as long as it fails."""
         left = [budget]
 
         def still(one: Made) -> bool:
@@ -174,7 +178,7 @@ class Search:
 
 
 def _without(mission: dict[str, Any], part: str, k: int) -> dict[str, Any]:
-    """The mission without one thing."""
+    """The mission without one element."""
     data = copy.deepcopy(mission)
     del data[part][k]
     if not data[part]:
@@ -183,7 +187,7 @@ def _without(mission: dict[str, Any], part: str, k: int) -> dict[str, Any]:
 
 
 def margin(row: Row, requirement: str) -> float | None:
-    """How far a run is from failing; None where it was not flown or nothing was measured."""
+    """Margin of a run to failure; None if it was not flown or nothing was measured."""
     found = row.requirement(requirement)
     return None if found is None else found["margin"]
 

@@ -1,7 +1,7 @@
-"""Rates with exact binomial intervals, two options on the same seeds, and distributions.
+"""Rates with exact binomial intervals, paired comparison of two options, and distributions.
 
-Intervals are Clopper and Pearson's, rounded outwards to a millionth, so that they cover at least as
-often as they say. They speak of independent draws from the distribution that was sampled, of nothing else.
+Intervals are Clopper-Pearson, rounded outwards to a millionth, so that their coverage is at least
+as stated. They apply only to independent draws from the sampled distribution.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 LEVEL = 0.95
 GRID = 1_000_000
 SLACK = 1e-9
-"""Share of a tail that rounding errors of its sum may have; a tail is taken as that much heavier."""
+"""Relative bound on rounding errors of a tail sum; tails are enlarged by it."""
 QUANTILES = (0.0, 0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99, 1.0)
 
 
@@ -32,27 +32,27 @@ def tail(low: int, high: int, n: int, p: float) -> float:
 
 
 def interval(k: int, n: int, level: float = LEVEL) -> tuple[float, float]:
-    """Two-sided interval of the rate of which k in n draws were seen; (0, 1) without draws."""
+    """Two-sided confidence interval of the rate for k observed in n draws; (0, 1) without draws."""
     half = (1 - level) / 2
     return lower(k, n, half), upper(k, n, half)
 
 
 def lower(k: int, n: int, alpha: float) -> float:
-    """The greatest rate on the grid under which k or more of n are no likelier than alpha."""
+    """The greatest grid rate for which k or more of n have probability at most alpha."""
     if k == 0:
         return 0.0
     return _last(lambda p: tail(k, n, n, p) * (1 + SLACK) <= alpha) / GRID
 
 
 def upper(k: int, n: int, alpha: float) -> float:
-    """The least rate on the grid under which k or fewer of n are no likelier than alpha."""
+    """The least grid rate for which k or fewer of n have probability at most alpha."""
     if k == n:
         return 1.0
     return 1 - _last(lambda q: tail(n - k, n, n, q) * (1 + SLACK) <= alpha) / GRID
 
 
 def _last(fits: Callable[[float], bool]) -> int:
-    """The last point of the grid that fits, where all before it do."""
+    """The last grid point that fits, if all points before it fit."""
     low, high = 0, GRID
     while high - low > 1:
         middle = (low + high) // 2
@@ -61,9 +61,9 @@ def _last(fits: Callable[[float], bool]) -> int:
 
 
 def rate(k: int, n: int, random: bool) -> dict[str, Any]:
-    """k of n as plain data: the share, and (for random draws) what it says of the rate itself.
+    """k of n as plain data: the share and, for random draws, the interval of the rate.
 
-    at_most: one-sided, of none seen; it is what "0 of n" shows.
+    at_most: one-sided bound if none was observed.
     """
     found: dict[str, Any] = {"count": k, "of": n, "share": k / n if n else None}
     if random and n:
@@ -75,10 +75,10 @@ def rate(k: int, n: int, random: bool) -> dict[str, Any]:
 
 
 def paired(pairs: Sequence[tuple[bool, bool]], random: bool) -> dict[str, Any]:
-    """Two options on the same runs: (holds under the first, holds under the second) each.
+    """Two options on the same runs: pairs (holds under the first, holds under the second).
 
-    p_value: of the exact test that a run which holds under one alone is as likely to hold under
-    either (McNemar's, two-sided).
+    p_value: of the exact two-sided test (McNemar) that a run that holds under one option only is
+    equally likely to hold under either.
     """
     first = sum(a and not b for a, b in pairs)
     second = sum(b and not a for a, b in pairs)
@@ -95,14 +95,14 @@ def paired(pairs: Sequence[tuple[bool, bool]], random: bool) -> dict[str, Any]:
 
 
 def sign_test(first: int, second: int) -> float:
-    """Two-sided exact probability of a split at least as uneven, were both sides as likely."""
+    """Two-sided exact probability of a split at least as uneven, if both sides are equally likely."""
     n, less = first + second, min(first, second)
     weight = sum(comb(n, k) for k in range(less + 1))
     return min(1.0, float(Fraction(2 * weight, 2**n)))
 
 
 def distribution(values: Sequence[float]) -> dict[str, Any]:
-    """Quantiles of the values as they are: each is a value that was seen (nearest rank)."""
+    """Quantiles of the values; each is an observed value (nearest rank)."""
     if not values:
         return {"count": 0, "quantiles": []}
     ranked = sorted(values)

@@ -1,4 +1,4 @@
-"""Results in SQLite, one writer: what is stored survives `kill -9`, and is never written twice."""
+"""Results in SQLite with a single writer: stored results survive `kill -9`, and are never overwritten."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ CREATE TABLE IF NOT EXISTS lost(id TEXT NOT NULL, what TEXT NOT NULL);
 
 
 class Store:
-    """The results of runs by their id, and the attempts that were lost; a context manager."""
+    """The results of runs by id, and the lost attempts; a context manager."""
 
     def __init__(self, folder: Path) -> None:
-        """Open or make it; BadInput if another campaign writes there, or it is no store of ours."""
+        """Open or create it; BadInput if another campaign uses it, or it is not a store."""
         self.path = folder / NAME
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -72,7 +72,7 @@ class Store:
         self._db.close()
 
     def result(self, run: str) -> dict[str, Any] | None:
-        """What is stored of a run."""
+        """The stored result of a run; None if there is none."""
         with self._told():
             row = self._db.execute("SELECT result FROM runs WHERE id=?", (run,)).fetchone()
         if row is None:
@@ -83,25 +83,25 @@ class Store:
         return found
 
     def keep(self, run: str, result: dict[str, Any]) -> None:
-        """Store the result of a run; what is stored stays as it is."""
+        """Store the result of a run; an existing result is kept."""
         text = json.dumps(result, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
         with self._told():
             self._db.execute("INSERT OR IGNORE INTO runs VALUES(?, ?)", (run, text))
 
     def lose(self, run: str, what: str) -> None:
-        """Store that an attempt at a run was lost, and why."""
+        """Record a lost attempt at a run, with the reason."""
         with self._told():
             self._db.execute("INSERT INTO lost VALUES(?, ?)", (run, what))
 
     def lost(self, run: str) -> list[str]:
-        """Why attempts at a run were lost, in the order in which they were."""
+        """Why attempts at a run were lost, in order."""
         with self._told():
             rows = self._db.execute("SELECT what FROM lost WHERE id=? ORDER BY rowid", (run,))
             return [str(what) for (what,) in rows]
 
     @contextmanager
     def _told(self) -> Iterator[None]:
-        """Errors of SQLite in here are told as ours."""
+        """Convert SQLite errors inside the block to our errors."""
         try:
             yield
         except sqlite3.Error as error:

@@ -1,7 +1,8 @@
-"""`campaign.json`: everything that a campaign says, from its definition and the results alone.
+"""`campaign.json`: the complete result of a campaign, from its definition and the runs' results
+alone.
 
-The same definition and results give the same bytes, in whatever order, by however many workers and
-after whatever losses they came to be; so what was lost on the way stands in the store, not here.
+The same definition and results give the same bytes, whatever the order, number of workers and
+losses; so losses are recorded in the store, not here.
 """
 
 from __future__ import annotations
@@ -56,7 +57,7 @@ def build(campaign: Campaign, rows: list[Row], version: str) -> dict[str, Any]:
 
 
 def text_of(summary: dict[str, Any]) -> str:
-    """The text of campaign.json, with a run on each line."""
+    """The text of campaign.json, with one run per line."""
     said = json.JSONEncoder(sort_keys=True, ensure_ascii=False, allow_nan=False)
     runs = ",".join(f"\n  {said.encode(run)}" for run in summary["runs"])
     whole = {**summary, "runs": []}
@@ -77,7 +78,7 @@ def worst(rows: list[Row], requirements: tuple[str, ...]) -> list[Row]:
 
 
 def _grouped(rows: list[Row], key: Callable[[Row], Any]) -> list[tuple[Any, list[Row]]]:
-    """Rows by a key, in the order in which keys come first."""
+    """Rows grouped by a key, in order of first occurrence."""
     found: dict[Any, list[Row]] = {}
     for row in rows:
         found.setdefault(key(row), []).append(row)
@@ -85,12 +86,14 @@ def _grouped(rows: list[Row], key: Callable[[Row], Any]) -> list[tuple[Any, list
 
 
 def _disagreements(rows: list[Row]) -> int:
-    """In how many runs the judge does not say what the monitor says, on whatever requirement."""
+    """Number of runs in which judge and monitor disagree, on any requirement."""
     return sum(bool(((row.result or {}).get("judge") or {}).get("disagreements")) for row in rows)
 
 
 def _model(rows: list[Row]) -> dict[str, int]:
-    """How many logs fit the proved steps, do not, or asked nothing of them; and the events in those that fit."""
+    """Number of logs that fit the proved steps, that do not, and without ICAROUS; and the events in
+    those that fit.
+    """
     found = [r.result["model"] for r in rows if r.flown and r.result and r.result["model"]]
     fits = [one for one in found if one["fits"]]
     return {
@@ -102,7 +105,7 @@ def _model(rows: list[Row]) -> dict[str, int]:
 
 
 def _limits(campaign: Campaign, rows: list[Row]) -> Iterator[str]:
-    """What must be known to read the numbers."""
+    """Caveats needed to interpret the numbers."""
     if campaign.random:
         yield (
             f"Intervals are exact binomial ones ({LEVEL:.0%}, Clopper and Pearson), rounded outwards. "
@@ -160,7 +163,7 @@ def _requirement(flown: list[Row], name: str, random: bool) -> dict[str, Any]:
 
 
 def _comparisons(campaign: Campaign, rows: list[Row]) -> list[dict[str, Any]]:
-    """Each further option beside the first one, on the same missions and seeds."""
+    """Each further option compared with the first, on the same missions and seeds."""
     by = {(row.run.mission, row.run.seed, row.run.option): row for row in rows}
     first, *others = (option.name for option in campaign.options)
     found = []
@@ -196,7 +199,7 @@ def _compared(pairs: list[tuple[Row, Row]], name: str, random: bool) -> dict[str
 
 
 def _covered(rows: list[Row]) -> dict[str, Any]:
-    """Of each number that was drawn: from where to where, and in which part what does not hold is."""
+    """For each drawn number the range covered, and the part of it with failures."""
     values: dict[str, list[tuple[float, bool]]] = {}
     for row in rows:
         if row.flown:
@@ -217,7 +220,7 @@ def _covered(rows: list[Row]) -> dict[str, Any]:
 
 
 def _reasons(rows: list[Row]) -> list[dict[str, Any]]:
-    """Why missions were not flown to an end, the most frequent reasons first."""
+    """Why missions were not flown to an end, most frequent reasons first."""
     told = Counter((row.outcome, row.why) for row in rows if not row.flown)
     ranked = sorted(told.items(), key=lambda item: (-item[1], item[0]))
     return [

@@ -18,13 +18,13 @@ HEAD = ("run", "mission", "option", "seed", "outcome", "takeovers", "end_ms", "s
 
 MEASURES = ("verdict", "margin", "unit")
 WHOLE, REAL = ("seed", "takeovers", "end_ms"), ("separation_m",)
-"""Columns of numbers, besides margins and what was drawn; all others are texts."""
+"""Numeric columns, besides margins and drawn values; all others are text."""
 EXACT = 2**53
-"""Up to here every whole number is a double."""
+"""Up to this value every integer is exact as a double."""
 
 
 def csv_text(summary: dict[str, Any]) -> str:
-    """A line for each run; a text that a spreadsheet would take for a formula begins with `'`."""
+    """A line for each run; text that a spreadsheet would read as a formula is prefixed with `'`."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     for row in (_names(summary), *_rows(summary)):
@@ -33,9 +33,10 @@ def csv_text(summary: dict[str, Any]) -> str:
 
 
 def parquet_bytes(summary: dict[str, Any]) -> bytes:
-    """The same columns as Parquet: whole numbers of 64 bits, doubles, texts as they are, null where there is nothing.
+    """The same columns as Parquet: 64-bit integers, doubles, text, null for missing values.
 
-    A column of what was drawn is of doubles if doubles hold all of it exactly, else of texts. NotInstalled without pyarrow.
+    A column of drawn values has doubles if they represent all values exactly, otherwise text.
+    NotInstalled without pyarrow.
     """
     with told():
         import pyarrow as pa
@@ -59,7 +60,7 @@ def parquet_bytes(summary: dict[str, Any]) -> bytes:
 
 
 def _is_double(value: Any) -> bool:
-    """Whether it is a number, and as a double still the same."""
+    """Whether it is a number that a double represents exactly."""
     return type(value) is float or (type(value) is int and abs(value) <= EXACT)
 
 
@@ -86,7 +87,7 @@ def _rows(summary: dict[str, Any]) -> Iterator[list[Any]]:
 
 
 def junit_text(summary: dict[str, Any]) -> str:
-    """A test for each run: what is not shown to hold is a failure, what was not flown an error or skipped."""
+    """A test for each run: not shown to hold is a failure, not flown an error or skipped."""
     root = ElementTree.Element("testsuites", name=summary["name"])
     suites: dict[tuple[str, str], ElementTree.Element] = {}
     for run in summary["runs"]:
@@ -110,7 +111,7 @@ def junit_text(summary: dict[str, Any]) -> str:
 
 
 def _kind(outcome: str) -> str:
-    """What JUnit calls an outcome; nothing for a run that holds."""
+    """The JUnit element of an outcome; empty for a run that holds."""
     if outcome == Outcome.HOLDS:
         return ""
     if outcome == IMPOSSIBLE:

@@ -1,4 +1,4 @@
-"""What a worker process does with a task: hand it to its flier, unless that is another version."""
+"""Worker process: passes a task to its flier, unless the task is of another version."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ _own = threading.local()
 def attempt(task: dict[str, Any]) -> dict[str, Any]:
     """One attempt at a run: `{"result"}`, `{"lost"}`, or `{"other version"}`.
 
-    task: function and memory_mb of the flier, time_s, version that asks, and what is flown (`run`).
+    task: function and memory_mb of the flier, time_s, the caller's version, and the run to fly
+    (`run`).
     """
     flier = _flier(task["function"], task["memory_mb"])
     lost = flier.begin()
@@ -26,7 +27,7 @@ def attempt(task: dict[str, Any]) -> dict[str, Any]:
 
 
 def _flier(function: str, memory_mb: int) -> Flier:
-    """The flier of this thread, so that a worker with several threads has several."""
+    """The flier of this thread: a worker with several threads has several."""
     made = getattr(_own, "made", None)
     if made is None or made[:2] != (function, memory_mb):
         if made is not None:

@@ -1,1 +1,1 @@
-"""The certificate of a flight: `report.json` from the evidence, `report.html` from report.json."""
+"""The certificate of a flight: builds `report.json` from the evidence and `report.html` from report.json."""

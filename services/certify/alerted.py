@@ -1,7 +1,8 @@
-"""Alerts of a flight, read from WellClearViolationIntervals: who was told of whom, from when to when, how severe.
+"""Alerts of a flight, read from WellClearViolationIntervals: ownship, intruder, time span,
+severity.
 
-An alert lasts from the first message of a vehicle that has the intruder at a level to the last such message without
-one in between that has not.
+An alert lasts from the first message of a vehicle that lists the intruder at an alert level to the
+last such message before one that does not.
 """
 
 from __future__ import annotations
@@ -13,11 +14,11 @@ from cratous.spec.errors import BadInput
 
 TOPIC = "larcfm.DAIDALUS.WellClearViolationIntervals"
 LEVELS = {1: "corrective", 2: "warning"}
-"""The levels of flights of `cratous run`, by number."""
+"""Names of the alert levels of `cratous run`, by number."""
 
 
 def level_name(level: int) -> str:
-    """A level in words, or its number."""
+    """Name of an alert level, or its number if it has none."""
     return LEVELS.get(level, str(level))
 
 
@@ -33,14 +34,14 @@ def none_said(report: dict[str, Any]) -> str:
 
 
 class AlertReader:
-    """Follows the messages of a log; `found` is what has been alerted so far, in the order of beginning."""
+    """Reads alerts from the messages of a log; `found` lists the alerts so far, by start time."""
 
     def __init__(self) -> None:
         self.found: list[dict[str, Any]] = []
         self._open: dict[tuple[int, int], dict[str, Any]] = {}
 
     def add(self, body: dict[str, Any], time_ms: int) -> None:
-        """Take the next message. Raises BadInput for one whose lists are not those of its intruders."""
+        """Process the next message. Raises BadInput if its lists do not match its intruders."""
         vehicle = int(body["EntityId"])
         now = _levels(body, time_ms)
         for key in [key for key in self._open if key[0] == vehicle and key[1] not in now]:
@@ -58,7 +59,7 @@ class AlertReader:
 
 
 def _levels(body: dict[str, Any], time_ms: int) -> dict[int, tuple[int, float]]:
-    """By intruder at a level: the level, and the time to a violation [s]."""
+    """By intruder with an alert: the level, and the time to violation [s]."""
     lists = ("EntityList", "AlertLevelList", "TimeToViolationList")
     told = [body[name] for name in lists]
     try:
@@ -69,7 +70,7 @@ def _levels(body: dict[str, Any], time_ms: int) -> dict[int, tuple[int, float]]:
         }
         if all(isfinite(first) for _, first in found.values()):
             return found
-    except ValueError:  # lists of several lengths, or a level that is no number
+    except ValueError:  # lists of different lengths, or a level that is not a number
         pass
     raise BadInput(
         "the alerts of a message cannot be told",

@@ -1,6 +1,8 @@
-"""Blame: of what does not hold, who was in command then, and which watched assumption had broken first.
+"""Blame: for each constraint not shown to hold, who was in command, and which monitored assumption
+broke first.
 
-Which change of command and which break count at an instant, the kernels of `core.authority.blame` decide.
+The kernels of `core.authority.blame` decide which change of command and which broken assumption
+apply at an instant.
 """
 
 from __future__ import annotations
@@ -15,7 +17,7 @@ from cratous.services.certify.verdicts import broken_of
 from cratous.spec.mission.guarantees import Outcome
 
 Commands = Mapping[int, Sequence[tuple[int, str]]]
-"""By vehicle that has a gate: since when [ms] who commands it, from 0 on (`Monitor.commands`)."""
+"""For each vehicle with a gate: (time [ms], commander) from time 0 on (`Monitor.commands`)."""
 Data = dict[str, Any]
 
 
@@ -24,8 +26,8 @@ def blame_rows(
 ) -> list[Data]:
     """One row for each constraint on the flight that is not shown to hold, as plain data.
 
-    rows: of `verdicts.constraint_rows`; assumptions: of `Monitor.assumptions`; end_ms: when the messages end,
-    which is the instant asked about where a constraint names none.
+    rows: of `verdicts.constraint_rows`; assumptions: of `Monitor.assumptions`; end_ms: end of the
+    messages [ms], used as the instant where a constraint names none.
     """
     bad = [r for r in rows if r["source"] == "flight" and r["verdict"] != Outcome.HOLDS]
     return [_row(one, commands, assumptions, end_ms) for one in bad]
@@ -61,7 +63,7 @@ def command_at(number: int, commands: Commands, at_ms: int) -> Data:
 
 
 def _ways_out(row: Data, commands: Commands) -> Iterator[Data]:
-    """Of a loss that could have been avoided: from when, how, and who had the vehicle at that instant."""
+    """For avoidable losses: the instant and manoeuvre of a way out, and who was in command then."""
     for loss in (row.get("evidence") or {}).get("losses", ()):
         if (way := loss.get("way_out")) and loss["own"] in commands:
             there = command_at(loss["own"], commands, way["time_ms"])
@@ -69,7 +71,9 @@ def _ways_out(row: Data, commands: Commands) -> Iterator[Data]:
 
 
 def first_broken(assumptions: list[Data], at_ms: int) -> Data | None:
-    """The assumption that had broken first by then, and the requirements that theorems which rest on it are on."""
+    """The assumption that broke first up to at_ms, with the requirements whose theorems rest on it;
+    None if none did.
+    """
     broken = broken_of(assumptions)
     place = broke_first(((one["since_ms"], k) for k, one in enumerate(broken)), at_ms).place
     if place < 0:
@@ -78,7 +82,9 @@ def first_broken(assumptions: list[Data], at_ms: int) -> Data | None:
 
 
 def told_of(commands: Commands, assumptions: list[Data], why: str = "") -> Told:
-    """What the kernels say of a flight, for requirements of one's own; why: nothing is told of it, and why."""
+    """Command and assumption look-ups of a flight, decided by kernels, for user requirements; why:
+    reason if nothing is known.
+    """
     unseen = tuple(one["name"] for one in assumptions if one["state"] == State.NOT_OBSERVED)
     return Told(
         tuple(commands),
@@ -90,7 +96,7 @@ def told_of(commands: Commands, assumptions: list[Data], why: str = "") -> Told:
 
 
 def _bearing(requirement: str, first: Data | None) -> Data | None:
-    """The same, and whether a theorem on the requirement rests on it."""
+    """The assumption's row, and whether a theorem on the requirement rests on it."""
     if first is None:
         return None
     told = {key: value for key, value in first.items() if key != "guarantees"}

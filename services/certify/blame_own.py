@@ -1,7 +1,9 @@
-"""Blame of requirements of users over a log: what of the formula, who was in command, what had broken by then.
+"""Blame for violated user requirements over a log: part of the formula, commander, and broken
+assumption.
 
-The instants are those of the sample that is violated and of the one at which that became known. Who commanded and what
-broke first by then, the kernels of `core.authority.blame` decide; both are in the log of a mission alone.
+The instants are those of the violated sample and of the sample at which the violation became known.
+The kernels of `core.authority.blame` decide who commanded and what broke first by then; both are
+known only from the log of a mission.
 """
 
 from __future__ import annotations
@@ -24,9 +26,9 @@ Data = dict[str, Any]
 
 
 def own_blame(outcomes: Iterable[Outcome], spec: Specification, trace: Path | None) -> list[Data]:
-    """One row for each requirement that is violated, as plain data. trace: None for a running system.
+    """One row for each violated requirement, as plain data. trace: None for a running system.
 
-    why_unknown: where the trace is no whole log of a mission, why nobody's command and no assumption is told.
+    why_unknown: why commander and assumptions are unknown if the trace is no complete mission log.
     """
     bad = [one for one in outcomes if one.violated]
     if not bad:
@@ -35,17 +37,17 @@ def own_blame(outcomes: Iterable[Outcome], spec: Specification, trace: Path | No
 
 
 def _told(trace: Path | None) -> tuple[Commands, list[Data], str]:
-    """Who commanded and which assumptions broke, by all messages of a mission; else nothing of both, and why."""
+    """Commanders and assumptions from all messages of a mission; otherwise both empty, with the reason."""
     if trace is None:
         return {}, [], "a running system is watched"
     log = trace / LOG_NAME if trace.is_dir() else trace
     try:
         meta = read_meta(log)
-    except BadInput:  # of another format
+    except BadInput:  # a file of another format
         meta = {}
     if not {"mission", "plan"} <= set(meta):
         return {}, [], "the trace is no log of a mission"
-    # of who is in command the messages that are missing may have told
+    # the missing messages might have changed who is in command
     if "selected" in meta or "lost" in doubts(log):
         return {}, [], "the log does not have all messages of the mission"
     try:
@@ -62,5 +64,5 @@ def own_rows(
     assumptions: list[Data],
     why: str = "",
 ) -> list[Data]:
-    """The rows; commands, assumptions: of `Monitor`, none where `why` says that they are not told."""
+    """The rows; commands, assumptions: of `Monitor`, empty where `why` states why they are unknown."""
     return blame_rows_of(violated, spec, told_of(commands, assumptions, why))

@@ -1,4 +1,4 @@
-"""Blame in words: who was in command where something does not hold, and what had broken by then."""
+"""Blame in words: who was in command where something does not hold, and which assumption had broken."""
 
 from __future__ import annotations
 
@@ -9,13 +9,14 @@ from cratous.spec.mission.guarantees import Outcome
 
 Data = dict[str, Any]
 SHOWN = 10
-"""So many rows are said at the end of a command; the report has all."""
+"""Number of rows printed at the end of a command; the report has all."""
 
 
 def sentence(one: Data, over: bool = True) -> str:
     """Commander and broken assumptions at a violation, as an English sentence.
 
-    over: the messages have ended; only then is it known which assumptions held or were not observed.
+    over: the messages are complete; only then is it known which assumptions held or were not
+    observed.
     """
     said = [
         f"{c['side']} had vehicle {c['vehicle']} since {_s(c['since_ms'])}" for c in one["command"]
@@ -36,7 +37,7 @@ def sentence(one: Data, over: bool = True) -> str:
 
 
 def lines(rows: Sequence[Data]) -> Iterator[str]:
-    """The first rows for people, one line each; violations before what is unknown or excused."""
+    """The first rows as text, one line each; violations before unknown and excused ones."""
     order = sorted(rows, key=lambda one: one["verdict"] != Outcome.VIOLATED)
     for one in order[:SHOWN]:
         at = "" if one["time_ms"] is None else f" at {_s(one['time_ms'])}"

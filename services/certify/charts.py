@@ -1,6 +1,6 @@
-"""Curves over time of a report, as shapes in drawing units: altitudes, and distances of pairs.
+"""Plots of a report over time, as shapes in drawing units: altitudes, and distances of pairs.
 
-Everything comes from report.json, whose tracks have a row a second; nothing is decided here.
+Everything comes from report.json, whose tracks have one row per second; nothing is decided here.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from cratous.services.certify.picture import nice_step
 
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 480.0, 176.0, 62.0, 12.0, 12.0, 26.0
 TICK = 34.0
-"""The text of a tick reaches so far to the right of its middle at most, in letters for a narrow screen too."""
+"""Maximum extent of a tick label to the right of its middle, at the font size of a narrow screen."""
 FEW = 6
-"""So many pairs are drawn, the nearest ones; a table with all would hide them."""
+"""Number of pairs that are drawn, the closest ones; a table of all would hide them."""
 
 
 class Near(NamedTuple):
-    """Two aircraft where they are nearest horizontally, and their distance over time."""
+    """Two aircraft: the closest horizontal approach, and their distance over time."""
 
     least_m: float
     one: int
@@ -31,7 +31,7 @@ class Near(NamedTuple):
 
 
 def altitude_view(report: dict[str, Any]) -> dict[str, Any] | None:
-    """The altitude of each of our vehicles over time [m above mean sea level]; None without tracks."""
+    """Altitude of each mission vehicle over time [m above mean sea level]; None without tracks."""
     vehicles = report["mission"]["vehicles"]
     tracks = report["flight"]["tracks"]
     curves = [
@@ -43,7 +43,7 @@ def altitude_view(report: dict[str, Any]) -> dict[str, Any] | None:
         return None
     levels = [level for _, _, curve in curves for _, level in curve]
     step = nice_step(max(max(levels) - min(levels), 40.0) / 3)
-    # room below and above, so that no line lies on the frame
+    # margin below and above, so that no line coincides with the frame
     low, high = (ceil(min(levels) / step) - 1) * step, (floor(max(levels) / step) + 1) * step
     xy = _scale(report, low, high)
     return {
@@ -62,15 +62,15 @@ def altitude_view(report: dict[str, Any]) -> dict[str, Any] | None:
 
 
 def separation_view(report: dict[str, Any]) -> dict[str, Any] | None:
-    """Horizontal distances over time, the nearest pairs first; None without a pair.
+    """Horizontal distances over time, closest pairs first; None without a pair.
 
-    A pair is two of our vehicles, or one of them and an aircraft of the traffic.
+    A pair is two mission vehicles, or one of them and a traffic aircraft.
     """
     pairs = sorted(_pairs(report))
     if not pairs:
         return None
     dthr_m = report["mission"]["daa"]["well_clear"]["dthr_m"]
-    # the low end is what matters, so far distances are cut
+    # small distances matter, so large ones are cut off
     top_m = max(1500.0, 6 * dthr_m, ceil(pairs[0].least_m / 500 + 1) * 500)
     step = nice_step(top_m / 3)
     top_m = ceil(top_m / step) * step
@@ -130,7 +130,7 @@ def _points(curve: Iterable[tuple[float, float]], xy: Scale) -> str:
 
 
 def _axes(report: dict[str, Any], low: float, high: float, step: float) -> dict[str, Any]:
-    """The frame of a chart: its size, and the ticks of both axes."""
+    """The frame of a plot: its size, and the ticks of both axes."""
     xy = _scale(report, low, high)
     end_s = max(report["flight"]["end_ms"] / 1000, 1.0)
     every = nice_step(end_s / 4)

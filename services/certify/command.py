@@ -1,4 +1,4 @@
-"""How a flight was flown, as its command says."""
+"""How a flight was flown, read from its command line."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ IN_PROCESSES = ("--processes", "--simulator")
 
 
 def flown_in_processes(command: str) -> bool:
-    """Whether a command flies in processes: in real time, with the gates in UxAS. On an AMASE it does, too."""
+    """Whether a command flies in several processes: in real time, with the gates in UxAS; also on an AMASE."""
     return any(word.partition("=")[0] in IN_PROCESSES for word in _words(command))
 
 
 def with_original_clients(command: str) -> bool:
-    """True if ICAROUS was flown behind the original's clients, whose protocol has no heartbeats."""
+    """True if ICAROUS was flown behind its original clients, whose protocol has no heartbeats."""
     return flown_in_processes(command) and "--original-clients" in _words(command)
 
 
 def _words(command: str) -> list[str]:
-    """The words of a command as a shell has them: a name with spaces in quotes is one."""
+    """The words of a command line as a shell splits them, quotes respected."""
     try:
         return shlex.split(command)
-    except ValueError:  # no shell has written it: a quote stands open
+    except ValueError:  # unbalanced quote: not written by a shell
         return command.split()

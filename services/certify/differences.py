@@ -1,4 +1,4 @@
-"""Where two reports, or two pages, say different things: each place, and what stands around it."""
+"""Lists the places where two reports, or two pages, differ, with the text around each."""
 
 from __future__ import annotations
 
@@ -14,7 +14,14 @@ NOTHING = object()
 
 
 def differences(written: Any, found: Any, path: str = "") -> list[str]:
-    """Every place where two values of JSON differ, by its path; 1, 1.0 and true are not the same."""
+    """Every place where two JSON values differ, by its path; 1, 1.0 and true are different."""
+    whole = (dict, list)
+    if (
+        isinstance(written, whole)
+        and isinstance(found, whole)
+        and canonical(written) == canonical(found)
+    ):
+        return []
     if isinstance(written, dict) and isinstance(found, dict):
         return [
             line
@@ -41,7 +48,7 @@ def differences(written: Any, found: Any, path: str = "") -> list[str]:
 
 
 def text_difference(name: str, written: bytes, expected: str) -> str:
-    """The first place where a file is not the text that it should be."""
+    """The first place where a file differs from the expected text."""
     text = written.decode("utf-8", errors="replace")
     at = _first(text, expected)
     line = expected.count("\n", 0, at) + 1
@@ -56,7 +63,7 @@ def _below(path: str, key: str) -> str:
 
 
 def _first(one: str, other: str) -> int:
-    """The number of characters that two texts have in common at their beginning."""
+    """Length of the common prefix of two texts."""
     low, high = 0, min(len(one), len(other))
     while low < high:
         middle = (low + high + 1) // 2
@@ -80,7 +87,7 @@ def _cut(text: str, start: int, end: int) -> str:
 
 
 def _text(text: str) -> str:
-    # nothing of it acts on a terminal
+    # no control character reaches the terminal
     return json.dumps(text, ensure_ascii=True).replace("\x7f", "\\u007f")
 
 

@@ -1,18 +1,25 @@
-"""Which kernels, folds and drivers are entered while something runs, and how often.
+"""Counts which kernels, folds and drivers are entered while something runs, and how often.
 
-For that time every registered function, and what enters any other reading of one (`Reading`, a fold's
-call, the exact reading of one state), has an entry that counts and hands on to the code that was there
-before: that runs unchanged, and calls between kernels are counted as any others. The function objects
-stay, so no call is missed however the function is held; threads count, other processes do not.
+During that time every registered function, and every entry into another reading of one (`Reading`,
+a fold's call, the exact reading of one state), has an entry that counts and forwards to the
+original code, which runs unchanged; calls between kernels are counted too. The function objects are
+kept, so no call is missed however a reference is held; threads count, other processes do not.
 
-The ledger's gate compares code with files, so it is asked before: inside, it vouches for nothing.
+A loop over arrays (`core.readings.tiered`) runs in CPython or as machine code, whichever is
+available. Its entry is counted, but the functions it calls are not: they are listed as parts of it,
+so that counts do not depend on the cache.
+
+The ledger's gate compares code with files, so it is queried beforehand: while counting, it vouches
+for nothing.
 """
 
 from __future__ import annotations
 
 import contextlib
+import inspect
 import itertools
 import threading
+from collections import Counter
 from collections.abc import Callable, Iterator
 from functools import cache
 from types import CodeType, FunctionType
@@ -20,18 +27,21 @@ from typing import Any
 
 from cratous.core import ledger
 from cratous.core.kernel import REGISTRY, Fold, entry_of, qualified
-from cratous.core.kernel.sources import reached
+from cratous.core.kernel.sources import names_of, ours, reached
 from cratous.core.readings import exact, tiered
 from cratous.core.readings.machine.compiled import EXACT, Reading
 from cratous.spec.errors import BadInput
 
-PYTHON = "CPython"
-"""How a function is entered that CPython runs as written; the other ways are `Reading.how`."""
+PYTHON, LOOP = "CPython", "CPython or machine code"
+"""Ways of entry: a function run by CPython as written, and a loop that may be compiled; the other
+ways are `Reading.how`.
+"""
 _counting = threading.Lock()
+_looping = threading.RLock()
 
 
 class Calls:
-    """What was entered: per qualified name how often, by way of entry."""
+    """Entry counts by qualified name and way of entry."""
 
     def __init__(self) -> None:
         self._functions: dict[str, Any] = {}
@@ -39,22 +49,54 @@ class Calls:
         self._done: dict[tuple[str, str], int] = {}
         self._known = frozenset(REGISTRY)
         self._late: list[str] = []
+        self._parts: dict[str, list[str]] = {}
+        self._taken: Counter[str] = Counter()
 
     def entry(self, name: str) -> Callable[[], int]:
-        """What counts one call of a registered function as it is written."""
+        """The counter for calls of a registered function as it is written."""
         return self._count(name, PYTHON)
 
     def folded(self, fold: Fold[Any]) -> None:
-        """A fold was called."""
+        """Count a call of a fold."""
         self._add(fold, PYTHON)
 
     def read(self, reading: Reading) -> None:
-        """Machine code, or another reading, was called."""
+        """Count a call of machine code or of another reading."""
         self._add(reading.function, reading.how)
 
     def exact(self, function: Any) -> None:
-        """A kernel or fold was read exactly for one state."""
+        """Count an exact reading of a kernel or fold for one state."""
         self._add(function, EXACT)
+
+    def looped(self, function: Callable[..., Any], run: Callable[..., Any]) -> Callable[..., Any]:
+        """A loop that counts one entry, whichever way it runs."""
+        ran = run.run if isinstance(run, Reading) else run
+
+        def loop(*given: Any) -> Any:
+            self._add(function, LOOP)
+            if ran is not function:
+                return ran(*given)
+            with self._apart(function):
+                return ran(*given)
+
+        return loop
+
+    @contextlib.contextmanager
+    def _apart(self, function: Callable[..., Any]) -> Iterator[None]:
+        """While active, entries into a loop and into its parts are not counted; one loop at a time."""
+        name = qualified(function)
+        if name not in self._parts:
+            self._parts[name] = sorted(_enters(function) & self._known)
+        keys = [(part, PYTHON) for part in self._parts[name]]
+        counts = [(key[0], self._counts[key]) for key in keys if key in self._counts]
+        with _looping:
+            before = [next(count) for _, count in counts]
+            try:
+                yield
+            finally:
+                # reading the counts above is not an entry either
+                for (part, count), then in zip(counts, before, strict=True):
+                    self._taken[part] += next(count) - then + 1
 
     def _add(self, function: Any, how: str) -> None:
         name = qualified(function)
@@ -62,23 +104,25 @@ class Calls:
         self._count(name, how)()
 
     def _count(self, name: str, how: str) -> Callable[[], int]:
-        # a count's next is one step of the interpreter: threads lose none
+        # `next` of a count is atomic in the interpreter, so threads lose no count
         made = self._counts.setdefault((name, how), itertools.count())
         return made.__next__
 
     def close(self) -> None:
-        """No more is counted."""
+        """End counting."""
         found = {key: next(count) for key, count in list(self._counts.items())}
+        for name, taken in self._taken.items():
+            found[name, PYTHON] -= taken
         self._done = {key: number for key, number in found.items() if number}
         self._late = sorted(REGISTRY.keys() - self._known)
 
     def data(self) -> dict[str, Any]:
-        """The counts as plain data, once counting is over.
+        """The counts as plain data, after counting has ended.
 
         called: registered functions, with the number of entries by way; loops: the same for other
-        functions that stand in machine code with kernels in them; within: for a registered function
-        the names of what it is a part of and was entered in another way than by CPython; uncounted:
-        what was registered while counting, of which CPython's entries are not known.
+        functions compiled with kernels in them; within: for a registered function, the names of
+        what it is a part of that was entered in another way than by CPython; uncounted: functions
+        registered while counting, whose entries by CPython are not known.
         """
         called: dict[str, dict[str, int]] = {}
         within: dict[str, set[str]] = {}
@@ -101,7 +145,7 @@ class Calls:
 
 
 def _parts(function: Any) -> set[str]:
-    """The registered functions that one rests on."""
+    """The registered functions that a function depends on."""
     found = reached(function)
     names = {entry.name for entry in map(entry_of, found.values()) if entry is not None}
     return names | {
@@ -109,25 +153,38 @@ def _parts(function: Any) -> set[str]:
     }
 
 
+def _enters(function: Callable[..., Any]) -> set[str]:
+    """The functions that a function calls directly or indirectly, itself included, while entries are counted."""
+    found, todo = {qualified(function)}, [function]
+    while todo:
+        plain = inspect.unwrap(todo.pop())
+        for used in names_of(plain.__code__):
+            callee = plain.__globals__.get(used)
+            if inspect.isfunction(callee) and ours(callee) and qualified(callee) not in found:
+                found.add(qualified(callee))
+                todo.append(callee)
+    return found
+
+
 @contextlib.contextmanager
 def counted() -> Iterator[Calls]:
-    """Count all entries inside; ask for the result (`Calls.data`) after it.
+    """Count all entries in the `with` block; read the result (`Calls.data`) after it.
 
-    How much has been done with a loop is forgotten at the beginning, and what was found by work before: what is
-    compiled, and what is asked, follows from this work alone. Raises BadInput where entries are being counted already.
+    Caches filled by earlier work are cleared first, so that the counts follow from this work alone.
+    Raises BadInput if entries are being counted already.
     """
     if not _counting.acquire(blocking=False):
         raise BadInput(
             "entries are being counted already", expected="one count at a time", got="two"
         )
     try:
-        ledger.load_all()  # what is registered later has no entry that counts
+        ledger.load_all()  # functions registered later have no counting entry
         from cratous.core.assignment import layers
 
         layers.forget()
         calls = Calls()
         with contextlib.ExitStack() as stack:
-            stack.enter_context(tiered.by_work_alone())
+            stack.enter_context(tiered.entered_by(calls.looped))
             stack.callback(calls.close)
             for name, entry in REGISTRY.items():
                 if not isinstance(entry.function, Fold):
@@ -145,9 +202,9 @@ def counted() -> Iterator[Calls]:
 
 @contextlib.contextmanager
 def _entered(function: Any, count: Callable[..., Any], *, subject: bool) -> Iterator[None]:
-    """Inside, a function's entry counts and hands on to the code that it has now.
+    """While active, calls of a function count and forward to the code that it has now.
 
-    subject: whether `count` is told the first argument.
+    subject: whether `count` gets the first argument.
     """
     code, before = function.__code__, vars(function).get("__wrapped__")
     original = FunctionType(
@@ -172,7 +229,7 @@ Names = tuple[str, ...]
 
 
 def _parameters(code: CodeType) -> tuple[Names, Names, Names, str, str]:
-    """Names of the parameters: by position alone, by either, by name alone, `*`, `**`."""
+    """Names of the parameters: positional-only, positional-or-keyword, keyword-only, `*`, `**`."""
     if code.co_freevars:
         raise BadInput(
             "a function within another one cannot be counted", item=code.co_qualname,
@@ -191,7 +248,7 @@ def _parameters(code: CodeType) -> tuple[Names, Names, Names, str, str]:
 def _template(
     only: Names, either: Names, named: Names, star: str, stars: str, subject: bool
 ) -> CodeType:
-    """The code of an entry with these parameters; two texts stand for what it calls."""
+    """The code of an entry with these parameters, with two placeholder constants for what it calls."""
     head = [*only, *["/"][: len(only)], *either]
     head += [f"*{star}"] if star else ["*"] if named else []
     head += [*named, *[f"**{stars}"][: bool(stars)]]
@@ -215,14 +272,14 @@ COUNT, ORIGINAL = "what counts", "what is counted"
 
 
 def _filled(code: CodeType, count: Any, original: Any) -> CodeType:
-    """A template's code with what it calls in the places of the texts."""
+    """A template's code with the placeholders replaced by what it calls."""
     values = {COUNT: count, ORIGINAL: original}
     consts = tuple(values.get(c, c) if isinstance(c, str) else c for c in code.co_consts)
     return code.replace(co_consts=consts)
 
 
 def is_data(value: Any) -> bool:
-    """True iff a value is what `Calls.data` gives."""
+    """True iff a value has the form of `Calls.data`."""
     parts = {"called": dict, "loops": dict, "within": dict, "uncounted": list}
     if not isinstance(value, dict) or set(value) != set(parts):
         return False

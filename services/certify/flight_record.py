@@ -1,4 +1,4 @@
-"""How a mission was flown, from what its log recorded; what the log does not say is not checked."""
+"""How a mission was flown, as its log records it; what the log does not contain is not checked."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ SILENT = "the log does not say (it was made before this was recorded)"
 def flown_of(
     meta: dict[str, Any], written: dict[str, Any], where: str
 ) -> tuple[Flown, dict[str, str], list[str], list[str]]:
-    """How it was flown; which entries of the report are not checked, and why; what is wrong with its proofs, and
-    with its files of requirements.
+    """Returns how it was flown; the report entries that are not checked, with the reason; faults of
+    its proofs; and faults of its requirement files.
 
-    meta: of the log; written: the report, whose word is taken only for what is not checked.
+    meta: of the log; written: the report, trusted only for entries that are not checked.
     """
     unchecked: dict[str, str] = {}
 
@@ -75,7 +75,7 @@ def _is_environment(data: Any) -> bool:
 
 
 def _is_code(data: Any) -> bool:
-    """What `running_code` gives, or nothing, as in what was made before it was recorded."""
+    """Whether the data has the form of `running_code`, or is absent, as in logs from before it was recorded."""
     if data is None:
         return True
     return (
@@ -88,7 +88,7 @@ def _is_code(data: Any) -> bool:
 def _proofs(
     kept: Any, calls: dict[str, Any] | None, written: Any, where: str, unchecked: dict[str, str]
 ) -> tuple[dict[str, Any], list[str]]:
-    """The inventory of proofs of the flight, as far as the log or today's ledger tells it."""
+    """The flight's proof inventory, as far as the log or the current ledger determines it."""
     if not isinstance(kept, dict) or not isinstance(kept.get("problems", []), list):
         raise _misfit(where, "proofs")
     if not all(
@@ -122,7 +122,7 @@ def _proofs(
 
 
 def _has_form(value: Any, like: Any) -> bool:
-    """Whether it has the keys and types of another value; of a list each entry those of the first."""
+    """Whether a value has the keys and types of another; in a list each entry those of the first."""
     if isinstance(like, dict):
         return (
             isinstance(value, dict)

@@ -1,4 +1,4 @@
-"""The report on a flight of which the log alone is left, whole or not: of one that is not, nothing in flight holds."""
+"""Builds the report of a flight from its log alone; if the log is incomplete, nothing in flight holds."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from cratous.core.files.whole_file import write_atomically
 from cratous.services.assumptions.listing import State
 from cratous.services.certify.flight_record import flown_of
 from cratous.services.certify.own_again import named, shown, together
-from cratous.services.certify.rejudge import not_as_flown, subject, watch
+from cratous.services.certify.rejudge import not_as_flown, subject, watched_and_told
 from cratous.services.certify.report import Judged, build_report, report_text, write_report
 from cratous.services.certify.verdicts import constraint_rows, plan_rows
 from cratous.services.logs.log import read_meta
-from cratous.services.logs.source import DOUBTS, doubts
+from cratous.services.logs.source import DOUBTS, NO_END, doubts
 from cratous.services.mission.wind import known_at
 from cratous.services.requirements.own_files import OwnFile
 from cratous.services.results.names import LOG_NAME, OWN, REPORT_NAME
@@ -25,18 +25,18 @@ from cratous.spec.mission.guarantees import Outcome
 
 
 class FromLog(NamedTuple):
-    """The report, and what of it the log does not tell, with the reason."""
+    """The report, and the entries that the log does not determine, with the reason."""
 
     report: dict[str, Any]
     unchecked: list[str]
 
 
 def report_of(log: Path, own: Sequence[OwnFile] = ()) -> FromLog:
-    """The report as the log gives it. BadInput where the log is none of a flight, or not what its writer left."""
+    """The report derived from the log. BadInput if it is not a flight log or was altered after writing."""
     from cratous.services.monitor.plan_check import check_plan
 
-    # that a flight was cut off its rows say themselves
-    doubted = [DOUBTS[one] for one in doubts(log) if one != "cut off"]
+    # the rows themselves say if the flight was not observed to its end
+    doubted = [DOUBTS[one] for one in doubts(log) if one not in NO_END]
     wrong = not_as_flown(log)
     if wrong:
         raise BadInput(wrong[0].partition(": ")[2], where=str(log))
@@ -55,11 +55,12 @@ def report_of(log: Path, own: Sequence[OwnFile] = ()) -> FromLog:
         for one in named(meta)
         if one not in given
     ]
-    watched = watch(log)
+    watched, told = watched_and_told(log, mission)
     rows = [_doubted(row, doubted) for row in constraint_rows(watched.verdicts, "flight")]
     rows += plan_rows(check_plan(known_at(mission, 0), plan))
     assumptions = [_not_held(row, doubted) for row in watched.assumptions]
-    report = build_report(mission, plan, Judged(rows, assumptions, watched.commands), log, flown)
+    judged = Judged(rows, assumptions, watched.commands, told)
+    report = build_report(mission, plan, judged, log, flown)
     said = [f"{one[0].upper()}{one[1:]}: nothing in flight holds." for one in doubted]
     report["limits"] = [*said, *report["limits"]]
     if plan.certificate:
@@ -68,14 +69,14 @@ def report_of(log: Path, own: Sequence[OwnFile] = ()) -> FromLog:
 
 
 def _doubted(row: dict[str, Any], doubted: Sequence[str]) -> dict[str, Any]:
-    """A row of a log that is not whole: what seemed to hold is unknown."""
+    """A row of an incomplete log: `holds` becomes `unknown`."""
     if not doubted or row["verdict"] != Outcome.HOLDS:
         return row
     return {**row, "verdict": str(Outcome.UNKNOWN), "note": f"{doubted[0]}; else: {row['note']}"}
 
 
 def _not_held(row: dict[str, Any], doubted: Sequence[str]) -> dict[str, Any]:
-    """An assumption over a log that is not whole: what seemed to be held was not observed to its end."""
+    """An assumption row of an incomplete log: `held` becomes `not observed`."""
     if not doubted or row["state"] != State.HELD:
         return row
     note = f"{doubted[0]}; else: {row['note'] or 'held'}"
@@ -83,7 +84,7 @@ def _not_held(row: dict[str, Any], doubted: Sequence[str]) -> dict[str, Any]:
 
 
 def write_from_log(log: Path, folder: Path, own: Sequence[OwnFile] = ()) -> FromLog:
-    """Make the folder of results of a log: the log, the report, and its pages; BadInput where one is there already."""
+    """Create a results folder from a log: the log, the report and its pages; BadInput if one exists already."""
     kept = folder / LOG_NAME
     if kept.exists() and log.resolve() != kept.resolve():
         raise BadInput(

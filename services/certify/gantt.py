@@ -1,7 +1,7 @@
-"""Pictures of an assignment as SVG: who does what when, and the tree of its relations.
+"""Charts of an assignment as SVG: the schedule of each vehicle, and the tree of the task relations.
 
-Plain shapes with their own colours, so that a picture reads the same in a report and as a file.
-Times are ms after mission start. Nothing is decided here.
+Plain shapes with their own colours, so that a chart looks the same in a report and as a file. Times
+are ms after mission start. Nothing is decided here.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ LEAF, LEVEL = 18, 66
 
 @dataclass(frozen=True)
 class Bar:
-    """One task of a vehicle: when it sets off, is there, begins and ends [ms]."""
+    """One task of a vehicle: times of departure, arrival, start and end [ms]."""
 
     vehicle: int
     task: int
@@ -35,7 +35,7 @@ class Bar:
 
 
 def bars_of(problem: AssignmentProblem, steps: Iterable[Step]) -> list[Bar]:
-    """The bars of a solution; a vehicle sets off when it is ready, or done with the task before."""
+    """The bars of a solution; a vehicle departs when it is ready or has finished its previous task."""
     free = dict(zip(problem.vehicles, problem.ready_ms, strict=True))
     made = []
     for s in steps:
@@ -58,7 +58,7 @@ def plan_rows(plan: dict[str, Any]) -> list[Row]:
 
 
 def windows_of(rows: Iterable[Row]) -> dict[int, tuple[int | None, int | None]]:
-    """Per task the earliest start and the latest end that rows about it alone set [ms]."""
+    """For each task the earliest start and latest end set by rows on that task alone [ms]."""
     found: dict[int, tuple[int | None, int | None]] = {}
     for row in rows:
         low, high = found.get(row.i, (None, None))
@@ -70,7 +70,7 @@ def windows_of(rows: Iterable[Row]) -> dict[int, tuple[int | None, int | None]]:
 
 
 def gantt(bars: Sequence[Bar], vehicles: Sequence[int], rows: Iterable[Row] = ()) -> str:
-    """The chart: a lane for each vehicle; travel, loiters, tasks, and windows above the tasks."""
+    """The chart: a lane for each vehicle; travel, waiting loiters, tasks, and time windows above the tasks."""
     horizon = max([bar.end for bar in bars] + [1])
     begin = min([bar.depart for bar in bars] + [0])
     per_ms = WIDTH / max(1, horizon - begin)
@@ -172,7 +172,7 @@ def _legend(y: int) -> list[str]:
 
 
 def tree(term: algebra.Term) -> str:
-    """The tree of a term: operators with what they ask for, tasks as leaves, timings in red."""
+    """The tree of a term: operators with their meaning, tasks as leaves, timings in red."""
     parts: list[str] = []
     width, _, depth = _node(term, 10.0, 0, parts)
     return _svg(int(width) + 20, 30 + LEVEL * (depth + 1), parts, "Tree of the relations")
@@ -181,7 +181,7 @@ def tree(term: algebra.Term) -> str:
 def _node(
     term: algebra.Term, left: float, level: int, parts: list[str]
 ) -> tuple[float, float, int]:
-    """Draw a term from `left` on; (its right edge, the middle of its head, the deepest level)."""
+    """Draw a term from x = `left`; returns (right edge, middle of its head, deepest level)."""
     y = 26 + LEVEL * level
     timing = "" if term.suffix is None else _timing(term.suffix)
     if isinstance(term, algebra.Atom):
@@ -239,7 +239,7 @@ def _svg(width: int, height: int, parts: Sequence[str], title: str) -> str:
 
 
 def both(chart: str, of_relations: str) -> str:
-    """Two pictures as one file, one above the other."""
+    """Two charts in one file, one above the other."""
     sizes = [
         tuple(int(part.split('"')[0]) for part in picture.split('viewBox="0 0 ')[1].split(" ")[:2])
         for picture in (chart, of_relations)

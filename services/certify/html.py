@@ -1,4 +1,4 @@
-"""`report.html` and `map.svg` from report.json alone: nothing is loaded from elsewhere."""
+"""Renders `report.html` and `map.svg` from report.json alone; no external resource is loaded."""
 
 from __future__ import annotations
 
@@ -55,12 +55,12 @@ def _environment() -> Any:
 
 
 def seconds(time_ms: float | None) -> str:
-    """Milliseconds as seconds, as the notes of verdicts have them, or a dash."""
+    """Milliseconds as seconds, formatted as in the notes of verdicts; a dash for None."""
     return "–" if time_ms is None else f"{time_ms / 1000:.1f} s"
 
 
 def margin(row: dict[str, Any]) -> str:
-    """A margin with its unit, or a dash."""
+    """A margin with its unit; a dash if there is none."""
     if row["margin"] is None:
         return "–"
     unit = row["unit"]
@@ -70,7 +70,7 @@ def margin(row: dict[str, Any]) -> str:
 
 
 def repeats(report: dict[str, Any]) -> bool:
-    """Whether the command gives the same log again: processes fly in real time, and give another one each time."""
+    """Whether the command reproduces the log exactly: flights in processes run in real time and do not."""
     return not flown_in_processes(report["command"])
 
 
@@ -87,7 +87,7 @@ def render(report: dict[str, Any]) -> str:
 
 
 def _rows_of(report: dict[str, Any]) -> dict[str, int]:
-    """For each requirement the number of the constraint that its verdict is told by; 0 for none."""
+    """For each requirement the number of the constraint that determines its verdict; 0 for none."""
     found = {}
     for wanted in report["requirements"]:
         rows = [
@@ -101,13 +101,13 @@ def _rows_of(report: dict[str, Any]) -> dict[str, int]:
 
 
 def map_svg(report: dict[str, Any]) -> str:
-    """The map of the flight as a picture of its own, with its style."""
+    """The map of the flight as a stand-alone SVG with its style."""
     text: str = _environment().get_template(MAP_PAGE).render(map=map_view(report))
     return text
 
 
 def _names(report: dict[str, Any]) -> dict[str, str]:
-    """How the kernels of the page are called in its tables: the shortest names that tell them apart."""
+    """Display names of the page's kernels: the shortest that are unambiguous."""
     kernels = report["proofs"]["kernels"]
     named = {name for row in report["constraints"] for name in row["kernels"]}
     parts = {part for one in kernels.values() for part in (*one["within"], *one["checked_by"])}
@@ -115,7 +115,7 @@ def _names(report: dict[str, Any]) -> dict[str, str]:
 
 
 def losses(report: dict[str, Any]) -> list[dict[str, Any]]:
-    """The judged losses, with their manoeuvres put together by dimension."""
+    """The judged losses, with their manoeuvres grouped by dimension."""
     found = []
     for row in report["constraints"]:
         for loss in (row.get("evidence") or {}).get("losses", []):
@@ -134,7 +134,7 @@ def losses(report: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def _group(name: str, rows: list[list[Any]]) -> dict[str, Any]:
-    """Columns as in `services.monitor.excuses.COLUMNS`."""
+    """A group of manoeuvre rows, with the columns of `services.monitor.excuses.COLUMNS`."""
     values, times = [r[1] for r in rows], [r[4] for r in rows]
     return {
         "dimension": name, "count": len(rows), "unit": rows[0][2],
@@ -151,6 +151,6 @@ def _gantt(report: dict[str, Any]) -> str:
 
 
 def _tree(report: dict[str, Any]) -> str:
-    """The tree of the relations; nothing where there are none."""
+    """The tree of the task relations; empty if there are none."""
     text = report["mission"]["relations"].strip()
     return tree(parse(text)) if text else ""

@@ -1,4 +1,4 @@
-"""What no report shows: every report says it, and what ICAROUS was given to see."""
+"""What no report can show (stated in every report), and how ICAROUS obtained its traffic states."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def of_states(mission: Mission) -> list[str]:
 
 
 def said_of_states(avoids: bool, sensed: bool) -> list[str]:
-    """The same where some vehicle avoids or none does, by what sensors see or by the true states."""
+    """The same text. avoids: some vehicle avoids traffic; sensed: by simulated sensors, else by the true states."""
     if not avoids:
         return []
     if not sensed:

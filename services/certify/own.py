@@ -1,7 +1,8 @@
-"""Requirements of the user's own in a report: judged over the log of the flight, with their texts and their blame.
+"""User requirements in a report: evaluated over the log of the flight, with their texts and blame.
 
-What is written here is all that it needs to be judged again: the text of each file stands in it. The verdicts are those
-of `cratous monitor --requirements`, in the words of a report: what is undecided when the log ends is unknown.
+The section contains all that is needed to evaluate it again, including the text of each file. The
+verdicts are those of `cratous monitor --requirements` in the terms of a report: what is undecided
+at the end of the log is unknown.
 """
 
 from __future__ import annotations
@@ -30,9 +31,10 @@ MS = 10**6
 
 
 def own_section(files: Sequence[OwnFile], log: Path, told: Told, lint: Lint | None) -> Data:
-    """What a report says of these files over a log that is whole.
+    """The report section on these files over a complete log.
 
-    told: of the flight, for blame; lint: of `requirements.lint`, None: its entries stay empty.
+    told: command and assumption look-ups of the flight, for blame; lint: of `requirements.lint`;
+    None leaves its entries empty.
     """
     found: Data = {"files": [file.data() for file in files]}
     rows: list[Data] = []
@@ -45,7 +47,7 @@ def own_section(files: Sequence[OwnFile], log: Path, told: Told, lint: Lint | No
         remarks += [{"file": file.name, **one} for one in said if one["name"] not in names]
         try:
             watched = _watched(spec, log)
-        except BadInput as error:  # of what is in the log: nothing is known, and that is said
+        except BadInput as error:  # not evaluable: unknown, with the reason
             rows += [_unread(one, file, str(error)) for one in spec.requirements]
         else:
             rows += _rows(watched.outcomes, spec, file, told)
@@ -62,7 +64,7 @@ def own_section(files: Sequence[OwnFile], log: Path, told: Told, lint: Lint | No
 
 
 def _watched(spec: Specification, log: Path) -> Watched:
-    """The outcomes of the requirements, then those of what each of them depends on (`requirements.asked`)."""
+    """The outcomes of the requirements, then those of their conditions (`requirements.asked`)."""
     watching = Watch(with_asked(spec))
     for doubt in doubts(log):
         watching.sampling.find(doubt)
@@ -113,7 +115,7 @@ def _row(one: Outcome, file: OwnFile, asked: int | None, blame: Data | None) -> 
 
 
 def _unread(one: Requirement, file: OwnFile, why: str) -> Data:
-    """A requirement that this log cannot be held against."""
+    """The row of a requirement that cannot be evaluated on this log."""
     return {
         **_told(one, file),
         "verdict": "unknown",
@@ -164,7 +166,7 @@ def kernels(formula: Formula) -> list[str]:
 
 
 def _note(one: Outcome, asked: int | None) -> str:
-    """Why the verdict is what it is, in words."""
+    """The reason for the verdict, in words."""
     total = one.holds + one.violated + one.unknown + one.undecided
     if not total:
         return "no sample: none of its signals came"

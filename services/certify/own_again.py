@@ -1,4 +1,4 @@
-"""Requirements of the user's own in a report that is judged again: which files it has, and a report with others."""
+"""User requirements when a report is judged again: the files it contains, and a report with other files."""
 
 from __future__ import annotations
 
@@ -18,8 +18,9 @@ Data = dict[str, Any]
 
 
 def files_in(written: Data, meta: Data) -> tuple[tuple[OwnFile, ...], list[str]]:
-    """The files that a report keeps, and what is wrong: what cannot be read again, and what the log names and the
-    report lacks. meta: of the log."""
+    """The files that a report contains, and faults: files that cannot be read again, and files that
+    the log names and the report lacks. meta: of the log.
+    """
     wrong: list[str] = []
     files: tuple[OwnFile, ...] = ()
     if OWN in written:
@@ -38,7 +39,7 @@ def files_in(written: Data, meta: Data) -> tuple[tuple[OwnFile, ...], list[str]]
 
 
 def named(meta: Data) -> list[Any]:
-    """What the log says of the files that the flight was flown with."""
+    """The requirement files with which the flight was flown, as named in the log."""
     said = meta.get(OWN, [])
     return said if isinstance(said, list) else [said]
 
@@ -50,9 +51,10 @@ def shown(one: Any) -> str:
 
 
 def together(files: Sequence[OwnFile], meta: Data, given: Iterable[OwnFile]) -> tuple[OwnFile, ...]:
-    """The files that the flight was flown with, and those that are given; BadInput where they clash.
+    """The files with which the flight was flown, and the given ones; BadInput where they clash.
 
-    files: of the report, confirmed; what only an earlier `cratous certify --requirements` put there is dropped.
+    files: of the report, confirmed; those added only by an earlier `cratous certify --requirements`
+    are dropped.
     """
     flown = named(meta)
     kept = [file for file in files if file.named in flown]
@@ -73,7 +75,9 @@ def with_own(report: Data, files: Sequence[OwnFile], log: Path, told: Told) -> D
 
 
 def outcomes_of(report: Data) -> list[Outcome]:
-    """What the verdict of a report follows from: its requirements, those of the user's own, and its ground."""
+    """The outcomes that determine a report's verdict: its requirements, user requirements, and
+    broken assumptions.
+    """
     from cratous.services.certify.verdicts import without_ground
 
     rows = [*report["requirements"], *report.get(OWN, {}).get("requirements", ())]

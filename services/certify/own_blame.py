@@ -1,7 +1,9 @@
-"""Rows of blame of requirements of one's own: what of the formula, who was in command, what had broken by then.
+"""Blame rows of user requirements: part of the formula, commander, and the assumption broken by
+then.
 
-Who commanded and what broke first, `Told` answers: by proved kernels where a flight is judged (`blame.told_of`), in
-plain Python where a report is verified, in a process without kernels of the flight.
+`Told` answers who commanded and what broke first: by proved kernels where a flight is judged
+(`blame.told_of`), in plain Python where a report is verified, in a process without the flight's
+kernels.
 """
 
 from __future__ import annotations
@@ -21,8 +23,10 @@ MS = 10**6
 
 
 class Told(NamedTuple):
-    """gates: vehicles that have one; command: who had a vehicle at an instant [ms]; first: the assumption that had
-    broken first by an instant [ms]; unseen: assumptions that were not observed; why: why nothing of it is told."""
+    """gates: vehicles with a gate; command: the commander of a vehicle at an instant [ms]; first:
+    the assumption that broke first up to an instant [ms]; unseen: assumptions that were not
+    observed; why: reason if none of this is known.
+    """
 
     gates: tuple[int, ...]
     command: Callable[[int, int], Data]
@@ -59,7 +63,7 @@ def _row(one: Outcome, spec: Specification, told: Told) -> Data:
 
 
 def _vehicles(one: Requirement, spec: Specification) -> list[int]:
-    """The vehicles that the messages of its signals are chosen by; none where no signal names one."""
+    """The vehicles that the requirement's signals select messages by; empty if no signal names one."""
     if isinstance(one.formula, NotRead):
         return []
     read = sources(signals(one.formula), spec.signals)

@@ -1,4 +1,4 @@
-"""How near the comparisons of a requirement of one's own came to their bounds, in the unit of their signals."""
+"""How close the comparisons of a user requirement came to their bounds, in the unit of their signals."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Data = dict[str, Any]
 
 
 def margins(one: Outcome) -> list[Data]:
-    """The least and the greatest difference of the two sides of each comparison; no value where none was defined."""
+    """Least and greatest difference of the two sides of each comparison; None where never defined."""
     return [
         {
             "of": f"{m.left} - {_side(m)}",
@@ -33,8 +33,9 @@ def _side(margin: Margin) -> str:
 
 
 def least_margin(one: Outcome) -> tuple[float | None, str]:
-    """Where a requirement is nothing but comparisons in one unit that all have to hold, how far the worst of them
-    was from its bound at the worst sample, negative if violated; else none, and no unit."""
+    """For a requirement that is a conjunction of comparisons in one unit: the worst margin over all
+    samples, negative if violated, and its unit; otherwise (None, "").
+    """
     formula = one.requirement.formula
     asked = [] if isinstance(formula, NotRead) else _asked(formula)
     by_sides = {frozenset((m.left, m.right)): m for m in one.margins}
@@ -50,7 +51,7 @@ def least_margin(one: Outcome) -> tuple[float | None, str]:
 
 
 def _asked(formula: Formula) -> list[tuple[str | float, str | float]] | None:
-    """The pairs of sides of which the second has to reach, or exceed, the first; None where it asks more."""
+    """Pairs of sides of which the second has to reach or exceed the first; None for any other formula."""
     found: list[tuple[str | float, str | float]] = []
     todo: list[Formula] = [formula]
     while todo:

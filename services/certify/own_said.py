@@ -1,4 +1,4 @@
-"""Blame and margins of requirements of one's own in words. Imports nothing that judges."""
+"""Blame and margins of user requirements in words. Imports nothing that judges."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ def margin(one: Data) -> str:
 
 
 def lines(rows: Iterable[Data]) -> Iterator[str]:
-    """The rows for people, one line each."""
+    """The rows as text, one line each."""
     for one in rows:
         at = f"{one['at_s']:g} s" if "at_s" in one else f"sample {one['at']}"
         yield f"blame, {one['requirement']} at {at}: {sentence(one)}"
 
 
 def sentence(one: Data) -> str:
-    """What a row says, without its requirement and instant."""
+    """The text of a row without its requirement and instant."""
     said = [" and ".join(one["facts"])]
     said += [_had(c, "") for c in one["command"]]
     said += [_had(c, " when it was known") for c in one["command_known"]]

@@ -1,4 +1,4 @@
-"""Requirements of the user's own as the rows that views have of G1 to G5 and of their constraints."""
+"""User requirements as rows of the same form as those of G1 to G5 and their constraints, for views."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from cratous.services.results.names import OWN
 
 Data = dict[str, Any]
 SOURCE = "own"
-"""Where such a row says `plan` or `flight` of a constraint."""
+"""Value of such a row's source, where constraints have `plan` or `flight`."""
 
 
 def own_requirements(report: Data) -> list[Data]:
@@ -22,7 +22,7 @@ def digests(report: Data) -> dict[str, str]:
 
 
 def own_constraints(report: Data) -> list[Data]:
-    """Each of them as a row like those of constraints; `own` has what these do not have."""
+    """Each user requirement as a row like those of constraints; `own` holds the additional fields."""
     sha = digests(report)
     return [
         {
@@ -46,7 +46,7 @@ def own_constraints(report: Data) -> list[Data]:
 
 
 def own_findings(report: Data) -> list[tuple[str, str]]:
-    """What is wrong with their samples, and odd about their files: (what, why)."""
+    """Faults of their samples, and lint findings of their files: (what, why)."""
     own = report.get(OWN, {})
     found = [(f"samples for {one['file']}", one["text"]) for one in own.get("findings", ())]
     return found + [(f"lint of {one['file']}", one["text"]) for one in own.get("lint", ())]

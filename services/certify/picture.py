@@ -1,7 +1,7 @@
 """Map and time line of a report as shapes in drawing units, for the template to write as SVG.
 
 Everything comes from report.json; nothing is decided here. North is up, one scale in both
-directions; y grows downwards as SVG has it.
+directions; y grows downwards as in SVG.
 """
 
 from __future__ import annotations
@@ -11,32 +11,32 @@ from typing import Any
 
 MAP_WIDTH, MAP_HEIGHT, MAP_EDGE, MAP_FOOT = 640.0, 504.0, 40.0, 24.0
 LETTER = (10.0, 19.0)
-"""How wide and how high a letter is at most, on a narrow screen."""
+"""Maximum width and height of a letter on a narrow screen, in drawing units."""
 BAR_LEFT, BAR_WIDTH, BAR_ROW = 110.0, 590.0, 46.0
 
 
 class Scale:
-    """From the mission frame [m] to the drawing."""
+    """Maps the mission frame [m] to the drawing."""
 
     def __init__(self, points: list[tuple[float, float]]) -> None:
         norths = [point[0] for point in points] or [0.0]
         easts = [point[1] for point in points] or [0.0]
         span_n = max(max(norths) - min(norths), 1.0)
         span_e = max(max(easts) - min(easts), 1.0)
-        high = MAP_HEIGHT - MAP_FOOT  # the scale stands below the map
+        high = MAP_HEIGHT - MAP_FOOT  # the scale bar is drawn below the map
         self.factor = min((MAP_WIDTH - 2 * MAP_EDGE) / span_e, (high - 2 * MAP_EDGE) / span_n)
         self._north = (max(norths) + min(norths)) / 2
         self._east = (max(easts) + min(easts)) / 2
 
     def xy(self, north: float, east: float) -> tuple[float, float]:
-        """Drawing coordinates of a place."""
+        """Drawing coordinates of a position."""
         return (
             round(MAP_WIDTH / 2 + (east - self._east) * self.factor, 1),
             round((MAP_HEIGHT - MAP_FOOT) / 2 - (north - self._north) * self.factor, 1),
         )
 
     def line(self, places: list[Any]) -> str:
-        """The `points` attribute of a polyline through places that begin with north and east."""
+        """The `points` attribute of a polyline through positions that begin with north and east."""
         return " ".join("{},{}".format(*self.xy(place[0], place[1])) for place in places)
 
 
@@ -137,12 +137,14 @@ Box = tuple[float, float, float, float]
 
 
 def _box(x: float, y: float, text: str) -> Box:
-    """What a text covers, in the letters of a narrow screen: left, top, right, bottom."""
+    """Bounding box of a text on a narrow screen: left, top, right, bottom."""
     return x, y - LETTER[1], x + LETTER[0] * len(text), y + 0.25 * LETTER[1]
 
 
 def _beside(x: float, y: float, text: str, taken: list[Box]) -> dict[str, Any]:
-    """A text beside a point, at the side where it is over no other text; taken: what they cover, with this one added."""
+    """A label beside a point, on the side where it overlaps no other; taken: boxes of labels,
+    extended by this one.
+    """
     left = x - 13 - LETTER[0] * len(text)
     sides = [(x + 13, y - 9), (x + 13, y + 22), (left, y - 9), (left, y + 22)]
     boxes = [_box(*side, text) for side in sides]
@@ -158,8 +160,9 @@ def _said(
     scale: Scale,
     taken: list[Box],
 ) -> dict[str, Any] | None:
-    """When a zone appears or ends, as a text above or below it, on the sheet and over no other text; None of one that
-    is always there. taken: what texts cover, with this one added."""
+    """The label of when a zone appears or ends, placed inside the sheet without overlap; None for a
+    zone that is always present. taken: boxes of labels, extended by this one.
+    """
     if from_s is None and until_s is None:
         return None
     text = f"zone {zone['id']}"
@@ -182,7 +185,7 @@ def _overlap(one: Box, other: Box) -> bool:
 
 
 def _inside(places: list[tuple[float, float]], scale: Scale) -> list[tuple[float, float]]:
-    """The part of a foreign track on or near the sheet."""
+    """The part of a traffic track on or near the sheet."""
     kept = []
     for place in places:
         x, y = scale.xy(*place)
@@ -213,7 +216,7 @@ def _hold(hold: dict[str, Any], scale: Scale) -> dict[str, float]:
 
 
 def _track(number: int, color: int, track: list[list[float]], scale: Scale) -> dict[str, Any]:
-    """A flown track cut where the authority changes; pieces share their end points."""
+    """A flown track split where the authority changes; segments share their end points."""
     pieces: list[dict[str, Any]] = []
     for row in track:
         if not pieces or pieces[-1]["owner"] != row[4]:
@@ -296,6 +299,6 @@ def time_view(report: dict[str, Any]) -> dict[str, Any]:
 
 
 def nice_step(least: float) -> float:
-    """The least of 1, 2, 5, 10, 20 ... that is not below."""
+    """The smallest of 1, 2, 5, 10, 20 ... that is at least `least`."""
     power = 10 ** floor(log10(max(least, 1e-3)))
     return next(k * power for k in (1, 2, 5, 10) if k * power >= least)

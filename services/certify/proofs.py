@@ -1,4 +1,4 @@
-"""The evidence of a report: the kernels that were called, and what the ledger says of just these."""
+"""The evidence of a report: the kernels that were called, and the ledger's records of exactly these."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ RECORDED, NOT_RECORDED = "recorded", "not recorded"
 def inventory(standing: ledger.Standing, calls: dict[str, Any] | None) -> dict[str, Any]:
     """What was called, with its theorems and definitions, and what the ledger does not vouch for.
 
-    standing: from `core.ledger.require`, taken before anything ran; calls: of `evidence.Calls.data`,
-    None where nothing was recorded: then no kernel is listed.
+    standing: from `core.ledger.require`, taken before anything ran; calls: of
+    `evidence.Calls.data`, None if nothing was recorded: then no kernel is listed.
     """
     data = _records(standing)
     names = short([*data["kernels"], *(problem.name for problem in standing.problems)])
@@ -39,7 +39,7 @@ _read: tuple[ledger.Standing, dict[str, Any]] | None = None
 
 
 def _records(standing: ledger.Standing) -> dict[str, Any]:
-    """The ledger's records, read once for all flights by one word of the gate."""
+    """The ledger's records, read once for all flights of the same standing."""
     global _read
     if _read is None or _read[0] is not standing:
         _read = standing, ledger.read()
@@ -47,7 +47,7 @@ def _records(standing: ledger.Standing) -> dict[str, Any]:
 
 
 def _kernels(calls: dict[str, Any], known: dict[str, Any]) -> dict[str, Any]:
-    """By qualified name: how often each was called and in which way, and the ledger's word on it."""
+    """By qualified name: number of calls by way of entry, and the ledger's record."""
     called, within = calls.get("called", {}), calls.get("within", {})
     found = {}
     for name in sorted({*called, *within}):
@@ -73,7 +73,7 @@ def _kernels(calls: dict[str, Any], known: dict[str, Any]) -> dict[str, Any]:
 
 
 def theorems_of(kernels: dict[str, Any], known: dict[str, Any]) -> dict[str, Any]:
-    """The theorems about some kernels, and the lemmas that they rest on."""
+    """The theorems about some kernels, and the lemmas that they depend on."""
     todo = [t for one in kernels.values() for t in (*one["theorems"], *one["against"])]
     found: dict[str, Any] = {}
     while todo:
@@ -95,7 +95,7 @@ def theorems_of(kernels: dict[str, Any], known: dict[str, Any]) -> dict[str, Any
 
 
 def _definitions(kernels: dict[str, Any]) -> dict[str, str]:
-    """The file of each definition of some kernels."""
+    """The file of each kernel's definition."""
     found = {}
     for name, one in kernels.items():
         if one["definition"]:
@@ -105,12 +105,12 @@ def _definitions(kernels: dict[str, Any]) -> dict[str, str]:
 
 
 def statuses(proofs: dict[str, Any]) -> dict[str, int]:
-    """How many of what was called stand at each status."""
+    """Number of called kernels by status."""
     return counts([one["status"] for one in proofs["kernels"].values()])
 
 
 def summary(proofs: dict[str, Any]) -> str:
-    """One line on what was called."""
+    """One line that summarises what was called."""
     if proofs["calls"] == NOT_RECORDED:
         return "what was called was not recorded"
     kernels = proofs["kernels"].values()

@@ -1,9 +1,9 @@
-"""Judge a finished flight again: from its log alone, then against all that is written of it."""
+"""Judges a finished flight again: first from its log alone, then against the files of its results."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Container, Sequence
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -15,6 +15,8 @@ from cratous.services.certify.flight_record import flown_of
 from cratous.services.certify.own_again import files_in, together, with_own
 from cratous.services.certify.report import (
     Judged,
+    Telling,
+    Told,
     build_report,
     mission_hash,
     plan_hash,
@@ -28,7 +30,7 @@ from cratous.services.certify.verdicts import (
     constraint_rows,
     plan_rows,
 )
-from cratous.services.logs.log import read_envelopes, read_log, read_meta
+from cratous.services.logs.log import Heard, read_heard, read_log, read_meta
 from cratous.services.logs.records import from_data
 from cratous.services.logs.sqlite_log import SqliteLog
 from cratous.services.mission.wind import known_at
@@ -71,8 +73,9 @@ def subject(log: Path) -> tuple[Mission, Plan]:
 
 
 class Watched(NamedTuple):
-    """What a monitor has seen: its verdicts, a row for each assumption of the system theorems, and who commanded
-    when (`Monitor.commands`)."""
+    """What a monitor has found: its verdicts, a row for each assumption of the system theorems, and
+    the commanders over time (`Monitor.commands`).
+    """
 
     verdicts: list[Verdict]
     assumptions: list[dict[str, Any]]
@@ -80,25 +83,31 @@ class Watched(NamedTuple):
     end_ms: int
 
 
-def watch(log: Path) -> Watched:
-    """What a fresh monitor says that sees the messages of a log."""
+def watch(log: Path, messages: Iterable[Heard] | None = None) -> Watched:
+    """The findings of a fresh monitor on the messages of a log. messages: the log's, if already being read."""
     from cratous.services.monitor import Monitor
 
     meta = read_meta(log)
     command = meta.get("command")
     original = isinstance(command, str) and with_original_clients(command)
     monitor = Monitor(*subject(log), says_beats=not original, on_board=meta.get(HEARD) is True)
-    for envelope in read_envelopes(log):
-        monitor.tap(envelope)
+    for heard in read_heard(log) if messages is None else messages:
+        monitor.tap(heard)
     return Watched(monitor.verdicts(), monitor.assumptions(), monitor.commands(), monitor.end_ms)
+
+
+def watched_and_told(log: Path, mission: Mission) -> tuple[Watched, Told]:
+    """Monitor findings and flight data from a single pass over a log."""
+    telling = Telling(log, mission)
+    return watch(log, telling.heard()), telling.told()
 
 
 @dataclass(frozen=True)
 class Judgement:
-    """What certifying found. report: as the log gives it; found: what is not so (nothing: confirmed).
+    """Result of certifying. report: derived from the log; found: discrepancies (empty: confirmed).
 
-    unchecked: what neither the log nor this program can vouch for, with the reason; rewritten: files
-    made anew because the user asked for it.
+    unchecked: what neither the log nor this program can vouch for, with the reason; rewritten:
+    files regenerated because the user asked for it.
     """
 
     report: dict[str, Any]
@@ -108,11 +117,11 @@ class Judgement:
 
 
 def certify_again(folder: Path, *, rewrite: bool = False, own: Sequence[OwnFile] = ()) -> Judgement:
-    """Judge the flight in a folder again and hold every file of it against what was found.
+    """Judge the flight in a folder again and compare every file with the result.
 
-    rewrite: files that are made from report.json are made anew where they differ, if all else is
-    confirmed; own: files of requirements that a confirmed report is made anew with. Without these two nothing
-    is written.
+    rewrite: regenerate differing files that derive from report.json, if all else is confirmed; own:
+    requirement files with which a confirmed report is rebuilt. Without these two nothing is
+    written.
     """
     written = read_report(folder)
     log = folder / LOG_NAME
@@ -123,7 +132,7 @@ def certify_again(folder: Path, *, rewrite: bool = False, own: Sequence[OwnFile]
     left = {key: value for key, value in silent.items() if "." not in key}
     former = written["format"] == FORMER
     found += differences(_compared(written, left, former), _compared(report, left, former))
-    if not former:  # the schema is of this format alone
+    if not former:  # the schema covers the current format only
         whole = {**written, **{key: report[key] for key in left if key not in written}}
         found += [f"{REPORT_NAME}, by its schema: {line}" for line in departures(whole)]
     mission, plan = subject(log)
@@ -145,14 +154,14 @@ def certify_again(folder: Path, *, rewrite: bool = False, own: Sequence[OwnFile]
 
 
 def _commanded(mission: Mission, file: Path) -> list[str]:
-    """What shows that the mission with the commands of an operator is another than the one in the log."""
+    """Evidence that the mission with the operator's commands differs from the one in the log."""
     from cratous.services.loading import load
 
     try:
         stated = load(file, mission.seed)
     except CratousError as error:
         return [f"{COMMANDED_NAME}: {error}"]
-    if not mission.instances:  # flown without avoidance, as the command of the report says
+    if not mission.instances:  # flown without avoidance, as the report's command says
         stated = replace(stated, instances=())
     if mission_hash(replace(stated, notes=())) == mission_hash(replace(mission, notes=())):
         return []
@@ -160,7 +169,7 @@ def _commanded(mission: Mission, file: Path) -> list[str]:
 
 
 def _compared(report: dict[str, Any], left: Container[str], former: bool) -> dict[str, Any]:
-    """What is compared of a report: without some entries, in the former format without kernels."""
+    """The entries of a report that are compared: without those left out, in the former format without kernels."""
     found = {key: value for key, value in report.items() if key not in left}
     rows = found.get("constraints")
     if former and isinstance(rows, list):
@@ -174,7 +183,7 @@ def _compared(report: dict[str, Any], left: Container[str], former: bool) -> dic
 
 
 def log_faults(log: Path, written: dict[str, Any]) -> list[str]:
-    """Evidence that the log was altered, or is not the one that the report is about."""
+    """Evidence that the log was altered, or belongs to another report."""
     subject(log)
     with SqliteLog(log) as source:
         digest, closing = source.digest(), source.closing()
@@ -187,12 +196,12 @@ def log_faults(log: Path, written: dict[str, Any]) -> list[str]:
     of_report = written.get("log")
     stated = of_report.get("digest") if isinstance(of_report, dict) else None
     found += differences(stated, digest, "log.digest")
-    # where something is found nothing can be relied on any more
+    # once an alteration is found, further checks mean nothing
     return found or not_as_flown(log)
 
 
 def not_as_flown(log: Path) -> list[str]:
-    """What shows that the mission or the plan in the log's meta is not the one of its messages."""
+    """Evidence that the mission or plan in the log's meta is not the one of its messages."""
     meta = read_meta(log)
     mission, plan = subject(log)
     found = []
@@ -205,7 +214,7 @@ def not_as_flown(log: Path) -> list[str]:
 
 
 def _plan_hash(body: str) -> Any:
-    """Of which plan a message says that it was accepted; None where it says nothing that can be read."""
+    """Hash of the plan that a message reports as accepted; None if it cannot be read."""
     try:
         return json.loads(body)["PlanHash"]
     except (ValueError, TypeError, LookupError, RecursionError):
@@ -213,27 +222,27 @@ def _plan_hash(body: str) -> Any:
 
 
 def rebuilt(log: Path, written: dict[str, Any]) -> tuple[dict[str, Any], dict[str, str], list[str]]:
-    """The report as the log gives it, what of it could not be checked, and what is wrong.
+    """The report derived from the log, the entries that could not be checked, and the faults.
 
-    The proof inventory is made anew if the ledger is still the one of the flight, else held against
-    the digest in the log.
+    The proof inventory is rebuilt if the ledger is still that of the flight, otherwise compared
+    with the digest in the log.
     """
     from cratous.services.monitor.plan_check import check_plan
 
     mission, plan = subject(log)
     flown, silent, wrong, lacking = flown_of(read_meta(log), written, str(log))
     rows = plan_rows(check_plan(known_at(mission, 0), plan))
-    watched = watch(log)
+    watched, told = watched_and_told(log, mission)
     rows += constraint_rows(watched.verdicts, "flight")
-    judged = Judged(rows, watched.assumptions, watched.commands)
+    judged = Judged(rows, watched.assumptions, watched.commands, told)
     report = json.loads(report_text(build_report(mission, plan, judged, log, flown)))
-    if wrong:  # one sentence says it; what differs in detail says no more
+    if wrong:  # one sentence states it; detailed differences add nothing
         report["proofs"] = written.get("proofs")
     wrong += lacking
-    told = read_meta(log).get(ASSUMPTIONS)
-    if told is not None:
+    recorded = read_meta(log).get(ASSUMPTIONS)
+    if recorded is not None:
         broken = broken_of(report["assumptions"])
-        wrong += differences(told, broken, f"{LOG_NAME}: meta.{ASSUMPTIONS}")
+        wrong += differences(recorded, broken, f"{LOG_NAME}: meta.{ASSUMPTIONS}")
     elif "assumptions" not in written:
         silent["assumptions"] = "the report was made before they were watched"
     if BLAME not in written:
@@ -242,7 +251,7 @@ def rebuilt(log: Path, written: dict[str, Any]) -> tuple[dict[str, Any], dict[st
 
 
 def _certificate(plan: Plan, folder: Path) -> list[str]:
-    """What is wrong with the certificate that the plan names."""
+    """Faults of the certificate that the plan names."""
     from cratous.services.planning.assign_certificate import read, verify
 
     if not plan.certificate:

@@ -1,27 +1,27 @@
 """`report.json`: everything that is claimed about one flight, with its evidence.
 
-It is made from the mission, the plan, the checks and the message log, and from nothing else; the
-HTML is a view of it. The same log and mission give the same report; `environment` is what the log's
-meta says.
+It is derived from the mission, the plan, the checks and the message log, and from nothing else; the
+HTML is a view of it. The same log and mission give the same report; `environment` is taken from the
+log's meta.
 """
 
 from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cratous import __version__
 from cratous.core.files.whole_file import write_atomically
 from cratous.services.certify.blame import Commands, blame_rows
 from cratous.services.certify.limits import LIMITS, of_states
 from cratous.services.certify.running_code import running_code
-from cratous.services.certify.timeline import Flight, bars, read_flight
+from cratous.services.certify.timeline import Flight, FlightReader, bars, read_flight
 from cratous.services.certify.verdicts import requirement_rows, with_promised, without_ground
-from cratous.services.logs.log import read_digest, read_log
+from cratous.services.logs.log import Heard, Reading, body_of
 from cratous.services.logs.records import fingerprint, to_data
 from cratous.services.monitor.required_rows import watched
 from cratous.services.results.names import (
@@ -45,10 +45,10 @@ PROOFS_KEPT = ("line", "problems", "seal", "solver")
 
 @dataclass(frozen=True)
 class Flown:
-    """How a mission was flown, which the messages do not say; the log's meta keeps it.
+    """How a mission was flown, as far as the messages do not show it; kept in the log's meta.
 
-    proofs: of `proofs.inventory`; environment: of `environment`; own: files of requirements of the user's own,
-    which the log is held against too.
+    proofs: of `proofs.inventory`; environment: of `environment`; own: user requirement files that
+    are also evaluated on the log.
     """
 
     command: str
@@ -58,7 +58,7 @@ class Flown:
     own: tuple[OwnFile, ...] = ()
 
     def meta(self) -> dict[str, Any]:
-        """What the log keeps of it, so that a report can be held against it."""
+        """The part stored in the log, so that a report can be compared with it."""
         kept = {key: self.proofs[key] for key in PROOFS_KEPT}
         return {
             "command": self.command,
@@ -71,15 +71,52 @@ class Flown:
 
 @dataclass(frozen=True)
 class Judged:
-    """What was found. rows: of `verdicts.constraint_rows`; assumptions, commands: of `Monitor`."""
+    """The findings. rows: of `verdicts.constraint_rows`; assumptions, commands: of `Monitor`; told:
+    data of the log, if it has been read already.
+    """
 
     rows: Iterable[dict[str, Any]]
     assumptions: list[dict[str, Any]]
     commands: Commands
+    told: Told | None = None
+
+
+class Told(NamedTuple):
+    """A log's flight data, and the digest of its messages."""
+
+    flight: Flight
+    digest: str
+
+
+class Telling:
+    """Reads a log's flight data while passing its messages on to another consumer."""
+
+    def __init__(self, log: Path, mission: Mission) -> None:
+        self._reading = Reading(log)
+        self._reader = FlightReader(vehicle.id for vehicle in mission.vehicles)
+
+    def heard(self) -> Iterator[Heard]:
+        """The messages; each has been processed here when the next one is requested."""
+        for entry in self._reading:
+            body = body_of(entry)
+            # as Heard(...), in a third of the time
+            yield tuple.__new__(Heard, (entry.time_ms, entry.source, entry.topic, body))
+            self._reader.add(entry, body)
+
+    def told(self) -> Told:
+        """The flight data, once all messages have been read."""
+        return Told(self._reader.finish(), self._reading.digest)
+
+
+def told_by(log: Path, mission: Mission) -> Told:
+    """A log's flight data, from a pass of its own over the log."""
+    reading = Reading(log)
+    flight = read_flight(reading, (vehicle.id for vehicle in mission.vehicles))
+    return Told(flight, reading.digest)
 
 
 def mission_hash(mission: Mission) -> str:
-    """Names what was flown: the mission without the path it was read from."""
+    """Fingerprint of what was flown: the mission without the path it was read from."""
     return fingerprint(to_data(replace(mission, source="")))
 
 
@@ -89,7 +126,7 @@ def plan_hash(plan: Plan) -> str:
 
 
 def ends_of(flight: Flight, asked: Mission) -> list[dict[str, Any]]:
-    """How each task ended that is asked for to the end: one that was withdrawn has not failed."""
+    """Outcome of each task still requested at the end: a withdrawn task has not failed."""
     wanted = {task.id for task in asked.tasks}
     return [end for task, end in sorted(flight.served.items()) if task in wanted]
 
@@ -103,12 +140,11 @@ def build_report(
 ) -> dict[str, Any]:
     """The whole report as plain data.
 
-    log: the message log; flown: how it was flown.
-    A row that a requirement promises and `judged` lacks is unknown: not observed. A flight with
-    kernels that the ledger does not vouch for is at best unknown, and so is one in processes of which an
-    assumption is broken.
+    log: the message log; flown: how it was flown. A row that a requirement promises and `judged`
+    lacks is unknown: not observed. A flight with kernels that the ledger does not vouch for is at
+    best unknown, and so is one in processes in which an assumption is broken.
     """
-    flight = read_flight(read_log(log), (vehicle.id for vehicle in mission.vehicles))
+    flight, digest = judged.told or told_by(log, mission)
     done = {task for task, end in flight.served.items() if end["phase"] == "Complete"}
     seen = watched(mission, flight.end_ms, done, set(flight.accepted or plan.chosen))
     found = with_promised(list(judged.rows), seen)
@@ -152,7 +188,7 @@ def build_report(
         },
         "log": {
             "file": LOG_NAME,
-            "digest": read_digest(log),
+            "digest": digest,
             "messages": sum(flight.counts.values()),
             "by_topic": dict(sorted(flight.counts.items())),
         },
@@ -163,7 +199,7 @@ def build_report(
 
 
 def _own(flown: Flown, judged: Judged, log: Path) -> dict[str, Any]:
-    """Requirements of the user's own over the log; nothing where there are none."""
+    """User requirements evaluated over the log; empty if there are none."""
     from cratous.services.certify.blame import told_of
     from cratous.services.certify.own import own_section
     from cratous.services.requirements.lint import lint
@@ -195,7 +231,7 @@ def _counts(rows: list[dict[str, Any]]) -> dict[str, int]:
 
 
 def _shown(source: str) -> str:
-    """A path as it can be given again: relative, never a folder of one machine."""
+    """A path in a form that can be used again: relative, never absolute on one machine."""
     return source if not os.path.isabs(source) else Path(source).name
 
 
@@ -216,7 +252,7 @@ def _scale(mission: Mission) -> str:
 
 
 def environment() -> dict[str, Any]:
-    """Python, system, versions of what decides, code of services and bridge: in no other digest."""
+    """Python, system, versions of deciding libraries, code of services and bridge: part of no other digest."""
     import platform
     from importlib.metadata import PackageNotFoundError, version
 
@@ -241,7 +277,7 @@ def report_text(report: dict[str, Any]) -> str:
 
 
 def pages(report: dict[str, Any]) -> dict[str, str]:
-    """The files that are made from report.json alone, by name."""
+    """The files that derive from report.json alone, by name."""
     return _pages(json.loads(report_text(report)))
 
 
@@ -252,10 +288,10 @@ def _pages(written: Any) -> dict[str, str]:
 
 
 def write_report(report: dict[str, Any], folder: Path) -> None:
-    """Write `report.json` and what is made from it into a folder; each whole or not at all.
+    """Write `report.json` and the files derived from it into a folder; each whole or not at all.
 
-    RuntimeError, and nothing written, for a report that is not as the published schema says: then
-    what made it is wrong.
+    Raises RuntimeError, and writes nothing, if the report violates the published schema: this is a
+    program error.
     """
     from cratous.services.certify.report_schema import departures
 

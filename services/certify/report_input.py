@@ -1,4 +1,4 @@
-"""Reads report.json as what it is: text from anywhere, until it has been held against its log."""
+"""Reads report.json as untrusted text, before it has been compared with its log."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cratous.spec.errors import BadInput
 
 LARGEST_BYTES = 1 << 28
 DEEPEST = 60
-"""No report of ours is nested half as deep."""
+"""Maximum nesting depth; our own reports have less than half of it."""
 
 
 def read_report(folder: Path) -> dict[str, Any]:
@@ -62,7 +62,7 @@ def _finite(text: str) -> float:
 
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     found = dict(pairs)
-    if len(found) < len(pairs):  # readers differ in which of the two they take
+    if len(found) < len(pairs):  # readers differ in which duplicate they take
         names = [name for name, _ in pairs]
         twice = next(name for name in names if names.count(name) > 1)
         raise ValueError(f"{twice[:40]!r} stands twice in one object")

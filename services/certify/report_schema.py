@@ -1,7 +1,8 @@
-"""The published JSON Schema of report.json: what is written and what is read is held against it.
+"""The published JSON Schema of report.json, against which reports are checked on writing and
+reading.
 
-`report.schema.json` is the file that `cratous certify --schema` prints. That its definitions of mission
-and plan are those of the records is tested.
+`report.schema.json` is the file that `cratous certify --schema` prints. A test checks that its
+definitions of mission and plan are those of the records.
 """
 
 from __future__ import annotations
@@ -18,12 +19,12 @@ from cratous.spec.files.schema_check import Check, fits
 
 SCHEMA_NAME = "report.schema.json"
 FEW = 20
-"""So many departures are listed; a report that is another thing altogether has thousands."""
+"""Maximum number of violations listed; a file that is no report has thousands."""
 SHORT = 120
 
 
 def schema_text() -> str:
-    """The schema as it is published (JSON Schema, draft 2020-12)."""
+    """The schema as published (JSON Schema, draft 2020-12)."""
     return files("cratous.services.certify").joinpath(SCHEMA_NAME).read_text("utf-8")
 
 
@@ -46,7 +47,7 @@ def _validator() -> Any:
 
 
 def departures(report: Any) -> list[str]:
-    """Where a report is not what the schema says, FEW places at most: path, and what is wrong there."""
+    """Where a report violates the schema, at most FEW places: path and reason."""
     return [] if _fits()(report) else list(islice(_departures(report), FEW))
 
 
@@ -61,5 +62,5 @@ def _departures(report: Any) -> Iterator[str]:
 
 def _cut(text: str) -> str:
     shown = printable(text)
-    # the end says what was expected
+    # the end of the message says what was expected
     return shown if len(shown) <= SHORT else f"{shown[: SHORT // 2]}...{shown[-SHORT // 2 :]}"

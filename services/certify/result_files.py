@@ -1,4 +1,4 @@
-"""The files of a results folder, held against the report that they should belong to."""
+"""The files of a results folder, compared with the report to which they should belong."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from cratous.services.results.names import (
 from cratous.services.results.ownership import digest_of, is_plain, manifest_text, read_manifest
 
 SINCE_MANIFESTS = "environment"
-"""What logs have kept since there are manifests: beside such a log one that is missing was removed."""
+"""Meta entry of all logs written since manifests exist: beside such a log a missing manifest was removed."""
 
 
 def no_result(name: str) -> str:
@@ -28,16 +28,17 @@ def no_result(name: str) -> str:
 
 
 class Files:
-    """What is in the folder beside the log.
+    """The files in the folder beside the log.
 
-    wrong: what cannot be made anew; differing: what can, from the report; unchecked: the rest; commanded: the mission with
-    the commands of an operator is among the results.
+    wrong: faults that cannot be repaired; differing: files that can be regenerated from the report;
+    unchecked: other entries; commanded: the results contain the mission with the operator's
+    commands.
     """
 
     def __init__(
         self, folder: Path, report: dict[str, Any], meta: dict[str, Any], *, same: bool
     ) -> None:
-        """meta: of the log; same: report.json says what the log gives, so its bytes count too."""
+        """meta: of the log; same: report.json agrees with the log, so its bytes are compared too."""
         self._folder = folder
         self.wrong: list[str] = []
         self.differing: list[str] = []
@@ -50,7 +51,7 @@ class Files:
         if self.commanded:
             self._names.append(COMMANDED_NAME)
         if "processes" in meta:
-            # held against the manifest alone: the log does not give them
+            # compared with the manifest alone: they cannot be derived from the log
             self._names += sorted(name for name in stated if OF_PROCESSES.fullmatch(name))
         self.unchecked = [
             no_result(entry.name)
@@ -103,7 +104,7 @@ class Files:
                 self.differing.append(f"{MANIFEST_NAME}: {name} is no file of the results")
             elif stated.get(name, "") == found or name in self._anew:
                 continue
-            elif name in self._pages:  # it is as it should be, so the manifest is not
+            elif name in self._pages:  # the file itself is right, so the manifest is wrong
                 self.differing.append(f"{MANIFEST_NAME}: another SHA-256 of {name}")
             else:
                 was = stated.get(name, "none")

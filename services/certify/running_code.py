@@ -1,7 +1,8 @@
-"""Which code of services and bridge runs: that kernels are proved says nothing of it.
+"""Identifies the running code of services and bridge: the proofs of the kernels do not cover it.
 
-The digest is over the files, so that it is the same wherever the same version runs; what runs in this
-process is held against them, and they against the release that is installed, where there is one.
+The digest is over the files, so that it is the same wherever the same version runs; the functions
+loaded in this process are compared with the files, and the files with the installed release, if
+any.
 """
 
 from __future__ import annotations
@@ -21,11 +22,11 @@ from cratous.core.kernel.sources import ROOT, runs_as_written
 PARTS = ("bridge", "services")
 NO_RELEASE = "no release to compare with"
 SHOWN = 3
-"""So many files or functions are named where more differ."""
+"""Number of files or functions named where more differ."""
 
 
 def _files() -> dict[str, bytes]:
-    """The sources of both parts by their place, in the order of the names on their paths."""
+    """The sources of both parts by relative path, in sorted order."""
     found = {}
     for part in PARTS:
         for folder, _, names in os.walk(ROOT / part):
@@ -43,7 +44,7 @@ def _listed(names: list[str]) -> str:
 
 
 def _other_code() -> Iterator[str]:
-    """Functions of imported modules of both parts that do not run what their files say."""
+    """Functions of imported modules of both parts whose code differs from their files."""
     for name, module in sorted(sys.modules.items()):
         parts = name.split(".")
         if parts[0] != "cratous" or parts[1:2] not in (["bridge"], ["services"]):
@@ -55,7 +56,7 @@ def _other_code() -> Iterator[str]:
 
 
 def _recorded(distribution: importlib.metadata.Distribution) -> dict[str, str]:
-    """The hashes that an installed release has of the sources of both parts, by their place."""
+    """The hashes recorded in an installed release for the sources of both parts, by relative path."""
     found = {}
     for path in distribution.files or []:
         top, _, inside = path.as_posix().partition("/")
@@ -66,7 +67,7 @@ def _recorded(distribution: importlib.metadata.Distribution) -> dict[str, str]:
 
 
 def against(files: dict[str, bytes], recorded: dict[str, str], version: str) -> str:
-    """How the files compare with a release: `release X`, `differs from release X: ...`, or that there is no release."""
+    """How the files compare with a release: `release X`, `differs from release X: ...`, or that there is none."""
     if not recorded:
         return NO_RELEASE
     now = {
@@ -79,7 +80,7 @@ def against(files: dict[str, bytes], recorded: dict[str, str], version: str) -> 
 
 @cache
 def code_digest() -> str:
-    """SHA-256 of the files of services and bridge, as first asked."""
+    """SHA-256 of the files of services and bridge, computed at the first call."""
     return _digest(_files())
 
 

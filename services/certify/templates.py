@@ -1,4 +1,4 @@
-"""How the templates of pages are read: every text is escaped, and what they compile to is kept from run to run."""
+"""Jinja2 set-up for the pages: every text is escaped, and compiled templates are cached between runs."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from cratous.spec.errors import BadInput
 from cratous.spec.files.printable import printable
 
 KEPT = "pages"
-"""The folder of the cache."""
+"""Name of the cache folder."""
 
 
 def environment(source: Callable[[str], str]) -> Any:
-    """The templates that `source` gives by name, as jinja2 reads them for a page."""
+    """The jinja2 environment for pages; `source` returns a template by name."""
     from jinja2 import Environment, FunctionLoader, StrictUndefined
 
     return Environment(
@@ -27,21 +27,22 @@ def environment(source: Callable[[str], str]) -> Any:
 
 
 def _shown(value: Any) -> Any:
-    """What a page shows of a value; what is a page already stays as it is."""
+    """The text that a page shows for a value; markup is left unchanged."""
     return printable(value, keep="\n\t") if type(value) is str else value
 
 
 def _kept() -> Any:
-    """Where jinja2 keeps compiled templates, by the hash of their text; None where nothing can be kept.
+    """Jinja2's bytecode cache, keyed by the hash of the template; None if nothing can be cached.
 
-    The folder is that of this version of jinja2 and of this file, for its settings are in what is compiled.
+    The folder depends on the version of jinja2 and on this file, whose settings enter the compiled
+    code.
     """
     import jinja2
     from jinja2.bccache import Bucket, FileSystemBytecodeCache
 
     class Kept(FileSystemBytecodeCache):
         def dump_bytecode(self, bucket: Bucket) -> None:
-            with contextlib.suppress(OSError):  # a folder that cannot be written is no error
+            with contextlib.suppress(OSError):  # an unwritable cache is no error
                 super().dump_bytecode(bucket)
 
     made_by = digest([jinja2.__version__, Path(__file__).read_text(encoding="utf-8")])

@@ -1,7 +1,7 @@
 """What happened, read from the message log alone: tracks, authority, phases, takeovers, events.
 
-Every fact of the report's flight part comes from here, so that a second program can make it
-again from the same log.
+Every fact in the report's flight part comes from here, so that a second program can derive it again
+from the same log.
 """
 
 from __future__ import annotations
@@ -13,11 +13,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cratous.services.certify.alerted import TOPIC, AlertReader
+from cratous.services.logs.entry import Entry
 from cratous.services.logs.log import Row
+from cratous.spec.errors import BadInput
 
 TRACK_PERIOD_MS = 1000
 STATUS, REFUSED_PEER = "afrl.cmasi.ServiceStatus", "refused "
-"""What a peer that is refused is told by, and how that begins."""
+"""Topic and prefix of the message about a refused peer."""
 FOOTPRINT_PERIOD_MS = 2000
 FEW = 80
 PHASES = ("Planned", "Transit", "Waiting", "Active", "Suspended", "Complete", "Failed")
@@ -30,24 +32,24 @@ TRUTH = re.compile(
     rf'"East":{_DECIMAL},"Altitude":{_DECIMAL},"VelocityNorth":{_DECIMAL},"VelocityEast":{_DECIMAL},'
     rf'"VelocityDown":{_DECIMAL},"Heading":{_DECIMAL},"Cooperative":(?:true|false)\}}'
 )
-"""A whole TruthState as it is written; one that is written otherwise is read as any JSON."""
+"""A whole TruthState in the usual spelling; any other spelling is parsed as general JSON."""
 
 
 @dataclass
 class Flight:
-    """The flight as read so far; times in ms after mission start, places in the mission frame."""
+    """The flight as read so far; times in ms after mission start, positions in the mission frame."""
 
     tracks: dict[int, list[list[float]]] = field(default_factory=dict)
     authority: list[dict[str, Any]] = field(default_factory=list)
     phases: list[dict[str, Any]] = field(default_factory=list)
     in_phase: list[dict[str, Any]] = field(default_factory=list)
-    """What was told of a task again, in the phase in which it was."""
+    """Further reports on a task that did not change its phase."""
     takeovers: list[dict[str, Any]] = field(default_factory=list)
     alerts: list[dict[str, Any]] = field(default_factory=list)
-    """Whom detect and avoid has told of whom, from when to when, the highest level, the least time to a violation."""
+    """Detect-and-avoid alerts: ownship, intruder, time span, highest level, least time to violation."""
     events: list[dict[str, Any]] = field(default_factory=list)
     event_kinds: list[str] = field(default_factory=list)
-    """Of each event AUTHORITY, TASK, PLAN or END, which other lists tell too, or OTHER."""
+    """Kind of each event: AUTHORITY, TASK, PLAN or END, which other lists contain too, or OTHER."""
     changes: list[dict[str, Any]] = field(default_factory=list)
     footprints: dict[int, list[dict[str, Any]]] = field(default_factory=dict)
     """By task: time, vehicle and corners (latitude, longitude) of some footprints, FEW at most."""
@@ -57,11 +59,11 @@ class Flight:
     outcome: str = "the log has no end of mission"
     plan_hash: str = ""
     accepted: tuple[int, ...] = ()
-    """The tasks of the last plan that was flown by, and those done before it."""
+    """The tasks of the last plan that was flown, and those done before it."""
 
 
 def _footprints(flight: Flight, time_ms: int, body: dict[str, Any]) -> None:
-    """Keep what was seen of the tasks in work; of many footprints every second, fourth ... one."""
+    """Keep footprints of the active tasks; of many only every second, fourth, ... one."""
     for payload in body["PayloadStateList"]:
         corners = [(c["Latitude"], c["Longitude"]) for c in payload.get("Footprint") or ()]
         for task in body["AssociatedTasks"] if len(corners) >= 3 else ():
@@ -76,13 +78,13 @@ def _name(value: Any, names: tuple[str, ...]) -> str:
 
 
 class FlightReader:
-    """Follows the messages of a log, one at a time; `flight` is what is known so far.
+    """Reads the messages of a log one at a time; `flight` is the result so far.
 
-    last: of each aircraft the newest row, also where it is not in the track.
+    last: newest row of each aircraft, even if it is not in the track.
     """
 
     def __init__(self, vehicles: Iterable[int]) -> None:
-        """vehicles: ours; anything else that flies is traffic."""
+        """vehicles: those of the mission; any other aircraft is traffic."""
         self.flight = Flight()
         self.last: dict[int, list[float]] = {}
         self._owners = dict.fromkeys(vehicles, "UxAS")
@@ -90,13 +92,21 @@ class FlightReader:
         self._alerts = AlertReader()
         self.flight.alerts = self._alerts.found
 
-    def add(self, row: Row) -> None:
-        """Take the next message."""
+    def add(self, row: Row | Entry, plain: Any = None) -> None:
+        """Process the next message; BadInput if it lacks a field. plain: its decoded body, if it has been read."""
+        try:
+            self._add(row, plain)
+        except KeyError as error:
+            where = f"message {row.seq} ({row.topic})"
+            raise BadInput("a field is missing", where=where, expected=str(error)) from None
+
+    def _add(self, row: Row | Entry, plain: Any) -> None:
         flight = self.flight
         short = row.topic.rpartition(".")[2]
         flight.counts[row.topic] = flight.counts.get(row.topic, 0) + 1
         flight.end_ms = max(flight.end_ms, row.time_ms)
-        if short == "AirVehicleState" and row.time_ms % FOOTPRINT_PERIOD_MS == 0:
+        due = short == "AirVehicleState" and row.time_ms % FOOTPRINT_PERIOD_MS == 0
+        if due and (plain is None or plain.PayloadStateList):
             _footprints(flight, row.time_ms, json.loads(row.body))
         if row.topic == TOPIC:
             self._alerts.add(json.loads(row.body), row.time_ms)
@@ -105,7 +115,7 @@ class FlightReader:
         if not row.topic.startswith("cratous."):
             return
         if short == "TruthState":
-            self._truth(row.body)
+            self._truth(str(row.body), plain)
             return
         body = json.loads(row.body)
         if short == "AuthorityChange":
@@ -115,9 +125,12 @@ class FlightReader:
         else:
             _event(flight, short, body)
 
-    def _truth(self, text: str) -> None:
-        said = TRUTH.fullmatch(text)
-        if said is not None:  # nearly all of a log: JSON's own reader takes several times as long
+    def _truth(self, text: str, plain: Any) -> None:
+        said = None if plain is not None else TRUTH.fullmatch(text)
+        if plain is not None:
+            number, time_ms = plain.VehicleID, plain.Time
+            place = [plain.North, plain.East, plain.Altitude]
+        elif said is not None:  # most of a log; a JSON parser takes several times as long
             number, time_ms = int(said[1]), int(said[2])
             place = [float(said[3]), float(said[4]), float(said[5])]
         else:
@@ -127,14 +140,14 @@ class FlightReader:
         owner = OWNERS.index(self._owners.get(number, "UxAS"))
         point = [time_ms, round(place[0], 1), round(place[1], 1), round(place[2], 1), owner]
         track = self.flight.tracks.setdefault(number, [])
-        # the same instants for every vehicle, so that distances can be read off two tracks
+        # the same instants for every vehicle, so that distances can be computed from two tracks
         due = not track or time_ms // TRACK_PERIOD_MS != track[-1][0] // TRACK_PERIOD_MS
         if due or track[-1][4] != owner:
             track.append(point)
         self.last[number] = point
 
     def finish(self) -> Flight:
-        """The flight, with the newest row of each aircraft at the end of its track."""
+        """The flight, with the newest row of each aircraft appended to its track."""
         for number, point in self.last.items():
             track = self.flight.tracks[number]
             if track[-1] is not point:
@@ -142,8 +155,8 @@ class FlightReader:
         return self.flight
 
 
-def read_flight(rows: Iterable[Row], vehicles: Iterable[int]) -> Flight:
-    """What the messages of a log say; `vehicles` are ours, anything else that flies is traffic."""
+def read_flight(rows: Iterable[Row | Entry], vehicles: Iterable[int]) -> Flight:
+    """The flight data of a log; `vehicles` are those of the mission, any other aircraft is traffic."""
     reader = FlightReader(vehicles)
     for row in rows:
         reader.add(row)
@@ -210,7 +223,7 @@ def _progress(flight: Flight, body: dict[str, Any]) -> None:
             if earlier["task"] == task and earlier["phase"] == phase:
                 flight.in_phase.append(said)
                 if phase == "Failed" and task in flight.served:
-                    # it had failed by then; the reason that holds is the one told last
+                    # it had failed by then; the last reported reason applies
                     flight.served[task]["note"] = body["Note"]
                 return
             break
@@ -269,7 +282,7 @@ def _merges(body: dict[str, Any]) -> str:
 
 
 def _refused(flight: Flight, time_ms: int, body: dict[str, Any]) -> None:
-    """A peer of the bridge that UxAS's end has refused."""
+    """Record a bridge peer that UxAS's end has refused."""
     said = {pair["Key"]: pair["Value"] for pair in body["Info"]}
     if said.get("reason", "").startswith(REFUSED_PEER):
         _note(flight, time_ms, None, f"bridge: {said['reason']}")
@@ -284,12 +297,12 @@ BARS = {"Transit": "transit", "Waiting": "wait", "Active": "task", "Suspended": 
 
 
 def bars(flight: Flight) -> list[dict[str, Any]]:
-    """The time line as bars: per vehicle what it did from when to when."""
+    """The time line as bars: what each vehicle did, with start and end."""
     found: list[dict[str, Any]] = []
     for k, phase in enumerate(flight.phases):
         if (
             phase["phase"] not in BARS or not phase["vehicle"]
-        ):  # nobody's task is no bar of a vehicle
+        ):  # an unassigned task is no bar of a vehicle
             continue
         later = (p["time_ms"] for p in flight.phases[k + 1 :] if p["vehicle"] == phase["vehicle"])
         found.append(

@@ -1,8 +1,8 @@
-"""Why a row of a report says what it says: row, kernels that decided it, theorems, definitions.
+"""Traces each row of a report to the kernels that decided it, their theorems and their definitions.
 
-The chains are read from the report alone; whether their definitions exist is read in the product as it
-is now, of which nothing is imported for that. What a chain lacks is said in words, and a row without a
-kernel has none.
+The chains are read from the report alone; whether their definitions exist is checked in the
+installed product, of which nothing is imported for that. Missing links are stated in words; a row
+without a kernel has no chain.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Data = dict[str, Any]
 
 
 def chains(report: Data) -> list[Data]:
-    """For each row of the report's constraints, in their order, the chains from it to definitions."""
+    """For each constraint row of the report, in order, the chains from it to definitions."""
     return [
         {
             **{key: row[key] for key in ("requirement", "source", "item", "verdict")},
@@ -36,9 +36,10 @@ def chains(report: Data) -> list[Data]:
 
 
 def _chains(name: str, proofs: Data, by: str = "") -> Iterator[Data]:
-    """The chain of one kernel; of a driver those of the kernels that decide in it and were called.
+    """The chain of one kernel; for a driver, those of the kernels that decide in it and were
+    called.
 
-    by: the driver by which the row names it.
+    by: the driver that the row names.
     """
     one = proofs["kernels"].get(name)
     if one is not None and one["kind"] == "driver":
@@ -52,7 +53,7 @@ def _chains(name: str, proofs: Data, by: str = "") -> Iterator[Data]:
 
 
 def _link(name: str, one: Data | None, proofs: Data, by: str, lacks: str = "") -> Data:
-    """From a kernel to its definition; missing: what there is not, in words."""
+    """The chain from a kernel to its definition; missing: missing links, in words."""
     found = one or {}
     against = list(found.get("against", []))
     missing = [lacks] if lacks else []
@@ -76,7 +77,7 @@ def _link(name: str, one: Data | None, proofs: Data, by: str, lacks: str = "") -
 
 
 def _unproved(one: Data, against: list[str], theorems: Data) -> list[str]:
-    """What a kernel that was called lacks of a proof."""
+    """What a called kernel lacks for a proof, in words."""
     missing = []
     if "against" not in one:
         missing.append("its report was made before theorems against definitions were told apart")
@@ -93,12 +94,12 @@ def _unproved(one: Data, against: list[str], theorems: Data) -> list[str]:
 
 
 def traced(report: Data) -> Data:
-    """The chains of a report, with the file of each definition; what is missing, row by row.
+    """The chains of a report, with the file of each definition, and the missing links row by row.
 
-    A row that is unknown and names no kernel decides nothing, so nothing is missing in it.
+    An unknown row that names no kernel decides nothing, so nothing is missing in it.
     """
     rows = chains(report)
-    definition = cache(definition_of)  # the same kernel stands in many rows
+    definition = cache(definition_of)  # many rows share a kernel
     unproved = {problem["kernel"] for problem in report["proofs"]["problems"]}
     names = short([*report["proofs"]["kernels"], *(c["kernel"] for r in rows for c in r["chains"])])
     for row in rows:
@@ -132,9 +133,10 @@ def definition_of(package: str, definition: str) -> tuple[str, str]:
 
 
 def _file(package: str, definition: str) -> str:
-    """The file of the module that has a definition, from its package's folder on; empty if it has none.
+    """The file of the module that contains a definition, relative to its package's parent; empty if
+    there is none.
 
-    The names are those of a report, which may be anybody's: no module is imported because of them.
+    The names come from a report, which is untrusted: no module is imported because of them.
     """
     *module, name = definition.split(".")
     root = _root(package)
@@ -152,7 +154,7 @@ def _file(package: str, definition: str) -> str:
 
 
 def _root(package: str) -> Path | None:
-    """The folder of a package, which is not imported for that; None if there is none."""
+    """The folder of a package, found without importing it; None if there is none."""
     if package == PRODUCT.name:
         return PRODUCT.root
     if not package.isidentifier():

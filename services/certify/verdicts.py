@@ -13,7 +13,7 @@ from cratous.spec.mission.guarantees import REQUIREMENTS, Outcome, Verdict, wors
 
 
 def constraint_rows(verdicts: Iterable[Verdict], source: str) -> list[dict[str, Any]]:
-    """One row per single constraint (verdicts on a whole requirement are made again).
+    """One row per single constraint; verdicts on a whole requirement are skipped and derived again.
 
     source: "plan" for the check before the flight, "flight" for the monitor.
     """
@@ -40,30 +40,31 @@ def constraint_rows(verdicts: Iterable[Verdict], source: str) -> list[dict[str, 
 
 
 def broken_of(assumptions: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The rows of the assumptions that are broken; rows: of `Monitor.assumptions`."""
+    """The rows of broken assumptions; assumptions: of `Monitor.assumptions`."""
     return [row for row in assumptions if row["state"] == State.BROKEN]
 
 
 def without_ground(command: str, assumptions: Iterable[dict[str, Any]]) -> bool:
-    """True of a flight in processes in which an assumption is broken. The theorems are of a gate on board: such a
-    flight is at best unknown, whatever was seen of it."""
+    """True for a flight in processes with a broken assumption. The theorems assume a gate on board:
+    such a flight is at best unknown, whatever was observed.
+    """
     return flown_in_processes(command) and bool(broken_of(assumptions))
 
 
 def plan_rows(checks: Iterable[Verdict]) -> list[dict[str, Any]]:
-    """The rows of a plan that was flown: of a plan of a part, that it is one."""
+    """The rows of a plan that was flown; a partial plan has no row on the whole plan."""
     rows = constraint_rows(checks, "plan")
     part = any(row["item"] == PART for row in rows)
     return [row for row in rows if not (part and row["item"] == WHOLE)]
 
 
 def _instead(expected: list[Row], present: set[str]) -> list[Row]:
-    """The rows on a plan, with that of a part in place of that of the whole if it is present."""
+    """The rows on a plan, with the row of a partial plan in place of that of the whole if it is present."""
     return [row for row in expected if row.item != WHOLE or PART not in present]
 
 
 def with_promised(rows: list[dict[str, Any]], seen: Watched) -> list[dict[str, Any]]:
-    """The rows, and an unknown one for each that is promised and not among them."""
+    """The rows, and an unknown row for each promised one that is missing."""
     flown = {row["item"] for row in rows if (row["requirement"], row["source"]) == ("G1", "flight")}
     wanted = {
         "plan": _instead(list(PLAN_ROWS), {row["item"] for row in rows}),
@@ -77,9 +78,9 @@ def with_promised(rows: list[dict[str, Any]], seen: Watched) -> list[dict[str, A
 
 
 def requirement_rows(rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
-    """One row per requirement: the worst of its constraints, and where the margin is least.
+    """One row per requirement: its worst constraint, and where the margin is least.
 
-    A requirement on which no constraint speaks is unknown.
+    A requirement without constraints is unknown.
     """
     by_id: dict[str, list[dict[str, Any]]] = {entry.id: [] for entry in REQUIREMENTS}
     for row in rows:
@@ -90,11 +91,11 @@ def requirement_rows(rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
         verdict = worst([Outcome(row["verdict"]) for row in group])
         telling = [row for row in group if row["verdict"] == verdict]
         measured = [row for row in telling if row["margin"] is not None]
-        # margins of different units cannot be compared; distances are what people look for first
+        # margins in different units cannot be compared; distances are preferred
         chosen = min(
             measured,
             key=lambda row: (row["unit"] != "m", row["margin"]),
-            # nothing is measured: what names a task, then the row that most was seen for
+            # no margin: prefer a row that names a task, then the row with the most checks
             default=max(telling, key=lambda row: (row["item"] != END, row["checks"]), default=None),
         )
         found.append(

@@ -1,9 +1,9 @@
 """The command `cratous`: one line per command here, each command in its own module.
 
-A module is imported only when its command runs, so that `cratous --help` is quick. Whatever goes
-wrong ends as one message and an exit code: 0 all hold, 1 something is violated or no plan exists,
-2 bad input, 3 something is unknown or excused; 70 is an error of the product itself, and 128 and
-more say which signal ended it.
+A module is imported only when its command runs, so that `cratous --help` is fast. Every error ends
+as one message and an exit code: 0 all hold, 1 something is violated or no plan exists, 2 bad input,
+3 something is unknown or excused; 70 is an internal error, and 128 or more gives the signal that
+ended it.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from cratous.spec.files.printable import json_text, printable
 
 INTERNAL_ERROR = 70
 PACKAGE = f"{Path(__file__).parents[2]}/"
-"""Where the product's modules are, as tracebacks name it."""
+"""Prefix of the product's modules in tracebacks."""
 COMMANDS = {
     "run": "Plan, prove, fly, monitor and certify a mission.",
     "demo": "Fly an example that ships with the product.",
@@ -64,7 +64,7 @@ COMMANDS = {
 
 
 class LazyGroup(click.Group):
-    """A group whose commands are imported when they are called."""
+    """A group that imports its commands when they are called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(COMMANDS)
@@ -97,16 +97,16 @@ def cli(debug: bool) -> None:
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Run a command line; returns the exit code and never lets an exception out."""
+    """Run a command line; returns the exit code and never raises."""
     arguments = list(sys.argv[1:] if argv is None else argv)
     debug = "--debug" in arguments
-    # the flag may stand anywhere, as users put it at the end
+    # the flag may stand anywhere, since users put it at the end
     arguments = [part for part in arguments if part != "--debug"]
     as_json = "--json" in arguments
     if argv is None:
-        # most of what a command makes stays or goes without the collector: it need not look so often
+        # most objects live until the end: collect garbage less often
         gc.set_threshold(20_000, 5, 10)
-        # the process ends with the command: what is still there needs no last collection
+        # the process ends with the command: no final collection is needed
         atexit.register(gc.freeze)
     try:
         with handlers_as_before() if argv is not None else nullcontext(), stoppable(), told():
@@ -146,7 +146,9 @@ def _stopped(stop: Stopped, more: str = "") -> int:
 
 
 def _place(error: BaseException) -> str:
-    """Where in the product an error came from, so that one that happens once can be found."""
+    """The position in the product's code where an error arose, so that it can be found if it is not
+    reproducible.
+    """
     frames = traceback.extract_tb(error.__traceback__)
     ours = [f for f in frames if f.filename.startswith(PACKAGE)]
     return f" at {ours[-1].filename.removeprefix(PACKAGE)}:{ours[-1].lineno}" if ours else ""
@@ -163,12 +165,12 @@ def _usage(error: click.ClickException, as_json: bool) -> int:
 
 
 def report_error(error: CratousError, as_json: bool) -> int:
-    """Print an error once, for people or as JSON; returns its exit code."""
+    """Print an error once, as text or as JSON; returns its exit code."""
     if as_json:
         click.echo(json_text({**error_data(error), "exit_code": error.exit_code}))
         return error.exit_code
     notes = "".join(f" {note}" for note in getattr(error, "__notes__", ()))
-    # lines of our own stand only in what is refused for reasons of our own
+    # BadInput and NoPlan may quote the user's text: their line breaks are not kept
     keep = "" if isinstance(error, (BadInput, NoPlan)) else "\n"
     click.echo(printable(f"cratous: {error}{notes}", keep), err=True)
     caret = getattr(error, "caret", None)

@@ -18,7 +18,7 @@ from cratous.spec.files.text_file import bytes_of
 
 
 class Output(NamedTuple):
-    """What is written where, and what is printed."""
+    """Output options: files and printed form."""
 
     certificate: Path | None
     svg: Path | None

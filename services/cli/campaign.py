@@ -1,4 +1,4 @@
-"""`cratous campaign`: many runs on one engine, judged, counted, resumable."""
+"""`cratous campaign`: many runs, evaluated and counted, resumable."""
 
 from __future__ import annotations
 
@@ -32,8 +32,9 @@ def seed_range(_ctx: Any, _param: Any, value: str | None) -> range | None:
 
 
 class Wanted(NamedTuple):
-    """What is to come of it: flights kept, or a search for a run that fails `find` (`worst`: that of `searched_for`);
-    what is printed."""
+    """What to produce: kept flights, or a search for a run that fails `find` (`worst`: of
+    `searched_for`); and the printed form.
+    """
 
     searched_for: str | None
     reports: int
@@ -129,7 +130,7 @@ def campaign(
 
 
 def option_of(daa: bool) -> Any:
-    """The one option of a campaign that is made of a mission."""
+    """The only option of a campaign made from a mission."""
     from cratous.services.campaign.definition import Option
 
     return Option(daa=daa) if daa else Option("without-daa", daa=False)
@@ -138,7 +139,7 @@ def option_of(daa: bool) -> Any:
 def conducted(
     campaign: Any, place: Path, how: dict[str, Any], reports: int, tell: Tell
 ) -> tuple[dict[str, Any], list[str]]:
-    """Fly what is missing and write the summary into a folder; it, and why attempts were lost."""
+    """Fly missing runs and write the summary into a folder; returns it and the reasons for lost attempts."""
     from cratous.core import ledger
     from cratous.services.campaign.campaign import Conduct, Course
     from cratous.services.campaign.engine import engine
@@ -147,7 +148,7 @@ def conducted(
     from cratous.services.campaign.summary import build
     from cratous.services.cli.encounter_flight import function_of
 
-    ledger.require(allow_unproved=how["allow_unproved"])  # before any process is begun
+    ledger.require(allow_unproved=how["allow_unproved"])  # before any process is started
     version = version_digest()
     with Store(place) as store:
         conduct = Conduct(
@@ -168,8 +169,9 @@ def conducted(
 def _reports(
     conduct: Any, rows: list[Any], campaign: Any, place: Path, count: int, tell: Tell
 ) -> dict[str, str]:
-    """Fly the worst again and hold each against what was stored; keep its mission and, of a whole flight, its
-    report; links to these by name."""
+    """Fly the worst runs again and compare each with the stored result; keep its mission and, for
+    whole flights, its report. Returns links to these by name.
+    """
     from cratous.core.files.whole_file import write_atomically
     from cratous.services.campaign import worker
     from cratous.services.campaign.definition import MISSIONS
@@ -214,7 +216,7 @@ def _other(answer: dict[str, Any], stored: dict[str, Any]) -> str:
 
 
 def _is_kept(folder: Path, digest: str, own: list[Any]) -> bool:
-    """Whether the report of a flight is there already, held against these files of requirements of the user's own."""
+    """Whether a flight's report exists already, evaluated with these user requirement files."""
     from cratous.services.certify.report_input import read_report
 
     try:
@@ -226,7 +228,7 @@ def _is_kept(folder: Path, digest: str, own: list[Any]) -> bool:
 
 
 def _maps(place: Path, links: dict[str, str]) -> dict[str, bytes]:
-    """The maps of the flights whose reports are kept."""
+    """The maps of the flights with kept reports."""
     from cratous.services.results.names import MAP_NAME
 
     found = {}
@@ -249,7 +251,7 @@ def _write(summary: dict[str, Any], place: Path, links: dict[str, str]) -> None:
     }  # fmt: skip
     for name, text in texts.items():
         write_atomically(place / name, text, "the summary")
-    # one that is there speaks of the runs of before; it is made anew where it is asked for
+    # an old table describes former runs; it is written again on request
     (place / "runs.parquet").unlink(missing_ok=True)
 
 
@@ -261,7 +263,7 @@ def _write_parquet(summary: dict[str, Any], place: Path) -> None:
 
 
 def table_of_runs(summary: dict[str, Any]) -> None:
-    """A line for each run."""
+    """Print a line for each run."""
     rows = []
     for run in summary["runs"]:
         result = run["result"] or {}
@@ -273,9 +275,9 @@ def table_of_runs(summary: dict[str, Any]) -> None:
 
 
 def show(summary: dict[str, Any], lost: list[str]) -> None:
-    """The summary for people; disagreement of judge and monitor comes first.
+    """Print the summary; disagreement of judge and monitor comes first.
 
-    lost: why attempts were lost, those at runs that were flown later included.
+    lost: why attempts were lost, including those of runs that were flown later.
     """
     from cratous.services.campaign.pages import model_line, share
 

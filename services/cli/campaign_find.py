@@ -1,4 +1,4 @@
-"""`cratous campaign --find`: search for a run that fails, and keep it as a small mission file."""
+"""`cratous campaign --find`: search for a failing run, and keep it as a simplified mission file."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def searched(
 
 
 def _case(mission: dict[str, Any], requirement: str, decides: dict[str, Any]) -> str:
-    """The mission file, with what is expected of it; of an encounter nothing is, where it is flown whole."""
+    """The mission file with its expected result; none for an encounter, as it is flown whole there."""
     import yaml
 
     from cratous.services.campaign.definition import ALL, ENCOUNTERS
@@ -76,7 +76,7 @@ def _case(mission: dict[str, Any], requirement: str, decides: dict[str, Any]) ->
     if decides["kind"] == ENCOUNTERS:
         how = "flown" if decides["daa"] else "flown without avoidance"
         return f"# {requirement} is violated in this encounter ({how}), found by a search and made small\n{text}"
-    if requirement in ALL:  # a mission file expects nothing of other requirements
+    if requirement in ALL:  # a mission file has expectations for guarantees only
         without = {"exit_code": 1, "violated": [requirement]}
         expect = {"exit_code": 1} if decides["daa"] else {"without_daa": without}
         text = yaml.safe_dump({**mission, "expect": expect}, sort_keys=False, allow_unicode=True)
@@ -84,7 +84,7 @@ def _case(mission: dict[str, Any], requirement: str, decides: dict[str, Any]) ->
 
 
 def show_found(data: dict[str, Any], place: Path, as_json: bool) -> None:
-    """What was found, for people or as JSON."""
+    """Print what was found, as text or as JSON."""
     if as_json:
         click.echo(json.dumps(data, indent=1, sort_keys=True))
         return

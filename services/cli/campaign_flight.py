@@ -1,4 +1,4 @@
-"""One run of a campaign, flown and judged in a process that stays warm."""
+"""Flies and judges one run of a campaign in a persistent process."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ FLOWN, NO_PLAN, IMPOSSIBLE, FAILED = "flown", "no plan", "impossible", "failed"
 
 
 def fly_run(task: dict[str, Any]) -> dict[str, Any]:
-    """The result of a run, as plain data that follows from `task` alone.
+    """The result of a run, as plain data determined by `task` alone.
 
-    task: `decides` of a run (mission, seed, daa, allow_unproved, judge, model, own), and `keep`: a folder for its
-    results, None if only the result is wanted.
+    task: `decides` of a run (mission, seed, daa, allow_unproved, judge, model, own), and `keep`:
+    folder for its results, None if only the result is wanted.
     """
     keep = task.get("keep")
 
@@ -35,7 +35,7 @@ def fly_run(task: dict[str, Any]) -> dict[str, Any]:
 def result_of_file(
     task: dict[str, Any], fly: Callable[[Path, dict[str, Any]], dict[str, Any]]
 ) -> dict[str, Any]:
-    """What flying a task's mission, as a file in a folder of its own, comes to; errors are results too."""
+    """The result of flying a task's mission from a file in a temporary folder; errors are results too."""
     with TemporaryDirectory(prefix="cratous-") as scratch:
         file = Path(scratch) / "mission.yaml"
         file.write_text(task["mission"], encoding="utf-8")
@@ -48,8 +48,8 @@ def result_of_file(
         except CratousError as error:
             return {"kind": IMPOSSIBLE, "why": [_plain(error, file)]}
         except (MemoryError, OSError):
-            raise  # the machine's, not the mission's
-        except Exception as error:  # a defect is a result as well: it follows from the run
+            raise  # an error of the machine, not of the mission
+        except Exception as error:  # a defect is a result too: it follows from the run
             return {"kind": FAILED, "why": [f"{type(error).__name__}: {error}"[:500]]}
 
 
@@ -59,7 +59,7 @@ def _plain(error: CratousError, file: Path) -> str:
 
 @cache
 def standing(allow_unproved: bool) -> Any:
-    """The gate, once for this process: what it has loaded does not change."""
+    """The ledger's standing, evaluated once per process: loaded code does not change."""
     from cratous.core import ledger
 
     return ledger.require(allow_unproved=allow_unproved)
@@ -86,7 +86,7 @@ def _flown(file: Path, task: dict[str, Any], out: Path) -> dict[str, Any]:
 
 
 def command(task: dict[str, Any]) -> str:
-    """What flies the run alone, once its mission is a file."""
+    """The command that flies only this run, once its mission is a file."""
     parts = ["cratous", "run", "mission.yaml"]
     parts += ["--seed", str(task["seed"])] if task["seed"] else []
     parts += ["--no-daa"] * (not task["daa"]) + ["--allow-unproved"] * task["allow_unproved"]
@@ -131,7 +131,7 @@ def _requirement(row: dict[str, Any]) -> dict[str, Any]:
 
 
 def _drawn(mission: Any) -> dict[str, float]:
-    """What the mission's own variants draw: courses and speeds."""
+    """Values drawn by the mission's own variants: courses and speeds."""
     found = {}
     for vehicle in mission.vehicles[:4]:
         course = degrees(vehicle.heading_rad) % 360
@@ -141,14 +141,14 @@ def _drawn(mission: Any) -> dict[str, float]:
 
 
 def replayed(mission: Any, avoidance: bool, envelopes: Any) -> Any:
-    """The events of a log as steps of the proved system; the one door to it."""
+    """The events of a log as steps of the proved system; the only access to it."""
     from cratous.services.system_model.replay import replay
 
     return replay(mission, avoidance, envelopes)
 
 
 def _modelled(mission: Any, folder: Path, avoidance: bool) -> dict[str, Any]:
-    """Whether each event of authority in the log is a step of the proved system; fits None: no vehicle has an ICAROUS."""
+    """Whether each authority event in the log is a step of the proved system; fits None: no ICAROUS instance."""
     from cratous.services.logs.log import read_envelopes
     from cratous.services.results.names import LOG_NAME
 
@@ -162,7 +162,7 @@ def _modelled(mission: Any, folder: Path, avoidance: bool) -> dict[str, Any]:
 
 
 def _judged(report: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """What the judge says of the log beside the report that the monitor's verdicts stand in."""
+    """The judge's verdicts on the log, compared with the report that contains the monitor's verdicts."""
     from cratous.services.certify.report import report_text
     from cratous.services.cli.judge import judgement
     from cratous.services.results.names import REPORT_NAME

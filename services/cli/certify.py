@@ -1,4 +1,4 @@
-"""`cratous certify`: a finished flight judged again from its log."""
+"""`cratous certify`: judges a finished flight again from its log."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SHOWN = 20
 
 
 def _print_schema(context: click.Context, _parameter: click.Parameter, wanted: bool) -> None:
-    """Print the schema and end; no folder is needed."""
+    """Print the schema and exit; no folder is needed."""
     if wanted and not context.resilient_parsing:
         from cratous.services.certify.report_schema import schema_text
 
@@ -173,7 +173,7 @@ def certify(
 
 
 def _of_log(log: Path, out: Path | None, requirements: tuple[Path, ...], as_json: bool) -> int:
-    """The report of a log alone."""
+    """Make the report of a single log."""
     from cratous.services.certify.from_log import write_from_log
     from cratous.services.cli.progress import waiting
     from cratous.services.cli.show import requirement_table, say

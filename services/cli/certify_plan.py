@@ -1,4 +1,4 @@
-"""`cratous certify-plan`: a certificate of an assignment checked without the search that made it."""
+"""`cratous certify-plan`: checks the certificate of an assignment without the search that made it."""
 
 from __future__ import annotations
 

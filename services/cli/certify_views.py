@@ -1,4 +1,4 @@
-"""What `cratous certify` writes for other tools, and how it verifies what was signed."""
+"""What `cratous certify` writes for other tools, and how it verifies signed results."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ OPTIONS = (
 
 
 def view_options(command: Any) -> Any:
-    """The options of this module, put before a command's own."""
+    """Add this module's options before a command's own."""
     for option in reversed(OPTIONS):
         command = option(command)
     return command
@@ -88,13 +88,13 @@ class Asked(NamedTuple):
 
     @property
     def named(self) -> bool:
-        """Whether a view is named."""
+        """Whether any view is named."""
         tools = self.junit or self.sarif or self.csv or self.argument
         return tools or self.pdf or self.full or self.mcap
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The views that are written: all if none is named."""
+        """The views to write: all if none is named."""
         chosen = (
             (self.junit, JUNIT_NAME), (self.sarif, SARIF_NAME), (self.csv, CSV_NAME),
             (self.argument, ARGUMENT_NAME), (self.argument, DRAWING_NAME),
@@ -104,12 +104,12 @@ class Asked(NamedTuple):
         return tuple(name for wanted, name in chosen if wanted) or VIEWS
 
     def folder(self, results: Path) -> Path:
-        """Where views and statement stand."""
+        """The folder of views and statement."""
         return self.out or results / FOLDER
 
 
 def checked(asked: Asked) -> Any:
-    """The key to sign with, None for none; refuses options that go against each other."""
+    """The signing key, None for none; refuses contradictory options."""
     if asked.key is not None and not asked.sign:
         raise click.UsageError("--key is the key of --sign")
     if asked.mission is not None and not (asked.anything and SARIF_NAME in asked.names):
@@ -132,9 +132,10 @@ def checked(asked: Asked) -> Any:
 
 
 def verified(results: Path, asked: Asked, as_json: bool) -> int:
-    """Verify what was signed, and print what came of it; returns the exit code.
+    """Verify signed results, and print the outcome; returns the exit code.
 
-    Nothing of planner, pilot, monitor or kernels is imported here, nor by the judge or for the argument.
+    Nothing of planner, pilot, monitor or kernels is imported here, nor by the judge or for the
+    argument.
     """
     from cratous.services.attestation.dsse import public_key
     from cratous.services.attestation.verification import signed_folder, verify
@@ -172,14 +173,14 @@ def verified(results: Path, asked: Asked, as_json: bool) -> int:
 
 
 def write(done: Any, results: Path, asked: Asked, key: Any) -> Written:
-    """Write what was asked for of a confirmed judgement."""
+    """Write the requested views of a confirmed judgement."""
     from cratous.services.attestation.findings import Subject
     from cratous.services.attestation.writing import Wanted, write_views
     from cratous.services.certify.result_files import no_result
 
     target = asked.folder(results)
     inside = target.resolve().parent == results.resolve()
-    # the views themselves are no part of what they are about
+    # the views are not part of the results that they describe
     unchecked = tuple(u for u in done.unchecked if not (inside and u == no_result(target.name)))
     subject = Subject(done.report, unchecked)
     wanted = Wanted(asked.names, asked.mission, key, _view_of(results))
@@ -187,7 +188,7 @@ def write(done: Any, results: Path, asked: Asked, key: Any) -> Written:
 
 
 def _view_of(results: Path) -> Callable[[Subject, str], bytes]:
-    """What makes the views that are none of the tools', by their names."""
+    """A function that makes the views not implemented by `tools`, by name."""
 
     def made(subject: Subject, name: str) -> bytes:
         if name == MCAP_NAME:

@@ -1,4 +1,4 @@
-"""`cratous check`: mission files, process-algebra texts and requirements, read as they would be; for hooks and CI."""
+"""`cratous check`: validates mission files, process-algebra texts and requirements; for hooks and CI."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def check(files: tuple[Path, ...], fretish: bool, as_json: bool) -> int:
 
 
 def _read(file: Path, notes: dict[Path, tuple[str, ...]]) -> tuple[Path, list[BadInput]]:
-    """The file and what is wrong with it; notes: gets the parameters of missions that do not fit."""
+    """The file and its faults; notes: receives unsuitable parameters of missions."""
     try:
         if file.suffix == ALGEBRA:
             from cratous.spec import algebra
@@ -87,7 +87,7 @@ def _read(file: Path, notes: dict[Path, tuple[str, ...]]) -> tuple[Path, list[Ba
 
             spec = read(file, is_open=True)
             asked = [one.formula for one in spec.requirements]
-            # one without times is for others
+            # requirements without times have no period
             notes[file] = (*spec.notes, *_kept(spec)) if spec.period_ns else ()
             return file, [one for one in asked if isinstance(one, NotRead)]
         else:
@@ -111,7 +111,7 @@ def _read(file: Path, notes: dict[Path, tuple[str, ...]]) -> tuple[Path, list[Ba
 
 
 def _kept(spec: Specification) -> list[str]:
-    """How many samples wait at most for their verdict, in words."""
+    """Maximum number of samples waiting for their verdict, in words."""
     from cratous.services.requirements.formula import waiting
     from cratous.services.requirements.specification import NotRead
 
@@ -121,7 +121,7 @@ def _kept(spec: Specification) -> list[str]:
 
 
 def _said(file: Path) -> list[dict[str, str]]:
-    """The sentence of each requirement of a file, or why it has none; nothing of other files."""
+    """The sentence of each requirement of a file, or why it has none; empty for other files."""
     if file.suffix not in REQUIREMENTS:
         return []
     from cratous.services.cli.monitor_requirements import read

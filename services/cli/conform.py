@@ -1,4 +1,4 @@
-"""`cratous conform`: published vectors against the kernels and the wires."""
+"""`cratous conform`: published test vectors for the kernels and the wire formats."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LIST = "\n".join(f"  {name}: {text}" for name, text in suites.SUITES.items())
 
 
 def _in_folders(given: tuple[Path, ...]) -> list[Path]:
-    """The files, and of each folder those that stand in it, by name."""
+    """The files given, and the files in each folder given, by name."""
     found: list[Path] = []
     for path in given:
         found += sorted(p for p in path.iterdir() if p.is_file()) if path.is_dir() else [path]

@@ -1,4 +1,4 @@
-"""`cratous daa`: alerts, bands, metrics, pictures and reasons for an encounter file."""
+"""`cratous daa`: alerts, bands, metrics, plots and explanations for an encounter file."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ JSON = click.option("--json", "as_json", is_flag=True, help="JSON instead of CSV
 
 
 def asks_steps(command: Any) -> Any:
-    """The arguments of every command that computes the steps of a file, and where it writes."""
+    """Add the arguments of commands that compute the steps of a file, and its output options."""
     return FILE(CONFIG(OWN(URGENCY(URGENT(OUT(command))))))
 
 
@@ -57,7 +57,7 @@ def _steps(
     file: Path, config: str, ownship: str, dimensions: tuple[int, ...],
     urgency: str | None = None, urgent: str = "", *, quiet: bool = False,
 ) -> Generator[Any, None, None]:  # fmt: skip
-    """The steps of a file in order; quiet: no progress is shown."""
+    """The steps of a file in order; quiet: show no progress."""
     from cratous.core.ledger import require
     from cratous.services.cli.progress import waiting
     from cratous.services.daa import named_or_file, run
@@ -122,7 +122,7 @@ def plot(
 
 
 def _at(steps: Iterator[Any], time_s: float, file: Path) -> Any:
-    """The step at a time; what comes after it is not computed."""
+    """The step at a time; later steps are not computed."""
     times = []
     for step in steps:
         if math.isclose(step.instant.time_s, time_s, abs_tol=1e-6):
@@ -138,7 +138,7 @@ def _at(steps: Iterator[Any], time_s: float, file: Path) -> Any:
 
 
 def _first_alert(steps: Iterator[Any]) -> Any:
-    """The first step with an alert, else the first one."""
+    """The first step with an alert, otherwise the first step."""
     first = next(steps)
     with_alert = (
         s for s in itertools.chain([first], steps) if any(a.level for a in s.instant.alerts)

@@ -1,4 +1,4 @@
-"""`cratous demo`: fly an example that ships with the product."""
+"""`cratous demo`: flies an example included in the product."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from cratous.services.cli.run import fly_and_show
 from cratous.spec.errors import BadInput
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-"""Beside `services`, in a checkout and in an installed package."""
+"""The examples, beside `services` in a checkout and in an installed package."""
 
 
 def missions() -> dict[str, Path]:
-    """The missions among the examples, by name."""
+    """The example missions, by name."""
     return {file.parent.name: file for file in sorted(EXAMPLES.glob("*/mission.yaml"))}
 
 

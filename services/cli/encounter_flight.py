@@ -1,4 +1,4 @@
-"""One run of a campaign of encounters, flown and judged in a process that stays warm."""
+"""Flies and judges one run of an encounter campaign in a persistent process."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ FUNCTION = f"{__name__}:fly_run"
 
 
 def function_of(kind: str) -> str:
-    """What flies a run of a campaign of this kind, as `module:name`."""
+    """The function that flies a run of a campaign of this kind, as `module:name`."""
     from cratous.services.campaign.definition import ENCOUNTERS
 
     return FUNCTION if kind == ENCOUNTERS else campaign_flight.FUNCTION
 
 
 def fly_run(task: dict[str, Any]) -> dict[str, Any]:
-    """The result of a run, as plain data that follows from `task` alone.
+    """The result of a run, as plain data determined by `task` alone.
 
     task: `decides` of a run: mission, seed, daa, allow_unproved.
     """

@@ -1,4 +1,4 @@
-"""`cratous export`: a mission in the formats of others."""
+"""`cratous export`: writes a mission in other tools' formats."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def export(
 
 
 def _planned(mission: Mission, allow_unproved: bool) -> tuple[Plan, int]:
-    """The plan, and what `cratous plan` would end with; NoPlan if there is none."""
+    """The plan, and the exit code of `cratous plan`; NoPlan if there is none."""
     from cratous.core import ledger
     from cratous.services.cli.job import new_bus, plan_and_check
     from cratous.services.cli.plan_lines import left_out_lines

@@ -1,4 +1,4 @@
-"""`cratous icarous`: the ICAROUS of one vehicle as a program of its own, at its end of the bridge."""
+"""`cratous icarous`: the ICAROUS of one vehicle as a stand-alone program, at its end of the bridge."""
 
 from __future__ import annotations
 
@@ -173,7 +173,7 @@ def icarous(
 
 
 def besides_of(craft: Craft, folder: Path | None, ways: dict[str, Address], log: Report) -> Besides:
-    """The links besides the one to UxAS; BadInput if a direct key is missing, or a vehicle has none to speak with."""
+    """The links in addition to UxAS; BadInput if a direct key is missing, or a vehicle has none to send with."""
     from cratous.bridge.text_protocol.keys import direct_keys_of
     from cratous.services.icarous_program.autopilot import Autopilot
     from cratous.services.icarous_program.direct import DirectLink
@@ -189,8 +189,9 @@ def besides_of(craft: Craft, folder: Path | None, ways: dict[str, Address], log:
 
 
 def craft_of(path: Path, vehicle_id: int, dialect: Dialect, digest: str | None = None) -> Craft:
-    """A vehicle of a mission as its ICAROUS has to know it; BadInput if the mission has no such one, or is
-    another one than that of `digest`."""
+    """A vehicle of a mission as its ICAROUS needs it; BadInput if the mission has no such vehicle,
+    or a digest other than `digest`.
+    """
     from cratous.bridge.text_protocol.dialects import Dialect
     from cratous.services.certify.report import mission_hash
     from cratous.services.flight.dynamics import limits_of

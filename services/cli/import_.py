@@ -1,4 +1,4 @@
-"""`cratous import`: a mission file from the files of others."""
+"""`cratous import`: makes a mission file from other tools' files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The main job for one mission: gate, plan, check, fly, monitor, certify."""
+"""Runs one mission: proof gate, plan, check, flight, monitor, certificate."""
 
 from __future__ import annotations
 
@@ -29,8 +29,9 @@ Tell = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Settings:
-    """How a mission is run; `command` is what reproduces it, `again` what does where vehicles were commanded in flight;
-    own: requirements of the user's own."""
+    """How a mission is run; `command` reproduces it, `again` does so if vehicles were commanded in
+    flight; own: user requirements.
+    """
 
     daa: bool = True
     allow_unproved: bool = False
@@ -40,8 +41,10 @@ class Settings:
 
 
 class InProcesses(NamedTuple):
-    """How a mission is flown in processes. rate: times real time; original: ICAROUS is behind clients of the original's, which
-    the user starts; amase: address of an AMASE that flies in place of our simulator; direct: group of the direct links."""
+    """How a mission is flown in processes. rate: multiple of real time; original: ICAROUS is behind
+    its original clients, started by the user; amase: address of an AMASE used as the simulator;
+    direct: multicast group of the direct links.
+    """
 
     rate: float = 1.0
     original: bool = False
@@ -50,23 +53,23 @@ class InProcesses(NamedTuple):
 
 
 class Onlooker(Protocol):
-    """Sees a mission while it is run, and changes nothing of it but when it goes on, and what it commands."""
+    """Observes a run without changing it, except for its pacing and for operator commands."""
 
     def joined(self, bus: Any) -> None:
-        """The bus, before anything is on it."""
+        """Called with the bus before it carries any message."""
 
     def planned(self, checks: list[Verdict], monitor: Any) -> None:
-        """The plan is checked and flies now, watched by the monitor."""
+        """Called when the plan has been checked and is flown, with the monitor."""
 
     def directed(self, now_ms: int) -> tuple[Change, ...]:
-        """What vehicles are commanded to do at a step."""
+        """Operator commands for vehicles at a step."""
 
     def commanded(self) -> Mission | None:
-        """The mission with all that was commanded so; None where nothing was."""
+        """The mission with all operator commands; None if there were none."""
 
 
 def silent(_text: str) -> None:
-    """Report no progress."""
+    """Ignore progress messages."""
 
 
 def new_bus() -> Any:
@@ -78,7 +81,7 @@ def new_bus() -> Any:
 
 
 def plan_and_check(mission: Mission, bus: Any) -> tuple[Plan, list[Verdict]]:
-    """The plan, and the verdicts of the kernels on it. NoPlan with reasons if there is none."""
+    """The plan, and the kernels' verdicts on it. NoPlan with reasons if there is none."""
     from cratous.services.monitor.plan_check import check_plan
     from cratous.services.pipeline.plan import make_plan
 
@@ -93,14 +96,14 @@ OPTIONS, ASKED, ANSWERED, COSTS = TOLD = (
 
 
 def planning_told(at: Callable[[str, int, int], None], tasks: int) -> Callable[[Any], None]:
-    """A tap on the bus that tells how far planning is; tasks: how many are asked for."""
+    """A bus tap that reports planning progress; tasks: number of requested tasks."""
     seen = dict.fromkeys(TOLD, 0)
     at("planning the options of the tasks", 0, tasks)
 
     def tap(message: Any) -> None:
         name = message.topic.rpartition(".")[2]
         if name not in seen or (name in (ASKED, ANSWERED) and seen[OPTIONS] < tasks):
-            return  # a task asks for routes of its own while it makes its options
+            return  # a task requests its own routes while it computes its options
         seen[name] += 1
         if seen[COSTS]:
             at("searching for the best assignment", 0, 0)
@@ -113,7 +116,7 @@ def planning_told(at: Callable[[str, int, int], None], tasks: int) -> Callable[[
 
 
 def absent_lines(mission: Mission) -> list[str]:
-    """A line for each vehicle that takes no part at the start."""
+    """A line for each vehicle that is absent at the start."""
     away = absent(mission, 0).items()
     return [f"vehicle {vehicle} takes no part at the start: {why}" for vehicle, why in away]
 
@@ -130,7 +133,7 @@ def write_certificate(bus: Any, file: Path) -> None:
 
 
 def folder_name(mission: Mission) -> str:
-    """Name of the output folder: the mission's, with the number of the variant."""
+    """Name of the output folder: the mission's, with the variant number."""
     return f"{mission.name}-seed{mission.seed}" if mission.seed else mission.name
 
 
@@ -162,7 +165,7 @@ def fly_mission(
 ) -> dict[str, Any]:
     """Fly one mission and write its log into `folder`; returns the report as data.
 
-    standing: of `core.ledger.require`, asked before anything is flown in this process.
+    standing: of `core.ledger.require`, taken before anything is flown in this process.
     """
     from cratous.services.certify.evidence import counted
     from cratous.services.certify.proofs import inventory, summary
@@ -210,7 +213,7 @@ def fly_mission(
 
 
 def log_meta(mission: Mission, flown: Flown, on_board: bool = True) -> dict[str, Any]:
-    """What a log says of its flight before anything is flown. on_board: as of `Monitor`."""
+    """The meta data of a log before the flight. on_board: as for `Monitor`."""
     from cratous import __version__
     from cratous.services.certify.report import mission_hash
     from cratous.services.logs.records import to_data
@@ -229,7 +232,7 @@ def log_meta(mission: Mission, flown: Flown, on_board: bool = True) -> dict[str,
 def as_flown(
     commanded: Mission, settings: Settings, flown: Flown, writer: LogWriter
 ) -> tuple[Mission, Flown]:
-    """The mission with what was commanded in flight, and the flight of it, as the log keeps them too."""
+    """The mission with the operator's commands, and its flight data, both stored in the log."""
     mission = commanded if settings.daa else replace(commanded, instances=())
     flown = replace(flown, command=settings.again)
     for key, value in log_meta(mission, flown).items():
@@ -238,7 +241,7 @@ def as_flown(
 
 
 def tell_plan(mission: Mission, plan: Plan, checks: list[Verdict], tell: Tell) -> None:
-    """Say which parameters do not fit, what is planned, what is left out, and who takes no part at the start."""
+    """Report unsuitable parameters, the plan, what it leaves out, and vehicles absent at the start."""
     for line in (
         *(f"note: {text}" for text in warnings_of(mission)),
         plan_line(mission, plan, checks),
@@ -250,7 +253,7 @@ def tell_plan(mission: Mission, plan: Plan, checks: list[Verdict], tell: Tell) -
 
 
 def states_lines(mission: Mission) -> list[str]:
-    """A line that says what ICAROUS is given to see, if anybody has one."""
+    """A line on the traffic states that ICAROUS receives, if any vehicle has an ICAROUS."""
     if not mission.instances:
         return []
     return [EXACT_STATES if mission.sensing is None else words(mission.sensing)]
@@ -259,7 +262,7 @@ def states_lines(mission: Mission) -> list[str]:
 def accept_plan(
     plan: Plan, checks: list[Verdict], bus: Any, folder: Path, writer: LogWriter
 ) -> None:
-    """Keep a plan that passes its check in the log, its certificate in `folder`; NoPlan if it fails."""
+    """Store a plan that passes its check in the log, and its certificate in `folder`; NoPlan if it fails."""
     from cratous.services.logs.records import to_data
     from cratous.services.results.names import CERTIFICATE_NAME
 
@@ -272,9 +275,9 @@ def accept_plan(
 def watching(
     mission: Mission, plan: Plan, tell: Tell, says_beats: bool = True, on_board: bool = True
 ) -> Monitor:
-    """A monitor of the flight that tells what is violated and which assumption breaks.
+    """A monitor of the flight that reports violations and broken assumptions as they occur.
 
-    says_beats, on_board: as of `Monitor`.
+    says_beats, on_board: as for `Monitor`.
     """
     from cratous.services.assumptions.said import sentence as assumed
     from cratous.services.certify.blame import blame_rows
@@ -302,9 +305,9 @@ def watching(
 def noted(
     writer: LogWriter, flown: Flown, standing: Any, counts: dict[str, Any], assumptions: Any
 ) -> Flown:
-    """What is known of a flight when it has ended, as the log keeps it too.
+    """The flight data after its end, stored in the log too.
 
-    standing: of the ledger; counts: the calls of each kernel; assumptions: as the monitor found them.
+    standing: of the ledger; counts: the calls of each kernel; assumptions: the monitor's findings.
     """
     from cratous.services.certify.proofs import inventory
     from cratous.services.certify.verdicts import broken_of
@@ -318,7 +321,7 @@ def noted(
 
 
 def refuse_bad_plan(checks: list[Verdict]) -> None:
-    """Nothing flies by a plan that fails its check; a plan of a part flies if that is all it fails in."""
+    """Raise NoPlan if a plan fails its check; a partial plan may fail only in being partial."""
     from cratous.services.monitor.plan_check import PART, WHOLE
 
     bad = [check for check in checks if check.outcome is Outcome.VIOLATED]
@@ -329,12 +332,12 @@ def refuse_bad_plan(checks: list[Verdict]) -> None:
 
 
 def _passing(tell: Tell) -> Callable[[str, int, int], None]:
-    """What is done now, as a line that the next one may overwrite."""
+    """Reports the current activity as a line that the next one may overwrite."""
     return lambda what, done, of: tell(f"\r{what}" + (f": {done} of {of}" if of else ""))
 
 
 def _progress(tell: Tell) -> Callable[[int, str], None]:
-    """What the flight calls now and then; a line that the next one may overwrite."""
+    """A progress callback for the flight; its line may be overwritten by the next one."""
 
     def show(now_ms: int, text: str) -> None:
         tell(f"\r{now_ms / 1000:7.1f} s of flight: {text}")

@@ -1,6 +1,6 @@
-"""What a process of `cratous serve` shares with the others: JSON on stdin and stdout, one object a line.
+"""Common part of the processes of `cratous serve`: JSON on stdin and stdout, one object per line.
 
-When stdin ends, whoever started the process is gone, and it ends too.
+When stdin ends, the parent process is gone, and the process ends too.
 """
 
 from __future__ import annotations
@@ -17,9 +17,10 @@ Tell = Callable[[dict[str, Any]], None]
 
 
 def told_on_stdout() -> Tell:
-    """What writes a line to stdout, from any thread; all else that is printed goes to stderr from now on.
+    """A thread-safe function that writes a line to stdout; all other output goes to stderr from now
+    on.
 
-    Ctrl-C is for who started this process, and is ignored.
+    Ctrl-C is meant for the parent process, and is ignored.
     """
     out, writing = os.dup(1), threading.Lock()
     os.dup2(2, 1)
@@ -35,6 +36,5 @@ def told_on_stdout() -> Tell:
 
 
 def end_main_thread() -> None:
-    """What whoever started this asks for, or its end: the main thread is interrupted, also where it waits or
-    searches."""
+    """End by request of the parent process: interrupts the main thread, even while it waits or searches."""
     signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGTERM)

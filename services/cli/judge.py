@@ -1,4 +1,4 @@
-"""`cratous judge`: did a logged flight keep G1 to G5, by a program that shares no code with it?"""
+"""`cratous judge`: whether a logged flight satisfies G1 to G5, by a program that shares no code with it."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from typing import Any
 import click
 
 PATIENCE_S, DOING = 1.0, "judging the flight from its log"
-"""What is done is said once it has taken so long [s]."""
+"""Progress message, printed if judging takes longer than this [s]."""
 
 
 def _say(text: str) -> None:
-    """One line; what comes from a log acts on no terminal and begins no line of its own."""
+    """Print one line; text from a log cannot control the terminal or start a new line."""
     shown = (c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
     click.echo("".join(shown))
 
@@ -40,7 +40,7 @@ def judge(log: Path, mission: Path | None, as_json: bool, every: bool) -> int:
     """
     from cratous.judge.verdict import GUARANTEES, HOLDS
 
-    # a line of its own: this command imports nothing of the judged
+    # its own progress line: this command imports nothing of the judged code
     told = threading.Timer(PATIENCE_S, click.echo, (DOING,), {"err": True})
     told.daemon = True
     if not as_json:
@@ -72,14 +72,14 @@ def judge(log: Path, mission: Path | None, as_json: bool, every: bool) -> int:
 
 
 def judgement(log: Path, mission: Path | None = None) -> Any:
-    """What the judge says of a log, a `cratous.judge.Judgement`; the one door to it."""
+    """The judge's result for a log, a `cratous.judge.Judgement`; the only access to it."""
     from cratous.judge import judge as decide
 
     return decide(log, mission)
 
 
 def encounter_rows(file: Path, states: Any, reached: Any) -> list[Any]:
-    """What the judge says of a short flight without a log: its rows. See `cratous.judge.encounter`."""
+    """The judge's rows for a short flight without a log. See `cratous.judge.encounter`."""
     from cratous.judge.encounter import judge_encounter
 
     return judge_encounter(file, states, reached)

@@ -1,4 +1,4 @@
-"""The table of a watch on a terminal, while it runs: what each requirement has come to so far."""
+"""A live table on the terminal: the current result of each requirement of a watch."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ HEAD = ("requirement", "so far", "holds", "violated", "unknown", "nearest to its
 
 
 def so_far(one: Outcome) -> str:
-    """What a requirement has come to; it holds at the end alone."""
+    """The current result of a requirement; `holds` is possible only at the end."""
     if one.violated:
         return "violated"
     if one.unknown:
@@ -44,7 +44,7 @@ def nearest(one: Outcome) -> str:
 
 
 def table_of(watch: Watch, messages: int, now_ms: int) -> Table:
-    """One row a requirement; below it how much has come, and what is wrong with it."""
+    """One row per requirement; below it the number of messages and the faults of the trace."""
     from rich.markup import escape
     from rich.table import Table
 
@@ -67,7 +67,7 @@ def table_of(watch: Watch, messages: int, now_ms: int) -> Table:
 
 @contextmanager
 def shown(table: Callable[[], Table], wanted: bool) -> Iterator[None]:
-    """Keep the table on the terminal in here, where standard output is one; what is printed stands above it."""
+    """Show the table inside the block if standard output is a terminal; other output appears above it."""
     if not (wanted and sys.stdout.isatty()):
         yield
         return

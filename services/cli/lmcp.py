@@ -61,7 +61,7 @@ def _form(command: Any) -> Any:
 
 
 def _all(found: Iterator[forms.Found]) -> Iterator[forms.Found]:
-    """As it comes; what is wrong with the rest of the input is found as well, not raised."""
+    """The messages as they are read; an error in the rest of the input becomes an item instead of an exception."""
     while True:
         try:
             yield next(found)
@@ -96,7 +96,7 @@ def decode(file: tuple[str, ...], form: str, to: str, around: bool) -> int:
                 continue
             try:
                 text = _text(found, to, around)
-            except BadInput as err:  # an object that XML cannot hold
+            except BadInput as err:  # an object that XML cannot represent
                 wrong += 1
                 say(f"cratous: {found.where}: {err}", err=True)
                 continue

@@ -1,4 +1,4 @@
-"""`cratous log`: message logs of any format: what is in them, selection, following, export, replay."""
+"""`cratous log`: message logs of any format: listing, selection, following, export, replay."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def log() -> None:
 
 
 def selecting(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the options that choose messages."""
+    """Add the message selection options."""
     options = (
         click.option("--type", "types", multiple=True, metavar="TYPE",
                      help="Type, with what inherits from it; or a pattern as 'afrl.cmasi.*'."),
@@ -69,7 +69,7 @@ def selecting(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def on_log(command: Callable[..., int]) -> Callable[..., int]:
-    """Open the log, make the selection, and close the log afterwards."""
+    """Decorator: opens the log, builds the selection, and closes the log afterwards."""
 
     @wraps(command)
     def run(path: Path, types: tuple[str, ...], start: str | None, end: str | None,
@@ -90,7 +90,7 @@ def on_log(command: Callable[..., int]) -> Callable[..., int]:
 def _check_types(source: Source, chosen: Selection) -> None:
     try:
         chosen.check_types(())
-    except BadInput:  # not of our models: is it in the log?
+    except BadInput:  # not in our models: check the log
         chosen.check_types(found.topic for found in source.topics())
 
 
@@ -114,7 +114,7 @@ def _time_ms(source: Source, text: str | None) -> int | None:
 
 
 def _missing(source: Source) -> list[str]:
-    """What is known to be lost, in sentences."""
+    """What is known to be lost, in words."""
     gaps = source.gaps()
     found = [
         f"{gap.missing} messages from {gap.first_ms / 1000:.3f} to {gap.last_ms / 1000:.3f} s were "
@@ -247,7 +247,7 @@ def follow(path: Path, new: bool, seconds: float | None, as_json: bool, **choice
     chosen = Selection(from_ms=limits[0], to_ms=limits[1], **choice)
     try:
         chosen.check_types(())
-    except BadInput as error:  # the log may still get messages of that name
+    except BadInput as error:  # messages of this type may still arrive
         say(f"cratous: note: no type of ours: {error.item}", err=True)
     if not path.exists():
         say(f"cratous: note: {path} is not there yet; waiting for it", err=True)

@@ -1,4 +1,4 @@
-"""`cratous monitor`: a message log through the monitor."""
+"""`cratous monitor`: runs the monitor on a message log."""
 
 from __future__ import annotations
 

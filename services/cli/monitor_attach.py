@@ -1,4 +1,4 @@
-"""`cratous monitor --attach`: a running system against requirements of the user's own, while it runs."""
+"""`cratous monitor --attach`: checks a running system against user requirements."""
 
 from __future__ import annotations
 
@@ -26,15 +26,16 @@ if TYPE_CHECKING:
     from cratous.services.requirements.tapped import Tapped
 
 WAIT_S = 60.0
-"""So long nobody may listen at the address."""
+"""Maximum wait for a server at the address [s]."""
 TAP_WAIT_S = 600.0
-"""So long nobody may connect to a tap: who will may have to check its proofs first."""
+"""Maximum wait for a client of a tap [s]: it may have to check its proofs first."""
 TAP = "cratous://"
 
 
 class Live(NamedTuple):
-    """What is asked for beside the verdicts. seconds: None until it is ended; metrics: a port, None for none; listen, keys:
-    of a tap, where its clients come, and where the keys of vehicles lie."""
+    """Options besides the verdicts. seconds: None for no limit; metrics: a port, None for none;
+    listen, keys: of a tap, the address for its clients, and the folder of vehicle keys.
+    """
 
     seconds: float | None
     keep: Path | None
@@ -47,7 +48,7 @@ class Live(NamedTuple):
 def attach(
     address: str, requirements: Path, live: Live, as_json: bool, allow_unproved: bool
 ) -> int:
-    """Watch until the time is over or a signal ends it; the exit code."""
+    """Watch until the time is over or a signal arrives; returns the exit code."""
     from cratous.bridge.port import is_due
     from cratous.core import ledger
     from cratous.services.certify.blame_own import own_blame
@@ -80,7 +81,7 @@ def attach(
         watch.sampling.find(kind, "", time_ns)
         for store in stores if kind in NOT_WHOLE else ():
             now_ms = time_ns // 10**6
-            # how many are missing is not known
+            # the number of missing messages is unknown
             store.keep_gap(Gap(store.count, 1, now_ms, now_ms, SAYS[kind]))
 
     attached, wait_s = open_source(lambda _severity, said: click.echo(said, err=True), find)
@@ -132,7 +133,7 @@ Open = Callable[["Report", Find], tuple["Attached | Tapped", float]]
 
 
 def _peer(address: str, live: Live) -> Open:
-    """What to open to listen to a peer, and how long it may not be there."""
+    """How to connect to a peer, and the maximum wait for it."""
     from cratous.bridge.port import address as read_address
 
     text = address if "://" in address else f"tcp://{address}"
@@ -150,7 +151,7 @@ def _peer(address: str, live: Live) -> Open:
 
 
 def _tap(address: str, live: Live) -> Open:
-    """The same for a tap, and how long nobody may come."""
+    """The same for a tap, with the maximum wait for a client."""
     from cratous.bridge.port import address as read_address
 
     if live.listen is None:
@@ -176,7 +177,7 @@ def _tap(address: str, live: Live) -> Open:
 
 
 def _refuse_no_keys(folder: Path | None) -> None:
-    """BadInput for a file of a key that holds none: else its lines would just not be authenticated."""
+    """BadInput for a key file without a key: its lines would silently not be authenticated."""
     from cratous.bridge.text_protocol.keys import key_of
 
     for file in sorted(folder.glob("vehicle_*.key")) if folder is not None else ():
@@ -229,7 +230,7 @@ def _command(text: str) -> list[str]:
 
 
 def _run(words: list[str], one: Outcome) -> None:
-    """Start the user's command; it is not waited for."""
+    """Start the user's command without waiting for it."""
     about = {
         "CRATOUS_REQUIREMENT": one.name,
         "CRATOUS_SEVERITY": one.requirement.severity,

@@ -1,4 +1,4 @@
-"""`cratous monitor --model`: a flight's log against the composed steps of authority."""
+"""`cratous monitor --model`: checks a flight's log against the composed steps of authority."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ UNASKED = "not known whether it fits the model: no vehicle was flown with an ICA
 
 
 def model(log: Path, as_json: bool, allow_unproved: bool) -> int:
-    """Print whether each event of authority is a step of the model, or the first that is not; the exit code.
+    """Print whether each authority event is a step of the model, or the first that is not; returns
+    the exit code.
 
-    0 all are, 1 one is not, 3 all are by kernels that have no proof, or no vehicle has an ICAROUS instance: then
-    nothing was asked of the model, and the log neither fits nor fails to.
+    0 all are, 1 one is not, 3 all are by kernels without a proof, or no vehicle has an ICAROUS
+    instance: then nothing was checked, and the log neither fits nor fails.
     """
     from cratous.core import ledger
     from cratous.services.certify.evidence import counted

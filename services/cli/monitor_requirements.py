@@ -1,4 +1,4 @@
-"""`cratous monitor --requirements`: a trace against requirements of the user's own."""
+"""`cratous monitor --requirements`: checks a trace against user requirements."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ UNTESTED = "nothing tested it, as what it depends on was so at no sample"
 
 
 class Judged(NamedTuple):
-    """A trace held against requirements. lines: a line for each verdict, None where they were not asked for."""
+    """Result of checking a trace. lines: a line for each verdict, None if not requested."""
 
     timed: bool
     watched: Watched
@@ -32,7 +32,7 @@ class Judged(NamedTuple):
 
     @property
     def code(self) -> int:
-        """The exit code, where the kernels are proved."""
+        """The exit code, if the kernels are proved."""
         words = {outcome.verdict for outcome in self.watched.outcomes}
         return 1 if "violated" in words else 0 if words == {"holds"} else 3
 
@@ -40,7 +40,7 @@ class Judged(NamedTuple):
 def trace(
     trace: Path, requirements: Path, verdicts: bool, as_json: bool, allow_unproved: bool
 ) -> int:
-    """Print what each requirement says of the trace; the exit code."""
+    """Check a trace and print the result of each requirement; returns the exit code."""
     from cratous.core import ledger
 
     spec = read(requirements)
@@ -49,7 +49,7 @@ def trace(
 
 
 def judged(spec: Specification, trace: Path, verdicts: bool = False) -> Judged:
-    """A trace held against requirements; verdicts: with a line for each."""
+    """Check a trace against requirements; verdicts: with a line for each verdict."""
     from cratous.services.certify.blame_own import own_blame
     from cratous.services.requirements.lint import lint
     from cratous.services.requirements.watch import watch
@@ -63,7 +63,7 @@ def judged(spec: Specification, trace: Path, verdicts: bool = False) -> Judged:
 
 
 def print_result(found: Judged, standing: Standing, as_json: bool) -> int:
-    """Print verdicts, margins, blame, and what is wrong with samples and requirements; the exit code."""
+    """Print verdicts, margins, blame, and faults of samples and requirements; returns the exit code."""
     from cratous.services.cli.show import say
 
     code = found.code or (3 if standing.problems else 0)
@@ -97,7 +97,7 @@ def result(found: Judged) -> dict[str, Any]:
 
 
 def told(found: Judged) -> Iterator[str]:
-    """The same for people."""
+    """The same as lines of text."""
     from cratous.services.certify.own_said import lines
 
     for remark in found.remarks:
@@ -115,9 +115,10 @@ def told(found: Judged) -> Iterator[str]:
 
 
 def read(requirements: Path, is_open: bool = False) -> Specification:
-    """The requirements of a file, in the language that its name tells; BadInput for what is none.
+    """The requirements of a file, in the language given by its suffix; BadInput if it is invalid.
 
-    is_open: its parameters need no values."""
+    is_open: its parameters need no values.
+    """
     from cratous.services.requirements import c2po, fret, language
     from cratous.spec.files.limits import CONFIG_BYTES, DOCUMENT_BYTES
     from cratous.spec.files.text_file import text_of
@@ -184,7 +185,7 @@ def _line(one: Outcome, timed: bool) -> str:
 
 
 def _margin(margin: Margin) -> str:
-    """How near the two sides came, in their unit."""
+    """The closest approach of the two sides, in their unit."""
     unit = "" if margin.unit == "1" else f" {margin.unit}"
     right = margin.right if isinstance(margin.right, str) else f"{margin.right:g}{unit}"
     if margin.at < 0:

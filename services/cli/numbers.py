@@ -1,4 +1,4 @@
-"""Numbers as options take them: NaN, which click takes for one, also of any range, is none."""
+"""Number types for options that refuse NaN, which click accepts, even for ranges."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Requirements of the user's own at the command line: the option, their files, and what came of them."""
+"""User requirements at the command line: the option, its files, and the results."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Data = dict[str, Any]
 
 
 def own_option(said: str) -> Any:
-    """The option `--requirements FILE.req`, which may be given again."""
+    """The option `--requirements FILE.req`, which may be repeated."""
     return click.option(
         "--requirements",
         type=click.Path(path_type=Path),
@@ -40,7 +40,7 @@ def own_files(paths: Sequence[Path]) -> tuple[OwnFile, ...]:
 
 
 def own_data(report: Data) -> Data:
-    """What a report says of them, without the texts of their files."""
+    """A report's rows of user requirements, without the texts of their files."""
     own = report["own"]
     files = [{key: one[key] for key in ("file", "sha256")} for one in own["files"]]
     return {**own, "files": files}

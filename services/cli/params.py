@@ -1,4 +1,4 @@
-"""`cratous params`: what ICAROUS and detect-and-avoid are set to for a mission, and why."""
+"""`cratous params`: the parameters of ICAROUS and detect-and-avoid for a mission, and their origin."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ def plan(
             item="--certificate" if task is None else "--why",
             expected=f"--request 1 to {count} with it",
         )
-    # what is bad is refused before anything that takes time; beside other requests it is one answer
+    # bad input is refused before lengthy work; with several requests it is one of the answers
     loaded: list[Mission | CratousError] = []
     for number in range(1, count + 1):
         try:
@@ -122,7 +122,7 @@ def _check_asked(task: int, mission: Mission) -> None:
 
 
 class _Job(NamedTuple):
-    """What is asked of each plan, and how the code stands against its proofs."""
+    """Options for each plan, and the proof status of the code."""
 
     as_json: bool
     certificate: Path | None
@@ -131,7 +131,7 @@ class _Job(NamedTuple):
 
 
 def _planned(loaded: Mission, job: _Job) -> tuple[dict[str, Any], int]:
-    """Plan one mission, print it unless as JSON; the data, and the exit code. NoPlan if there is none."""
+    """Plan one mission, print it unless as JSON; returns the data and the exit code. NoPlan if there is none."""
     from cratous.services.certify.evidence import counted
     from cratous.services.certify.proofs import inventory
     from cratous.services.certify.verdicts import constraint_rows
@@ -172,7 +172,7 @@ def _planned(loaded: Mission, job: _Job) -> tuple[dict[str, Any], int]:
 
 
 def _print(loaded: Mission, made: Any, checks: list[Any], data: dict[str, Any]) -> None:
-    """The plan, its constraints and notes as tables."""
+    """Print the plan, its constraints and notes as tables."""
     from cratous.services.cli.job import absent_lines
     from cratous.services.cli.plan_lines import left_out_lines, plan_line
     from cratous.services.cli.relation_places import RelationPlaces
@@ -220,7 +220,7 @@ def _print_evidence(data: dict[str, Any]) -> None:
 
 
 def reasons_of(mission: Any, made: Any, task: int) -> tuple[Any, ...]:
-    """For each vehicle what the plan would cost with it."""
+    """For each vehicle the plan's cost if it did the task."""
     from cratous.services.mission.availability import absent
     from cratous.services.mission.wind import known_at
     from cratous.services.planning.why import why
@@ -229,7 +229,7 @@ def reasons_of(mission: Any, made: Any, task: int) -> tuple[Any, ...]:
 
 
 def why_lines(mission: Any, made: Any, task: int, instead: tuple[Any, ...]) -> list[str]:
-    """In words: what the plan costs, and with the task for each other vehicle."""
+    """As text: the plan's cost, and the cost with the task assigned to each other vehicle."""
     from cratous.services.pipeline.plan import cost_of
     from cratous.spec.mission.plan import cost_text
 

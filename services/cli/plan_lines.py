@@ -1,4 +1,4 @@
-"""What the command line says of a plan: who does what, how good it is, what it leaves out."""
+"""Text on a plan for the command line: assignments, quality, and tasks left out."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cratous.spec.mission.plan import (
 
 
 def plan_line(mission: Mission, plan: Plan, checks: list[Verdict]) -> str:
-    """One line on a plan and on what its check says."""
+    """One line on a plan and the result of its check."""
     chains = []
     for vehicle in dict.fromkeys(item.vehicle_id for item in plan.items):
         tasks = " ".join(f"p{item.task_id}" for item in plan.chain(vehicle))
@@ -31,7 +31,7 @@ def plan_line(mission: Mission, plan: Plan, checks: list[Verdict]) -> str:
 
 
 def left_out_lines(plan: Plan) -> list[str]:
-    """A line for each task that a plan leaves out or does in part, and whether no more could be done."""
+    """A line for each task left out or done in part, and whether more could be done."""
     left = left_out_of(plan)
     lines = [f"in part: {one.text}" for one in in_part_of(plan)]
     for one in left:
@@ -43,7 +43,7 @@ def left_out_lines(plan: Plan) -> list[str]:
 
 
 def _cost(mission: Mission, plan: Plan) -> str:
-    """What it costs, where that is not a time."""
+    """The cost in words, if it is not a time."""
     from cratous.services.pipeline.plan import cost_of
 
     if COST_UNITS[plan.cost] == "ms":
@@ -52,7 +52,7 @@ def _cost(mission: Mission, plan: Plan) -> str:
 
 
 def standing(mission: Mission, plan: Plan) -> str:
-    """How good a plan is, as far as its certificate shows."""
+    """Quality of a plan, as far as its certificate shows it."""
     from cratous.services.pipeline.plan import cost_of
 
     if plan.status == "optimal":

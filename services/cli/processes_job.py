@@ -1,4 +1,4 @@
-"""The main job for one mission in processes: gate, plan, check, fly, monitor, certify."""
+"""Runs one mission in several processes: proof gate, plan, check, flight, monitor, certificate."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ from cratous.services.results.names import LOG_NAME
 from cratous.spec.mission import Mission
 
 STATES_MS = 550
-"""The simulator tells states twice a second; so far apart [ms] are two of them at most."""
+"""The simulator publishes states twice a second; maximum interval between two [ms]."""
 
 UNCERTIFIED = (
     "the bridge between processes has no message for certificates: a vehicle that ICAROUS has holds where it is, "
@@ -64,7 +64,7 @@ def run_in_processes(
 ) -> dict[str, Any]:
     """Fly one mission in processes, write log and report into `folder`; returns the report as data.
 
-    path: of the mission, which the ICAROUS processes read.
+    path: of the mission file, which the ICAROUS processes read.
     """
     digest = mission_hash(mission)
     mission = as_flown(mission if settings.daa else replace(mission, instances=()), how)
@@ -74,7 +74,7 @@ def run_in_processes(
         amase = None
         if how.amase is not None:
             refuse_for_amase(mission)
-            # nothing is planned for an AMASE that does not answer
+            # check that AMASE answers before planning
             amase = stack.enter_context(closing(Amase(how.amase, tell)))
         flying = Flying(
             path,
@@ -125,13 +125,13 @@ def _run(mission: Mission, told: Told, settings: Settings, flying: Flying) -> di
 
 
 def _met_again(mission: Mission, amase: Amase) -> Mission:
-    """The mission with a note of when AMASE was lost and met again."""
+    """The mission with a note of when AMASE was lost and reconnected."""
     note = f"AMASE was lost and met again {', '.join(amase.met_again)}: {PUT_BACK}"
     return replace(mission, notes=(*mission.notes, note))
 
 
 def as_flown(mission: Mission, how: InProcesses) -> Mission:
-    """The mission as it is flown in processes: how far apart its states are, and what has to be known of it."""
+    """The mission as flown in processes: interval of its states, and notes on this kind of flight."""
     count, known = len(mission.instances), ""
     ours = 2 if how.amase is None else 1
     simulator = "the simulator, " if how.amase is None else ""

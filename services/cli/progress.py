@@ -1,6 +1,6 @@
-"""What a command does and how far it is, on stderr, once it has taken more than a second.
+"""Progress display on stderr, for commands that take more than a second.
 
-`waiting` is for a command that works in its own process, `Bar` for work that is done in others.
+`waiting` is for work in this process, `Bar` for work in other processes.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from cratous.spec.files.printable import printable
 
 T = TypeVar("T")
 CLEARED = "\r\x1b[2K"
-"""The cursor at the beginning of a line that is empty."""
+"""Terminal sequence: move to the start of the line and clear it."""
 PATIENCE_S, BETWEEN_S, CELLS = 1.0, 5.0, 24
-"""When it is said first, how often lines follow where there is no terminal, and the bar's length."""
+"""Delay of the first message, interval of lines without a terminal [s], and length of the bar."""
 
 
 class Waiting:
-    """What is being done now; said by a thread, as the work itself may be one long call."""
+    """The current activity; displayed by a thread, since the work may be one long call."""
 
     def __init__(self, what: str) -> None:
         self._now = (what, 0, 0)
@@ -45,7 +45,7 @@ class Waiting:
             yield item
 
     def tell(self, text: str) -> None:
-        """A line that stays; one that begins with a carriage return is what is done now."""
+        """Print a permanent line; one that begins with a carriage return sets the current activity."""
         if text.startswith("\r"):
             self.at(text[1:].strip())
         else:
@@ -63,7 +63,7 @@ class Waiting:
         return f"[{'#' * cells}{'.' * (CELLS - cells)}] {self.text()}" if of else self.text()
 
     def say(self, stream: Any, terminal: bool) -> None:
-        """Until it is over: after a moment what is done, and then whatever else is."""
+        """Display the progress until the end, after an initial delay."""
         pause, said = PATIENCE_S, ""
         while not self._over.wait(pause):
             line = self.bar() if terminal else self.text()
@@ -75,13 +75,13 @@ class Waiting:
             pause = 0.2 if terminal else BETWEEN_S
 
     def line(self, text: str) -> None:
-        """A line that stays, above a bar that is there."""
+        """Print a permanent line above the bar."""
         with self._drawing:
             self._clear(sys.stderr)
             click.echo(printable(text), err=True)
 
     def end(self, stream: Any) -> None:
-        """Show no more progress; a bar is removed."""
+        """Stop displaying progress; a bar is removed."""
         with self._drawing:
             self._over.set()
             self._clear(stream)
@@ -95,7 +95,7 @@ class Waiting:
 
 @contextmanager
 def waiting(what: str, quiet: bool = False) -> Iterator[Waiting]:
-    """Around work that may take long: a bar on a terminal, lines elsewhere; quiet: neither."""
+    """Display progress during the block: a bar on a terminal, lines elsewhere; quiet: neither."""
     made, stream = Waiting(what), sys.stderr
     if quiet:
         yield made
@@ -110,7 +110,7 @@ def waiting(what: str, quiet: bool = False) -> Iterator[Waiting]:
 
 
 def passing(tell: Callable[[str], None]) -> Callable[[str], None]:
-    """Tells lines as what is done now: none of them stays. Raises `Stopped` if a signal has asked to end."""
+    """A function that shows lines as the current activity, none permanently. Raises `Stopped` after a signal."""
 
     def told(text: str) -> None:
         heed()

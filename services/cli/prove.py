@@ -40,7 +40,7 @@ def _show(theorem: Any, verbose: bool, statement: str) -> None:
 
 
 def _tell_ran(theorems: list[Any], verbose: bool) -> None:
-    """What was run on numbers of what is proved, and what could not be."""
+    """Report what was run on concrete numbers for proved theorems, and what could not be."""
     ran = [(t.name, t.ran) for t in theorems if t.ran is not None]
     held = [one for _, one in ran if one.points]
     left = sorted({text for _, one in ran for text in one.left_out})
@@ -61,7 +61,7 @@ def _tell_ran(theorems: list[Any], verbose: bool) -> None:
 
 
 def _statuses(said: dict[str, str]) -> dict[str, int]:
-    """How many kernels, folds and drivers a ledger has of each status."""
+    """Number of kernels, folds and drivers in a ledger by status."""
     from cratous.core.ledger.status import counts
 
     kept = (json.loads(text) for place, text in said.items() if place.startswith("kernels/"))
@@ -69,7 +69,7 @@ def _statuses(said: dict[str, str]) -> dict[str, int]:
 
 
 def _export(theorems: list[Any], folder: Path, theorem_folder: Path) -> int:
-    """Write each obligation as SMT-LIB; returns how many files."""
+    """Write each obligation as SMT-LIB; returns the number of files."""
     from functools import partial
 
     from cratous.proofs.engine import prover, worker_processes
@@ -89,7 +89,7 @@ def _export(theorems: list[Any], folder: Path, theorem_folder: Path) -> int:
 
 
 def _refuse(problems: list[str]) -> None:
-    """Structural faults end the run: no ledger could say anything of such code."""
+    """Structural faults end the run: no ledger could vouch for such code."""
     for problem in problems:
         click.echo(problem, err=True)
     where, _, what = problems[0].partition(": ")
@@ -101,7 +101,7 @@ def _refuse(problems: list[str]) -> None:
 
 
 class Output(NamedTuple):
-    """What is printed and written where, in how many processes, and which cluster is asked first."""
+    """Output options, number of processes, and the cluster to use first."""
 
     as_json: bool
     junit: Path | None
@@ -201,7 +201,7 @@ def prove(
     from cratous.proofs.phases import REST, SECOND, Phases, TimedCache
 
     as_json, junit, sarif, smt2_folder, jobs, scheduler, verbose = Output(**output)
-    # thousands of syntax trees live to the end: looking for garbage in them is a third of a warm run
+    # most syntax trees live to the end: garbage collection would take a third of a warm run
     gc.set_threshold(200_000, 20, 100)
     begun = time.monotonic()
     if scheduler is not None:
@@ -238,8 +238,8 @@ def prove(
         from cratous.proofs.mutation.mutate import chosen
 
         for name in every:
-            prover.load_claim(name, folder)  # says what is wrong with a file, and where
-        # the theorems that meet a function of this name are proved too
+            prover.load_claim(name, folder)  # reports the error in a file, with its position
+        # theorems that involve a function of this name are proved too
         met = chosen(only, Keys(home), about)
         matching(only, [*every, *met], "theorem or function", "--only", REGISTRY)
         names = sorted({*names, *(name for users in met.values() for name in users)})

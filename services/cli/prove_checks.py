@@ -1,4 +1,4 @@
-"""What `cratous prove` does beyond proving: the second solver, and mutation."""
+"""Additional checks of `cratous prove`: the second solver, and mutation."""
 
 from __future__ import annotations
 
@@ -22,9 +22,11 @@ def second_solver(
     new: bool,
     texts: dict[str, Any],
 ) -> dict[str, Any]:
-    """Put the obligations to cvc5 and tell what it says; new: only those without a recorded verdict.
+    """Check the obligations with cvc5 and report its answers; new: only those without a recorded
+    verdict.
 
-    keep: write the record. whole: these are all theorems. texts: those that were written while they were proved.
+    keep: write the record. whole: these are all theorems. texts: obligations written during the
+    proofs.
     """
     from cratous.core.files.private_cache import private_cache
     from cratous.proofs import recheck
@@ -81,9 +83,11 @@ def mutation(
     keep: bool,
     new: bool,
 ) -> dict[str, Any]:
-    """Judge the mutants; patterns: names of functions; about: theorems whose functions are meant too.
+    """Judge the mutants; patterns: names of functions; about: theorems whose functions are
+    included.
 
-    new: what the record has is not judged again; its survivors are told and count.
+    new: recorded verdicts are not judged again; surviving mutants in the record are reported and
+    count.
     """
     from cratous.proofs.mutation import mutate
     from cratous.proofs.mutation import record as mutation_record
@@ -94,7 +98,7 @@ def mutation(
 
     def tell(target: str, results: list[Any]) -> None:
         if keep:
-            # at once, so that a run that is stopped has not been in vain
+            # immediately, so that an interrupted run keeps its results
             mutation_record.write(mutate.part(target, results), keys)
         if as_json:
             return
@@ -126,7 +130,7 @@ def mutation(
         ],
     }
     if new and home.product:
-        # what was judged now says little: what counts is what is known of all
+        # the totals of the whole record matter, not of this run alone
         found["record"] = mutation_record.totals(mutation_record.merged(data, report, keys), keys)
         score = mutation_record.score_of(found["record"])
         found["holds"] = found["holds"] and (score is None or score >= ENOUGH)

@@ -1,4 +1,4 @@
-"""`cratous prove --scheduler`: theorems put to the workers of a cluster, whose answers vouch for nothing."""
+"""`cratous prove --scheduler`: theorems proved by workers of a cluster, whose answers are not trusted."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ from cratous.spec.errors import BadInput, CratousError
 
 FUNCTION = "cratous.services.cli.prove_elsewhere:answered"
 MEMORY_MB, TIME_S, ATTEMPTS = 8_000, 7_200, 2
-"""What a theorem may take of a worker, and how often one is tried whose worker is lost."""
+"""Limits of a theorem on a worker, and the number of attempts if workers are lost."""
 
 
 def refuse_what_vouches(whole: bool, others: dict[str, Any]) -> None:
-    """BadInput for options that need every theorem proved here, where some may be proved elsewhere alone.
+    """BadInput for options that need every theorem proved here, where some may be proved elsewhere
+    only.
 
-    others: options by name. recheck and mutate ask other questions than those that workers are given.
+    others: options by name. recheck and mutate are not supported by workers.
     """
     never = {"--recheck", "--mutate", "--self-test"}
     for name, given in others.items():
@@ -34,7 +35,7 @@ def refuse_what_vouches(whole: bool, others: dict[str, Any]) -> None:
 
 
 def version(home: Any) -> str:
-    """Digest of the files that a proof of this home rests on, and of what CRATOUS and its packages are here."""
+    """Digest of the files on which proofs of this home depend, and of the installed versions."""
     from cratous.proofs.elsewhere import sources
     from cratous.services.campaign.identity import version_digest
 
@@ -46,7 +47,7 @@ def version(home: Any) -> str:
 
 
 def answered(task: dict[str, Any]) -> dict[str, Any]:
-    """What a worker says of a theorem: `proved` and `answers`, or `other version`, or why it is not `stated`."""
+    """A worker's answer on a theorem: `proved` and `answers`, or `other version`, or why it is not `stated`."""
     from cratous.core import ledger as gate
     from cratous.core.files.private_cache import private_cache
     from cratous.proofs import elsewhere
@@ -68,10 +69,11 @@ def answered(task: dict[str, Any]) -> dict[str, Any]:
 def ask(
     names: list[str], home: Any, scheduler: str, *, whole: bool, jobs: int, quiet: bool
 ) -> list[str]:
-    """Have workers prove these theorems, and tell what they say; those that are said to be proved elsewhere.
+    """Have workers prove these theorems, and report their answers; returns those proved elsewhere
+    only.
 
-    whole: everything is to be asked here all the same, so there are none. Raises Refused for workers of another
-    version, BadInput where there is no scheduler.
+    whole: all are proved here anyway, so the result is empty. Raises Refused for workers of another
+    version, BadInput if there is no scheduler.
     """
     from cratous.core.files.private_cache import private_cache
     from cratous.proofs.elsewhere import Beside, said_proved
@@ -92,7 +94,7 @@ def ask(
 
 
 def _asked(names: list[str], home: Any, scheduler: str, folder: Path, bar: Any) -> list[str]:
-    """The names of those that looked proved to workers; their answers are in the folder."""
+    """The names of theorems that workers report as proved; their answers are in the folder."""
     from cratous.proofs.elsewhere import kept
     from cratous.services.campaign.engine import engine, refuse_other_version
     from cratous.services.campaign.identity import version_digest

@@ -1,6 +1,7 @@
-"""Where a text of the relations that a reason quotes stands in the mission's file, for people.
+"""Adds file positions to quotations of task relations in reasons.
 
-Plans, messages, logs and reports quote the text alone: they follow from the mission, not from where its file lies.
+Plans, messages, logs and reports contain only the text: they depend on the mission, not on its
+file.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from cratous.spec.mission import Mission
 
 QUOTED = re.compile("`([^`]+)`")
 BEGIN = re.compile(r"[^#]*\brelations[\"']?\s*:|.*<TaskRelationships>")
-"""The line on which relations begin; what stands before it, say in a comment, is no place of them."""
+"""The line on which relations begin; occurrences before it, for example in comments, do not count."""
 
 
 class RelationPlaces:
@@ -33,7 +34,7 @@ class RelationPlaces:
         self._lines = list(dropwhile(lambda line: not BEGIN.match(line[1]), numbered))
 
     def told(self, text: str) -> str:
-        """A text with `file:line` behind each quotation from the file."""
+        """A text with `file:line` after each quotation from the file."""
         return QUOTED.sub(self._placed, text)
 
     def _placed(self, quoted: re.Match[str]) -> str:
@@ -43,7 +44,7 @@ class RelationPlaces:
 
     @contextmanager
     def in_reasons(self) -> Iterator[None]:
-        """A NoPlan that comes from in here says the places as well."""
+        """Add positions to a NoPlan raised inside the block."""
         try:
             yield
         except NoPlan as error:

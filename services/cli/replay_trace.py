@@ -1,4 +1,4 @@
-"""`cratous replay-trace`: play a trace of a broken design on the actors that fly."""
+"""`cratous replay-trace`: replays a trace of a broken design on the real actors."""
 
 from __future__ import annotations
 
@@ -20,7 +20,8 @@ def replay_trace(files: tuple[Path, ...], as_json: bool) -> None:
 
     Each is played from the start of a flight of one vehicle: gate, ICAROUS, the UxAS end and the executive are
     those of `cratous run`, and SETMOD lines go over its sockets. What arrives, and when, is the trace's. After each
-    event gate, ICAROUS and UxAS have to stand as the trace says; the first that does not is told.
+    event gate, ICAROUS and UxAS have to stand as the trace says; the first that does not is told. A trace of the
+    certificate in hand is played on the vehicle that holds it: gate, surveillance and autopilot of `cratous run`.
 
     Example: cratous replay-trace traces/*.json
 
@@ -29,21 +30,21 @@ def replay_trace(files: tuple[Path, ...], as_json: bool) -> None:
     """
     from cratous.services.cli.progress import waiting
     from cratous.services.trace_replay.files import read
-    from cratous.services.trace_replay.play import play
+    from cratous.services.trace_replay.play import play_trace
 
     code, rows = 0, []
     for file, trace in [(file, read(file)) for file in files]:
         with waiting(f"playing {file}", as_json):
-            played = play(trace.entries)
+            played = play_trace(trace)
         good = bool(played.why) == bool(trace.wrong)
         code = code if good else 1
         rows.append({"file": str(file), "design": trace.design, **played._asdict(), "good": good})
         if as_json:
             continue
         click.secho(printable(f"{trace.design}: {trace.says}"), bold=True)
-        for number, entry in enumerate(trace.entries[: played.followed + 1], 1):
+        for number, text in enumerate(trace.texts[: played.followed + 1], 1):
             left = number > played.followed
-            click.echo(printable(f"  {number}. {entry.text}{': NOT SO' if left else ''}"))
+            click.echo(printable(f"  {number}. {text}{': NOT SO' if left else ''}"))
         if played.why:
             click.secho(f"  what flies leaves the trace: {played.why}", fg=None if good else "red")
         elif trace.wrong:

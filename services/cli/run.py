@@ -1,4 +1,4 @@
-"""`cratous run`: the main job, for one mission; many variants of it are a campaign."""
+"""`cratous run`: runs one mission; many variants of it are a campaign."""
 
 from __future__ import annotations
 
@@ -154,8 +154,9 @@ def fly_and_show(
     quiet: bool,
     processes: InProcesses | None = None,
 ) -> int:
-    """Run one mission and print what came of it; returns the exit code. processes: it is flown in; None: in
-    this process, in virtual time."""
+    """Run one mission and print the outcome; returns the exit code. processes: how to fly in
+    processes; None: in this process, in virtual time.
+    """
     silent = quiet or as_json
     with waiting("loading the mission", silent) as wait:
         tell = untold if silent else wait.tell
@@ -175,7 +176,7 @@ def run_one(
     tell: Tell,
     processes: InProcesses | None = None,
 ) -> tuple[dict[str, Any], Path]:
-    """Load, run and keep one mission; returns the report and its folder. processes: as in `fly_and_show`."""
+    """Load, run and store one mission; returns the report and its folder. processes: as in `fly_and_show`."""
     from cratous.services.cli.relation_places import RelationPlaces
     from cratous.services.loading import load
     from cratous.services.results.folder import results_folder
@@ -258,7 +259,7 @@ def _many(
     as_json: bool,
     quiet: bool,
 ) -> int:
-    """A campaign of all variants with one worker, which is kept only if --out was given."""
+    """Run all variants as a campaign with one worker, stored only if --out was given."""
     from cratous.services.campaign.definition import load_campaign
     from cratous.services.cli.campaign import conducted, option_of, show, table_of_runs
 

@@ -1,4 +1,4 @@
-"""`cratous search-faults`: break the design of authority on purpose, and find how it goes wrong."""
+"""`cratous search-faults`: finds faults in deliberately broken designs of authority."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cratous.spec.files.printable import json_text
 
 SAFE, SAFE_HAND = "safe", "safe-certificate"
 HAND_STEPS = 6
-"""Traces of a certificate are no longer: each step has more possibilities."""
+"""Maximum length of certificate traces: each step has more possibilities."""
 
 
 @click.command()
@@ -43,7 +43,7 @@ def search_faults(
     The steps are the kernels that run: the gate, ICAROUS, the UxAS end, over a link that loses, repeats,
     delays and reorders, and on which SETMOD lines are forged; and the hand behind the gate, to which offers
     come late and twice. Each design named has one step replaced. `safe` and `safe-certificate` are the designs as
-    they run. All of them without a name. --traces writes those of authority. The search is bounded: that nothing is
+    they run. All of them without a name. The search is bounded: that nothing is
     found within the bound is no proof (`cratous prove --only 'system*'` has the proofs).
 
     Example: cratous search-faults no-acknowledgement safe
@@ -70,7 +70,7 @@ def search_faults(
             raise BadInput("no such design", item="NAME", expected=", ".join(known), got=name)
     files = {}
     if traces is not None:
-        files = place(traces, [name for name in names or known if name in played])
+        files = place(traces, names or known)
     rows: list[dict[str, Any]] = []
     code = 0
     for name in names or known:

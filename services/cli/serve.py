@@ -1,4 +1,4 @@
-"""`cratous serve`: the ground station, a flight, a run, two runs or a message log in the browser."""
+"""`cratous serve`: the ground station for a flight, a run, two runs or a message log, in the browser."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from cratous.services.ground_station.tiles import Tiles
 
     Listening = tuple[int, Access]
-    """At which port and address, and who is let in."""
+    """Listening port, and access control with the address."""
 
 MISSIONS = (".yaml", ".yml")
 FLIGHT, PLANNER = "cratous.services.cli.serve_flight", "cratous.services.cli.serve_plan"
@@ -242,7 +242,7 @@ def _replaying(
     from cratous.services.ground_station.shown import Recorded
     from cratous.services.logs.source import open_log
 
-    open_log(run).close()  # what is no log is told before anything listens
+    open_log(run).close()  # an invalid log is reported before the server starts
     if other is None:
         return stack.enter_context(GroundStation(_replayed(run), *listening))
     check_comparable(run, other)
@@ -257,7 +257,7 @@ def _is_mission(path: Path) -> bool:
 def _asked(
     mission: Path, out: Path | None, seed: int | None, no_daa: bool, allow_unproved: bool
 ) -> dict[str, Any]:
-    """What the flight's process is asked for; its report names the command that does the same."""
+    """The request for the flight's process; its report names the equivalent command."""
     from cratous.services.cli.show import shown_path
 
     options = ["--no-daa"] * no_daa + ["--allow-unproved"] * allow_unproved

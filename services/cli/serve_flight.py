@@ -1,4 +1,4 @@
-"""The process in which `cratous serve MISSION` flies: commands on its stdin, what is new on its stdout."""
+"""The process in which `cratous serve MISSION` flies: commands on stdin, events on stdout."""
 
 from __future__ import annotations
 
@@ -26,15 +26,16 @@ from cratous.spec.errors import BadInput, CratousError
 
 
 def main(asked: dict[str, Any]) -> int:
-    """Fly a mission. asked: path, seed, out, and what `Settings` takes; text: of the mission, None where it comes
-    first on stdin; until_ms: flown so far as fast as it goes; commanded: whether it has commands of an operator.
-    Returns the exit code."""
+    """Fly a mission; returns the exit code. asked: path, seed, out, and the fields of `Settings`;
+    text: of the mission, None if it comes first on stdin; until_ms: time up to which it flies at
+    full speed; commanded: whether it has operator commands.
+    """
     send = told_on_stdout()
 
     def status(state: str, **more: Any) -> None:
         send({"status": {"state": state, **more}})
 
-    with suppress(BrokenPipeError):  # who started this is gone: there is nobody to tell
+    with suppress(BrokenPipeError):  # the parent process is gone: nobody to inform
         try:
             with stoppable():
                 if asked.get("text") is None:
@@ -82,7 +83,7 @@ def _fly(asked: dict[str, Any], send: Any, status: Any) -> int:
         live.end_judge()
         os.close(write)
         judged.join()
-    live.verdicts(report)  # the last word: whatever the judge wrote has been sent before it
+    live.verdicts(report)  # final verdicts: all of the judge's output has been sent before
     status("ended", text=f"{report['verdict'].upper()}: results in {target}", folder=str(target))
     return 0
 
@@ -97,20 +98,20 @@ def _directed(path: str, seed: int, text: str, at_ms: int, command: Any) -> Dire
 
 
 def _commands(live: LiveFlight) -> None:
-    """Do what is asked for, line by line; the flight ends with it, however it ends.
+    """Execute commands line by line; the flight ends with the input, for whatever reason.
 
-    Stopping is a signal, so that it also ends a search.
+    Stop is a signal, so that it also ends a search.
     """
     try:
-        with suppress(BrokenPipeError):  # whoever gave the command is gone
+        with suppress(BrokenPipeError):  # the sender is gone
             for line in sys.stdin:
                 asked = json.loads(line)
                 if asked.get("do") == "stop":
                     break
                 live.command(asked)
     finally:
-        end_main_thread()  # first, so that it interrupts no cleaning up
-        # the signal may meet the flight where Python drops what it raises, as within a fork
+        end_main_thread()  # first, so that it does not interrupt any cleanup
+        # the signal may arrive where Python drops exceptions, as within a fork
         live.pace.end()
 
 

@@ -1,5 +1,4 @@
-"""The process in which a mission is planned for the page: what to plan, then whose reasons, on its stdin;
-what comes of it on its stdout."""
+"""The planning process of the web page: requests for a plan, then for reasons, on stdin; results on stdout."""
 
 from __future__ import annotations
 
@@ -18,9 +17,9 @@ Asked = SimpleQueue[dict[str, Any]]
 
 
 def main() -> int:
-    """Plan, then say why, until stdin ends; returns the exit code."""
+    """Plan, then answer requests for reasons, until stdin ends; returns the exit code."""
     tell, asked = told_on_stdout(), Asked()
-    with suppress(BrokenPipeError):  # who started this is gone: there is nobody to tell
+    with suppress(BrokenPipeError):  # the parent process is gone: nobody to inform
         try:
             with stoppable():
                 threading.Thread(target=_listen, args=(asked,), daemon=True).start()
@@ -89,7 +88,7 @@ def _plan(asked: Asked, tell: Tell) -> None:
 
 
 def _answer(mission: Any, made: Any, asked: Asked, tell: Tell) -> None:
-    """Say why a task is given to its vehicle, whenever that is asked."""
+    """Answer requests for why a task is assigned to its vehicle."""
     from cratous.services.cli.plan import reasons_of, why_lines
 
     while True:

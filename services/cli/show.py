@@ -1,4 +1,4 @@
-"""Tables and lines for people. rich is imported only when a table is drawn."""
+"""Tables and lines of text. rich is imported only when a table is drawn."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def margin_text(row: dict[str, Any]) -> str:
 
 
 def place_text(row: dict[str, Any]) -> str:
-    """What the margin belongs to, and when."""
+    """What the margin refers to, and its time."""
     text = str(row["item"])
     if row["time_ms"] is not None:
         text += f" at {row['time_ms'] / 1000:.2f} s"
@@ -27,7 +27,7 @@ def place_text(row: dict[str, Any]) -> str:
 
 
 def say(text: str, err: bool = False) -> None:
-    """One line for people of which parts may come from outside."""
+    """Print one line, parts of which may be untrusted."""
     click.echo(printable(text), err=err)
 
 
@@ -55,12 +55,12 @@ def table(head: list[str], rows: list[list[str]], verdict_column: int | None = N
 
 
 def shown_path(path: Path) -> str:
-    """A path as it goes into a report: never a folder of one machine."""
+    """A path as shown in a report: never an absolute path."""
     return path.name if path.is_absolute() else path.as_posix()
 
 
 def requirement_table(rows: list[dict[str, Any]]) -> None:
-    """The verdicts of G1 to G5 with margins and places."""
+    """Print the verdicts on G1 to G5 with margins and places."""
     table(
         ["requirement", "verdict", "margin", "where"],
         [

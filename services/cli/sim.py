@@ -1,4 +1,4 @@
-"""`cratous sim`: the simulator as a program of its own."""
+"""`cratous sim`: the simulator as a stand-alone program."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ def sim(
 
 
 def _terrain(paths: Sequence[Path]) -> Terrain | None:
-    """The terrain of files and folders; None without any."""
+    """The terrain in files and folders; None without any."""
     if not paths:
         return None
     from cratous.services.simulator.terrain import Terrain
@@ -141,7 +141,7 @@ def _terrain(paths: Sequence[Path]) -> Terrain | None:
 
 
 def _sensing(path: Path | None) -> Sensing | None:
-    """The sensors of a file; None without one."""
+    """The sensors in a file; None without one."""
     if path is None:
         return None
     from cratous.services.loading.yaml_sensing import sensing_of_file
@@ -157,7 +157,7 @@ def _sensed(sensing: Sensing) -> Sensed:
 
 
 def _ports(texts: Sequence[str]) -> dict[int, Address]:
-    """Addresses by vehicle; BadInput for a text that is none, or a vehicle that comes twice."""
+    """Addresses by vehicle; BadInput for an invalid text or a duplicate vehicle."""
     from cratous.bridge.port import address
     from cratous.spec.errors import BadInput
 
@@ -176,14 +176,14 @@ def _ports(texts: Sequence[str]) -> dict[int, Address]:
 
 
 def _configures(body: Any) -> bool:
-    """Whether an object brings a vehicle."""
+    """Whether an object defines a vehicle."""
     from cratous.services.simulator.server import CONFIGURATIONS
 
     return type(body).__name__ in CONFIGURATIONS
 
 
 def _count(world: World) -> str:
-    """How many aircraft there are, and others."""
+    """Number of aircraft, and of other entities, in words."""
     others = len(world.drivers.there)
     more = f" and {others} that drive or sail" if others else ""
     return f"{len(world.aircraft)} aircraft{more}"
@@ -202,7 +202,7 @@ def _tell_unheard(world: World) -> None:
 
 
 def _write(world: World, output: Path | None, wait: Waiting) -> None:
-    """Play a world to its end; all that it tells goes to a file, which stands there when it is whole."""
+    """Run a world to its end; its messages are written to a file, which appears only when complete."""
     from cratous.bridge import sentinel
     from cratous.core.files.whole_file import cannot_write, replacing
     from cratous.services.simulator.server import frame_payload

@@ -1,4 +1,4 @@
-"""SIGTERM and SIGHUP end a command as Ctrl-C does: what is half done is cleaned up on the way out."""
+"""SIGTERM and SIGHUP end a command as Ctrl-C does, with cleanup."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from typing import Any
 
 STOPS = (signal.SIGTERM, signal.SIGHUP)
 _asked: list[int] = []
-"""The signal that has asked the command of this process to end."""
+"""The signal that has requested the end of this process's command."""
 
 
 class Stopped(SystemExit):
-    """A signal asks to end; the exit code is 128 and its number."""
+    """Raised when a signal requests the end; the exit code is 128 plus its number."""
 
     def __init__(self, number: int) -> None:
         super().__init__(128 + number)
@@ -24,9 +24,11 @@ class Stopped(SystemExit):
 
 
 def stop_behind(error: BaseException | None) -> Stopped | None:
-    """The signal to stop while which was handled an error came up, say of what was being closed; None if there is none.
+    """The stop signal in whose handling an error was raised, for example while closing; None if
+    there is none.
 
-    Python itself may raise one in its place, as where it comes between the two steps of a wait for an event.
+    Python may raise another exception in its place, for example between the two steps of waiting
+    for an event.
     """
     while error is not None and not isinstance(error, Stopped):
         error = error.__context__
@@ -34,9 +36,9 @@ def stop_behind(error: BaseException | None) -> Stopped | None:
 
 
 def heed() -> None:
-    """Raise `Stopped` once more if a signal has asked to end and the command still works.
+    """Raise `Stopped` again if a signal has requested the end and the command still runs.
 
-    Where libraries run that catch whatever comes up in them (dask, say), the first may have been lost.
+    Libraries that catch every exception (such as dask) may have swallowed the first.
     """
     if _asked:
         raise Stopped(_asked[0])
@@ -44,7 +46,7 @@ def heed() -> None:
 
 @contextmanager
 def handlers_as_before() -> Iterator[None]:
-    """What a command of this process does about Ctrl-C and the like ends with the command, for who has called it."""
+    """Restore the caller's signal handlers at the end of a command run inside its process."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -53,31 +55,31 @@ def handlers_as_before() -> Iterator[None]:
         yield
     finally:
         for number, handler in before.items():
-            if handler is not None:  # None: not made by Python, and not to be made again by it
+            if handler is not None:  # None: not installed by Python, so Python cannot restore it
                 signal.signal(number, handler)
 
 
 @contextmanager
 def stoppable() -> Iterator[None]:
-    """In here these signals raise `Stopped`; those that the caller ignores (nohup) stay ignored."""
+    """Inside the block these signals raise `Stopped`; those that the caller ignores (nohup) stay ignored."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
     process = os.getpid()
 
     def stop(number: int, _frame: Any) -> None:
-        if os.getpid() != process:  # a process forked from here has nothing of ours to clean up
+        if os.getpid() != process:  # a forked process has nothing of ours to clean up
             signal.signal(number, signal.SIG_DFL)
             os.kill(os.getpid(), number)
             return
-        for other in STOPS:  # once is enough: nothing disturbs the cleaning
+        for other in STOPS:  # once is enough: the cleanup is not interrupted
             signal.signal(other, signal.SIG_IGN)
         _asked.append(number)
         raise Stopped(number)
 
     before = {n: signal.getsignal(n) for n in STOPS}
     ours = [n for n in STOPS if before[n] is signal.SIG_DFL]
-    if ours:  # else within another such block
+    if ours:  # otherwise inside another such block
         _asked.clear()
     for number in ours:
         signal.signal(number, stop)

@@ -1,4 +1,4 @@
-"""`cratous uxas`: run a UxAS configuration, with the options and folders of `uxas` itself."""
+"""`cratous uxas`: runs a UxAS configuration, with the options and folders of `uxas`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _COMPILING = (
     "RoutePlannerVisibilityService",
     "AssignmentTreeBranchBoundService",
 )
-"""Services whose work runs in compiled loops."""
+"""Services that run compiled loops."""
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
@@ -109,13 +109,13 @@ def uxas(
 
 
 def _stop(process: Any) -> None:
-    if process.stopping:  # asked twice: do not wait for the plan that is being made
+    if process.stopping:  # second request: do not wait for the plan in progress
         raise KeyboardInterrupt
     process.stopping = True
 
 
 def _require_proofs(config: Any, log: Any, allow_unproved: bool) -> None:
-    """Where the pipeline plans, its kernels are proved or the user has said otherwise."""
+    """Require proved kernels if the pipeline plans, unless the user allows unproved ones."""
     from cratous.services.uxas.registry import KINDS
 
     if any(KINDS[e.type].plans for e in config.entries if e.type in KINDS):
@@ -128,12 +128,12 @@ def _require_proofs(config: Any, log: Any, allow_unproved: bool) -> None:
 
 
 def _plans(config: Any, without: tuple[str, ...]) -> bool:
-    """Whether a service of the configuration works in compiled loops."""
+    """Whether a service of the configuration runs compiled loops."""
     return bool({e.type for e in config.entries if e.type not in without} & {*_COMPILING})
 
 
 def _compile_ahead(config: Any, without: tuple[str, ...], log: Any) -> None:
-    """What plans has to answer in time, so the compiler is not to begin at the first request."""
+    """Compile before the first request, so that planning services answer in time."""
     if _plans(config, without):
         from cratous.services.startup.warm import ensure_planning
 
@@ -141,7 +141,7 @@ def _compile_ahead(config: Any, without: tuple[str, ...], log: Any) -> None:
 
 
 def _spare(config: Any, without: tuple[str, ...], contexts: Any) -> Iterator[bool] | None:
-    """What is done before the first request comes, so that it takes no longer than the second."""
+    """Background work before the first request, so that it takes no longer than the second."""
     if not _plans(config, without):
         return None
     from cratous.services.startup.spare import pieces

@@ -1,4 +1,4 @@
-"""`cratous warm`: compile ahead what commands would compile when they need it."""
+"""`cratous warm`: compiles in advance what commands would otherwise compile when needed."""
 
 from __future__ import annotations
 

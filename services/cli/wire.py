@@ -1,4 +1,4 @@
-"""`cratous wire`: what was said over the CRATOUS bridge, line by line."""
+"""`cratous wire`: explains recorded CRATOUS bridge traffic line by line."""
 
 from __future__ import annotations
 

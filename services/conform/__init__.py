@@ -1,10 +1,10 @@
-"""Conformance: published vectors against the kernels that decide, and against the wires.
+"""Conformance: published vectors for the deciding kernels, and for the wire formats.
 
-A suite reads the cases of a file (JSON lines or a list, also gzipped; or what its own function
-`cases` reads) and judges each: by the exact reading of kernels, or by what the codecs make of the
-bytes. A case passes, fails, lies on a knife edge (another system's own tolerance explains the
-difference), or is of a kind that the suite does not cover; the last two are said and counted apart,
-never as passed. Suites are imported when they are asked for.
+A suite reads the cases of a file (JSON lines or a list, also gzipped; or through its own function
+`cases`) and judges each: by the exact reading of kernels, or by what the codecs make of the bytes.
+A case passes, fails, is a knife edge (the tolerance of the other system explains the difference),
+or is of a kind that the suite does not cover; the last two are reported and counted separately,
+never as passed. Suites are imported when needed.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ SUITES = {
 
 @dataclass(frozen=True)
 class Result:
-    """What came of one case: `passed`, `failed`, `knife edge` or `not covered`.
+    """Result of one case: `passed`, `failed`, `knife edge` or `not covered`.
 
     label: kind of difference, or of what is not covered; text: expected and got, for people.
-    checks: how many single verdicts of kernels were compared.
+    checks: number of kernel verdicts compared.
     """
 
     case: str
@@ -49,7 +49,7 @@ class Result:
 
 
 def passed(case: str, checks: int = 1) -> Result:
-    """The kernels say what the vector says."""
+    """Result: the product agrees with the vector."""
     return Result(case, "passed", checks=checks)
 
 
@@ -64,7 +64,7 @@ def edge(case: str, label: str, text: str, checks: int = 1) -> Result:
 
 
 def not_covered(case: str, label: str) -> Result:
-    """The suite cannot judge a case of this kind."""
+    """Result: the suite cannot judge a case of this kind."""
     return Result(case, "not covered", label)
 
 
@@ -73,15 +73,15 @@ Suite = Callable[[dict[str, Any]], Result]
 
 @dataclass(frozen=True)
 class Beside:
-    """A suite that also reads files which lie beside that of its cases."""
+    """A suite that also reads files beside the file of its cases."""
 
     judge: Callable[[dict[str, Any], Path], Result]
 
 
 def suite(name: str) -> Suite | Beside:
-    """The function that judges one case; raises BadInput for a name that is none.
+    """The function that judges one case; raises BadInput for an unknown name.
 
-    A suite whose cases follow each other has a history: ask anew for each file.
+    A suite whose cases depend on each other has state: call this again for each file.
     """
     if name not in SUITES:
         raise BadInput(
@@ -93,7 +93,7 @@ def suite(name: str) -> Suite | Beside:
 
 
 def summary_of(judge: Suite | Beside) -> list[str]:
-    """Lines of counts, of a suite that keeps them."""
+    """Summary lines of a suite that keeps statistics."""
     lines: list[str] = getattr(getattr(judge, "__self__", None), "summary", list)()
     return lines
 
@@ -161,7 +161,7 @@ def _listed(
 def run(judge: Suite | Beside, file: Path, show: int) -> FileReport:
     """Judge every case of a file; at most `show` differences are kept in full.
 
-    Raises BadInput for a case that cannot be read: it is neither passed nor failed.
+    Raises BadInput for a case that cannot be read: it neither passes nor fails.
     """
     report = FileReport(str(file))
     of = judge.judge if isinstance(judge, Beside) else judge

@@ -1,10 +1,10 @@
-"""Suite `assignment`: recorded optima and best costs against the assignment search.
+"""Suite `assignment`: recorded optima and best costs for the assignment search.
 
-Two forms of problems (`services.planning.assign_vectors`). A case with a cost matrix is solved in
-the semantics `order` with MINMAX: the cost must be the optimum wherever an exhaustive result is
-recorded, and never above the best one that is. Any other is solved in both semantics, `time` and
-`order`, against the optima of a file `optimum*.json` that lies beside it; each has to be proved.
-Every solution is replayed by the proved kernels, whatever is recorded.
+Two forms of problems (`services.planning.assign_vectors`). A case with a cost matrix is solved with
+the semantics `order` and MINMAX: the cost must equal the optimum if an exhaustive result is
+recorded, and never exceed the best recorded one. Any other case is solved with both semantics,
+`time` and `order`, and compared with the optima of a file `optimum*.json` beside it; each has to be
+proved. Every solution is replayed by the proved kernels, whatever is recorded.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def _said(found: Solution) -> str:
 
 
 def _recorded(file: Path) -> dict[tuple[str, str], int]:
-    """Optima of the files beside it: by file name and semantics."""
+    """Optima of the files beside it, by file name and semantics."""
     known: dict[tuple[str, str], int] = {}
     for other in sorted(file.parent.glob("optimum*.json")):
         data = json_of(bytes_of(other), str(other))

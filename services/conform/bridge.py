@@ -1,9 +1,11 @@
-"""Lines of the CRATOUS text protocol, whole and cut at every place, and recorded sessions of the original.
+"""Lines of the CRATOUS text protocol, whole and split at every position, and recorded sessions of
+the original.
 
-A case with `line` and `direction` is held against `strict` (`accept` or `reject`): how it is cut must change
-nothing, and one of kind `valid` is written again byte for byte. An event `send` of a session holds whole
-messages. A case with `true_m` is how far a place is from a leg, which our end has to take for neither nearer nor farther.
-What tells of the original's own behaviour (its publications, exits, its formula of the deviation) is not covered.
+A case with `line` and `direction` is compared with `strict` (`accept` or `reject`): splitting must
+change nothing, and a line of kind `valid` is written again byte for byte. An event `send` of a
+session contains whole messages. A case with `true_m` is the distance of a place from a leg, which
+our end must judge as neither smaller nor larger. Cases on the original's own behaviour
+(publications, exits, its deviation formula) are not covered.
 """
 
 from __future__ import annotations
@@ -31,19 +33,19 @@ from cratous.spec.errors import BadInput
 from cratous.spec.mission import Frame
 
 ITS_OWN = ("split", "bug")
-"""Kinds of cases where the original reads wrongly what is right: cut in pieces, or by a fault of its own."""
+"""Kinds of cases that the original reads incorrectly: split lines, or a fault of its own."""
 WHOLE_BYTES = 65535
-"""A line that the file gives shortened is so long."""
+"""Length of a line that the file abbreviates."""
 
 
 SPHERE_M, AGREES = 6_371_000.0, 1e-6
-"""The radius [m] of the sphere on which distances from a leg are given, and to which share our end agrees with them."""
+"""Radius [m] of the sphere on which distances from a leg are given, and the relative tolerance for ours."""
 ELLIPSOID = 0.006
-"""On WGS84, where our end flies, distances differ from those by up to this share: so much its radii of curvature do."""
+"""On WGS84, where our end flies, distances differ from those by up to this fraction, as radii of curvature do."""
 
 
 def judge(case: dict[str, Any]) -> Result:
-    """One line, or one event of a session."""
+    """Judge one line, or one event of a session."""
     if "line" in case and "direction" in case:
         return _line(case)
     if case.get("ev") == "send":
@@ -102,8 +104,9 @@ def _sent(case: dict[str, Any]) -> Result:
 
 
 def _deviation(case: dict[str, Any]) -> Result:
-    """Whether the end, asked with a limit a little above and below the distance, says the right side of both: on
-    the sphere, and on the ellipsoid. The place is of 32-bit numbers, as the original has it."""
+    """Whether our end decides correctly for limits slightly above and below the distance, on the
+    sphere and on the ellipsoid. The position has 32-bit numbers, as in the original.
+    """
     names = ("lat1", "lon1", "lat2", "lon2", "lat", "lon", "true_m")
     lat1, lon1, lat2, lon2, lat, lon, true_m = (number(case, name) for name in names)
     name = f"{lat:g} {lon:g}, {true_m:.1f} m"
@@ -137,7 +140,7 @@ def _cut(direction: Direction, data: bytes, whole: list[Record], original: bool 
 
 
 def _handshake(name: str, data: bytes) -> Result:
-    """What the server says, at a client, in one piece and cut."""
+    """The server's response to a client's handshake, in one piece and split."""
     if data not in (HELLO, ACCEPT, REFUSE):
         return not_covered(name, "a secret that is not given")
     for at in range(len(data)):

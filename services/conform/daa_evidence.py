@@ -1,10 +1,10 @@
 """Evidence on last times to manoeuvre: why another system's differs, computed again here.
 
-Two ways in which DAIDALUS differs are known, and each is claimed only where it is shown:
+Two causes of differences in DAIDALUS are known, and each is claimed only where it is shown:
 - a last time of 0 is reported as none: shown by a grid value that is free of conflict now, decided
   by the exact readings of the kernels;
-- positions on the globe are moved along great circles and projected anew at every time that is
-  tried: shown by doing that, which then gives its very number.
+- positions on the globe are moved along great circles and projected again at every time that is
+  tried: shown by computing the same, which then gives the same number.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def exact_evaluate() -> Callable[..., bool]:
 
 
 class Asked(NamedTuple):
-    """Which last time to manoeuvre is asked for: out of conflict with intruder i, in one dimension."""
+    """The last time to manoeuvre in question: out of conflict with intruder i, in one dimension."""
 
     p: Parameters
     own: Aircraft
@@ -105,7 +105,7 @@ def _moved(state: dict[str, Any], lat0: float, lon0: float, t_s: float) -> tuple
 
 
 def along_great_circles(asked: Asked, out: dict[str, Any], entry_s: float) -> float | None:
-    """The last time to manoeuvre if both move along great circles until then [s]; None: none."""
+    """The last time to manoeuvre if both move along great circles until then [s]; None if there is none."""
     own, traffic, i = asked.own, asked.traffic, asked.i
     state, other = out["own"], out["traffic"][i]["state"]
     lat0, lon0 = finite(state["lat_rad"], "lat_rad"), finite(state["lon_rad"], "lon_rad")
@@ -128,7 +128,7 @@ def explained(
     theirs: float | None,
     entry_s: float | None,
 ) -> str:
-    """Which known way of the other system explains the difference; "" if none is shown to."""
+    """The known cause in the other system that explains the difference; "" if none is shown to."""
     if ours == 0 and theirs is None and has_way(asked, exact_evaluate()):
         return "last time 0"
     if "lat_rad" in out["own"] and entry_s is not None:

@@ -1,15 +1,14 @@
 """Suite `detect-and-avoid`: alerts, bands, recovery, last times and resolutions of DAIDALUS.
 
-A case is one instant: the configuration, the states that the anchor's kernels saw, and what it
-said (`out`). Cases of one sequence or scenario follow each other and share a history. Compared per
-intruder: alert level, first and last violation per level, time to the corrective volume, last
-times to manoeuvre; per dimension: bands, recovery, resolutions. A difference is ours unless there
-is evidence for another class:
-- `sliver`: the anchor drops bands narrower than 2^40 units in the last place (2.4e-4 relative),
-  and a cell of the grid, cut off at the end of its range, is narrower than that here;
-- `knife edge`: a change of all thresholds and times, the look-ahead among them, by 1e-9 of them
+A case is one instant: the configuration, the states that DAIDALUS received, and its output (`out`). Cases of one
+sequence or scenario follow each other and share a history. Compared per intruder: alert level, first and last
+violation per level, time to the corrective volume, last times to manoeuvre; per dimension: bands, recovery,
+resolutions. A difference counts as ours unless there is evidence for another class:
+- `sliver`: DAIDALUS drops bands narrower than 2^40 units in the last place (2.4e-4 relative),
+  and a grid cell, cut off at the end of its range, is narrower than that here;
+- `knife edge`: a relative change of all thresholds and times, including the look-ahead, by 1e-9
   changes our result;
-- `last time 0`, `great circle`: ways of the anchor, shown by computing again
+- `last time 0`, `great circle`: behaviour of DAIDALUS, shown by computing again
   (`conform.daa_evidence`).
 """
 
@@ -44,7 +43,7 @@ TIME_LEAST = 1e-4
 
 
 def near(a: float, b: float) -> bool:
-    """Equal within the anchor's own tolerance for edges."""
+    """Equal within DAIDALUS's own tolerance for edges."""
     return abs(a - b) <= max(EDGE_SHARE * max(abs(a), abs(b)), EDGE_LEAST)
 
 
@@ -56,7 +55,7 @@ def same_time(a: float | None, b: float | None) -> bool:
 
 
 def _time(value: Any) -> float | None:
-    """A time as written; "inf", "-inf" and null are none."""
+    """A time as written; "inf", "-inf" and null are None."""
     if value is None or value in ("inf", "-inf"):
         return None
     return finite(value, "time")
@@ -241,7 +240,7 @@ class Differences:
         ours = self.instant.last_times(self.p, i)
         for d, value in enumerate(theirs["ltm"]):
             if out_of_range(self.p, self.instant.own, d):
-                # the anchor says here that there is no conflict; nothing can be said
+                # DAIDALUS reports no conflict here, so nothing can be compared
                 self.tally["last time to manoeuvre/own value out of range"] += 1
                 continue
             if ours is None or value == "inf":
@@ -258,7 +257,7 @@ class Differences:
                       f"{alert.id} {DIMENSIONS[d]}: last time expected {value}, got {got}", d, why)  # fmt: skip
 
     def dimension(self, dimension: int) -> None:
-        """The bands of one dimension and what follows from them."""
+        """Compare the bands of one dimension and what follows from them."""
         name = DIMENSIONS[dimension]
         theirs, ours = self.out[name], self.instant.guidance[dimension]
         if ours.why or not theirs["bands"]:
@@ -293,7 +292,7 @@ class Differences:
         self.note("resolution", fine,
                   f"{name}: resolutions expected {theirs['raw_up']}, {theirs['raw_low']}, got {ours.up}, {ours.down}", dimension)  # fmt: skip
         if not fine:
-            return  # what is held was a nearest resolution once
+            return  # a resolution is held that was the nearest one earlier
         held = self.instant.held[dimension]
         up, down = _value(theirs["res_up"]), _value(theirs["res_low"])
         good = _same_value(up, held.up, dimension) and _same_value(down, held.down, dimension)
@@ -321,5 +320,5 @@ def _shown(g: Guidance) -> list[tuple[float, float, str]]:
 
 
 def suite() -> Callable[[dict[str, Any]], Result]:
-    """A judge without history."""
+    """A judge with an empty history."""
     return Suite().judge

@@ -1,12 +1,12 @@
-"""Suite `frames`: captured wire bytes, rebuilt byte for byte, and what breaks a TCP bridge.
+"""Suite `frames`: captured wire bytes, rebuilt byte for byte, and malformed input to a TCP bridge.
 
-By the name of the file: `*.zmq.bin` holds one addressed message, `*.tcp.bin` (also `.gz`) a stream
-of sentinel frames, `*.tcp.hex` the same in hexadecimal; a `.json` is either what one message
-consists of (compared with the two `.bin` beside it) or a list of robustness cases.
+By file name: `*.zmq.bin` contains one addressed message, `*.tcp.bin` (also `.gz`) a stream of
+sentinel frames, `*.tcp.hex` the same in hexadecimal; a `.json` contains either the parts of one
+message (compared with the two `.bin` beside it) or a list of robustness cases.
 
 A stream passes if nothing of it is dropped, every message is read and written to the same bytes,
-the frames are rebuilt, and each of several segmentations, down to single bytes, gives the same.
-A robustness case names what is sent by its `label` (or gives it as `hex`); it passes if exactly its
+the frames are rebuilt, and each of several segmentations, down to single bytes, gives the same. A
+robustness case names what is sent by its `label` (or gives it as `hex`); it passes if exactly its
 good messages arrive, in order, each fault is reported, and a good frame sent later arrives, in
 every segmentation.
 """
@@ -29,7 +29,7 @@ SINGLE_BYTES = 200_000  # streams up to this length are also fed byte by byte
 
 
 def cases(file: Path) -> Iterator[tuple[int, dict[str, Any]]]:
-    """(number, case) of one file; raises BadInput for one that is none of the kinds."""
+    """(number, case) of one file; raises BadInput if it is of no known kind."""
     raw = bytes_of(file)
     if file.suffix == ".gz":
         raw = inflated(raw, str(file))
@@ -86,7 +86,7 @@ def judge(case: dict[str, Any]) -> Result:
 
 
 def _rebuilt(raw: bytes) -> str:
-    """What is wrong with an addressed message that is read and written again, or nothing."""
+    """The fault of an addressed message that is read and written again; empty if none."""
     message = envelope.parse(raw)
     obj = lmcp.binary.unpack(message.payload)
     if message.descriptor != lmcp.full_names(obj)[0]:
@@ -103,7 +103,7 @@ def _message(case: dict[str, Any]) -> Result:
 
 
 def segmentations(data: bytes) -> Iterator[tuple[str, list[bytes]]]:
-    """Ways to cut a stream, each with its name; all at once comes first."""
+    """Named ways to split a stream; unsplit comes first."""
     yield "at once", [data]
     sizes = [1] if len(data) <= SINGLE_BYTES else []
     for size in (*sizes, 7, 1460, 8192):
@@ -165,7 +165,7 @@ def _parts(case: dict[str, Any]) -> Result:
 
 
 def _same(ours: Any, given: Any) -> bool:
-    """Whether the captured fields, which name no types, and give enums as numbers, are ours."""
+    """Whether the captured fields, which have no types and give enums as numbers, equal ours."""
     if isinstance(ours, dict) and isinstance(given, dict):
         kinds = lmcp.types[ours["$type"]].fields
         names = {k for k in given if not k.startswith("$")}
@@ -189,7 +189,7 @@ ADDRESS = "uxas.messages.task.TaskInitialized"
 
 
 def _good(task: int, text: str = "", entity: int = 100) -> bytes:
-    """A valid payload: the message that a task is initialised, or one with a long text."""
+    """A valid payload: a TaskInitialized message, or one with a long text."""
     if text:
         obj = lmcp.new(
             "uxas.messages.uxnative.CreateNewService", ServiceID=task, XmlConfiguration=text
@@ -206,7 +206,7 @@ def _with(old: bytes, new: bytes, payload: bytes) -> bytes:
 
 
 def _framed(payload: bytes, *, size: bytes | None = None, total: bytes | None = None) -> bytes:
-    """A frame in which the length or the sum is another text."""
+    """A frame with another length or checksum text."""
     right = frame(payload)
     start, end = right.index(BODY), right.rindex(TAIL)
     return b"".join((
@@ -216,7 +216,7 @@ def _framed(payload: bytes, *, size: bytes | None = None, total: bytes | None = 
 
 
 def sent(label: str) -> tuple[bytes, list[bytes]] | None:
-    """(the bytes that a case sends, the payloads in it that are good); None for no known label."""
+    """(the bytes that a case sends, the good payloads in them); None for an unknown label."""
     one, two = _good(1), _good(2)
     lmcp_at = one.index(b"LMCP")
     bare = one[:lmcp_at]  # address and attributes
@@ -303,7 +303,7 @@ def _robustness(case: dict[str, Any]) -> Result:
 
 
 def _arrived(parts: list[bytes]) -> tuple[list[bytes], list[BadInput]]:
-    """The payloads that hold messages, and the errors for everything else."""
+    """The payloads that contain messages, and the errors for everything else."""
     stream, faults, got = FrameStream(), [], []
     for part in parts:
         for payload in stream.feed(part):

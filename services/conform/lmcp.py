@@ -1,15 +1,15 @@
-"""Suite `lmcp`: messages of other implementations, both ways, in binary, XML and JSON.
+"""Suite `lmcp`: messages of other implementations, in both directions, in binary, XML and JSON.
 
-A *message* gives `type`, `fields` (our JSON form) and `hex`; `xml`, `xml_cpp`, `xml_py` are the same
-object as others write it, `tcp_java` the same message in a sentinel frame. It passes if the bytes
-are read to exactly these fields and written to exactly these bytes (also through the lazy reader),
-every XML text is read to the same object, and our own XML and JSON come back to it;
-of kind `default`, a new object of the type must be the same.
+A *message* gives `type`, `fields` (our JSON form) and `hex`; `xml`, `xml_cpp`, `xml_py` are the
+same object as written by others, `tcp_java` the same message in a sentinel frame. It passes if the
+bytes are read to exactly these fields and written to exactly these bytes (also through the lazy
+reader), every XML text is read to the same object, and our own XML and JSON are read back to it;
+for kind `default`, a new object of the type must be equal.
 
 A *quirk* gives `case`, `hex` and `outcome`, what each implementation did with it. Where Python,
-Java and C++ all kept the message, it must be read and written to the same bytes (but for the
-checksum). Where they do not agree, a typed error with its place passes as well; what never passes
-is a message that is read and then means something else.
+Java and C++ all accepted the message, it must be read and written to the same bytes (except the
+checksum). Where they disagree, a typed error with its position passes as well; a message that is
+read with a changed meaning never passes.
 """
 
 from __future__ import annotations

@@ -1,10 +1,12 @@
-"""Verdicts of R2U2 against ours: `NAME.r2u2-verdicts.json.gz`, and suites of R2U2 with their oracles.
+"""Verdicts of R2U2 compared with ours: `NAME.r2u2-verdicts.json.gz`, and suites of R2U2 with their
+oracles.
 
-Of `NAME.r2u2-verdicts.json.gz` the trace is `NAME.csv.gz` and the requirements are `formulas.c2po` beside it; a
-trace that is named with its verdicts is judged with them. Of a suite `suites/NAME.json` they lie in `../c2po`, `../trace` and `../oracle`. A case is one requirement over
-one trace: every verdict that R2U2 gives of a sample of the trace must be ours too. One that we give and R2U2
-does not is no difference, since ours come at the earliest sample. R2U2 takes numbers as equal that differ by
-at most 1e-5: a difference that vanishes when they are made equal is a knife edge.
+For `NAME.r2u2-verdicts.json.gz` the trace is `NAME.csv.gz` and the requirements are `formulas.c2po`
+beside it; a trace given together with its verdicts is judged by them. The files of a suite
+`suites/NAME.json` are in `../c2po`, `../trace` and `../oracle`. A case is one requirement over one
+trace: every verdict of R2U2 on a sample of the trace must be ours too. Additional verdicts of ours
+are no difference, since ours come at the earliest sample. R2U2 treats numbers as equal that differ
+by at most 1e-5: a difference that vanishes when they are made equal is a knife edge.
 """
 
 from __future__ import annotations
@@ -29,7 +31,7 @@ TRACE = ".csv.gz"
 WORDS = {"F": 0, "T": 2}
 LETTERS = "F?T"
 OPEN = "?"
-"""R2U2 has no verdict of the sample before the trace ends."""
+"""R2U2 has no verdict on the sample before the trace ends."""
 MOST_SAMPLES = 1_000_000
 TOLERANCE = 1e-5
 Trace = tuple[Sample, ...]
@@ -59,7 +61,7 @@ def cases(file: Path) -> Iterator[tuple[int, dict[str, Any]]]:
 
 
 def _with_verdicts(trace: Path) -> Path:
-    """Where the verdicts of a trace lie."""
+    """The verdict file of a trace."""
     return trace.with_name(trace.name.removesuffix(TRACE) + VERDICTS)
 
 
@@ -76,7 +78,7 @@ def _case(
 
 
 def _suite(file: Path) -> Iterator[tuple[int, dict[str, Any]]]:
-    """The cases of a suite, or of those that it names, which lie beside it."""
+    """The cases of a suite, or of the suites that it names, which are beside it."""
     suite = _object(json_of(text_of(file, CONFIG_BYTES), str(file)), str(file))
     if "tests" in suite or "suites" not in suite:
         yield from enumerate(_cases(file, suite), 1)
@@ -116,12 +118,12 @@ def _cases(file: Path, suite: dict[str, Any]) -> Iterator[dict[str, Any]]:
 
 
 def _oracle(file: Path) -> dict[str, dict[int, int]]:
-    """Of each requirement the verdicts by sample; a line `id:t,V` tells all samples up to t at once."""
+    """For each requirement the verdicts by sample; a line `id:t,V` applies to all samples up to t."""
     told: dict[str, dict[int, int]] = {}
     for number, line in lines_of(file):
         text = line.strip()
         if not text or text.startswith("Contract "):
-            continue  # of contracts, which are not read
+            continue  # of contracts, which are not supported
         name, colon, rest = text.partition(":")
         time, comma, word = rest.partition(",")
         last = integer_of(time, 0, MOST_SAMPLES)
@@ -141,7 +143,7 @@ def _specification(file: Path) -> Specification:
 
 @lru_cache(2)
 def _trace(file: Path) -> Trace | None:
-    """The samples of a CSV file; None for a trace of changes in place of samples."""
+    """The samples of a CSV file; None for a trace of changes."""
     try:
         return tuple(row for _, row in samples(file))
     except TraceOfChanges:
@@ -149,7 +151,7 @@ def _trace(file: Path) -> Trace | None:
 
 
 def judge(case: dict[str, Any]) -> Result:
-    """Ours against R2U2's, of one requirement over one trace."""
+    """Compare our verdicts with R2U2's, for one requirement over one trace."""
     if case.get("trace"):
         return not_covered(case["id"], f"a trace: it is judged with its verdicts, NAME{VERDICTS}")
     spec_file, trace_file = case["files"]
@@ -197,7 +199,7 @@ def _compare(
 
 
 def _verdicts(formula: Formula, trace: Trace) -> dict[int, int]:
-    """Of each sample that is decided, its verdict."""
+    """The verdict of each decided sample."""
     evaluation = Evaluation(formula)
     found: dict[int, int] = {}
     for time, row in enumerate(trace):
@@ -206,7 +208,7 @@ def _verdicts(formula: Formula, trace: Trace) -> dict[int, int]:
 
 
 def _equalised(formula: Formula, trace: Trace) -> Trace:
-    """The trace with signals set to what they are compared with, where they differ by the tolerance."""
+    """The trace with signals set equal to their comparands where they differ by at most the tolerance."""
     compared = {part for part in parts(formula) if isinstance(part, Reaches)}
     rows = []
     for row in trace:

@@ -1,11 +1,12 @@
-"""Suite `polygon`: where a point lies, and how near the boundary is, by the exact reading of folds.
+"""Suite `polygon`: location of a point, and proximity to the boundary, by the exact reading of
+folds.
 
 A case gives `polygon` (a list of [x, y], either order, not closed), `point` [x, y], or [x, y, z]
 with `floor` and `ceiling` (kind `contain3d`), and the truth `exact`: `location` (inside, outside or
 boundary), and with `buffer` also `near` (some point of the boundary is nearer than the buffer) and
 `dist2`, the squared distance as a fraction. In space `location2d` and `near2d` are those in the
-plane. Everything is judged with both orders of the vertices, whatever the polygon looks like.
-Moving polygons and recovery points are not covered.
+plane. Everything is judged with both vertex orders, for any polygon. Moving polygons and recovery
+points are not covered.
 """
 
 from __future__ import annotations
@@ -34,10 +35,10 @@ from cratous.spec.errors import BadInput
 WORDS = {-1: "outside", 0: "boundary", 1: "inside"}
 COVERED = {"contain2d": 2, "contain3d": 3}
 CLOSE = 1e-9
-"""Relative error that a distance given as a double may have."""
+"""Relative error permitted in a distance given as a double."""
 
 Check = tuple[str, str, str]
-"""What was compared, what was expected, what came out."""
+"""What was compared, the expected and the actual result."""
 
 
 def judge(case: dict[str, Any]) -> Result:
@@ -77,7 +78,7 @@ def _dimensions(case: dict[str, Any]) -> int:
 
 
 def _checks(case: dict[str, Any], edges: Any, point: tuple[float, ...]) -> Iterator[Check]:
-    """Everything that the case tells and the kernels decide."""
+    """Everything that the case states and the kernels decide."""
     told = case.get("exact") or {}
     at = Vec2(point[0], point[1])
     where = exact(locate, edges, at)
@@ -124,7 +125,7 @@ def _location(told: dict[str, Any], name: str) -> str:
 
 
 def _fraction(value: Any) -> Fraction:
-    """A fraction written "a/b", or as the two numbers in a list."""
+    """A fraction written "a/b", or as two numbers in a list."""
     try:
         if isinstance(value, list):
             top, bottom = value

@@ -1,9 +1,9 @@
-"""Suite `trajectory`: recorded flights of AMASE against the simulator in compatibility mode.
+"""Suite `trajectory`: recorded flights of AMASE compared with the simulator in compatibility mode.
 
-A case gives `scenario_xml`, `columns` and `rows`: the states that AMASE told. The scenario is played
-here, and each row is compared with the state of the same time (to
-the millisecond: clocks that add up 0.01 s are cut off, not rounded). It passes if no place is farther
-off than the bound: 1 m without wind and loiters, 10 m otherwise. States of other modes, waypoints or
+A case gives `scenario_xml`, `columns` and `rows`: the states that AMASE published. The scenario is
+simulated here, and each row is compared with the state at the same time (to the millisecond,
+truncated, not rounded, since clocks accumulate 0.01 s). It passes if no position deviates by more
+than the bound: 1 m without wind and loiters, 10 m otherwise. States with other modes, waypoints or
 commands are listed for each case.
 """
 
@@ -27,7 +27,7 @@ STATES = ("Mode", "CurrentWaypoint", "CurrentCommand")
 
 
 class Flights:
-    """The suite over one file: it keeps a line for each flight."""
+    """The suite over one file: keeps a summary line for each flight."""
 
     def __init__(self) -> None:
         self._lines: list[str] = []
@@ -40,7 +40,7 @@ class Flights:
         return result
 
     def summary(self) -> list[str]:
-        """How far each flight was off, and in what its states differ."""
+        """The deviation of each flight, and the fields in which its states differ."""
         return self._lines
 
 
@@ -70,7 +70,7 @@ def judge(case: dict[str, Any]) -> Result:
 
 
 def _fly(world: World) -> dict[int, Any]:
-    """The states told of the scenario's vehicle, by time [ms]."""
+    """The published states of the scenario's vehicle, by time [ms]."""
     told: dict[int, Any] = {}
     while not world.over:
         for body in world.tick():

@@ -1,4 +1,4 @@
-"""Reading the values of a case: typed, finite, and refused by name where they are not."""
+"""Reads the values of a case: typed and finite; other values are refused by name."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def number(case: dict[str, Any], name: str) -> float:
 
 
 def not_negative(case: dict[str, Any], name: str) -> float:
-    """A finite number, at least zero: a threshold."""
+    """A finite number of at least zero, for example a threshold."""
     value = number(case, name)
     if value < 0:
         raise BadInput("a threshold below zero", item=name, expected="0 or more", got=str(value))
@@ -27,7 +27,7 @@ def vector(case: dict[str, Any], name: str, size: int) -> tuple[float, ...]:
 
 
 def numbers(value: Any, name: str, size: int) -> tuple[float, ...]:
-    """The same, of a value that was read already."""
+    """The same, for a value that was read already."""
     if not isinstance(value, list) or len(value) != size:
         raise BadInput("not a vector", item=name, expected=f"{size} numbers", got=repr(value)[:60])
     return tuple(finite(part, name) for part in value)
@@ -42,7 +42,7 @@ def truth(case: dict[str, Any], name: str) -> bool:
 
 
 def finite(value: Any, name: str) -> float:
-    """A finite number as a double; an integer only if no digit is lost."""
+    """A finite number as a double; an integer only if it is exact."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise BadInput("not a number", item=name, expected="a number", got=repr(value)[:60])
     if not math.isfinite(value):

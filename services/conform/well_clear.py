@@ -1,15 +1,15 @@
-"""Suite `well-clear`: verdicts now, and instants over a span, of four volumes.
+"""Suite `well-clear`: violation now, and violation times over an interval, for four volumes.
 
 A case gives the relative state `s`, `v` (three numbers each, ownship minus intruder, metres and
 metres per second), the thresholds, and the truth: `x_exact_h` and `x_exact_v`, decided on the
-rationals that the doubles are. Compared are the exact readings of the horizontal, the vertical and
-the combined kernel, and the combined one with the roles swapped; a wrong one fails.
+rationals that the doubles represent. Compared are the exact readings of the horizontal, the
+vertical and the combined kernel, and the combined one with the roles swapped; a wrong one fails.
 
-Where the case also says what another system found over [B, T] (`conflict`, `tin`, `tout`), that is
-held against the exact detection and the enclosed instants. DAIDALUS, whose vectors these are, takes
-numbers as equal within 16348 units in the last place, and a squared horizontal or a vertical speed
-below 1e-13 as zero. What differs
-for no other reason is a *knife edge*: said and counted apart, with its reason, never as passed.
+If the case also gives another system's result over [B, T] (`conflict`, `tin`, `tout`), it is
+compared with the exact detection and the enclosed instants. DAIDALUS, the source of these vectors,
+treats numbers as equal within 16348 units in the last place, and a squared horizontal or a vertical
+speed below 1e-13 as zero. A difference that is fully explained by this is a *knife edge*: reported
+and counted separately, with its reason, never as passed.
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ DETECTORS: dict[str, tuple[str, Any]] = {
 }
 CYLINDER = "CDCylinder"
 SHARE = 16348 * 2.0**-52
-"""Within this part of a number DAIDALUS takes another one as equal."""
+"""Relative difference within which DAIDALUS treats numbers as equal."""
 STILL = 1e-13
-"""A squared horizontal, or a vertical speed below this DAIDALUS takes as zero [m2/s2, m/s]."""
+"""Squared horizontal or vertical speed below which DAIDALUS assumes zero [m2/s2, m/s]."""
 State = tuple[tuple[float, ...], tuple[float, ...]]
 
 
@@ -99,7 +99,7 @@ def _point(
 def _cylinder(
     s: tuple[float, ...], volume: Volume, horizontal: bool, vertical: bool
 ) -> list[tuple[str, bool, bool]]:
-    """The vectors' cylinder is open: each part is asked where the other one holds."""
+    """The vectors' cylinder is open: each part is checked where the other one holds."""
     radius, half = volume.dthr_m, volume.zthr_m
     here, origin = Vec2(*s[:2]), Vec2(0.0, 0.0)
     rows = [
@@ -147,8 +147,8 @@ def _excuse(
 ) -> str:
     """Why DAIDALUS's own tolerance explains the difference; empty if it does not.
 
-    Volumes are monotone in their thresholds: with thresholds a share less and a share more the
-    losses lie on either side of whatever such a tolerance can make of them.
+    Volumes are monotone in their thresholds: thresholds slightly smaller and slightly larger give
+    losses on both sides of anything that such a tolerance can cause.
     """
     inner = loss(*state, _scaled(volume, 1 - SHARE), begin, end)
     outer = loss(*state, _scaled(volume, 1 + SHARE), begin, end)

@@ -1,4 +1,4 @@
-"""Detect and avoid for users: files in, alerts, bands, metrics, pictures and reasons out.
+"""Detect and avoid for users: files in, alerts, bands, metrics, plots and reasons out.
 
 `run` gives one `Instant` for each step of an encounter file. All in SI; see docs/guides/detect-and-avoid.md.
 
@@ -38,7 +38,7 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Step:
-    """One step of a file: the rows it was made from, the wind [m/s, blowing to], what was said."""
+    """One step of a file: its rows, the wind [m/s, blowing to], parameters and result."""
 
     rows: tuple[Row, ...]
     wind_m_s: tuple[float, float]
@@ -49,7 +49,7 @@ class Step:
 def aircraft(rows: tuple[Row, ...]) -> tuple[list[Aircraft], tuple[float, float]]:
     """The states of a step in the plane at the ownship, relative to the air; and the wind.
 
-    The wind is the ownship's ground velocity less its heading and airspeed, where they are given.
+    The wind is the ownship's ground velocity minus its air velocity, if heading and airspeed are given.
     """
     own = rows[0]
     wind = (0.0, 0.0)
@@ -96,9 +96,9 @@ def run(
     dimensions: tuple[int, ...] = (0, 1, 2, 3),
     changes: Mapping[str, Any] = MappingProxyType({}),
 ) -> Iterator[Step]:
-    """What is said at each step of an encounter file; raises BadInput.
+    """The result for each step of an encounter file; raises BadInput.
 
-    changes: fields of the parameters that win over those that the file sets.
+    changes: parameter values that override those in the file.
     """
     encounters = read(file, ownship)
     session: Session | None = None

@@ -1,7 +1,7 @@
-"""Whether a way out existed: the judgement of a step of an encounter in words and as data.
+"""Whether a resolution existed: the judgement of a step of an encounter, in words and as data.
 
-`core.excuse.judgement` judges; here it is put for people: how many manoeuvres are free, and by whom, when
-and how near the others are refused.
+`core.excuse.judgement` judges; this module reports it: how many manoeuvres are free, and which intruder, when
+and how closely rules out the others.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ __all__ = ["as_data", "excuse_text", "judge_step"]
 
 
 def judge_step(step: Step) -> Judgement:
-    """Whether there is a way out at this step, all others flying straight on."""
+    """Whether a resolution exists at this step, if all others fly straight on."""
     found, _ = aircraft(step.rows)
     return from_state(step.parameters, found[0], found[1:])
 
@@ -32,7 +32,7 @@ def _groups(tried: tuple[Tried, ...]) -> dict[str, list[Tried]]:
 
 
 def excuse_text(time_s: float, judgement: Judgement) -> list[str]:
-    """The judgement in words: one line, and one for each dimension."""
+    """The judgement in words: one line, and one per dimension."""
     head = f"time {time_s:g} s: {ANSWERS[judgement.answer]}"
     if judgement.why:
         head += f" ({judgement.why})"

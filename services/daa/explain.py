@@ -1,7 +1,7 @@
-"""Reasons in words and as data: for alerts, for band edges, for resolutions.
+"""Reasons for alerts, band edges and resolutions, in words and as data.
 
-Every statement names the intruder, the volume, when it is violated and by how much. Values are
-computed again by the kernels that made the bands (`core.daa.reasons`).
+Every statement names the intruder, the volume, when it is violated and by how much. Values are recomputed by
+the kernels that made the bands (`core.daa.reasons`).
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def alert_text(p: Parameters, instant: Instant, alert: Alert) -> str:
 
 
 def _unwrapped(g: Guidance, raw: Raw, value: float) -> float:
-    """A direction on the side of the own one where it is nearer."""
+    """A direction unwrapped to within half a turn of the own one."""
     if g.dimension != "hdir":
         return value
     turn = 2 * math.pi
@@ -90,7 +90,7 @@ def _unwrapped(g: Guidance, raw: Raw, value: float) -> float:
 
 
 def edges(p: Parameters, instant: Instant, g: Guidance, raw: Raw) -> Iterator[dict[str, Any]]:
-    """Each edge between two bands, with what is in the way on its more severe side."""
+    """Each edge between two bands, with the reasons on its more severe side."""
     step = raw.grid.step
     for left, right in zip(g.bands, g.bands[1:], strict=False):
         edge = left.high
@@ -109,7 +109,7 @@ def _rank(region: int) -> int:
 
 
 def resolution(p: Parameters, instant: Instant, g: Guidance, raw: Raw) -> list[str]:
-    """What the preferred resolution solves, and what was refused."""
+    """What the preferred resolution resolves, and what was rejected."""
     name = g.dimension
     if g.why:
         return [f"{name}: {g.why}; no guidance"]
@@ -160,7 +160,7 @@ def resolution(p: Parameters, instant: Instant, g: Guidance, raw: Raw) -> list[s
 
 
 def coordination_text(p: Parameters, instant: Instant) -> list[str]:
-    """With whom and how the ownship coordinates; nothing where no criterion is on."""
+    """With which intruder and how the ownship coordinates; empty without a coordination criterion."""
     if not (p.conflict_crit or p.recovery_crit):
         return []
     strategy, found = URGENCIES[p.urgency_strategy], instant.seen.coordination

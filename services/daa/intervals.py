@@ -1,4 +1,4 @@
-"""WellClearViolationIntervals: an instant of detect and avoid as the message that DAIDALUS's services exchange."""
+"""WellClearViolationIntervals: a detect-and-avoid result as the message that DAIDALUS's services exchange."""
 
 from __future__ import annotations
 
@@ -24,13 +24,15 @@ SERIES = {
     "alt": ("AltitudeInterval", "Altitude", "WCVAlitudeIntervals", "WCVAltitudeRegions",
             "AltitudeRecoveryInterval", "RecoveryAltitude", "RecoveryAltitudeIntervals", 1.0),
 }  # fmt: skip
-"""Per dimension: interval, its field, the lists in the message; the same for recovery; and the unit.
-Alitude is how the message spells it."""
+"""Per dimension: interval, its field, the lists in the message; the same for recovery; and the unit. The
+message spells "Alitude".
+"""
 
 
 class OwnState(NamedTuple):
-    """The ownship as the message tells it: number, heading [degrees], speed and climb [m/s], altitude [m MSL], place
-    [degrees], time [s]."""
+    """The ownship's state in the message: id, heading [deg], speed and climb [m/s], altitude [m MSL],
+    position [deg], time [s].
+    """
 
     id: int
     heading_deg: float

@@ -1,4 +1,4 @@
-"""Pictures: bands over time, alerts over time, and the encounter from above."""
+"""Plots: bands over time, alerts over time, and the encounter from above."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LEVELS = ("#d9ead3", "#fff2cc", "#f6b26b", "#cc0000", "#7f0000")
 def draw(instants: Iterable[Step], file: Path) -> None:
     """Draw all steps into an SVG or PNG file; raises BadInput for another kind of file.
 
-    Steps are computed only when it is known that they can be drawn.
+    The file type is checked before the steps are computed.
     """
     if file.suffix not in (".svg", ".png"):
         raise BadInput(
@@ -98,11 +98,11 @@ def draw(instants: Iterable[Step], file: Path) -> None:
 
 
 NEAR_M = 1000.0
-"""Altitudes farther than this from all aircraft are not drawn: bands go up to 50,000 ft."""
+"""Altitudes farther than this from all aircraft are not drawn [m]: bands go up to 50,000 ft."""
 
 
 def _near(steps: Sequence[Step], whole: tuple[float, float]) -> tuple[float, float]:
-    """The altitudes to draw: those of all aircraft, with room, within the whole range."""
+    """The altitude range to draw: that of all aircraft, with a margin, within the whole range."""
     seen = [a.alt_m for s in steps for a in (s.instant.own, *s.instant.seen.others)]
     low, high = min(seen) - NEAR_M, max(seen) + NEAR_M
     return max(whole[0], low), min(whole[1], high)

@@ -1,4 +1,4 @@
-"""Alerts, bands and metrics as rows for CSV, and whole instants as JSON."""
+"""Alerts, bands and metrics as CSV rows, and whole results as JSON."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ BANDS = (
 
 
 def alert_rows(instant: Instant) -> list[dict[str, Any]]:
-    """One row an intruder."""
+    """One row per intruder."""
     rows = []
     for a in instant.alerts:
         times = a.times[a.level - 1] if a.level else None
@@ -46,7 +46,7 @@ def alert_rows(instant: Instant) -> list[dict[str, Any]]:
 
 
 def band_rows(instant: Instant) -> list[dict[str, Any]]:
-    """One row a band."""
+    """One row per band."""
     rows = []
     for g, held in zip(instant.guidance, instant.held, strict=True):
         r = g.recovery
@@ -66,7 +66,7 @@ def band_rows(instant: Instant) -> list[dict[str, Any]]:
 
 
 def metric_rows(instant: Instant) -> list[dict[str, Any]]:
-    """One row an intruder."""
+    """One row per intruder."""
     return [{"time_s": instant.time_s, **m._asdict()} for m in instant.metrics]
 
 
@@ -105,7 +105,7 @@ def as_csv(rows: Iterable[dict[str, Any]]) -> str:
 
 
 def as_data(instant: Instant) -> dict[str, Any]:
-    """An instant as plain data for JSON, SI; None where there is no value."""
+    """A result as plain data for JSON, in SI; None where there is no value."""
     together = instant.seen.coordination
     return {
         "time_s": instant.time_s,

@@ -1,1 +1,3 @@
-"""A mission in the formats of others: AMASE scenario, UxAS configuration and messages, GeoJSON, KML, files of ICAROUS."""
+"""Writes a mission in other tools' formats: AMASE scenario, UxAS configuration and messages,
+GeoJSON, KML, ICAROUS files.
+"""

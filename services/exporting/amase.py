@@ -1,4 +1,4 @@
-"""A mission as an AMASE scenario: who and what there is, each from when it is there."""
+"""A mission as an AMASE scenario: all entities, each from the time it appears."""
 
 from __future__ import annotations
 
@@ -14,14 +14,16 @@ from cratous.services.mission.frames import Projection
 from cratous.spec.mission import Mission, Traffic
 
 TURN_RAD = math.radians(45.0)
-"""The bank of traffic, of which a mission says nothing; it flies straight on."""
+"""Maximum bank angle of traffic [rad], for which a mission has no value; it flies straight."""
 
 
 def scenario_text(
     mission: Mission, told: Told, duration_s: float, sets_out_s: float = 0.0, *, tasks: bool = False
 ) -> str:
-    """The XML. duration_s: how long it goes on; sets_out_s: when all aircraft are there; tasks: whether
-    zones and tasks are told, too, which the simulator passes on to whoever is connected."""
+    """The XML. duration_s: duration [s]; sets_out_s: scenario time at which the aircraft appear and
+    the mission starts [s]; tasks: include zones and tasks, which the simulator forwards to its
+    clients.
+    """
     plane = Projection(mission.frame)
     events = [_event(body, 0.0) for body in told.configurations]
     if tasks:

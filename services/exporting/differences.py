@@ -1,4 +1,4 @@
-"""What is not the same in two missions, field by field: what a format has not said."""
+"""Differences between two missions, field by field: what a format could not represent."""
 
 from __future__ import annotations
 
@@ -12,10 +12,9 @@ from cratous.services.mission.frames import Projection
 from cratous.spec.mission import Loiter, Mission, Position, Task, TaskKind, Vehicle, Zone
 
 WRITTEN_M = 1e-3
-"""Places that were written in degrees come back as near as this [m]."""
+"""Accuracy with which positions written in degrees are recovered [m]."""
 OF_FILES = frozenset({"source", "notes", "frame", "seed"})
-"""Fields of a mission that are about its file; the frame of what is read again is another one, and both
-are brought into one."""
+"""Fields of a mission that concern its file. The frames may differ; positions are compared in one of them."""
 
 
 class Difference(NamedTuple):
@@ -32,7 +31,7 @@ class Difference(NamedTuple):
 
 
 def differences(mission: Mission, again: Mission) -> list[Difference]:
-    """What of a mission has not come back in another one, which may be in a frame of its own."""
+    """What of a mission was not recovered in another one, which may have its own frame."""
     wanted, got = _spelt_out(mission), _spelt_out(_in_frame_of(mission, again))
     terrain = mission.frame.terrain_m, again.frame.terrain_m
     found = list(apart("frame.terrain_m", *terrain))
@@ -43,8 +42,9 @@ def differences(mission: Mission, again: Mission) -> list[Difference]:
 
 
 def apart(item: str, a: Any, b: Any, unsaid: frozenset[str] = frozenset()) -> Iterator[Difference]:
-    """Fields that differ by more than writing in degrees and single floats makes; unsaid: names of
-    fields that do not count."""
+    """Fields that differ by more than the rounding of degrees and 32-bit floats; unsaid: names of
+    fields to ignore.
+    """
     if is_dataclass(a) and is_dataclass(b):
         for name in dict.fromkeys(field.name for one in (a, b) for field in fields(one)):
             if name not in unsaid:
@@ -62,14 +62,14 @@ def apart(item: str, a: Any, b: Any, unsaid: frozenset[str] = frozenset()) -> It
 
 
 def spelt_out(task: Task) -> Task:
-    """A loiter of which centre and radius alone are said is a circle around it."""
+    """A loiter given only by centre and radius as a circle."""
     if task.kind is not TaskKind.LOITER or task.loiter is not None:
         return task
     return replace(task, loiter=Loiter(task.points[0], task.radius_m))
 
 
 def _spelt_out(mission: Mission) -> Mission:
-    """The mission with what readers fill in."""
+    """The mission with the defaults that readers fill in."""
     return replace(
         mission,
         vehicles=tuple(_filled_in(vehicle) for vehicle in mission.vehicles),
@@ -85,7 +85,7 @@ def _filled_in(vehicle: Vehicle) -> Vehicle:
 
 
 def _in_frame_of(mission: Mission, again: Mission) -> Mission:
-    """The second mission with its places in the frame of the first."""
+    """The second mission with its positions in the frame of the first."""
     here, there = Projection(mission.frame), Projection(again.frame)
 
     def move(north_m: float, east_m: float) -> tuple[float, float]:

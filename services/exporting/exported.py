@@ -1,4 +1,4 @@
-"""A mission in a format, and what the format cannot say of it."""
+"""Writes a mission in a format, and lists what the format cannot represent."""
 
 from __future__ import annotations
 
@@ -29,18 +29,20 @@ from cratous.spec.mission.plan import Plan
 AMASE, UXAS, GEOJSON, KML = FORMATS = ("amase", "uxas", "geojson", "kml")
 MAPS = {GEOJSON: geojson_text, KML: kml_text}
 OF_ICAROUS = (icarous.QGC, icarous.GEOFENCE)
-"""Each says one thing of a mission: the way of a vehicle, the zones."""
+"""Formats for one aspect of a mission each: the route of a vehicle, the zones."""
 ALL = (*FORMATS, *OF_ICAROUS)
 ROUTED = (*MAPS, icarous.QGC)
-"""What may have the routes of a plan."""
+"""Formats that can contain the routes of a plan."""
 ENDINGS = {AMASE: "xml", GEOJSON: "geojson", KML: "kml"}
 
 SECTIONS = ("variation", "expect")
-"""Of a mission file, which are no part of the mission as it is written."""
+"""Sections of a mission file that are not part of the mission itself."""
 
 
 class Exported(NamedTuple):
-    """files: texts by name, one, or those of a UxAS folder; unsaid: what they do not say, in words."""
+    """files: texts by name, a single one or those of a UxAS folder; unsaid: what they do not
+    represent, in words.
+    """
 
     files: dict[str, str]
     unsaid: tuple[str, ...]
@@ -53,11 +55,11 @@ def exported(
     folder: str | None = None,
     vehicle: int | None = None,
 ) -> Exported:
-    """The mission in one of FORMATS or OF_ICAROUS; plan: its routes, which only formats of maps and flight plans have;
-    folder: the name that a UxAS folder gets, which is the name of its mission; vehicle: of a flight plan. Raises
-    BadInput for what cannot be written at all.
+    """The mission in one of FORMATS or OF_ICAROUS; plan: its routes, only for map formats and
+    flight plans; folder: name of a UxAS folder, which is the name of its mission; vehicle: of a
+    flight plan. Raises BadInput for what cannot be written at all.
 
-    What AMASE and UxAS are told is read again, and what is then not the same was not said.
+    Exports for AMASE and UxAS are read again; differences show what was not represented.
     """
     if form in MAPS:
         text = MAPS[form](mission, plan)
@@ -92,7 +94,7 @@ def exported(
 
 
 def beside(path: Path, number: int) -> list[str]:
-    """What a file says beside the mission that is exported, in words; number: of the request."""
+    """Contents of a file besides the exported mission, in words; number: of the request."""
     if path.is_dir() and (path / "mission.yaml").is_file():
         path = path / "mission.yaml"
     if path.suffix.lower() in (".yaml", ".yml"):
@@ -102,5 +104,5 @@ def beside(path: Path, number: int) -> list[str]:
 
 
 def beside_document(document: Document) -> list[str]:
-    """The same of a mission file that was read."""
+    """The same for a parsed mission file."""
     return [f"{name}: a section of the mission file" for name in SECTIONS if name in document.data]

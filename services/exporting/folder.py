@@ -1,4 +1,4 @@
-"""A folder of files that is there whole or not at all."""
+"""Writes a folder of files, complete or not at all."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from cratous.spec.errors import BadInput
 
 
 def write_folder(folder: Path, files: dict[str, str]) -> None:
-    """Write the texts by name into a new folder, or one that is empty.
+    """Write the texts by name into a new or empty folder.
 
-    BadInput if it cannot be written or something is there, and then nothing has changed.
+    BadInput if it cannot be written or is not empty; nothing is changed then.
     """
     target = folder.absolute()
     try:
@@ -25,7 +25,7 @@ def write_folder(folder: Path, files: dict[str, str]) -> None:
         for name, text in files.items():
             write_atomically(made / name, text)
         sync(made)
-        # an empty folder is replaced; anything else that is there makes this fail
+        # an empty folder is replaced; anything else makes this fail
         os.rename(made, target)
         sync(target.parent)
     except OSError as error:

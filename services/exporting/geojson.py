@@ -1,7 +1,7 @@
 """A mission as GeoJSON (RFC 7946).
 
-Places are longitude and latitude alone: the third number of a position would be a height above the
-ellipsoid. Altitudes stand in the properties, above mean sea level.
+Positions are longitude and latitude only: a third number would be a height above the ellipsoid.
+Altitudes are properties, above mean sea level.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from cratous.spec.mission.plan import Plan
 
 
 def geojson_text(mission: Mission, plan: Plan | None = None) -> str:
-    """A FeatureCollection, a feature for each vehicle, task, zone and planned route."""
+    """A FeatureCollection with a feature for each vehicle, task, zone and planned route."""
     features = [_feature(shape) for shape in shapes(mission, plan)]
     data = {"type": "FeatureCollection", "name": mission.name, "features": features}
     return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"

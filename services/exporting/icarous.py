@@ -1,7 +1,7 @@
-"""A mission as files of ICAROUS: a vehicle's way as `QGC WPL 110`, zones as geofence XML.
+"""A mission as ICAROUS files: a vehicle's route as `QGC WPL 110`, zones as geofence XML.
 
-A plan's first waypoint is where the vehicle starts. Altitudes of plans are above mean sea level (frame 0); floors and
-roofs of fences are above the ground at home, as `cratous import` reads them.
+A plan's first waypoint is the vehicle's start. Altitudes of plans are above mean sea level (frame
+0); floors and roofs of fences are above the ground at home, as `cratous import` reads them.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ MSL, WAYPOINT, SPEED, GROUND_SPEED = 0, 16, 178, 1
 
 
 def flight_plan_text(mission: Mission, vehicle_id: int | None, plan: Plan | None) -> str:
-    """The way of a vehicle (of the only one if none is named): its planned route, or without a plan the waypoints that
-    the mission itself has it fly through in one order.
+    """The route of a vehicle (of the only one if none is named): its planned route, or without a
+    plan the waypoints that the mission lets it fly in a unique order.
 
-    Raises BadInput if there is no such vehicle, or no such order, or nothing to fly.
+    Raises BadInput if there is no such vehicle, no unique order, or nothing to fly.
     """
     vehicle = _vehicle(mission, vehicle_id)
     points = _waypoints(mission, vehicle) if plan is None else _route(plan, vehicle)
@@ -60,7 +60,7 @@ def _vehicle(mission: Mission, number: int | None) -> Vehicle:
 
 
 def _route(plan: Plan, vehicle: Vehicle) -> Sequence[Position]:
-    """What is flown, without places that lie on a straight leg at one altitude."""
+    """The flown path, without points on a straight leg of constant altitude."""
     points = [p for item in plan.chain(vehicle.id) for p in (*item.transit, *item.path)]
     if not points:
         return ()
@@ -94,7 +94,7 @@ def _waypoints(mission: Mission, vehicle: Vehicle) -> Sequence[Position]:
 
 
 def _order(mission: Mission, mine: Iterable[int]) -> list[int] | None:
-    """The tasks in the one order that the relations allow; None if there are others."""
+    """The tasks in the only order that the relations allow; None if there are several."""
     ids = frozenset(mine)
     if len(ids) <= 1:
         return list(ids)
@@ -120,7 +120,7 @@ def _row(k: int, command: int, place: Position, plane: Projection, *, home: bool
 
 
 def geofence_text(mission: Mission) -> str:
-    """All zones, a fence each, with the ids of the mission. BadInput if there is none."""
+    """All zones, one fence each, with the mission's ids. BadInput if there is none."""
     if not mission.zones:
         raise BadInput(
             "a mission without zones", where=mission.source, item="zones", expected="one or more"
@@ -144,7 +144,7 @@ def geofence_text(mission: Mission) -> str:
 
 
 def unsaid_of(mission: Mission, form: str) -> list[str]:
-    """What of the mission these files do not say, in words, section by section."""
+    """What these files do not represent of the mission, in words, section by section."""
     found = []
     if form == QGC:
         found.append("vehicles: limits and heading of the vehicle; other vehicles")

@@ -19,11 +19,11 @@ FOLDERS = {
 }
 TASKS = "Tasks"
 COLOURS = {"keep_in": "5050b000", "keep_out": "501400d0", "route": "ffff9000"}
-"""As KML writes them: opacity, blue, green, red."""
+"""Colours in KML order: opacity, blue, green, red."""
 
 
 def kml_text(mission: Mission, plan: Plan | None = None) -> str:
-    """The XML; altitudes are those of the places, above mean sea level, and areas lie on the ground."""
+    """The XML; altitudes are above mean sea level, and areas are clamped to the ground."""
     folders: dict[str, list[str]] = {}
     for shape in shapes(mission, plan):
         name = FOLDERS.get(shape.properties["kind"], TASKS)

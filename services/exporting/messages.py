@@ -1,6 +1,7 @@
-"""A mission as the messages that UxAS and the simulator are told: the other way round than `loading.uxas`.
+"""Converts a mission to the messages for UxAS and the simulator: the inverse of `loading.uxas`.
 
-Altitudes are MSL. What the messages cannot say of a mission is found by reading them again (`differences`).
+Altitudes are MSL. What the messages cannot represent is found by reading them again
+(`differences`).
 """
 
 from __future__ import annotations
@@ -15,9 +16,9 @@ from cratous.spec import mission as spec
 from cratous.spec.errors import BadInput
 
 REGION = 1
-"""Id of the one operating region, which has all zones."""
+"""Id of the only operating region, which contains all zones."""
 SLEW_DEG_S = 60.0
-"""How fast a gimbal turns: a mission file does not say it."""
+"""Gimbal slew rate [deg/s], not part of a mission file."""
 SHAPES = {"circular": "Circular", "racetrack": "Racetrack", "figure_eight": "FigureEight"}
 DIRECTIONS = {
     "clockwise": "Clockwise",
@@ -33,7 +34,7 @@ PATTERNS = {
 
 
 class Told(NamedTuple):
-    """All messages of a mission, in the order in which they are sent. request: the last one."""
+    """All messages of a mission, in sending order. request: the last one."""
 
     configurations: tuple[Any, ...]
     states: tuple[Any, ...]
@@ -43,14 +44,14 @@ class Told(NamedTuple):
     request: Any
 
     def all(self) -> tuple[Any, ...]:
-        """One after the other."""
+        """All messages in sequence."""
         return (
             *self.configurations, *self.states, *self.zones, self.region, *self.tasks, self.request,
         )  # fmt: skip
 
 
 def messages_of(mission: spec.Mission) -> Told:
-    """The messages; BadInput for a task of a kind that is not written."""
+    """The messages; BadInput for a task of an unsupported kind."""
     plane = Projection(mission.frame)
     return Told(
         tuple(configuration_of(v) for v in mission.vehicles),
@@ -80,7 +81,7 @@ def messages_of(mission: spec.Mission) -> Told:
 
 
 def configuration_of(vehicle: spec.Vehicle) -> Any:
-    """An AirVehicleConfiguration: level flight, and the steepest climb and descent."""
+    """An AirVehicleConfiguration with profiles for level flight, and for the steepest climb and descent."""
     bank = degrees(vehicle.max_bank_rad)
 
     def profile(name: str, climb_m_s: float) -> Any:
@@ -109,7 +110,7 @@ def configuration_of(vehicle: spec.Vehicle) -> Any:
 
 
 def payloads_of(vehicle: spec.Vehicle) -> list[tuple[Any, Any]]:
-    """Gimbal and camera for each camera, in order; a camera without an id gets a free one."""
+    """Gimbal and camera for each camera, in order; a camera without an id gets an unused one."""
     taken = {camera.payload_id for camera in vehicle.cameras}
     found = []
     for camera in vehicle.cameras:
@@ -145,7 +146,7 @@ def payloads_of(vehicle: spec.Vehicle) -> list[tuple[Any, Any]]:
 
 
 def _mounted(vehicle: spec.Vehicle) -> list[Any]:
-    """The states of the payloads at the start: each gimbal looks ahead, as far down as it can."""
+    """The states of the payloads at the start: each gimbal looks ahead, tilted down as far as possible."""
     found = []
     for gimbal, camera in payloads_of(vehicle):
         turn = {"Azimuth": 0.0, "Elevation": gimbal.MinElevation}
@@ -236,7 +237,7 @@ Written = tuple[str, dict[str, Any]]
 
 
 def _search(task: spec.Task) -> dict[str, Any]:
-    """What all searches say."""
+    """Common fields of all search tasks."""
     return {
         "DwellTime": task.duration_ms,
         "GroundSampleDistance": task.gsd_m,

@@ -1,4 +1,4 @@
-"""What of a mission lies somewhere, as points, lines and areas in WGS-84, for formats of maps."""
+"""A mission's geometry as points, lines and areas in WGS-84, for map formats."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Place = tuple[float, float, float]
 SAID_OF_MISSION = {
     "name", "source", "notes", "frame", "vehicles", "tasks", "zones", "traffic", "instances", "daa",
 }  # fmt: skip
-"""The last two are held against what is usual."""
+"""The last two are compared with their defaults."""
 SAID_OF_TASK = {
     "id", "kind", "label", "points", "eligible", "duration_ms", "radius_m", "standoff_m", "gsd_m",
     "wavelength", "pattern", "extent_m", "priority",
@@ -43,8 +43,9 @@ SAID_OF_TRAFFIC = {"id", "position", "velocity", "appears_ms", "vanishes_ms"}
 
 
 class Shape(NamedTuple):
-    """One thing on the map. places: of an area its corners, counter-clockwise, the first one once more at
-    the end; properties: plain data, each with its unit in its name."""
+    """One map object. places: of an area its corners, counter-clockwise, closed by the first one;
+    properties: plain data, with units in the names.
+    """
 
     form: str
     places: tuple[Place, ...]
@@ -52,8 +53,9 @@ class Shape(NamedTuple):
 
 
 def shapes(mission: Mission, plan: Plan | None = None) -> list[Shape]:
-    """Starts of vehicles and traffic, tasks, zones, and the routes of a plan; BadInput for a shape that
-    crosses the 180th meridian."""
+    """Starts of vehicles and traffic, tasks, zones, and the routes of a plan; BadInput for a shape
+    that crosses the 180th meridian.
+    """
     plane = Projection(mission.frame)
     return [
         *(_vehicle(one, plane) for one in mission.vehicles),
@@ -65,7 +67,7 @@ def shapes(mission: Mission, plan: Plan | None = None) -> list[Shape]:
 
 
 def unsaid(mission: Mission) -> list[str]:
-    """Fields of a mission that are not as they are without saying so, and of which no shape speaks."""
+    """Fields of a mission with non-default values that no shape represents."""
     found = list(_others(mission, "", SAID_OF_MISSION))
     guarded = tuple(vehicle.id for vehicle in mission.vehicles if vehicle.protected)
     found += ["instances"] * (mission.instances != guarded)
@@ -91,7 +93,7 @@ def _places(points: Iterable[Position], plane: Projection, item: str) -> tuple[P
     for point in points:
         latitude, longitude = plane.to_geodetic(point.north_m, point.east_m)
         found.append((longitude, latitude, point.alt_m))
-    # whole turns by which longitudes differ from those counted on from the origin of the frame
+    # whole turns by which longitudes differ from those continuous with the frame's origin
     turns = {round((longitude - plane.frame.longitude_deg) / 360) for longitude, *_ in found}
     if len(turns) > 1:
         raise BadInput(
@@ -103,7 +105,7 @@ def _places(points: Iterable[Position], plane: Projection, item: str) -> tuple[P
 
 
 def _said(**values: Any) -> dict[str, Any]:
-    """The properties that say something."""
+    """The properties that have a value."""
     return {name: value for name, value in values.items() if value not in (None, "", (), [])}
 
 
@@ -182,7 +184,7 @@ def _zone(zone: Zone, plane: Projection) -> Shape:
 
 
 def _routes(plan: Plan, mission: Mission, plane: Projection) -> Iterator[Shape]:
-    """The way of each planned vehicle, task after task; loiters before a task are in its properties."""
+    """The route of each planned vehicle through its tasks; loiters before a task are properties."""
     for vehicle in mission.vehicles:
         chain = plan.chain(vehicle.id)
         points = [vehicle.position, *(p for i in chain for p in (*i.transit, *i.path))]
@@ -210,7 +212,7 @@ def _routes(plan: Plan, mission: Mission, plane: Projection) -> Iterator[Shape]:
 
 
 def _altitudes(places: Sequence[Place]) -> dict[str, Any]:
-    """One altitude where it is the same all over, else that of each place [m MSL]."""
+    """A single altitude if constant, otherwise one for each point [m MSL]."""
     altitudes = [altitude for *_, altitude in places]
     if len(set(altitudes)) == 1:
         return {"altitude_msl_m": altitudes[0]}
@@ -218,7 +220,7 @@ def _altitudes(places: Sequence[Place]) -> dict[str, Any]:
 
 
 def _ring(points: Sequence[Position]) -> list[Position]:
-    """Corners of a simple polygon, counter-clockwise as seen from above, closed."""
+    """Corners of a simple polygon, counter-clockwise seen from above, closed."""
     from shapely import Polygon
     from shapely.geometry.polygon import orient
 

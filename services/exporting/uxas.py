@@ -12,11 +12,11 @@ from cratous.spec.mission import Mission
 CONFIGURATION, MESSAGES = "cfg.xml", "messages.xml"
 ENTITY = 100
 TURN = {"TurnType": "FlyOver"}
-"""Waypoints are flown over: a turn that is cut short ends a task before its end is reached."""
+"""Waypoints are flown over: a turn started early would end a task before its end is reached."""
 
 
 def messages_text(told: Told) -> str:
-    """All messages that UxAS is sent, in order."""
+    """All messages sent to UxAS, in order."""
     bodies = "".join(dumps(body) for body in told.all())
     return f"<Messages>\n{bodies}</Messages>\n"
 
@@ -28,9 +28,9 @@ def configuration_text(
     bridges: str = "",
     first: Sequence[str] = (),
 ) -> str:
-    """The configuration: services of planning, a waypoint manager a vehicle, ICAROUS.
+    """The configuration: planning services, one waypoint manager per vehicle, ICAROUS.
 
-    communication: further attributes of the service that talks to the ICAROUS instances; bridges: as XML;
+    communication: further attributes of the service for the ICAROUS instances; bridges: as XML;
     first: services before the others.
     """
     search = {"CostFunction": mission.cost, "Semantics": mission.order}
@@ -68,6 +68,6 @@ def configuration_text(
 
 
 def service_text(kind: str, attributes: dict[str, str] | None = None) -> str:
-    """An entry of a service."""
+    """The configuration entry of a service."""
     said = "".join(f" {name}={quoteattr(value)}" for name, value in (attributes or {}).items())
     return f'  <Service Type="{kind}"{said}/>\n'

@@ -1,4 +1,4 @@
-"""What has come over the bridge, sorted: messages to its UxAS end, and lines for each ICAROUS."""
+"""Sorts what the bridge has delivered: messages for the UxAS end, lines for each ICAROUS instance."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from cratous.services.flight.messages import Heard, Lost, Unreadable
 
 
 class Arrivals(NamedTuple):
-    """up: for the UxAS end, in the order of arrival; down: vehicle and line, likewise."""
+    """up: messages to the UxAS end, in order of arrival; down: (vehicle id, line), in order of arrival."""
 
     up: tuple[Heard | Lost | Unreadable, ...]
     down: tuple[tuple[int, Message], ...]
 
 
 def arrivals(delivered: Iterable[Delivered], now_ms: int) -> Arrivals:
-    """Sort what the bridge has delivered.
+    """Sort what the bridge has delivered by receiver.
 
-    A line that cannot be read is reported to the UxAS end, whichever way it went. The end of a
-    connection is UxAS's to report; the ICAROUS side acts on the silence.
+    An unreadable line is reported to the UxAS end in either direction. A closed connection is reported to the
+    UxAS end only; the ICAROUS side reacts to the silence.
     """
     up, down = list[Heard | Lost | Unreadable](), list[tuple[int, Message]]()
     for vehicle_id, direction, record in delivered:

@@ -1,4 +1,4 @@
-"""The plan that the executive asks for in flight."""
+"""The planner's answer to the executive's in-flight plan request."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from cratous.spec.errors import NoPlan
 
 
 def planned(asked: AskPlan) -> Planned | NotPlanned:
-    """What the planning services answer."""
+    """Run the planning services on a request. Returns NotPlanned, with the reasons, where no plan exists."""
     from cratous.services.pipeline.plan import make_plan
     from cratous.services.planning.left_out import NothingDone
 

@@ -1,10 +1,9 @@
 """The autopilot: follows a polyline, loiters on a circle, or flies a velocity.
 
-Path following aims at the point of the track that lies ahead by max(v dt, sqrt(e R)) of the
-nearest one: e is the distance from the track, R one and a half times the radius of the tightest
-turn. On the track that is the place of the end of the coming step (no steady error, also in
-arcs); off the track it is the distance in which two arcs of radius R lead back onto it, so the
-aircraft arrives along the track instead of across it.
+Path following aims at the point of the track that lies max(v dt, sqrt(e R)) ahead of the nearest one: e is
+the distance from the track, R is 1.5 times the radius of the tightest turn. On the track, the aim point is
+where the coming step ends (no steady-state error, also on arcs); off the track, it is the distance in which
+two arcs of radius R lead back, so the aircraft joins the track tangentially instead of crossing it.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ from cratous.spec.records import replace
 
 @dataclass(frozen=True)
 class Follow:
-    """Fly along a track at a speed [m/s]; s_m: how far it has been flown."""
+    """Fly along a track at a speed [m/s]. s_m: arc length flown; offset_m: distance from the track."""
 
     track: Track
     speed_m_s: float
@@ -46,7 +45,7 @@ class Circle:
 
 @dataclass(frozen=True)
 class Fly:
-    """Fly a velocity."""
+    """Fly a constant velocity."""
 
     velocity: Velocity
 
@@ -56,7 +55,7 @@ Command = Follow | Circle | Fly
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a track has been flown at two instants; `passed` while its end lies between."""
+    """Arc length flown on a track at the start and at the end of a step, and the track's length [m]."""
 
     before_m: float
     after_m: float
@@ -64,11 +63,11 @@ class Progress:
 
     @property
     def passed(self) -> bool:
-        """True iff the end of the track has been passed."""
+        """Whether the end of the track has been passed."""
         return self.after_m >= self.length_m
 
     def passing_ms(self, before_ms: int, after_ms: int) -> int:
-        """When the end was passed [ms], between the two instants, rounded up."""
+        """When the end was passed [ms], interpolated between the two instants and rounded up."""
         moved = self.after_m - self.before_m
         if moved <= 0 or self.before_m >= self.length_m:
             return before_ms
@@ -77,7 +76,7 @@ class Progress:
 
 
 def track_progress(command: Follow, state: AirState, dt_s: float) -> tuple[Follow, Progress]:
-    """The command with its progress brought up to the present position."""
+    """The command with its progress updated to the present position, and the progress of this step."""
     window = 2 * state.speed_m_s * dt_s + abs(command.offset_m)
     near = command.track.nearest(state.position, command.s_m, window)
     moved = replace(command, s_m=near.s_m, offset_m=near.offset_m)
@@ -85,7 +84,7 @@ def track_progress(command: Follow, state: AirState, dt_s: float) -> tuple[Follo
 
 
 def decide(command: Command, state: AirState, limits: Limits, dt_s: float) -> Steering:
-    """What to steer in the coming step."""
+    """The heading, speed and climb rate to steer in the coming step of dt_s [s]."""
     if isinstance(command, Fly):
         v = command.velocity
         speed = math.hypot(v.north_m_s, v.east_m_s)
@@ -108,7 +107,7 @@ def _along(command: Follow, state: AirState, limits: Limits, dt_s: float) -> Ste
 
 
 def _on_circle(command: Circle, state: AirState, limits: Limits, dt_s: float) -> Steering:
-    """Aim at the end of the step on the circle; from afar, approach it at a steep enough angle."""
+    """Aim at the step's end on the circle; from farther away, approach at a steeper angle."""
     hold, p = command.hold, state.position
     north, east = p.north_m - hold.north_m, p.east_m - hold.east_m
     sign = 1.0 if hold.clockwise else -1.0

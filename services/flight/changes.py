@@ -1,4 +1,6 @@
-"""What becomes known in flight: told, watched for, and planned for at once."""
+"""Mission changes in flight: they are announced, checked against the plan, and answered with a new plan if
+needed.
+"""
 
 from __future__ import annotations
 
@@ -31,11 +33,11 @@ from cratous.spec.mission.plan import Plan, left_out_of
 from cratous.spec.records import replace
 
 NAME = "uxas"
-"""The sender of what is said of mission and plan."""
+"""Sender of messages about the mission and the plan."""
 
 
 def known_from_the_start(config: Config, state: State, out: Out) -> State:
-    """The changes that are known when the mission begins, and the plan that was made with them."""
+    """Announce the changes known at mission start, and the plan, which was made with them."""
     state, blown = blow(config, state, out)
     begun_with, _ = split((c for c in config.mission.changes if c.kind not in DIRECT), state.now_ms)
     if begun_with:
@@ -47,7 +49,9 @@ def known_from_the_start(config: Config, state: State, out: Out) -> State:
 
 
 def blow(config: Config, state: State, out: Out) -> tuple[State, str]:
-    """Let the wind of this instant bind all vehicles; what it changes, empty if nothing."""
+    """Apply the present wind to all vehicles. Returns the state and what changed, in words; "" if nothing
+    did.
+    """
     before, now = state.wind, wind_at(config.mission, state.now_ms)
     if now == before:
         return state, ""
@@ -58,7 +62,7 @@ def blow(config: Config, state: State, out: Out) -> tuple[State, str]:
 
 
 def accept(state: State, out: Out) -> None:
-    """Say by which plan is flown from now on."""
+    """Announce the plan that is in force from now on."""
     done = frozenset(dict(state.ends))
     out.append(Say(plan_accepted(state.now_ms, state.plan, done), NAME))
 
@@ -70,7 +74,7 @@ def change(config: Config, state: State, due: Sequence[Change], out: Out) -> Sta
     ended = {c.zone_id for c in due if isinstance(c, ZoneEnd)}
     zones = hard_zones(tuple(c.zone for c in due if c.zone and c.zone.id not in ended))
     kept = tuple(zone for zone in state.zones if zone.id not in ended)
-    # ICAROUS is told every way anew: its own zones bind it too
+    # every route is sent to ICAROUS again, since it avoids the zones as well
     chains = tuple(replace(chain, told_version=-1) for chain in state.chains)
     state = replace(state, zones=(*kept, *zones), chains=chains)
     out.append(ZonesKnown(state.zones))
@@ -88,12 +92,12 @@ def change(config: Config, state: State, due: Sequence[Change], out: Out) -> Sta
 
 
 def _absent(config: Config, state: State) -> dict[int, str]:
-    """The vehicles that take no part now, with the reasons."""
+    """The vehicles that take no part at present, with the reasons."""
     return {**absent(config.mission, state.now_ms), **dict(state.landed)}
 
 
 def ask(config: Config, state: State) -> AskPlan:
-    """A plan for what is left, from where all are."""
+    """Request for a plan for the remaining tasks, from the vehicles' present poses."""
     here = {vehicle.id for vehicle in state.known.vehicles}
     starts, ends = dict(state.starts), dict(state.ends)
     return AskPlan(
@@ -108,7 +112,7 @@ def ask(config: Config, state: State) -> AskPlan:
 
 
 def planned(config: Config, state: State, plan: Plan, asked_for: Asked, out: Out) -> State:
-    """Fly another plan from here on. The change is known before anything is done about it."""
+    """Put another plan in force. The change is announced before anything that follows from it."""
     begun: Out = []
     before, state = state, replace(state, plan=plan, replans=state.replans + 1)
     after = begin(config, state, begun)
@@ -131,7 +135,7 @@ def planned(config: Config, state: State, plan: Plan, asked_for: Asked, out: Out
 def unplanned(
     config: Config, state: State, no_plan: NotPlanned, asked_for: Asked, out: Out
 ) -> State:
-    """After a change nothing that is left can be done."""
+    """After a change no remaining task can be planned: each fails with its reason."""
     todo = _open(state)
     none = nobody_may(state.known, todo, _absent(config, state))
     of = dict(no_plan.of)
@@ -145,8 +149,11 @@ def unplanned(
 
 
 def _leaving(config: Config, state: State, after: State) -> str:
-    """Which vehicles are in zones that bind now, and how each comes to keep them; after: on their way. The
-    length of a way out is told where it is flown: where it leads on to nowhere, another is."""
+    """Which vehicles are inside newly binding zones, and how each leaves them.
+
+    after: the state with their new routes. The length of a shortest way out is stated only where that way is
+    flown.
+    """
     ways, said = config.ways(state.zones), []
     for chain in state.chains:
         if chain.suspended:
@@ -165,20 +172,20 @@ def _leaving(config: Config, state: State, after: State) -> str:
 
 
 def left(state: State) -> list[int]:
-    """The tasks that are asked for and not done."""
+    """The tasks that are asked for and not complete."""
     ends = dict(state.ends).keys()
     return [task for task in _asked(state) if task not in ends]
 
 
 def _open(state: State) -> list[int]:
-    """The tasks not done of every choice that may still be made, by number."""
+    """The incomplete tasks of all choices still open, sorted by id."""
     term = term_of(with_choices(state.known, dict(state.starts).keys()))
     ends = dict(state.ends).keys()
     return [] if term is None else sorted(set(tasks(term)) - ends)
 
 
 def unserved(state: State) -> list[int]:
-    """The tasks that are asked for and not done whole."""
+    """The tasks that are asked for and not completely served."""
     ends = dict(state.ends).keys()
     return [task for task in _asked(state) if task not in ends or task in state.in_part]
 

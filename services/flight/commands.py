@@ -1,8 +1,7 @@
-"""Commands as LMCP messages: how UxAS and ICAROUS tell an autopilot what to fly, and back.
+"""Commands to an autopilot as LMCP messages, and their decoding.
 
-A polyline is a `MissionCommand`, a velocity a `VehicleActionCommand` with a
-`FlightDirectorAction`, a circle one with a `LoiterAction`. Each travels inside a `GatedCommand`
-with its sender and epoch.
+A polyline is a `MissionCommand`, a velocity a `VehicleActionCommand` with a `FlightDirectorAction`, a circle
+one with a `LoiterAction`. Each travels inside a `GatedCommand` with its sender and epoch.
 """
 
 from __future__ import annotations
@@ -24,13 +23,13 @@ SENDERS = {UXAS: "UxAS", ICAROUS: "ICAROUS"}
 
 
 def location(projection: Projection, p: Position) -> Any:
-    """A point of the mission frame as a `Location3D`."""
+    """A position of the mission frame as a `Location3D`."""
     lat, lon = projection.to_geodetic(p.north_m, p.east_m)
     return lmcp.new("Location3D", Latitude=lat, Longitude=lon, Altitude=p.alt_m)
 
 
 def gated(vehicle_id: int, epoch: int, sender: int, command: Any) -> Any:
-    """A command on its way to a vehicle's gate."""
+    """A command addressed to a vehicle's gate, as a `GatedCommand`."""
     return lmcp.new(
         "GatedCommand", VehicleID=vehicle_id, Epoch=epoch, Sender=SENDERS[sender], Command=command
     )
@@ -44,7 +43,9 @@ def path_command(
     speed_m_s: float,
     tasks: tuple[int, ...] = (),
 ) -> Any:
-    """Fly these points, one after the other, at this speed; the last one points at itself."""
+    """A `MissionCommand` to fly these points in order at a speed [m/s]; the last waypoint is its own
+    successor.
+    """
     lats, lons = projection.to_geodetic_many(
         [p.north_m for p in points], [p.east_m for p in points]
     )
@@ -72,7 +73,7 @@ def path_command(
 
 
 def velocity_command(vehicle_id: int, command_id: int, v: Velocity) -> Any:
-    """A command to fly this velocity [m/s]."""
+    """A `VehicleActionCommand` to fly this velocity [m/s]."""
     action = lmcp.new(
         "FlightDirectorAction",
         Speed=math.hypot(v.north_m_s, v.east_m_s),
@@ -110,7 +111,7 @@ def loiter_command(
 
 
 def decode(projection: Projection, body: Any, heading_rad: float) -> Command:
-    """What the autopilot is to do. BadInput for a command that it does not know."""
+    """The autopilot command in an LMCP body. heading_rad: present heading. BadInput for an unknown command."""
     if isinstance(body, lmcp.types["MissionCommand"]):
         points = body.WaypointList
         norths, easts = projection.to_local_many(
@@ -141,7 +142,7 @@ def decode(projection: Projection, body: Any, heading_rad: float) -> Command:
 def task_progress(
     task_id: int, vehicle_id: int, at_ms: int, phase: str, served: float, note: str
 ) -> Any:
-    """How far a task is, as a `TaskProgress`; served: fraction, 0 to 1."""
+    """State of a task as a `TaskProgress`. at_ms: time [ms]; served: flown fraction, 0 to 1."""
     return lmcp.new(
         "TaskProgress",
         TaskID=task_id,

@@ -1,4 +1,4 @@
-"""When tasks will begin, how fast to fly for it, and what is done where a deadline cannot be kept."""
+"""Expected task times, speed adaptation to meet them, and what to do when a deadline cannot be met."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from cratous.spec.mission.plan import PlanItem
 from cratous.spec.records import replace
 
 OPEN_MARGIN_MS = 60
-"""Aim this much later than the predicted opening, so that rounding never costs a lap."""
+"""Aim this much after the predicted opening [ms], so that rounding never costs an extra lap."""
 
 Late = tuple[tuple[int, Row], ...]
 
 
 def expected(state: State, factor: float, now_ms: int) -> tuple[dict[int, int], dict[int, int]]:
-    """Expected starts and ends of all tasks, ways flown at `factor` times the planned speed."""
+    """Expected starts and ends of all tasks [ms], with transits flown at `factor` times the planned speed."""
     starts, ends, failed = state.counted_starts(), dict(state.ends), dict(state.failed)
     chains, rows = state.by_vehicle(), state.plan.rows
     return expected_times(chains, rows, starts, ends, failed, factor, now_ms)
 
 
 def opens(state: State, item: PlanItem, now_ms: int, margin_ms: int = 0) -> int:
-    """When an item's task is expected to be allowed to begin, and a margin if it must wait."""
+    """When an item's task is expected to be allowed to begin [ms]; margin_ms is added if it must wait."""
     at_ms, rows = 0, [r for r in state.plan.rows if r.i == item.task_id and r.kind in LOWER]
     if rows:
         starts, ends = expected(state, 1.0, now_ms)
@@ -40,7 +40,7 @@ def opens(state: State, item: PlanItem, now_ms: int, margin_ms: int = 0) -> int:
 
 
 def adapted(state: State, chain: Chain) -> Chain:
-    """The chain, slower or faster so as to pass the start pose when the task may begin."""
+    """The chain with its speed adapted so that it passes the start pose when the task may begin."""
     item = chain.item
     if item is None or chain.suspended or chain.phase not in (Phase.TRANSIT, Phase.WAIT):
         return chain
@@ -55,13 +55,13 @@ def adapted(state: State, chain: Chain) -> Chain:
 
 
 def watch(state: State) -> tuple[State, Late]:
-    """The tasks that not even the fastest flight can end in time, each with the row that it breaks."""
+    """The tasks that miss a deadline even at the fastest speed, each with the row that it breaks."""
     state = replace(state, hurry=bool(_broken(state, 1.0)))
     return state, tuple(_broken(state, FASTEST)) if state.hurry else ()
 
 
 def _broken(state: State, factor: float) -> list[tuple[int, Row]]:
-    """Unsettled tasks whose upper bounds would be broken at this pace, with the row."""
+    """Unsettled tasks that would break an upper bound at this speed factor, with the row."""
     if all(row.kind in LOWER for row in state.plan.rows):
         return []
     starts, ends = expected(state, factor, state.now_ms)
@@ -72,7 +72,7 @@ def _broken(state: State, factor: float) -> list[tuple[int, Row]]:
 def act_on(
     config: Config, state: State, late: Late, versions: tuple[tuple[int, int], ...], out: Out
 ) -> State:
-    """Do what the kernel `late_act` answers for each late task, up to one that asks for a plan."""
+    """Act on each late task as the kernel `late_act` decides, stopping at the first that requires a new plan."""
     for k, (task_id, row) in enumerate(late):
         act = late_act(_under_way(state, task_id), True, _torn(state))
         if act == STANDS_BY:
@@ -85,7 +85,7 @@ def act_on(
 
 
 def give_up_first(config: Config, state: State, late: Late, out: Out) -> State:
-    """There is no plan for the first of the late tasks: it fails."""
+    """No plan exists for the first late task: it fails."""
     task_id, row = late[0]
     return fail(config, state, task_id, _missed(row), out)
 
@@ -103,5 +103,5 @@ def _under_way(state: State, task_id: int) -> bool:
 
 
 def _torn(state: State) -> bool:
-    """Whether another plan now would interrupt a task, or a vehicle is not flown by UxAS, or holds for an operator."""
+    """Whether a new plan now would interrupt a task, or some vehicle is suspended or holds for an operator."""
     return any(c.suspended or c.holds or c.phase is Phase.TASK for c in state.chains)

@@ -1,9 +1,9 @@
-"""Commands of an operator to one vehicle: it holds at a place, and resumes its plan.
+"""Operator commands to a single vehicle: hold at a place, and resume the plan.
 
-The plan stays as it is. A vehicle that holds leaves its item, as it does for ICAROUS, and goes on with it from
-there when it resumes; others wait for it as they would. Where the vehicle is not UxAS's to command, or no way
-there keeps the zones (kernels by `first_bad_leg`), the command is refused, and said so; it flies on as it was.
-The command itself passes the vehicle's gate as every other does.
+The plan does not change. A vehicle that holds interrupts its item, as under ICAROUS, and continues it from
+there when it resumes; other vehicles wait for it as usual. A command is refused, with the reason, if UxAS
+does not have the vehicle or no route there keeps the zones (kernels by `first_bad_leg`); the vehicle then
+flies on unchanged. The command passes the vehicle's gate like every other.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ from cratous.spec.mission.changes import HoldCommand, words
 from cratous.spec.records import replace
 
 NAME = "uxas"
-"""The sender of what is said of the mission."""
+"""Sender of messages about the mission."""
 REFUSED = "refused: "
 
 
 def obey(config: Config, state: State, due: Sequence[Change], out: Out) -> State:
-    """Carry out the commands that are due, in order; each with its result."""
+    """Carry out the commands that are due, in order, and announce the result of each."""
     for change in due:
         done: Out = []
         why = _not_commanded(config, state, change.vehicle)
@@ -48,7 +48,7 @@ def obey(config: Config, state: State, due: Sequence[Change], out: Out) -> State
 
 
 def _not_commanded(config: Config, state: State, vehicle_id: int) -> str:
-    """Why a vehicle takes no command of UxAS now; empty if it does."""
+    """Why UxAS cannot command a vehicle at present; "" if it can."""
     away = {**absent(config.mission, state.now_ms), **dict(state.landed)}
     if vehicle_id in away:
         return away[vehicle_id]
@@ -61,7 +61,7 @@ def _not_commanded(config: Config, state: State, vehicle_id: int) -> str:
 
 
 def _hold(config: Config, state: State, asked: HoldCommand, out: Out) -> tuple[State, str]:
-    """Make for the hold."""
+    """Fly to the hold. Returns the state and the answer, in words."""
     chain, air = state.chain(asked.vehicle), state.air(asked.vehicle)
     flies = replace(chain, speed_m_s=chain.vehicle.speed_m_s)
     found = into(config.ways(state.zones), flies, air, pose_of(asked, air))
@@ -78,7 +78,7 @@ def _hold(config: Config, state: State, asked: HoldCommand, out: Out) -> tuple[S
 
 
 def _resume(config: Config, state: State, vehicle_id: int, out: Out) -> tuple[State, str]:
-    """Go on by the plan: with the item that was left, or what the plan has now."""
+    """Resume the plan: with the interrupted item, or with the next one of the present plan."""
     chain, now_ms = state.chain(vehicle_id), state.now_ms
     if chain.holds is None:
         return state, REFUSED + "it flies by its plan already"
@@ -93,7 +93,7 @@ def _resume(config: Config, state: State, vehicle_id: int, out: Out) -> tuple[St
 
 
 def _let_go(chain: Chain, on: Chain) -> Chain:
-    """The chain as it was left, with what has become of the vehicle since."""
+    """The chain as it was interrupted, with the vehicle's present version counts and link state."""
     return replace(
         on, vehicle=chain.vehicle, version=chain.version, route_version=chain.route_version,
         told_version=chain.told_version, suspended=chain.suspended, unlinked=chain.unlinked, leg=chain.leg,

@@ -1,9 +1,9 @@
 """A deterministic point-mass aircraft; its flown path is exactly piecewise linear.
 
-Within one physics step the velocity is constant: `steer` chooses the velocity of the coming step
-(turn rate limited by the bank angle, g tan(bank) / v; speed change and climb limited), `advance`
-moves by it. So a state, together with its velocity, says where the aircraft is at every instant
-of the step, and two of them can be checked exactly by the well-clear kernels.
+Within one physics step the velocity is constant: `steer` chooses the velocity of the coming step (turn rate
+limited by the bank angle, g tan(bank) / v; acceleration and climb limited), `advance` moves by it. A state
+with its velocity therefore gives the position at every instant of the step, and the well-clear kernels can
+check two of them exactly.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ GRAVITY_M_S2 = 9.80665
 
 
 class Limits(NamedTuple):
-    """What the airframe can do: speeds [m/s], bank [rad], climb [m/s], acceleration [m/s2]."""
+    """Airframe limits: speeds [m/s], bank [rad], climb [m/s], acceleration [m/s2]."""
 
     min_speed_m_s: float
     max_speed_m_s: float
@@ -30,7 +30,7 @@ class Limits(NamedTuple):
 
 
 class AirState(NamedTuple):
-    """Where an aircraft is and how it moves until the next step: ground speed, climb positive."""
+    """Position, heading, ground speed and climb rate (positive up) of an aircraft until the next step."""
 
     position: Position
     heading_rad: float
@@ -39,7 +39,7 @@ class AirState(NamedTuple):
 
     @property
     def velocity(self) -> Velocity:
-        """The velocity of the coming step: north, east, down [m/s]."""
+        """Velocity in the coming step: north, east, down [m/s]."""
         return Velocity(
             self.speed_m_s * math.cos(self.heading_rad),
             self.speed_m_s * math.sin(self.heading_rad),
@@ -53,7 +53,7 @@ class AirState(NamedTuple):
 
 
 class Steering(NamedTuple):
-    """What the autopilot asks for: heading [rad], ground speed [m/s], climb rate [m/s]."""
+    """Commanded heading [rad], ground speed [m/s] and climb rate [m/s]."""
 
     heading_rad: float
     speed_m_s: float
@@ -68,35 +68,37 @@ def limits_of(vehicle: Vehicle) -> Limits:
 
 
 def first_state(vehicle: Vehicle) -> AirState:
-    """A vehicle at mission start: in the air, or at a stand on the ground."""
+    """A vehicle's state at mission start: in the air, or stationary on the ground."""
     if isinstance(vehicle, GroundedVehicle):
         return AirState(vehicle.stands_at, wrap(vehicle.heading_rad), 0.0, 0.0)
     return planned_state(vehicle)
 
 
 def on_its_ground(vehicle: Vehicle, air: AirState) -> bool:
-    """Whether a vehicle that starts on the ground is as low as there."""
+    """Whether a vehicle that starts on the ground is at the altitude of its ground."""
     return isinstance(vehicle, GroundedVehicle) and is_down(air.position.alt_m - vehicle.ground_m)
 
 
 def stands_at_start(vehicle: Vehicle, air: AirState) -> bool:
-    """Whether a vehicle that starts on the ground is there still, at a stand."""
+    """Whether a vehicle that starts on the ground is still on it, at rest."""
     return on_its_ground(vehicle, air) and air.speed_m_s == 0
 
 
 def taken_off(vehicle: Vehicle, air: AirState) -> AirState:
-    """A vehicle that is taking off as it is expected to be then: where it is, as high and fast as its plan begins."""
+    """The expected state of a vehicle after take-off: its present place, the altitude and speed at which its
+    plan begins.
+    """
     position = air.position._replace(alt_m=max(air.position.alt_m, vehicle.position.alt_m))
     return AirState(position, air.heading_rad, vehicle.speed_m_s, 0.0)
 
 
 def planned_state(vehicle: Vehicle) -> AirState:
-    """Where its plan begins, and how it flies there: in the air."""
+    """The airborne state in which a vehicle's plan begins."""
     return AirState(vehicle.position, wrap(vehicle.heading_rad), vehicle.speed_m_s, 0.0)
 
 
 def wrap(angle_rad: float) -> float:
-    """The same angle in (-pi, pi]."""
+    """The angle normalised to (-pi, pi]."""
     angle = math.fmod(angle_rad, 2 * math.pi)
     if angle > math.pi:
         return angle - 2 * math.pi
@@ -106,17 +108,17 @@ def wrap(angle_rad: float) -> float:
 
 
 def clamp(value: float, low: float, high: float) -> float:
-    """The nearest value in [low, high]."""
+    """The value limited to [low, high]."""
     return min(max(value, low), high)
 
 
 def turn_rate_rad_s(speed_m_s: float, max_bank_rad: float) -> float:
-    """Fastest level turn at a bank angle: g tan(bank) / v [rad/s]."""
+    """Turn rate of a level turn at a bank angle: g tan(bank) / v [rad/s]."""
     return GRAVITY_M_S2 * math.tan(max_bank_rad) / speed_m_s
 
 
 def ability_at(speed_m_s: float, limits: Limits, floor_m: float, step_s: float) -> Ability:
-    """What the airframe can do at a speed [m/s]. floor_m, step_s: as of `Ability`."""
+    """The airframe's `Ability` at a speed [m/s]. floor_m, step_s: as in `Ability`."""
     return Ability(
         turn_rate_rad_s(speed_m_s, limits.max_bank_rad),
         limits.min_speed_m_s,
@@ -129,12 +131,12 @@ def ability_at(speed_m_s: float, limits: Limits, floor_m: float, step_s: float) 
 
 
 def turn_radius_m(speed_m_s: float, max_bank_rad: float) -> float:
-    """Radius of that turn: v^2 / (g tan(bank)) [m]."""
+    """Radius of a level turn at a bank angle: v^2 / (g tan(bank)) [m]."""
     return speed_m_s / turn_rate_rad_s(speed_m_s, max_bank_rad)
 
 
 def steer(state: AirState, wanted: Steering, limits: Limits, dt_s: float) -> AirState:
-    """The state with the velocity of the coming step, as near to `wanted` as the limits allow."""
+    """The state with the velocity of the coming step: as close to `wanted` as the limits allow."""
     most = turn_rate_rad_s(state.speed_m_s, limits.max_bank_rad) * dt_s
     turn = clamp(wrap(wanted.heading_rad - state.heading_rad), -most, most)
     change = limits.max_acceleration_m_s2 * dt_s
@@ -148,7 +150,7 @@ def steer(state: AirState, wanted: Steering, limits: Limits, dt_s: float) -> Air
 
 
 def advance(state: AirState, dt_s: float) -> AirState:
-    """The state one step later: straight on."""
+    """The state after dt_s [s] of straight flight."""
     p, v = state.position, state.velocity
     return state._replace(
         position=Position(
@@ -160,26 +162,27 @@ def advance(state: AirState, dt_s: float) -> AirState:
 
 
 def touching_down(state: AirState, ground_m: float, dt_s: float) -> AirState:
-    """The state limited so that the next step of dt_s [s] ends on the ground at ground_m [m] at the lowest."""
+    """The state with its descent limited so that a step of dt_s [s] ends no lower than ground_m [m]."""
     least = (ground_m - state.position.alt_m) / dt_s
     return state._replace(climb_m_s=max(state.climb_m_s, least))
 
 
 def rolling(state: AirState, braking_m_s2: float, dt_s: float) -> AirState:
-    """The state of a vehicle on the ground with the velocity of the coming step: straight on, braking to a stand."""
+    """The state of a vehicle rolling on the ground for the coming step: straight on, braking to rest."""
     return state._replace(speed_m_s=max(state.speed_m_s - braking_m_s2 * dt_s, 0.0), climb_m_s=0.0)
 
 
 def rolling_up(state: AirState, speed_m_s: float, climb_m_s: float, dt_s: float) -> AirState:
-    """The state of a vehicle that rolls faster, up to a speed, with the velocity of the coming step: straight on; and off
-    the ground, at a climb above 0, once that speed is reached."""
+    """The state of a vehicle in its take-off run for the coming step: straight on, accelerating to speed_m_s
+    [m/s]. It climbs only once that speed is reached.
+    """
     speed = min(state.speed_m_s + MAX_ACCELERATION_M_S2 * dt_s, speed_m_s)
     slower_by = speed_m_s - speed
     return state._replace(speed_m_s=speed, climb_m_s=0.0 if slower_by else max(climb_m_s, 0.0))
 
 
 def traffic_state(traffic: Traffic, now_ms: int) -> AirState | None:
-    """Traffic at an instant: straight flight from where it appears; None while it is not there."""
+    """State of traffic at an instant: straight flight from where it appears; None while it is absent."""
     if now_ms < traffic.appears_ms:
         return None
     if traffic.vanishes_ms is not None and now_ms > traffic.vanishes_ms:

@@ -1,9 +1,10 @@
-"""An encounter: a short flight by the steps of avoidance and motion alone, without plan, bridge, bus and log.
+"""An encounter: a short flight by avoidance and motion alone, without plan, bridge, bus and log.
 
-Each vehicle of ours flies through its points, one after the other; those with an ICAROUS instance are watched and
-steered by the very steps that a whole flight uses (`Instance.handle`, `VehicleNode.handle`, the kernels of gate and
-link end), by what its sensors see where the mission has some. What the bridge would bring is there at once: zones, the way, and how far the vehicle is. When control is offered, UxAS takes it at once, by the way back that a whole flight takes on its
-way to a task.
+Each own vehicle flies through its points in order. Those with an ICAROUS instance are monitored and steered
+by the same steps as in a whole flight (`Instance.handle`, `VehicleNode.handle`, the kernels of gate and link
+end), on what their sensors see where the mission has sensors. What the bridge would carry (zones, route,
+progress) arrives at once. When control is offered, UxAS takes it at once and routes back as a whole flight
+does in transit.
 """
 
 from __future__ import annotations
@@ -51,21 +52,22 @@ from cratous.spec.mission.plan import PlanItem, Pose
 from cratous.spec.records import replace
 
 COMPLETE, LIMIT = "complete", "limit"
-"""How it ended: one of ours has passed the end of its way, or the time was over."""
+"""Outcomes: an own vehicle has passed the end of its route, or the time limit was reached."""
 
 Aircraft = tuple[tuple[int, AirState], ...]
 
 
 class Instant(NamedTuple):
-    """Where everybody is at an instant, and the velocity that each flies with until the next one."""
+    """The states of all aircraft at an instant, with the velocity that each flies until the next one."""
 
     now_ms: int
     aircraft: Aircraft
 
 
 class Encounter(NamedTuple):
-    """A flown encounter. takeovers: how often ICAROUS took a vehicle; reached: of each vehicle, how many points
-    of its way UxAS takes to be passed, those that it began at not counted."""
+    """A flown encounter. takeovers: how often ICAROUS took a vehicle; reached: number of route points that
+    UxAS counts as passed, by vehicle, without the starting point.
+    """
 
     instants: tuple[Instant, ...]
     outcome: str
@@ -74,7 +76,7 @@ class Encounter(NamedTuple):
 
 
 def fly_encounter(mission: Mission, *, daa: bool = True) -> Encounter:
-    """Fly a mission of must_fly points for simulation.limit_ms, or until one of ours has flown its way.
+    """Fly a mission of must_fly points for simulation.limit_ms, or until an own vehicle has flown its route.
 
     Raises BadInput for what an encounter does not fly: see `ways_of`.
     """
@@ -117,11 +119,11 @@ def fly_encounter(mission: Mission, *, daa: bool = True) -> Encounter:
 
 
 def ways_of(mission: Mission) -> dict[int, tuple[Position, ...]]:
-    """The way of each vehicle: from where it is through its must_fly points, in the order of the file.
+    """The route of each vehicle: its start position and its must_fly points, in the order of the file.
 
-    BadInput for relations, changes in flight, faults of the bridge, `link_loss`, `merging`, starts on the ground, other tasks, tasks that are not for exactly one
-    vehicle, and vehicles without a task: an encounter flies nothing of the kind; and where no vehicle is protected,
-    since nothing would be judged.
+    BadInput for relations, changes in flight, bridge faults, `link_loss`, `merging`, starts on the ground, other
+    kinds of task, tasks without exactly one eligible vehicle, vehicles without a task, and missions without a
+    protected vehicle, in which there is nothing to judge.
     """
     for item, there in (
         ("relations", mission.relations),
@@ -162,7 +164,7 @@ def _everyone(mission: Mission, ours: list[_Ours], now_ms: int) -> Aircraft:
 
 
 class _Ours:
-    """One of our vehicles: airframe and gate, its ICAROUS instance, and UxAS's side of it."""
+    """One own vehicle: airframe and gate, its ICAROUS instance, and its UxAS side."""
 
     def __init__(
         self, vehicle: Vehicle, way: tuple[Position, ...], mission: Mission, routes: Ways, daa: bool
@@ -186,13 +188,13 @@ class _Ours:
         self._tell_way()
 
     def look(self, now_ms: int, flown: Mapping[int, Flown]) -> None:
-        """What its sensors, if it has any, measure at a step."""
+        """Record what its sensors, if it has any, measure at a step."""
         if self.carrier is not None:
             self._seen = surveillance.stepped(self.carrier, self._seen, now_ms, flown)
 
     @property
     def reached(self) -> int:
-        """How many points of the way are passed."""
+        """Number of route points passed."""
         return self._chain.k
 
     def settle(self, now_ms: int) -> bool:
@@ -211,7 +213,7 @@ class _Ours:
         return self._chain.item is None
 
     def _go_on(self, at_ms: int) -> None:
-        """Make for the next point, around the zones; straight where no way keeps them, which the judges see."""
+        """Route to the next point around the zones; straight where no route keeps them, which the judges see."""
         track = self._routes.new_transit(self._chain, self.state.air)
         straight = Track((self.state.air.position, *self._chain.items[self._chain.k].path))
         self._chain = self._chain.enter(Phase.TRANSIT, track or straight, at_ms)
@@ -219,12 +221,13 @@ class _Ours:
 
     @property
     def flies(self) -> Flies:
-        """The way that UxAS flies it by, as it was told, or to which velocity ICAROUS steers it."""
+        """The route on which UxAS flies it, as told, or the velocity to which ICAROUS steers it."""
         return self._steered if self._chain.suspended else self._told.points
 
     def beat(self, sense: Sense, fly: tuple[tuple[int, Flies], ...]) -> list[SetMode]:
-        """A heartbeat of its instance: what it wishes and steers; the modes that it tells UxAS. fly: how everybody
-        flies that has an instance."""
+        """One heartbeat of its instance: apply its authority requests and commands. Returns the modes that it
+        reports to UxAS. fly: how each vehicle with an instance flies.
+        """
         if self.instance is None:
             return []
         ways, steered = list[tuple[int, tuple[Position, ...]]](), list[tuple[int, Velocity]]()
@@ -271,12 +274,12 @@ class _Ours:
         return modes
 
     def hear(self, modes: list[SetMode], now_ms: int) -> None:
-        """What UxAS's end does about modes: it suspends what it flies, or takes the vehicle back."""
+        """The UxAS end's reaction to modes: it suspends the vehicle's route, or takes the vehicle back."""
         for mode in modes:
             epoch = self.state.gate.epoch if mode.epoch is None else mode.epoch
             end, act = link_mode(self._link, self.state.gate, mode.mode == "ACTIVE", epoch)
             if act == TAKE_BACK and not self._take_back(epoch, now_ms):
-                continue  # asked again at the next heartbeat; ICAROUS flies on until then
+                continue  # offered again at the next heartbeat; ICAROUS flies on until then
             self._link = end
             suspended = suspended_after(self._chain.suspended, act)
             if suspended and not self._chain.suspended:
@@ -284,12 +287,12 @@ class _Ours:
             self._chain = replace(self._chain, suspended=suspended)
 
     def _tell_resume(self) -> None:
-        """ICAROUS has taken over: no later than at this point the vehicle comes back onto its way."""
+        """After a takeover: tell ICAROUS the last point at which the vehicle may rejoin its route."""
         told = replace(self._icarous.told, resume=self._chain.track.points[-1])
         self._icarous = replace(self._icarous, told=told)
 
     def _take_back(self, epoch: int, now_ms: int) -> bool:
-        """Command the way back and the remaining path; False if no way back keeps clear of the zones."""
+        """Command the way back and the remaining path; False if no way back keeps the zones."""
         back = self._routes.back(self._chain, self.state.air)
         if back is None:
             return False
@@ -299,7 +302,7 @@ class _Ours:
         return True
 
     def _tell_way(self) -> None:
-        """The way ahead for as far as ICAROUS looks, as it is told over the bridge."""
+        """Tell ICAROUS the route ahead, up to its look-ahead, as the bridge would."""
         chain, vehicle = self._chain, self._chain.vehicle
         ahead_m = vehicle.max_speed_m_s * (self._lookahead_s + AHEAD_S)
         self._told, self._told_from_m = Track(points_ahead(chain, 0, ahead_m)), chain.s_m
@@ -311,15 +314,16 @@ class _Ours:
         self._chain = replace(chain, told_version=chain.route_version)
 
     def _command(self, epoch: int) -> None:
-        """UxAS commands the present track."""
+        """Command the present track on behalf of UxAS."""
         follow = Follow(Track(points_left(self._chain)), self._chain.speed_m_s)
         if gate_accepts(self.state.gate, UXAS, epoch):
             self.state = vehicles.commanded(self.state, UXAS, epoch, follow)
 
 
 def _items(vehicle: Vehicle, way: tuple[Position, ...]) -> tuple[PlanItem, ...]:
-    """The points of a way, each as a task: straight through it, in the direction from the point before to the one
-    after."""
+    """Each point of a route as a task: straight through it, in the direction from the previous point to the
+    next.
+    """
     headings = [
         math.atan2(beyond.east_m - here.east_m, beyond.north_m - here.north_m)
         for here, beyond in zip(way, (*way[2:], way[-1]), strict=False)

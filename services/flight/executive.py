@@ -1,11 +1,11 @@
-"""Flies a plan: transit, wait while the gate in time is closed, task; for all vehicles at once.
+"""Flies a plan: transit, wait while the task may not begin yet, task; for all vehicles.
 
-`handle(state, message) -> (state, messages)`. A task starts when its vehicle passes the start pose
-and every lower bound of the plan's rows holds for the REAL times of the others; until then the
-vehicle circles on its hold. While it comes near, it adapts its speed a little so as to pass the start
-pose just when it may. Events of all vehicles are handled in the order of their instants within a
-step. A delay that breaks an upper bound, and a change that touches the plan, ask for another plan
-for the tasks that are left; the step goes on with the answer. If there is no plan, tasks fail by name.
+`handle(state, message) -> (state, messages)`. A task starts when its vehicle passes the start pose and every
+lower bound of the plan's rows holds for the actual times of the other tasks; until then the vehicle circles
+on its hold. While it approaches, it adapts its speed so as to pass the start pose when the task may begin.
+Within a step, the events of all vehicles are handled in order of time. A delay that breaks an upper bound, or
+a change that affects the plan, requests a new plan for the remaining tasks; the step continues with the
+answer. If there is no plan, the tasks fail, each by name.
 """
 
 from __future__ import annotations
@@ -65,9 +65,9 @@ from cratous.spec.records import replace
 
 OUTCOMES = {GOES_ON: "", COMPLETE: "complete", FAILED_FLIGHT: "failed", LIMIT: "limit"}
 BRINGS_WORK = (TASK_ADDED, VEHICLE_JOINS)
-"""The end of the mission waits for changes of these kinds."""
+"""Kinds of change for which the end of the mission waits."""
 MAY_FREE_WORK = (WIND, ZONE_ENDS)
-"""And for these, if a task is left out."""
+"""Further kinds for which it waits if a task is left out."""
 
 Step = tuple[State, tuple[FromExecutive, ...]]
 Versions = tuple[tuple[int, int], ...]
@@ -75,12 +75,12 @@ Versions = tuple[tuple[int, int], ...]
 
 @dataclass(frozen=True)
 class Executive:
-    """The UxAS side of a flight; what does not change about it."""
+    """The UxAS side of a flight. config: what does not change during the flight."""
 
     config: Config
 
     def handle(self, state: State, message: ToExecutive) -> Step:
-        """One step: the state afterwards, and what to send, in order."""
+        """One step: the state that results, and the messages to send, in order."""
         out: Out = []
         match message:
             case Begin():
@@ -112,7 +112,7 @@ class Executive:
         return state, tuple(out)
 
     def _begin(self, state: State, message: Begin, out: Out) -> State:
-        """Set every vehicle on its way; who is told of it is told at `SetOut`."""
+        """Start every vehicle on its route; ICAROUS is told and commands are sent at `SetOut`."""
         now_ms, aircraft = message
         state = replace(state, now_ms=now_ms, aircraft=aircraft)
         state = changes.known_from_the_start(self.config, state, out)
@@ -121,7 +121,7 @@ class Executive:
         return state
 
     def _set_out(self, state: State, out: Out) -> State:
-        """The first ways, and the first commands: no gate has been in another epoch than 0."""
+        """Send the first routes and the first commands: every gate is still in epoch 0."""
         for vid in self.config.instances:
             state = executive_outputs.route(state, vid, out)
         for vid, _ in state.aircraft:
@@ -131,7 +131,7 @@ class Executive:
     # a step of the flight ----------------------------------------------------------------------
 
     def _tick(self, state: State, tick: Tick, out: Out) -> State:
-        """What has become known; then events since the last step, in the order of time."""
+        """Apply changes that have become known; then handle events since the last step, in order of time."""
         due, to_come = split(state.to_come, tick.now_ms)
         state = replace(
             state,
@@ -146,7 +146,7 @@ class Executive:
         return self._asking(state, out) if state.asked else self._events(state, out)
 
     def _events(self, state: State, out: Out) -> State:
-        """Ends of tracks, then deadlines; the rest of the step unless a plan is asked for."""
+        """Ends of tracks, then deadlines; then the rest of the step, unless a plan is requested."""
         versions = tuple((chain.vehicle.id, chain.version) for chain in state.chains)
         state = task_transitions.settle(self.config, state, out)
         if not self._beats(state):
@@ -160,7 +160,7 @@ class Executive:
         return self._asking(state, out) if state.asked else self._commands(state, versions, out)
 
     def _commands(self, state: State, versions: Versions, out: Out) -> State:
-        """The end of a step: speeds are adapted, tracks that have changed are commanded."""
+        """End of a step: adapt speeds, command tracks that have changed."""
         if self._beats(state):
             for chain in state.chains:
                 state = state.put(deadlines.adapted(state, state.chain(chain.vehicle.id)))
@@ -188,7 +188,7 @@ class Executive:
         return state
 
     def _answered(self, state: State, message: Planned | NotPlanned, out: Out) -> State:
-        """The answer of the planner: what the kernel `answered` answers, and the rest of the step."""
+        """Act on the planner's answer as the kernel `answered` decides, and finish the step."""
         asked = state.asked or Asked(FOR_NOTHING, "", "")
         waits, act = answered(asked.kind, isinstance(message, Planned))
         state = replace(state, asked=state.asked if waits else None)
@@ -209,7 +209,7 @@ class Executive:
     # heartbeats, and the end -------------------------------------------------------------------
 
     def _report(self, state: State, now_ms: int, out: Out) -> State:
-        """Where the cameras look; how far everybody is, for those with an instance."""
+        """Report where the cameras point, and the progress of each vehicle with an instance."""
         out.extend(
             executive_outputs.look(self.config, state, vid, now_ms) for vid, _ in state.aircraft
         )
@@ -218,9 +218,9 @@ class Executive:
         return state
 
     def _close(self, state: State, message: Closing, out: Out) -> State:
-        """Whether the flight has ended, and how: what the kernel `flight_outcome` answers.
+        """Whether and how the flight has ended, as the kernel `flight_outcome` decides.
 
-        Every task that is asked for has a final word then.
+        At the end every task that is asked for gets a final status.
         """
         now_ms, limit_ms = message.now_ms, self.config.mission.simulation.limit_ms
         flying = sum(chain.item is not None for chain in state.chains)
@@ -234,7 +234,7 @@ class Executive:
         away = [vid for vid, gate in gates if gate.owner != UXAS and vid not in down]
         kinds = (*BRINGS_WORK, *(MAY_FREE_WORK if state.left_out else ()))
         expected = sum(c.kind in kinds for c in state.to_come)
-        # while some fly it is no matter; of a search that was flown in part the rest is left
+        # not needed while some still fly; a search flown only in part counts as not served
         todo = len(changes.unserved(state)) if not flying else 0
         how = OUTCOMES[flight_outcome(flying, len(away), expected, todo, now_ms, limit_ms)]
         if not how:

@@ -1,4 +1,4 @@
-"""What the executive commands, tells ICAROUS, and wants to be looked at: from its state as it stands."""
+"""The executive's outgoing commands, routes, progress reports and camera directions, derived from its state."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from cratous.spec.mission.link_loss import WithoutLink
 from cratous.spec.records import replace
 
 AHEAD_S = 30
-"""Waypoints are told at least this much farther than the look-ahead [s]."""
+"""Routes are sent this much farther than the look-ahead [s]."""
 
 WHOLE_M = 1e6
-"""A way that is to be flown to its end without the link, or over a merge fix, is told for so long [m]."""
+"""Length told of a route that is to be flown to its end without the link, or over a merge fix [m]."""
 
 
 def command(
     config: Config, state: State, vehicle_id: int, epoch: int, out: Out, source: str = NAME
 ) -> State:
-    """Command the present track from here on, through the vehicle's gate."""
+    """Command the rest of the present track, through the vehicle's gate."""
     chain, number = state.chain(vehicle_id), state.commands + 1
     tasks = (chain.item.task_id,) if chain.item and chain.phase is Phase.TASK else ()
     points, speed = points_left(chain), chain.speed_m_s
@@ -36,7 +36,7 @@ def command(
 
 
 def command_all(config: Config, state: State, out: Out) -> State:
-    """Command the present tracks of all that UxAS flies."""
+    """Command the present tracks of all vehicles that are not suspended."""
     for chain in state.chains:
         vid = chain.vehicle.id
         if not chain.suspended:
@@ -45,7 +45,7 @@ def command_all(config: Config, state: State, out: Out) -> State:
 
 
 def route(state: State, vehicle_id: int, out: Out) -> State:
-    """Tell the way ahead: the present track, and what follows for as far as ICAROUS looks."""
+    """Send ICAROUS the route ahead: the present track and what follows, up to its look-ahead."""
     chain = state.chain(vehicle_id)
     chain = replace(chain, told_version=chain.route_version)
     opens_ms = opens(state, chain.item, chain.since_ms) if chain.item is not None else 0
@@ -60,7 +60,7 @@ def route(state: State, vehicle_id: int, out: Out) -> State:
 
 
 def report(state: State, vehicle_id: int, out: Out) -> State:
-    """Report a vehicle's progress along the way that UxAS flies, and the way itself if it was not sent yet."""
+    """Report a vehicle's progress along its route, and first the route itself if it has changed."""
     chain = state.chain(vehicle_id)
     if track_is_told(chain.suspended, chain.route_version != chain.told_version):
         state = route(state, vehicle_id, out)
@@ -70,7 +70,7 @@ def report(state: State, vehicle_id: int, out: Out) -> State:
 
 
 def look(config: Config, state: State, vehicle_id: int, now_ms: int) -> Look:
-    """Where a vehicle's cameras look."""
+    """Where a vehicle's cameras point."""
     chain, air = state.chain(vehicle_id), state.air(vehicle_id)
     vehicle = config.mission.vehicle(vehicle_id)
     sees = looks(vehicle, chain, air, config.mission, config.projection)

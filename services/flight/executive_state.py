@@ -1,4 +1,4 @@
-"""What the executive remembers, and what does not change about it."""
+"""The executive's state, and its fixed configuration."""
 
 from __future__ import annotations
 
@@ -20,16 +20,17 @@ from cratous.spec.mission.plan import Plan
 from cratous.spec.records import replace
 
 Out = list[FromExecutive]
-"""What a step has to send so far; it lives for one step."""
+"""Messages to send, collected during one step."""
 Times = tuple[tuple[int, int], ...]
 """Instants by task [ms]."""
 V = TypeVar("V")
 
 
 class Asked(NamedTuple):
-    """A plan has been asked for. kind: see `spec.executive`; what: the change, in words; why it, or the
-    row that cannot be kept, asks for a plan; late: the tasks that are late, the one of now first, each
-    with its row; versions: of the tracks at the beginning of the step, by vehicle."""
+    """A pending plan request. kind: see `spec.executive`; what: the change, in words; why: why it, or the row
+    that cannot be met, requires a plan; late: the late tasks, each with its row, the current one first;
+    versions: track version by vehicle at the beginning of the step.
+    """
 
     kind: int
     what: str
@@ -40,21 +41,21 @@ class Asked(NamedTuple):
 
 @dataclass(frozen=True)
 class Config:
-    """mission: all of it, changes included; instances: the vehicles with an ICAROUS instance."""
+    """mission: the whole mission, changes included; instances: ids of vehicles with an ICAROUS instance."""
 
     mission: Mission
     projection: Projection
     instances: tuple[int, ...]
-    # the routers by zones: what they remember only saves time
+    # routers by zones: a cache
     _ways: dict[tuple[Zone, ...], Ways] = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def dt_s(self) -> float:
-        """A step of the flight [s]."""
+        """Duration of a step of the flight [s]."""
         return self.mission.simulation.step_ms / 1000
 
     def ways(self, zones: tuple[Zone, ...]) -> Ways:
-        """Tracks around these zones."""
+        """The router around these zones."""
         if zones not in self._ways:
             self._ways.clear()
             self._ways[zones] = Ways(zones, self.dt_s)
@@ -63,13 +64,16 @@ class Config:
 
 @dataclass(frozen=True)
 class State:
-    """known: the mission as it is known now; mission: all of it in the wind of now; zones: those that
-    bind, with their padding turned into vertices; to_come: changes that nobody knows of yet; aircraft:
-    of the vehicles, as told last; epochs: in which UxAS took a vehicle back (0 for others): what its commands
-    name; starts, ends: real ones; failed: tasks with the reason; left_out: those that the plan in force
-    leaves out, with the reason; in_part: tasks of which a part was flown, to its end;
-    commands, replans, finished: counts; hurry: some deadline is near; asked: for which plan; landed: the vehicles on
-    the ground, which stay there, each with when and where in words."""
+    """State of the executive.
+
+    known: the mission as known now; mission: the whole mission in the present wind; zones: those in force,
+    with their padding turned into vertices; to_come: changes not yet known; aircraft: last reported states by
+    vehicle; epochs: epoch in which UxAS last took a vehicle back (0 for others), which its commands name;
+    starts, ends: actual times; failed: failed tasks with the reason; left_out: tasks that the present plan
+    leaves out, with the reason; in_part: tasks of which only a planned part was flown; commands, replans,
+    finished: counts; hurry: whether some deadline is tight; asked: the pending plan request; landed: vehicles
+    at rest on the ground, each with when and where in words.
+    """
 
     known: Mission
     mission: Mission
@@ -94,7 +98,7 @@ class State:
     landed: tuple[tuple[int, str], ...] = ()
 
     def find(self, vehicle_id: int) -> Chain | None:
-        """The chain of a vehicle, if it has one yet."""
+        """The chain of a vehicle; None if it has none yet."""
         return next((c for c in self.chains if c.vehicle.id == vehicle_id), None)
 
     def chain(self, vehicle_id: int) -> Chain:
@@ -102,11 +106,11 @@ class State:
         return next(c for c in self.chains if c.vehicle.id == vehicle_id)
 
     def air(self, vehicle_id: int) -> AirState:
-        """Where a vehicle is."""
+        """State of a vehicle's motion."""
         return dict(self.aircraft)[vehicle_id]
 
     def from_where(self, vehicle_id: int) -> AirState:
-        """From where a vehicle is planned to fly on: of one that has not taken off yet, from up there."""
+        """The state from which a vehicle is planned to fly on; before take-off, its expected state after it."""
         air, vehicle = self.air(vehicle_id), self.mission.vehicle(vehicle_id)
         if not isinstance(vehicle, GroundedVehicle) or self.epoch(vehicle_id):
             return air
@@ -115,15 +119,15 @@ class State:
         return taken_off(vehicle, air) if climbs or on_its_ground(vehicle, air) else air
 
     def epoch(self, vehicle_id: int) -> int:
-        """The epoch that commands to a vehicle name: the one in which UxAS has it, as far as it has heard."""
+        """The epoch that commands to a vehicle name: that in which UxAS last took it back, 0 if never."""
         return dict(self.epochs).get(vehicle_id, 0)
 
     def by_vehicle(self) -> dict[int, Chain]:
-        """The chains by vehicle."""
+        """The chains by vehicle id."""
         return {chain.vehicle.id: chain for chain in self.chains}
 
     def put(self, chain: Chain) -> State:
-        """From now on this is the chain of its vehicle."""
+        """The state with this chain in place of its vehicle's previous one."""
         vid = chain.vehicle.id
         if self.find(vid) is None:
             return replace(self, chains=(*self.chains, chain))
@@ -131,31 +135,31 @@ class State:
         return replace(self, chains=chains)
 
     def begun(self, task_id: int, at_ms: int) -> State:
-        """A task has begun."""
+        """The state after a task has begun."""
         return replace(self, starts=_with(dict(self.starts), task_id, at_ms))
 
     def counted_starts(self) -> dict[int, int]:
-        """The starts of the tasks that have not failed: one that was begun and then failed opens nothing."""
+        """Starts of the tasks that have not failed: a failed task enables no other."""
         failed = dict(self.failed)
         return {task: at_ms for task, at_ms in self.starts if task not in failed}
 
     def ended(self, task_id: int, at_ms: int, whole: bool = True) -> State:
-        """A task has ended; whole: not just a part of it was flown."""
+        """The state after a task has ended. whole: it was flown completely, not just in part."""
         in_part = self.in_part if whole else (*self.in_part, task_id)
         return replace(self, ends=_with(dict(self.ends), task_id, at_ms), in_part=in_part)
 
     def has_failed(self, task_id: int, why: str) -> State:
-        """A task has failed."""
+        """The state after a task has failed."""
         return replace(self, failed=_with(dict(self.failed), task_id, why))
 
 
 def first_state(mission: Mission, plan: Plan) -> State:
-    """Before the mission begins."""
+    """The executive's state before the mission begins."""
     known = known_at(mission, 0)
     begun_with, to_come = split(mission.changes, 0)
     direct = (
         change for change in begun_with if change.kind in DIRECT
-    )  # they say nothing of the mission
+    )  # operator commands do not describe the mission
     return State(known, mission, hard_zones(known.zones), plan, (*direct, *to_come))
 
 

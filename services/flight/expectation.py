@@ -1,4 +1,4 @@
-"""When the tasks that are left will start and end, if everyone flies on at a certain speed."""
+"""Expected starts and ends of the remaining tasks, if every vehicle flies on at a given speed factor."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from cratous.spec.mission.plan import PlanItem
 
 MEASURED_MOST = 1000
 _measured: dict[int, tuple[PlanItem, float, float]] = {}
-"""Items by identity, with the lengths of their ways: the same are asked for at each heartbeat."""
+"""Cached lengths of items by identity: the same items are asked for at each heartbeat."""
 
 
 def _lengths_m(item: PlanItem) -> tuple[float, float]:
-    """The lengths of the way to an item and of its path [m]."""
+    """Lengths of an item's transit and of its path [m]."""
     known = _measured.get(id(item))
     if known is None or known[0] is not item:
         if len(_measured) >= MEASURED_MOST:
@@ -36,10 +36,10 @@ def expected_times(
     factor: float,
     now_ms: int,
 ) -> tuple[dict[int, int], dict[int, int]]:
-    """Starts and ends by task [ms]: the real ones, and the expected ones of the others.
+    """Starts and ends by task [ms]: actual ones where known, expected ones otherwise.
 
-    Ways between tasks are flown at `factor` times the planned speed, tasks at the planned one.
-    They are taken in the order of the planned starts, which no row points against.
+    Transits are flown at `factor` times the planned speed, tasks at the planned speed. Tasks are taken in
+    order of their planned starts, so each comes after those that its rows refer to.
     """
     starts, ends = dict(real_starts), dict(real_ends)
     free: dict[int, float] = {}

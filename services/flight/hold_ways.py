@@ -1,4 +1,4 @@
-"""Where a vehicle circles that an operator has hold: the way there and the lap, where both keep the zones."""
+"""Where a vehicle holds for an operator: the way there and the lap, if both keep the zones."""
 
 from __future__ import annotations
 
@@ -19,13 +19,15 @@ from cratous.spec.mission.changes import HoldCommand
 from cratous.spec.mission.plan import Pose
 
 TURNS_RAD = (0.0, math.pi / 2, -math.pi / 2, math.pi)
-"""A place is come to straight on, else so many radians off it."""
+"""Headings at which a place is approached: straight on, else turned by these angles [rad]."""
 HERE_M = 1.0
-"""A place so near is where the vehicle is."""
+"""A place within this distance counts as the vehicle's present position [m]."""
 
 
 class Into(NamedTuple):
-    """A path into a hold, or why none exists. pose: where it joins the circle; way_m: its length [m]."""
+    """A path into a hold, or why none exists. pose: where it joins the circle; way_m: length of the way there
+    [m].
+    """
 
     track: Track | None
     pose: Pose
@@ -34,7 +36,9 @@ class Into(NamedTuple):
 
 
 def pose_of(asked: HoldCommand, air: AirState) -> Pose:
-    """Where a hold is come to, and in which direction: straight on from where the vehicle is."""
+    """The pose in which a hold is entered: at its place and altitude, in the direction of straight flight
+    there.
+    """
     here = air.position
     alt_m = here.alt_m if asked.alt_m is None else asked.alt_m
     if asked.place is None:
@@ -46,8 +50,11 @@ def pose_of(asked: HoldCommand, air: AirState) -> Pose:
 
 
 def into(ways: Ways, chain: Chain, air: AirState, asked: Pose) -> Into:
-    """A way to a circle through a place, and the circle; none where no way or no circle keeps the zones, or the
-    vehicle does not climb or descend so much on the way."""
+    """A way to a circle through a pose, and one lap of it.
+
+    No track, with the reason, where no way or no circle keeps the zones, or the altitude cannot be reached on
+    the way.
+    """
     why = f"no circle there keeps the zones that bind at {asked.alt_m:.0f} m"
     for turn in TURNS_RAD:
         pose = asked._replace(heading_rad=asked.heading_rad + turn)
@@ -73,8 +80,9 @@ def into(ways: Ways, chain: Chain, air: AirState, asked: Pose) -> Into:
 
 
 def held_again(config: Config, state: State, chain: Chain, now_ms: int, out: Out) -> Chain:
-    """The chain of a vehicle that holds and was flown by another: on its way back to where it holds; where there
-    is none it circles where it is."""
+    """The chain of a holding vehicle that is on its way back to its hold after another had flown it; where no
+    way leads there, it circles where it is.
+    """
     assert chain.holds is not None
     ways, air = config.ways(state.zones), state.air(chain.vehicle.id)
     found = into(ways, chain, air, chain.holds)

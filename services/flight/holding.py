@@ -1,10 +1,10 @@
-"""The certificate in hand of one vehicle, behind its actuator gate: what is taken, and when it is flown on.
+"""The certificate held behind a vehicle's actuator gate: which one is accepted, and when it is flown.
 
-What may take its place, what news does to it and when it is over is answered by the kernel `hand_step`. News is what the
-vehicle's own surveillance tells at each heartbeat: an intruder that it does not allow for, or one that is not where
-it was taken to be; and that the vehicle itself is not where it should be. While ICAROUS has the vehicle and has
-not commanded it for more than two heartbeats the autopilot flies the certificate on, and then its hold. Where
-there is none, or it has expired, a loiter is flown and said.
+The kernel `hand_step` decides what may replace it, how new surveillance data affect it, and when it expires.
+New data at each heartbeat are: an intruder that it does not account for, one that deviates from its
+prediction, and a deviation of the vehicle itself. While ICAROUS has the vehicle but has not commanded it for
+more than two heartbeats, the autopilot flies the certificate, then its hold. Without a certificate, or after
+its expiry, it flies a loiter and reports that.
 """
 
 from __future__ import annotations
@@ -30,28 +30,30 @@ from cratous.services.icarous.messages import EMPTY
 from cratous.spec.mission import Daa, Position, Velocity
 
 BEATS = 2
-"""After so many heartbeats without a command of ICAROUS what is in hand is flown on."""
+"""Number of heartbeats without a command of ICAROUS after which the held certificate is flown."""
 RESERVE_BEATS = 4
-"""So many heartbeats at least are to be certain after an offer, if more than that was before."""
+"""Fewest heartbeats that a newly offered certificate must cover, unless the present one covers less."""
 NO_OFFER = Offer(0, 0, 0, 0, 0)
 SILENT = "no command of ICAROUS for more than two heartbeats"
 
 
 class Ground(NamedTuple):
-    """What does not change: what is kept clear of, and the heartbeat [ms]."""
+    """Fixed parameters: the volume to stay clear of, and the heartbeat [ms]."""
 
     daa: Daa
     heartbeat_ms: int
 
     @property
     def reserve_ms(self) -> int:
-        """How much must be certain after an offer [ms]."""
+        """Time that an offered certificate must cover [ms]."""
         return RESERVE_BEATS * self.heartbeat_ms
 
 
 class Change(NamedTuple):
-    """One change, as the log has it. kind: a name of HandChange; before, after: the hand; offer: that came, else
-    NO_OFFER; permitted: against what has become known; intruder_id: because of whom, 0 for none."""
+    """One change of the held certificate, as logged. kind: a name of HandChange; before, after: the hand;
+    offer: the offer made, else NO_OFFER; permitted: whether it stays permitted in view of the new data;
+    intruder_id: the intruder concerned, 0 for none.
+    """
 
     kind: str
     before: Hand
@@ -63,10 +65,13 @@ class Change(NamedTuple):
 
 
 class InHand(NamedTuple):
-    """hand: as the kernels have it; certificate: what it is of, None while there is none; fresh: it was offered for the
-    next command; heard_ms: when ICAROUS last commanded or took the vehicle [ms]; without: the last command had no
-    certificate, and that was said; flown: it is flown on, since ICAROUS is silent; over: that it has
-    expired was said."""
+    """State of the held certificate.
+
+    hand: as the kernels have it; certificate: the one held, None for none; fresh: it was offered for the next
+    command; heard_ms: when ICAROUS last commanded or took the vehicle [ms]; without: the last command had no
+    certificate, and that was reported; flown: the autopilot flies it because ICAROUS is silent; over: its
+    expiry was reported.
+    """
 
     hand: Hand = EMPTY
     certificate: Certificate | None = None
@@ -81,12 +86,12 @@ Kept = tuple[InHand, tuple[Change, ...]]
 
 
 def taken_over(held: InHand, now_ms: int) -> InHand:
-    """ICAROUS takes the vehicle."""
+    """The state after ICAROUS has taken the vehicle."""
     return held._replace(heard_ms=now_ms, without=False)
 
 
 def offered(held: InHand, certificate: Certificate, now_ms: int, ground: Ground) -> Kept:
-    """ICAROUS offers a certificate for what it commands next."""
+    """ICAROUS offers a certificate for its next command: accepted or refused."""
     before, offer = held.hand, certificate.offer
     taken = accepts(hand_passed(before, now_ms), offer, now_ms, ground.reserve_ms)
     after = hand_step(before, OFFERED, offer, False, now_ms, ground.reserve_ms)
@@ -97,13 +102,15 @@ def offered(held: InHand, certificate: Certificate, now_ms: int, ground: Ground)
 
 
 def uncertified(held: InHand, intruder_id: int, reason: str) -> Kept:
-    """ICAROUS has no certificate for what it commands next: said once, until it has one again."""
+    """ICAROUS has no certificate for its next command: reported once, until it has one again."""
     change = Change("Missing", held.hand, held.hand, NO_OFFER, False, intruder_id, reason)
     return held._replace(without=True), () if held.without else (change,)
 
 
 def steered(held: InHand, velocity: Velocity | None, now_ms: int, ground: Ground) -> Kept:
-    """ICAROUS has commanded: what is in hand is left unless it is what is flown now. velocity: commanded, if one is."""
+    """ICAROUS has commanded: the held certificate is dropped unless the command follows it. velocity: the
+    commanded one, None if the command is not a velocity.
+    """
     one, fresh = held.certificate, held.fresh
     held = held._replace(heard_ms=now_ms, flown=False, fresh=False)
     if one is None or fresh:
@@ -114,7 +121,7 @@ def steered(held: InHand, velocity: Velocity | None, now_ms: int, ground: Ground
 
 
 def left(held: InHand, now_ms: int, ground: Ground, reason: str) -> Kept:
-    """Another trajectory is flown than the one in hand."""
+    """Another trajectory than the held one is flown: the certificate is dropped."""
     if held.certificate is None:
         return held, ()
     before = held.hand
@@ -126,7 +133,7 @@ def left(held: InHand, now_ms: int, ground: Ground, reason: str) -> Kept:
 def seen(
     held: InHand, own: Position, others: Sequence[Intruder], now_ms: int, ground: Ground
 ) -> Kept:
-    """The vehicle's surveillance at a heartbeat: what has become known since."""
+    """Check the held certificate against the vehicle's surveillance at a heartbeat."""
     said = list[Change]()
     one = held.certificate
     if one is not None and not one.is_on_it(own, now_ms):
@@ -167,7 +174,9 @@ def silent(held: InHand, now_ms: int, ground: Ground) -> bool:
 def flown_on(
     held: InHand, now_ms: int, speed_m_s: float
 ) -> tuple[InHand, Command | None, tuple[Change, ...]]:
-    """What the autopilot flies while ICAROUS is silent, None for a loiter where it is; and what there is to say."""
+    """What the autopilot flies while ICAROUS is silent (None: a loiter where it is), and the changes to
+    report.
+    """
     said = list[Change]()
     one, hand = held.certificate, held.hand
     if not held.flown:

@@ -1,9 +1,8 @@
-"""Tracks made in flight: to the next task, back onto the path that was left, around at the end.
+"""Tracks made in flight: to the next task, back onto the path, around the final circle.
 
-What is planned is flown as it is planned; these are made where a vehicle does not come from where
-the plan has it. Zones and turns are the router's; where it finds no way that keeps the zones there is
-none, but for one out of zones that enclose a vehicle without tasks.
-What is flown is judged by the monitor.
+Planned tracks are flown as planned; these are made where a vehicle is not where the plan assumes. The router
+respects zones and turn radius; where it finds no way that keeps the zones there is none, except for a vehicle
+without tasks inside enclosing zones. The monitor judges what is flown.
 """
 
 from __future__ import annotations
@@ -30,7 +29,9 @@ from cratous.spec.records import replace
 
 
 class Back(NamedTuple):
-    """A way back onto a track. join_m: arc length at which it joins; flown_m: of the task's path."""
+    """A way back onto a track. join_m: arc length at which it joins; flown_m: arc length of the task's path
+    there.
+    """
 
     track: Track
     join_m: float
@@ -38,8 +39,9 @@ class Back(NamedTuple):
 
 
 class Last(NamedTuple):
-    """Where a vehicle circles at the end of its chain, and whether its circle, and the way there, keep
-    the zones. speed_m_s: to fly it at, None: as it is."""
+    """Where a vehicle circles at the end of its chain; whether the circle and the way there keep the zones.
+    speed_m_s: speed to fly it at, None for the present one.
+    """
 
     track: Track
     kept: bool
@@ -48,28 +50,31 @@ class Last(NamedTuple):
 
 
 AWAY = (3.0, 6.0, 12.0, 24.0)
-"""So far away a place to circle is looked for, in turn radii,"""
+"""Distances at which a place to circle is searched for [turn radii]."""
 BEARINGS = 12
-"""in so many directions."""
+"""Number of directions in which it is searched for."""
 ROOM_M = 10.0
-"""So far from zones is far enough for a way that turns as tightly as a vehicle can [m]."""
+"""Sufficient distance from zones for a path of tightest turns [m]."""
 
 
 class Ways:
-    """Tracks around the zones that bind now. dt_s: a step of the flight [s]."""
+    """Tracks around the zones in force. dt_s: duration of a step of the flight [s]."""
 
     def __init__(self, zones: tuple[Zone, ...], dt_s: float) -> None:
         self.zones, self.dt_s = zones, dt_s
         self._router = Router(zones)
 
     def out_of(self, chain: Chain, state: AirState) -> tuple[tuple[Zone, ...], WayOut | None]:
-        """The zones that a vehicle breaks where it is, and the shortest level way found out of them, if any."""
+        """The zones that a vehicle violates at its position, and the shortest level way found out of them, if
+        any.
+        """
         inside = entered(state.position, self.zones)
         return inside, way_out(state.pose, round(_radius_m(chain), 3), self.zones)
 
     def transit(self, chain: Chain, state: AirState) -> Track | None:
-        """The planned way to the item, or a new one if we do not come from where it begins; None if
-        there is none."""
+        """The planned transit to the item, or a new one if the vehicle is not at its start; None if none
+        exists.
+        """
         item = chain.item
         assert item is not None
         track = chains.transit_track(item, state.position)
@@ -85,7 +90,7 @@ class Ways:
         return Track(way) if way else None
 
     def _there(self, state: AirState, place: Position) -> bool:
-        """Whether a vehicle is at a place, as well as a track is followed, and no zone is entered on the way there."""
+        """Whether a vehicle is at a place within tracking accuracy, with no further zone on the way there."""
         p = state.position
         off = math.hypot(place.north_m - p.north_m, place.east_m - p.east_m)
         if off > 3 * state.speed_m_s * self.dt_s + 1:
@@ -101,8 +106,9 @@ class Ways:
         return None if hold is None else Track(chains.lap_points(hold, Position(*pose[:3])))
 
     def back(self, chain: Chain, state: AirState) -> Back | None:
-        """To where the path was left, or in transit to a waypoint ahead, else to its end, and on along
-        the rest; None if there is no way."""
+        """A way back to where the path was left (in transit: to a waypoint ahead, else to the end), and the
+        rest of the track; None if there is none.
+        """
         if chain.phase is Phase.TASK:
             join = leaving_m(chain)
             return self._onto(chain, state, join, chain.base_m + join - chain.join_m)
@@ -117,13 +123,14 @@ class Ways:
             return None
         points = (*way, *rest.points[1:])
         join_m = max(0.0, Track(points, target.heading_rad).length_m - rest.length_m)
-        if chain.item is None:  # the laps after that are of a whole one at the end
+        if chain.item is None:  # the last laps are of a whole final lap
             points += last_lap(chain)[1:]
         return Back(Track(points, target.heading_rad), join_m, flown_m)
 
     def last(self, chain: Chain, state: AirState, layer_m: float) -> Last:
-        """Circle at the end of the chain, where the vehicle is there, else where it is; raised by
-        layer_m where zones and climb allow it. Where no circle keeps the zones, near there."""
+        """The circle at the end of the chain if the vehicle is there, else at its position, raised by layer_m
+        [m] where zones and climb allow it; where no circle there keeps the zones, one nearby.
+        """
         end, heading = chain.track.at(chain.track.length_m), state.heading_rad
         if chain.k > 0 and self._there(state, end):
             heading = chain.track.heading_rad(chain.track.length_m)
@@ -138,9 +145,9 @@ class Ways:
     def _near(self, chain: Chain, state: AirState, pose: Pose) -> Last:
         """A way to the nearest place found where a circle keeps the zones, and a lap there.
 
-        If no way there keeps them, a turn as tight as it can; if none of these does, of them and the direct ones
-        the one whose legs that break a zone are shortest together, each counted whole; without a place a
-        circle at the pose that breaks one.
+        If no way keeps the zones, the tightest turns are compared with the direct ways, by the total length
+        of the legs that violate a zone; a tight turn wins a tie. Without such a place: a circle at the pose,
+        which violates a zone.
         """
         across: list[tuple[float, float, Track]] = []
         for place, lap in self._places(chain, pose):
@@ -150,7 +157,7 @@ class Ways:
             direct = cut(dubins(state.pose, place, _radius_m(chain)), place)
             bad = [leg for leg in pairwise(direct) if first_bad_leg(leg, self.zones) is not None]
             broken_m, way_m = (sum(math.dist(*leg) for leg in g) for g in (bad, pairwise(direct)))
-            # to ten metres: a place that is far away is no better for a metre less
+            # rounded to ten metres: a distant place is not preferred for a smaller difference
             across.append((round(broken_m, -1), way_m, Track((*direct, *lap))))
         least = min(across, key=lambda one: one[:2], default=None)
         tight = None if entered(state.position, self.zones) else self._tight(chain, state)
@@ -161,9 +168,12 @@ class Ways:
         return Last(chains.final_loiter(pose, _radius_m(chain), 0.0, 0.0, ()), False)
 
     def _tight(self, chain: Chain, state: AirState) -> tuple[float, Last] | None:
-        """A way that turns as tightly as the vehicle can, straight on and into a circle that keeps the zones, and the
-        length of it that breaks one [m]: none if one does, and of these the first with room, or with most of it;
-        otherwise the least. None where no circle was found."""
+        """A path of tightest turns and straights into a circle that keeps the zones, with the length that
+        violates zones [m].
+
+        Of paths that violate none, the first with ROOM_M of clearance, else the one with the most; if all
+        violate some, the one that does so least. None where no such circle was found.
+        """
         tried = escapes(state.pose, state.speed_m_s, chain.vehicle, self.zones, self.dt_s)
         best, best_m = None, -1.0
         for way in sorted(tried, key=lambda one: (round(one.broken_m, 3), one.length_m)):
@@ -183,7 +193,7 @@ class Ways:
         return best
 
     def _places(self, chain: Chain, pose: Pose) -> Iterator[tuple[Pose, tuple[Position, ...]]]:
-        """Places about a pose where a circle keeps the zones, nearest first, with the rest of the lap."""
+        """Places around a pose where a circle keeps the zones, nearest first, with the rest of the lap."""
         radius_m = _radius_m(chain)
         for away in AWAY:
             for k in range(BEARINGS):

@@ -1,4 +1,4 @@
-"""ICAROUS takes a vehicle and offers it back, or is not heard: what becomes of its chain."""
+"""Transfers of authority between UxAS and ICAROUS, and loss of the link: their effect on a vehicle's chain."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ from cratous.spec.mission.plan import Pose
 from cratous.spec.records import replace
 
 NAME = "uxas/ics"
-"""The sender of what the bridge has led to."""
+"""Sender of messages that the bridge gives rise to."""
 
 
 def suspend(state: State, message: Suspend, out: Out) -> State:
-    """ICAROUS has taken over: where the path was left, if a task was active, or the task's begin."""
+    """ICAROUS has taken over: the path is interrupted, and ICAROUS is told where to resume it."""
     chain = state.chain(message.vehicle_id)
     was, chain = (
         chain,
@@ -54,7 +54,7 @@ def suspend(state: State, message: Suspend, out: Out) -> State:
 
 
 def because(state: State, message: Because) -> State:
-    """Why ICAROUS takes over, for the record of the leg."""
+    """Record the reason for a takeover in the leg."""
     chain = state.find(message.vehicle_id)
     if chain is None or message.act != TAKE_OVER:
         return state
@@ -63,16 +63,18 @@ def because(state: State, message: Because) -> State:
 
 
 def _resume_point(chain: Chain) -> Position | None:
-    """Where the path was left, if a task was active: the sensor misses nothing. Before a task the way comes back
-    onto the path no later than where the task begins; behind the last there is no such place."""
+    """Where the path is resumed: slightly before where a task was interrupted, so that no coverage is lost;
+    before a task, its start at the latest; None after the last item.
+    """
     if chain.phase is Phase.TASK:
         return chain.track.at(leaving_m(chain))
     return chain.track.points[-1] if chain.item is not None else None
 
 
 def propose(config: Config, state: State, message: RouteAsked, out: Out) -> None:
-    """ICAROUS asks for a way back: where it has the vehicle, that of the router that leads it back as well, in the
-    direction in which its way goes on there; else none."""
+    """ICAROUS requests a route back: propose one from the router that ends in the direction of the vehicle's
+    track; empty where UxAS has the vehicle or no route exists.
+    """
     vid, start, end, number = message
     chain = state.find(vid)
     way: tuple[Position, ...] = ()
@@ -84,8 +86,11 @@ def propose(config: Config, state: State, message: RouteAsked, out: Out) -> None
 
 
 def take_back(config: Config, state: State, message: TakeBack, out: Out) -> State:
-    """ICAROUS hands back: route to the resume point, then along the rest of the path. Where no way
-    there keeps the zones, its task fails and the next one is made for; the vehicle circles after its last."""
+    """ICAROUS hands back: fly to the resume point, then along the rest of the path.
+
+    Where no way there keeps the zones, the task fails and the next one follows; after the last, the vehicle
+    circles.
+    """
     vid, now_ms = message.vehicle_id, message.now_ms
     chain = state.chain(vid)
     if chain.suspended:
@@ -96,7 +101,9 @@ def take_back(config: Config, state: State, message: TakeBack, out: Out) -> Stat
 
 
 def unlinked(state: State, message: NotHeard) -> State:
-    """A vehicle is not heard: it acts by itself, and UxAS lets go of it. What ICAROUS flies meanwhile gives up no leg."""
+    """A vehicle is not heard: it acts autonomously, and its chain is suspended. This time does not count as
+    time under ICAROUS.
+    """
     chain = state.find(message.vehicle_id)
     if chain is None:
         return state
@@ -105,7 +112,9 @@ def unlinked(state: State, message: NotHeard) -> State:
 
 
 def linked(config: Config, state: State, message: HeardAgain, out: Out) -> State:
-    """A vehicle is heard again. If UxAS still has it it is flown on from where it is; else ICAROUS hands it back."""
+    """A vehicle is heard again. If UxAS has it, it flies on from where it is; otherwise ICAROUS will hand it
+    back.
+    """
     vid, now_ms, by_uxas = message
     chain = state.find(vid)
     if chain is None or not chain.unlinked:
@@ -117,7 +126,9 @@ def linked(config: Config, state: State, message: HeardAgain, out: Out) -> State
 
 
 def landed(state: State, message: Stands) -> State:
-    """A vehicle stands on the ground, and flies nothing more: what it has left is for others, or for nobody."""
+    """A vehicle is at rest on the ground and flies no more: a change that lets its remaining tasks be
+    reassigned.
+    """
     vid, now_ms = message.vehicle_id, state.now_ms
     where = f"at {message.site}" if message.site else "beside every landing site"
     told = (
@@ -131,7 +142,7 @@ def landed(state: State, message: Stands) -> State:
 def flown_back(
     config: Config, state: State, chain: Chain, now_ms: int, source: str, out: Out
 ) -> State:
-    """UxAS flies the vehicle of a chain again, in the epoch that it knows."""
+    """UxAS flies the vehicle again: back to its hold or onto its path, or circling if nothing is left."""
     vid = chain.vehicle.id
     ways, air = config.ways(state.zones), state.air(vid)
     back = None if chain.holds else ways.back(chain, air)

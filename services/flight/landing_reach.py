@@ -1,4 +1,4 @@
-"""Whether a way that keeps the zones leads each vehicle from its start to a landing site of the mission."""
+"""Whether a route that keeps the zones leads each vehicle from its start to a landing site."""
 
 from __future__ import annotations
 
@@ -34,8 +34,9 @@ SLOW = f"its last descent takes longer than {LONGEST_MS / 1000:g} s"
 
 
 def require_reachable(mission: Mission) -> None:
-    """BadInput where a vehicle that is to land without the link could land at no site from its start, by the zones
-    that are known then and with nobody else in the air."""
+    """BadInput where a vehicle that is to land without the link could not reach a landing site from its
+    start, given the zones known then and no other traffic.
+    """
     if not sites_of(mission):
         return
     for number in mission.instances:
@@ -54,7 +55,7 @@ def require_reachable(mission: Mission) -> None:
 
 
 def _why_not(mission: Mission, vehicle: Vehicle, plan: LostLink) -> list[str]:
-    """Why no site is reached; empty if one is."""
+    """Why no site can be reached, one reason per site; empty if one can."""
     sensed, daa = at_start(mission, vehicle, planned_state(vehicle)), mission.daa
     zones = hard_zones(mission.zones)
     volume = buffered(daa.well_clear, daa.buffer)
@@ -71,7 +72,9 @@ def _why_not(mission: Mission, vehicle: Vehicle, plan: LostLink) -> list[str]:
 
 
 def at_start(mission: Mission, vehicle: Vehicle, air: AirState) -> Sensed:
-    """What a vehicle in a state senses before anybody flies; on the ground it turns as it does when it leaves it."""
+    """What a vehicle in a state senses before any flight; on the ground, with its turn ability at take-off
+    speed.
+    """
     limits = limits_of(vehicle)
     speed, step_s = air.speed_m_s or limits.min_speed_m_s, mission.simulation.step_ms / 1000
     ability = ability_at(speed, limits, floor_of(mission), step_s)

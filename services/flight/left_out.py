@@ -1,7 +1,8 @@
-"""Tasks that a plan leaves out, in flight: each is told by name when it is left out, and again for another reason.
+"""Tasks that a plan leaves out, in flight: reported by name when they are left out, and when the reason
+changes.
 
-While something is to come by which a later plan may take such a task up (a vehicle joins, the wind changes, a zone
-ends) it waits for that; else it fails. What has failed is settled, and is not flown again.
+While a change is to come that could let a later plan include such a task (a vehicle joins, the wind changes,
+a zone ends), it waits for that; otherwise it fails. A failed task is settled and not flown again.
 """
 
 from __future__ import annotations
@@ -19,13 +20,13 @@ from cratous.spec.records import replace
 
 LEFT_OUT, WAITS, AT_FIRST = "left out: ", "waits, as ", "; when it was first left out: "
 BRINGS_BACK = (VEHICLE_JOINS, WIND, ZONE_ENDS)
-"""While changes of these kinds are to come a task that is left out is not given up."""
+"""While changes of these kinds are to come, a task that is left out has not failed."""
 NOBODY = 0
-"""The vehicle of a task that was given to none."""
+"""Vehicle id of a task that was assigned to none."""
 
 
 def awaited(to_come: Iterable[Change]) -> str:
-    """What is to come by which a task that is left out may be taken up, in words; "" if nothing is."""
+    """The coming changes for which tasks that are left out wait, in words; "" if there are none."""
     return ", ".join(
         f"{words(change)} at {change.at_ms / 1000:.2f} s"
         for change in to_come
@@ -41,11 +42,10 @@ def leave_out(
     now_ms: int,
     until: str = "",
 ) -> tuple[dict[int, str], list[Any]]:
-    """The tasks that are left out from now on, with reasons, and a TaskProgress for those that are new or have
-    another reason than before.
+    """The tasks left out from now on, with reasons, and a TaskProgress for each with a new reason.
 
     settled: tasks that have begun, ended and failed; before: those left out until now; chains: of the
-    plan before; until: what they wait for (`awaited`), "" if they fail.
+    previous plan; until: what they wait for (`awaited`), "" if they fail.
     """
     starts, ends, failed = settled
     found, said = {}, []
@@ -57,7 +57,7 @@ def leave_out(
             found[task] = why
         if task in found and before.get(task) != why:
             vehicle, served = _flown_by(task, chains)
-            # one that waits is nobody's for now
+            # a waiting task is assigned to no vehicle
             said.append(
                 task_progress(task, NOBODY, now_ms, "Waiting", served, why)
                 if until
@@ -69,7 +69,9 @@ def leave_out(
 def no_longer_awaited(
     left: Mapping[int, str], chains: Mapping[int, Chain], now_ms: int
 ) -> tuple[dict[int, str], list[Any]]:
-    """The tasks left out that still wait when the flight ends, each with its reason, and a TaskProgress for each."""
+    """The left-out tasks that still wait when the flight ends, each with its reason, and a TaskProgress for
+    each.
+    """
     found, said = {}, []
     for task, why in left.items():
         if why.startswith(WAITS):
@@ -80,12 +82,12 @@ def no_longer_awaited(
 
 
 def _reasons(why: str) -> str:
-    """What was said of a task that is left out, without how it stands."""
+    """The reason in a message about a task that is left out."""
     return why.partition(": ")[2]
 
 
 def _with_first(reason: str, before: str) -> str:
-    """Why a task is left out now, and why it first was where that is another reason. before: what was said last."""
+    """Why a task is left out now, followed by the first reason if that differs. before: the last message."""
     first = before.partition(AT_FIRST)[2] or _reasons(before)
     return reason + (f"{AT_FIRST}{first}" if first not in ("", reason) else "")
 
@@ -112,7 +114,7 @@ def unfinished(
 
 
 def _flown_by(task: int, chains: Mapping[int, Chain]) -> tuple[int, float]:
-    """Whose task it was, and how much of it had been flown."""
+    """The vehicle that the task was assigned to, and the flown fraction of its path."""
     for number, chain in sorted(chains.items()):
         left = [item.task_id for item in chain.items[max(chain.k, 0) :]]
         if task in left:

@@ -1,9 +1,9 @@
-"""The legs of chains that ICAROUS does not leave: they are given up by name, so that nothing waits for ever.
+"""Legs under ICAROUS for too long: their tasks fail by name, so that nothing waits for ever.
 
-A leg is the way to an item and the item's path, also where another plan in flight begins it again. How often
-ICAROUS may take over on it, and for how long it may fly in all, is bounded; the kernel `leg_given_up` decides.
-The task then fails as blocked, with what ICAROUS said last, and the vehicle makes for its next one. One that
-has none left circles where it is, so that it can be handed back wherever that is permitted.
+A leg is the way to an item and the item's path, across re-planning. The number of takeovers on it and the
+total time under ICAROUS are bounded; the kernel `leg_given_up` decides. The task then fails as blocked, with
+the last reason of ICAROUS, and the vehicle goes on to its next one. A vehicle without further tasks circles
+where it is, so that it can be handed back wherever that is permitted.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ from cratous.spec.mission import Vehicle
 from cratous.spec.records import replace
 
 ANEW_MS = 10_000
-"""A vehicle with nothing left circles where it is, which is found anew after this long under ICAROUS [ms]."""
+"""A vehicle without tasks gets a new circle at its position after this long under ICAROUS [ms]."""
 
 
 def give_up(config: Config, state: State, out: Out) -> State:
-    """Fail the items whose legs are abandoned, and send ICAROUS the way that its vehicle flies instead."""
+    """Fail the items whose legs exceed the bounds, and send ICAROUS the new routes of their vehicles."""
     avoiding_ms = round(1000 * LONGEST_LOOKAHEADS * state.mission.daa.lookahead_s)
     for vid in config.instances:
         chain = state.find(vid)
         if chain is None or chain.unlinked or chain.holds or vid in dict(state.landed):
             continue
         under_ms = chain.leg.flown_ms(chain.suspended, state.now_ms)
-        # a take-off that is permitted at once is none of the time that avoidance may take
+        # a take-off does not count as time of avoidance
         under_ms -= take_off_of(state, chain.vehicle)
         # nor is what its slot at a merge fix takes
         longest_ms = avoiding_ms + merging_ms(state.mission, vid)
@@ -47,14 +47,14 @@ def give_up(config: Config, state: State, out: Out) -> State:
 
 
 def take_off_of(state: State, vehicle: Vehicle) -> int:
-    """How long a take-off that is permitted at once takes, of a vehicle that UxAS has not had yet [ms]; else 0."""
+    """Duration of a take-off that is permitted at once, of a vehicle that UxAS has not had yet [ms]; else 0."""
     if state.epoch(vehicle.id) != 0:
         return 0
     return take_off_ms(vehicle, MAX_ACCELERATION_M_S2, state.mission.simulation.heartbeat_ms)
 
 
 def _blocked(chain: Chain, under_ms: int) -> str:
-    """Why a leg is given up."""
+    """Why a leg is given up, in words."""
     leg, times = chain.leg, "once" if chain.leg.takeovers == 1 else f"{chain.leg.takeovers} times"
     last = leg.because or "what it did not say"
     return (

@@ -1,14 +1,13 @@
 """The UxAS end of the bridge, for all vehicles: `handle(state, message) -> (state, messages)`.
 
-Down: zones, waypoints and START_MISSION at the start and whenever the way changes; at each
-heartbeat WPRCH, POSTN, ATTUD and one OBJCT per other aircraft. Up: SETMOD (with the epoch that
-ICAROUS's gate is in, at each heartbeat while ICAROUS flies), SETVEL, HBEAT. A SETMOD is believed only if
-the vehicle's own report of its gate says the same; one of an epoch that was never given is refused and
-said. On a takeover the executive suspends the vehicle, and ICAROUS
-is told the resume point by RESET_SFT; on an offer the executive takes the vehicle back in the new
-epoch. How a vehicle flies is told to the instances of the others too: by which way UxAS flies it (OTHER), to
-which velocity its ICAROUS steers it (OVELO). Which mode is believed and who counts as alive is decided by the kernels of
-`core.authority.link_end`.
+Down: zones, waypoints and START_MISSION at the start and whenever the route changes; at each heartbeat WPRCH,
+POSTN, ATTUD and one OBJCT per other aircraft. Up: SETMOD (with the epoch of ICAROUS's gate, at each heartbeat
+while ICAROUS flies), SETVEL, HBEAT. A SETMOD is accepted only if it agrees with the vehicle's own report of
+its gate; one of an epoch that was never issued is refused and reported. On a takeover the executive suspends
+the vehicle, and RESET_SFT tells ICAROUS the resume point; on an offer the executive takes the vehicle back in
+the new epoch. The other instances are told how each vehicle flies: its route under UxAS (OTHER), its velocity
+under ICAROUS (OVELO). The kernels of `core.authority.link_end` decide which mode is accepted and which
+instance counts as alive.
 """
 
 from __future__ import annotations
@@ -86,9 +85,9 @@ from cratous.spec.mission import Velocity, Zone
 from cratous.spec.records import replace
 
 LINK_LOST_MS = 2000
-"""A vehicle's ICAROUS counts as silent when nothing came up for this long [ms]."""
+"""An instance counts as silent when nothing has come up from it for this long [ms]."""
 NAME = "uxas/ics"
-"""The sender of what this end publishes."""
+"""Sender of what this end publishes."""
 
 
 Step = tuple[State, tuple[FromLinkEnd, ...]]
@@ -96,15 +95,16 @@ Step = tuple[State, tuple[FromLinkEnd, ...]]
 
 @dataclass(frozen=True)
 class UxasEnd:
-    """The service; what does not change: the projection of the mission frame. live: ICAROUS may ask for ways back;
-    alone: a vehicle acts by itself without the link, so UxAS lets go of it meanwhile."""
+    """The service and its fixed configuration. live: ICAROUS may request routes back; alone: a vehicle acts
+    autonomously without the link, so its chain is suspended meanwhile.
+    """
 
     projection: Projection
     live: bool = False
     alone: bool = False
 
     def handle(self, state: State, message: ToLinkEnd) -> Step:
-        """One step: the state afterwards, and what to send, in order."""
+        """One step: the state that results, and the messages to send, in order."""
         after, out = self._handled(state, message)
         if not self.alone:
             return after, out
@@ -131,7 +131,7 @@ class UxasEnd:
         return self._stepped(state, peer, self._of_one(peer, message))
 
     def _stepped(self, state: State, peer: Peer, step: OfOne) -> Step:
-        """The state after a step of one peer. That it flies otherwise comes first: answers may change it again."""
+        """The state after a step of one peer. A change of how it flies is sent to the others first."""
         after, out = step
         state = state.with_peer(after)
         if (after.flies, after.steered) != (peer.flies, peer.steered):
@@ -139,7 +139,7 @@ class UxasEnd:
         return state, out
 
     def _watch(self, state: State, now_ms: int, of: frozenset[int] | None) -> Step:
-        """Say so when an instance has fallen silent."""
+        """Report the instances that have become silent."""
         out: list[FromLinkEnd] = []
         for peer in (one for one in state.peers if of is None or one.vehicle_id in of):
             note = f"silent since {peer.heard_ms} ms"
@@ -148,7 +148,9 @@ class UxasEnd:
         return state, tuple(out)
 
     def _asked(self, state: State, vehicle_id: int, line: RouteRequest, now_ms: int) -> Step:
-        """A WPREQ: the executive knows where the vehicle is to go on. Without a number it cannot be answered."""
+        """A WPREQ: passed to the executive, which routes the vehicle. Without a request number it cannot be
+        answered.
+        """
         known = state.peer(vehicle_id)
         assert known is not None
         peer, out = _sign(replace(known, heard_ms=now_ms), HEARD, now_ms, "heard again")
@@ -158,7 +160,7 @@ class UxasEnd:
         return state.with_peer(peer), out
 
     def _again(self, state: State, vehicle_id: int, line: LinesMissing, now_ms: int) -> Step:
-        """What an instance asks for again: those lines and the one that ends them, so often and no more."""
+        """Send again the lines that an instance reports missing, at most MOST_AGAIN times per plan or zone."""
         known = state.peer(vehicle_id)
         assert known is not None
         peer, out = _sign(replace(known, heard_ms=now_ms), HEARD, now_ms, "heard again")
@@ -179,7 +181,9 @@ class UxasEnd:
         return state.with_peer(peer), (*out, _status(peer, peer.end.alive, now_ms, note))
 
     def _again_lines(self, state: State, peer: Peer, line: LinesMissing) -> list[Message]:
-        """Those lines; all of it where ICAROUS knows another number of them."""
+        """The missing lines, with those that close them; the whole plan where ICAROUS knows another number of
+        lines.
+        """
         if line.what == "GEOFN":
             if line.number not in range(1, len(state.zones) + 1):
                 return []
@@ -193,7 +197,7 @@ class UxasEnd:
         return [*link_lines.between(points, line, "index"), StartMission(), *reached]
 
     def _of_one(self, peer: Peer, message: ToOne) -> tuple[Peer, tuple[FromLinkEnd, ...]]:
-        """A message about one vehicle: nothing else is touched."""
+        """Handle a message about one vehicle, which affects that peer only."""
         match message:
             case Route():
                 return self._route(peer, message)
@@ -216,7 +220,7 @@ class UxasEnd:
                 return _sign(replace(peer, open=False), ENDED, now_ms, note)
 
     def _connected(self, state: State, vehicle_ids: tuple[int, ...], now_ms: int) -> Step:
-        """Everything is told on a new connection: zones, way, and how far the vehicle is on it."""
+        """On a new connection, send everything: zones, route, progress along it, and how the others fly."""
         out: list[FromLinkEnd] = []
         for vid in vehicle_ids:
             old = state.peer(vid)
@@ -241,7 +245,7 @@ class UxasEnd:
         for peer in state.peers:
             others = of_others(state, peer.vehicle_id, self.projection)
             anew = [HardReset(), *fences, *link_lines.onward(peer.way, peer.reached), *others]
-            if not zones:  # the way stays
+            if not zones:  # the route is kept
                 anew = [ForgetFences()]
             out += down_to(peer, fences if more else anew)
             state = state.with_peer(replace(peer, again=()))
@@ -262,7 +266,7 @@ class UxasEnd:
         return after, down_to(peer, told)
 
     def _seen(self, peer: Peer, seen: Seen) -> OfOne:
-        """POSTN, ATTUD and OBJCT to one instance."""
+        """Send POSTN, ATTUD and OBJCT to one instance."""
         places = link_lines.places_of(seen.aircraft, self.projection)
         attitude = Attitude(math.degrees(seen.roll_rad), math.degrees(seen.pitch_rad), 0.0)
         told = link_lines.states(peer.vehicle_id, seen.aircraft, places, seen.time_ms, attitude)
@@ -271,7 +275,7 @@ class UxasEnd:
         return after, (*down_to(peer, told), *beat)
 
     def _beat(self, state: State, beat: Beat) -> Step:
-        """POSTN, ATTUD and OBJCT to every instance; what to publish of it."""
+        """Send POSTN, ATTUD and OBJCT to every instance, and publish the heartbeats."""
         places, aircraft = link_lines.places_of(beat.aircraft, self.projection), beat.aircraft
         lines = link_lines.traffic(aircraft, places)
         peers, out = list[Peer](), list[FromLinkEnd]()
@@ -290,7 +294,7 @@ OfOne = tuple[Peer, tuple[FromLinkEnd, ...]]
 
 
 def _flown(peer: Peer, s_m: float) -> OfOne:
-    """WPRCH for every waypoint that has been passed since the last time."""
+    """Send WPRCH for every waypoint passed since the last report."""
     passed = bisect_right(peer.marks_m, s_m - peer.from_m + 1e-6)
     reached = [WaypointReached(k) for k in range(peer.reached, passed)]
     return replace(peer, reached=max(peer.reached, passed)), down_to(peer, reached)
@@ -313,9 +317,10 @@ def _heard(peer: Peer, line: Message, now_ms: int) -> OfOne:
 
 
 def _mode(peer: Peer, line: SetMode, now_ms: int) -> OfOne:
-    """A SETMOD line; one without an epoch, as the original sends it, is of the present one.
+    """A SETMOD line; one without an epoch, as the original sends it, counts as of the present one.
 
-    One that cannot be true is no sign of life, nor one that says again that UxAS commands: anybody can have sent it.
+    A contradictory line is no sign of life, nor is one that repeats that UxAS commands: any sender could have
+    produced it.
     """
     epoch = line.epoch if line.epoch is not None else peer.gate.epoch
     linked = link_mode(peer.end, peer.gate, line.mode == "ACTIVE", epoch)
@@ -339,16 +344,16 @@ def _mode(peer: Peer, line: SetMode, now_ms: int) -> OfOne:
 
 
 def _alive(peer: Peer, now_ms: int) -> OfOne:
-    """A line of the instance's has come."""
+    """A line of the instance has arrived."""
     return _sign(replace(peer, heard_ms=now_ms), HEARD, now_ms, "heard again")
 
 
 def _sign(peer: Peer, event: int, now_ms: int, note: str) -> OfOne:
-    """A sign of life or none, and the note that tells of a change."""
+    """Update the peer's link state after an event, and report a change of it with the note."""
     linked = link_sign(peer.end, event, peer.heard_ms, now_ms, LINK_LOST_MS)
     after = replace(peer, end=linked.end)
     if after.end.active and not after.end.alive:
-        after = replace(after, steered=None)  # it may not be steered there any more
+        after = replace(after, steered=None)  # its SETVEL may be out of date
     if linked.act in (SAY_HEARD, SAY_LOST, SAY_SILENT):
         return after, (_status(after, after.end.alive, now_ms, note),)
     return after, ()

@@ -1,4 +1,4 @@
-"""What UxAS tells an ICAROUS instance, as lines of the text protocol: zones, ways, states."""
+"""Messages from UxAS to an ICAROUS instance, as lines of the text protocol: zones, routes, states."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ from cratous.services.mission.frames import Projection
 from cratous.spec.mission import Position, Velocity, Zone, ZoneKind
 
 FAR_M = 1e6
-"""Altitudes beyond this are sent as this [m]: no aircraft is there."""
+"""Altitudes are limited to this magnitude on the wire [m]: no aircraft is beyond it."""
 
 MOST_AGAIN = 5
-"""So often the missing lines of one plan or zone are sent again."""
+"""How often the missing lines of one plan or zone are sent again."""
 
 MOST_SAID = Gate(UXAS, 10**12, False)
-"""No instance begins a connection in a greater epoch; one that has given so many in a flight does not exist."""
+"""Largest plausible epoch of an instance at the beginning of a connection."""
 MOST_TOLD = Gate(UXAS, 10**14, False)
-"""No instance goes on from a greater epoch, so that all that follow have room on a line, which takes 15 digits."""
+"""Largest epoch from which an instance goes on, so that later ones fit the 15 digits of a line."""
 
 Aircraft = tuple[tuple[int, AirState], ...]
 Places = dict[int, tuple[float, float]]
@@ -46,7 +46,10 @@ Places = dict[int, tuple[float, float]]
 
 
 def fence(zone: Zone, number: int, projection: Projection) -> list[Message]:
-    """A zone as GEOFN lines and GEOFN_SEND; zones are numbered from 1 on the wire."""
+    """A zone as GEOFN lines and GEOFN_SEND. number: its number on the wire, from 1.
+
+    Raises ValueError for a zone with padding, which must be turned into vertices first.
+    """
     if zone.padding_m != 0:
         raise ValueError(f"zone {zone.id}: padding must be turned into vertices first")
     kind = "KEEPIN" if zone.kind is ZoneKind.KEEP_IN else "KEEPOUT"
@@ -70,12 +73,12 @@ def fence(zone: Zone, number: int, projection: Projection) -> list[Message]:
 
 
 def _reachable_m(alt_m: float) -> float:
-    """An altitude as the text protocol can send it: beyond FAR_M nobody flies, so it says the same."""
+    """An altitude limited to FAR_M for the text protocol [m]."""
     return max(-FAR_M, min(FAR_M, alt_m))
 
 
 def way(points: tuple[Position, ...], speed_m_s: float, projection: Projection) -> list[Message]:
-    """A way as RESET_SFT, its WAYPTs, each with the number of all, and START_MISSION."""
+    """A route as RESET_SFT, its WAYPTs, each with the total count, and START_MISSION."""
     lats, lons = projection.to_geodetic_many(
         [p.north_m for p in points], [p.east_m for p in points]
     )
@@ -94,11 +97,13 @@ def way(points: tuple[Position, ...], speed_m_s: float, projection: Projection) 
 
 
 Flies = tuple[Position, ...] | Velocity
-"""The way that UxAS flies a vehicle by, or the velocity to which ICAROUS steers it."""
+"""How a vehicle flies: its route under UxAS, or its velocity under ICAROUS."""
 
 
 def way_of_another(vehicle_id: int, points: Flies, projection: Projection) -> list[Message]:
-    """The way of another vehicle as OTHER lines, or its velocity as OVELO; without points, one line that says that its way is unknown."""
+    """Another vehicle's route as OTHER lines, or its velocity as OVELO; without points, one line for an
+    unknown route.
+    """
     if isinstance(points, Velocity):
         return [VelocityOfAnother(vehicle_id, *points)]
     if not points:
@@ -113,7 +118,7 @@ def way_of_another(vehicle_id: int, points: Flies, projection: Projection) -> li
 
 
 def asked_way(asked: RouteRequest, projection: Projection) -> tuple[AirState, Position]:
-    """From where, in which flight, and to where a WPREQ asks for a way."""
+    """Start state and end position of the route that a WPREQ requests."""
     start = projection.to_local(asked.start_lat_deg, asked.start_long_deg)
     end = projection.to_local(asked.end_lat_deg, asked.end_long_deg)
     begins = Position(*start, asked.start_alt_m)
@@ -134,20 +139,20 @@ def proposal(
 
 
 def reset_to(p: Position, projection: Projection) -> SoftReset:
-    """The point at which the path is resumed, as RESET_SFT."""
+    """The resume point as RESET_SFT."""
     lat, lon = projection.to_geodetic(p.north_m, p.east_m)
     return SoftReset(lat_deg=lat, long_deg=lon, alt_m=p.alt_m)
 
 
 def places_of(aircraft: Aircraft, projection: Projection) -> Places:
-    """Where everybody is [deg]."""
+    """Latitude and longitude of each aircraft [deg]."""
     return {
         vid: projection.to_geodetic(s.position.north_m, s.position.east_m) for vid, s in aircraft
     }
 
 
 def climbing(s: AirState) -> Attitude:
-    """The attitude of an aircraft of which only the flight path is known: level wings, nose along it."""
+    """The attitude derived from the flight path alone: wings level, nose along it."""
     pitch = math.degrees(math.atan2(s.climb_m_s, s.speed_m_s))
     return Attitude(roll_deg=0.0, pitch_deg=pitch, yaw_deg=0.0)
 
@@ -160,8 +165,9 @@ def states(
     attitude: Attitude | None = None,
     lines: dict[int, Traffic] | None = None,
 ) -> list[Message]:
-    """POSTN and ATTUD of a vehicle, and an OBJCT of each other aircraft. attitude: None for `climbing`; lines: of
-    `traffic`, where many are told."""
+    """POSTN and ATTUD of a vehicle, and an OBJCT for each other aircraft. attitude: None for `climbing`;
+    lines: result of `traffic`, computed once for many recipients.
+    """
     others = traffic(aircraft, places) if lines is None else lines
     out: list[Message] = []
     for vid, s in aircraft:
@@ -203,12 +209,12 @@ def traffic(aircraft: Aircraft, places: Places) -> dict[int, Traffic]:
 
 
 def between(lines: Sequence[Message], asked: LinesMissing, number: str) -> list[Message]:
-    """The lines from the first to the last that is asked for."""
+    """The requested range of lines; all of them if the total differs from the request's."""
     if len(lines) != asked.total:
         return list(lines)
     return [m for m in lines if getattr(m, number) in range(asked.first, asked.last + 1)]
 
 
 def onward(way: Sequence[Message], reached: int) -> list[Message]:
-    """The way sent last, and its waypoints that have been reached."""
+    """The route sent last, and a WPRCH for each waypoint reached."""
     return [*way, *(WaypointReached(k) for k in range(reached))]

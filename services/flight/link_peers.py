@@ -1,4 +1,4 @@
-"""What the UxAS end of the bridge remembers of each instance, and what that means for the others and for its vehicle."""
+"""Per-instance state of the UxAS end of the bridge, and the messages that follow from its changes."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ from cratous.spec.mission import Position, Velocity, Zone
 from cratous.spec.records import replace
 
 START = LinkEnd(False, 0, True)
-"""UxAS commands and the instance is heard."""
+"""Initial link state: UxAS commands and the instance counts as alive."""
 UNTOUCHED = Gate(UXAS, 0, False)
-"""The gate of a vehicle that has not reported anything yet."""
+"""Assumed gate of a vehicle that has not reported any yet."""
 
 
 @dataclass(frozen=True)
 class Peer:
     """What this end knows of one instance.
 
-    end: who commands and whether it is heard, as the kernels have it; open: the connection stands;
-    marks_m: arc length of each waypoint told, from from_m of the vehicle's track on; reached: how
-    many of them are told to be reached; down: heartbeats sent; heard_ms: when it was last heard; gate: as
-    the vehicle has reported it last; way: the lines of the way told last; again: how often lines of the
-    plan and of which zone were sent again, ((tag, zone), times); flies: the way by which UxAS flies it, steered: to which
-    velocity ICAROUS does, as the others' instances are told.
+    end: who commands and whether it is heard, as the kernels have it; open: the connection is up; marks_m:
+    arc length of each waypoint told, measured from from_m of the vehicle's track; reached: number of
+    waypoints reported as reached; down: heartbeats sent; heard_ms: when it was last heard; gate: as last
+    reported by the vehicle; way: lines of the last route; again: how often lines of the plan or of a zone
+    were sent again, as ((tag, zone), times); flies: its route under UxAS, steered: its velocity under
+    ICAROUS, as told to the other instances.
     """
 
     vehicle_id: int
@@ -49,7 +49,7 @@ class Peer:
 
 @dataclass(frozen=True)
 class State:
-    """All that this end remembers: the zones in force, and its peers by id."""
+    """State of the UxAS end: the zones in force, and its peers."""
 
     zones: tuple[Zone, ...] = ()
     peers: tuple[Peer, ...] = ()
@@ -59,13 +59,13 @@ class State:
         return next((p for p in self.peers if p.vehicle_id == vehicle_id), None)
 
     def with_peer(self, peer: Peer) -> State:
-        """The same with this peer in the place of the one of its vehicle."""
+        """The state with this peer in place of the previous one of its vehicle."""
         peers = (peer if p.vehicle_id == peer.vehicle_id else p for p in self.peers)
         return replace(self, peers=tuple(peers))
 
 
 def links(before: State, after: State, now_ms: int) -> Iterator[NotHeard | HeardAgain]:
-    """The vehicles whose ICAROUS instance was lost, and those whose instance is heard again, at now_ms [ms]."""
+    """The vehicles whose instance was lost, and those whose instance is heard again, at now_ms [ms]."""
     for peer in after.peers:
         old = before.peer(peer.vehicle_id)
         was, alive = old is None or old.end.alive, peer.end.alive
@@ -77,19 +77,19 @@ def links(before: State, after: State, now_ms: int) -> Iterator[NotHeard | Heard
 
 
 def to_others(state: State, peer: Peer, projection: Projection) -> tuple[Down, ...]:
-    """How a vehicle flies, to the instances of the others."""
+    """How a vehicle flies, as messages to the instances of the others."""
     told = link_lines.way_of_another(peer.vehicle_id, peer.steered or peer.flies, projection)
     others = (p for p in state.peers if p.vehicle_id != peer.vehicle_id)
     return tuple(down for p in others for down in down_to(p, told))
 
 
 def of_others(state: State, vehicle_id: int, projection: Projection) -> list[Message]:
-    """How the others fly, to the instance of one vehicle."""
+    """How the other vehicles fly, as lines for the instance of one vehicle."""
     known = {p.vehicle_id: p.steered or p.flies for p in state.peers if p.vehicle_id != vehicle_id}
     told = (link_lines.way_of_another(vid, how, projection) for vid, how in known.items() if how)
     return [line for lines in told for line in lines]
 
 
 def down_to(peer: Peer, told: Sequence[Message]) -> tuple[Down, ...]:
-    """Lines for an instance, if there are any and its connection is open."""
+    """Lines for an instance; none if there are none or its connection is closed."""
     return (Down(peer.vehicle_id, tuple(told)),) if told and peer.open else ()

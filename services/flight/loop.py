@@ -1,13 +1,13 @@
 """One flight in virtual time: the same inputs give the same messages, byte for byte.
 
-Each step of mission.simulation.step_ms, at its instant: the executive, the gates, heartbeats over the
-bridge and the ICAROUS instances (every heartbeat); then the velocities of the coming step are chosen
-and published (`TruthState`), and the step is flown. So a TruthState says where an aircraft is at its
-Time and with which constant velocity it flies until the next one.
+Each step of mission.simulation.step_ms runs, at its instant: the executive, the gates, heartbeats over the
+bridge and the ICAROUS instances (every heartbeat); then the velocities of the coming step are chosen and
+published (`TruthState`), and the step is flown. A TruthState thus gives an aircraft's position at its Time
+and its constant velocity until the next one.
 
-The actors are steps over plain values; what is theirs to decide is decided there. Here are order, time
-and log alone: what an actor answers is delivered at once, and all that follows from it, before the next
-message of the same answer; a `GatedCommand` that is published reaches its vehicle's gate.
+The actors are steps over plain values and take all decisions. This module provides order, time and log only:
+each message in an actor's answer is delivered at once, with everything that follows from it, before the next
+one; a published `GatedCommand` reaches its vehicle's gate.
 """
 
 from __future__ import annotations
@@ -102,10 +102,9 @@ from cratous.spec.records import replace
 
 Segmenter = Callable[[bytes], Iterable[bytes]]
 Directed = Callable[[int], tuple[Change, ...]]
-"""Gives what an operator commands vehicles to do at a step, with its time [ms]: what a mission with these changes
-would say."""
+"""Returns the operator's commands that are due at a time [ms], as mission changes."""
 SIMULATION = "simulation"
-"""The sender of what is true of the aircraft."""
+"""Sender of the aircraft's true states."""
 
 
 def fly(
@@ -120,9 +119,9 @@ def fly(
 ) -> FlightResult:
     """Fly a plan to its end, or to mission.simulation.limit_ms; publish everything on the bus.
 
-    daa: with the ICAROUS instances that the mission has; without, nobody avoids anybody.
-    segmenter: cuts the bytes on the sockets, for tests. progress(now_ms, text): called now and
-    then. directed: see there.
+    daa: with the mission's ICAROUS instances; without, no vehicle avoids others. segmenter: splits the bytes
+    on the sockets, for tests. progress(now_ms, text): called at intervals. directed: source of operator
+    commands.
     """
     instances = tuple(sorted(mission.instances)) if daa else ()
     with _bridge(mission, instances, segmenter) as bridge:
@@ -130,7 +129,7 @@ def fly(
 
 
 def _bridge(mission: Mission, instances: tuple[int, ...], segmenter: Segmenter | None) -> Bridge:
-    """The bridge of the flight, with the faults that the mission asks for."""
+    """The bridge of the flight, with the faults that the mission sets."""
     if not isinstance(mission.simulation, FaultySimulation):
         return Bridge(instances, segmenter=segmenter)
     from cratous.bridge.faults import FaultyBridge
@@ -142,7 +141,7 @@ Answer = FromExecutive | FromLinkEnd | FromVehicle | FromInstance
 
 
 class Flight:
-    """The actors of one flight, the states that they are in, and the present."""
+    """The actors of one flight, their states, and the present time."""
 
     def __init__(
         self, mission: Mission, plan: Plan, bus: Bus, bridge: Bridge, instances: tuple[int, ...]
@@ -189,7 +188,7 @@ class Flight:
     def run(
         self, progress: Callable[[int, str], None] | None, directed: Directed | None = None
     ) -> FlightResult:
-        """Fly to the end."""
+        """Fly until the flight has an outcome."""
         self.bus.now_ms, steps = 0, 0
         nodes = self.vehicles.items()
         self._executive(Begin(0, tuple((vid, planned_state(n.vehicle)) for vid, n in nodes)))
@@ -242,7 +241,7 @@ class Flight:
         self._link(Watch(now))
 
     def _exchange(self) -> None:
-        """Let the bridge deliver: what came up to UxAS's end, what came down to its ICAROUS."""
+        """Let the bridge deliver: messages to the UxAS end, lines to the ICAROUS instances."""
         came = arrivals(self.bridge.exchange(), self.now_ms)
         for message in came.up:
             self._link(message)
@@ -274,7 +273,9 @@ class Flight:
         return tuple(sorted({**dict(self._own()), **dict(seen)}.items()))
 
     def _surveillance(self, vehicle_id: int, now: int) -> Sense:
-        """What a vehicle may see: those in the air or rolling to it, and where the others on the ground are."""
+        """A vehicle's surveillance input: aircraft in the air or in a take-off run, and positions of others
+        on the ground.
+        """
         states = self.vehicle_states
         down = {vid: s.air.position for vid, s in states.items() if s.landed or s.on_ground}
         rolling = tuple(v for v, s in states.items() if s.on_ground and s.air.speed_m_s)
@@ -305,7 +306,7 @@ class Flight:
             self._vehicle(vid, message)
 
     def _given(self, vid: int, true: Sensed) -> Sensed:
-        """What the vehicle's ICAROUS is given at a heartbeat: the true states, or what its sensors see."""
+        """Input of the vehicle's ICAROUS at a heartbeat: the true states, or what its sensors measure."""
         carrier = self.carriers.get(vid)
         if carrier is None:
             return true
@@ -318,7 +319,7 @@ class Flight:
 
     def _instance(self, vid: int, message: ToInstance) -> None:
         if self._stands_still():
-            # lines wait to be read, what was sensed is gone
+            # lines are queued; sensor data are lost
             self.waiting[vid] += [message] if isinstance(message, Line) else []
             return
         waited, self.waiting[vid] = self.waiting[vid], []
@@ -326,7 +327,7 @@ class Flight:
             self._handled(vid, one)
 
     def _stands_still(self) -> bool:
-        """Whether a fault that the mission asks for lets ICAROUS stand still."""
+        """Whether an injected fault silences ICAROUS at present."""
         simulation = self.mission.simulation
         if not isinstance(simulation, FaultySimulation):
             return False
@@ -335,11 +336,11 @@ class Flight:
     def _handled(self, vid: int, message: ToInstance) -> None:
         state, out = self.icarous[vid].handle(self.icarous_states[vid], message)
         self.icarous_states[vid] = state
-        # whatever it says, it speaks for its own vehicle alone
+        # an instance can only speak for its own vehicle
         self._deliver(answer._replace(vehicle_id=vid) for answer in out)
 
     def _deliver(self, answers: Iterable[Answer]) -> None:
-        """Each answer to its receiver, with all that follows from it, before the next one."""
+        """Deliver each answer to its receiver, with all that follows from it, before the next one."""
         for answer in answers:
             match answer:
                 case Say(body, source):

@@ -1,8 +1,7 @@
-"""What the actors of a flight say to each other: plain values, times in ms of virtual time.
+"""The messages between the actors of a flight: plain values, times in ms of virtual time.
 
-Each message has one receiver: the UxAS end of the bridge, the executive, a vehicle, a planner, the
-wire, or (`Say`) everybody on the bus.
-"""
+Each message has one receiver: the UxAS end of the bridge, the executive, a vehicle, a planner, the wire, or (`Say`)
+everybody on the bus."""
 
 from __future__ import annotations
 
@@ -19,7 +18,7 @@ from cratous.spec.mission.plan import Plan, Pose
 
 
 class Say(NamedTuple):
-    """To the bus: publish a body in the name of a sender."""
+    """To the bus: publish a message body on behalf of a sender."""
 
     body: Any
     source: str
@@ -36,22 +35,22 @@ class Down(NamedTuple):
 
 
 class Connected(NamedTuple):
-    """The connections to the ICAROUS instances of these vehicles stand, for the first time or again."""
+    """The connections to these vehicles' ICAROUS instances are established, for the first time or again."""
 
     now_ms: int
     vehicle_ids: tuple[int, ...]
 
 
 class ZonesKnown(NamedTuple):
-    """All zones that bind from now on; where those told before do not come first, in the same order, the
-    instances forget all and are told anew."""
+    """All zones in force from now on. Unless they extend those sent before, in the same order, the instances are
+    reset and sent everything again."""
 
     zones: tuple[Zone, ...]
 
 
 class Route(NamedTuple):
-    """The way ahead of a vehicle. speed_m_s: planned on it; from_m: where on the vehicle's track its
-    first point is [m]."""
+    """The route ahead of a vehicle. speed_m_s: planned speed; from_m: arc length of its first point on the vehicle's
+    track [m]."""
 
     vehicle_id: int
     points: tuple[Position, ...]
@@ -60,29 +59,29 @@ class Route(NamedTuple):
 
 
 class Flown(NamedTuple):
-    """How far a vehicle is on its track [m]."""
+    """Arc length that a vehicle has flown on its track [m]."""
 
     vehicle_id: int
     s_m: float
 
 
 class Left(NamedTuple):
-    """Where a vehicle has left the path of its task, or where the task begins that it is on its way to."""
+    """Where a vehicle has left the path of its task; in transit, where that task begins."""
 
     vehicle_id: int
     position: Position
 
 
 class Beat(NamedTuple):
-    """A heartbeat is due. aircraft: the state of everybody by id, in the order of ids."""
+    """A heartbeat is due. aircraft: the states of all aircraft, sorted by id."""
 
     now_ms: int
     aircraft: tuple[tuple[int, AirState], ...]
 
 
 class Seen(NamedTuple):
-    """The state of one vehicle has come from outside. time_ms: its own time; aircraft: as in `Beat`, at
-    that time; roll_rad, pitch_rad: of the vehicle."""
+    """The state of one vehicle has been received. time_ms: the state's own time; aircraft: as in `Beat`, at that
+    time; roll_rad, pitch_rad: attitude of the vehicle."""
 
     vehicle_id: int
     now_ms: int
@@ -93,7 +92,7 @@ class Seen(NamedTuple):
 
 
 class Heard(NamedTuple):
-    """A line has come from a vehicle's ICAROUS."""
+    """A line has been received from a vehicle's ICAROUS."""
 
     vehicle_id: int
     now_ms: int
@@ -101,7 +100,7 @@ class Heard(NamedTuple):
 
 
 class Unreadable(NamedTuple):
-    """A line has come that cannot be read. text: which, from whom and why."""
+    """An unreadable line has been received. text: the line, its sender and the reason."""
 
     vehicle_id: int
     now_ms: int
@@ -109,7 +108,7 @@ class Unreadable(NamedTuple):
 
 
 class Lost(NamedTuple):
-    """A vehicle's connection has ended."""
+    """A vehicle's connection has been closed."""
 
     vehicle_id: int
     now_ms: int
@@ -117,14 +116,14 @@ class Lost(NamedTuple):
 
 
 class GateIs(NamedTuple):
-    """A change of a vehicle's gate, as the vehicle reports it."""
+    """The vehicle reports a change of its gate."""
 
     vehicle_id: int
     gate: Gate
 
 
 class Watch(NamedTuple):
-    """Look for instances that have fallen silent. of: those of these vehicles alone, None: all."""
+    """Check for instances that have become silent. of: vehicles to check, None for all."""
 
     now_ms: int
     of: frozenset[int] | None = None
@@ -134,14 +133,14 @@ class Watch(NamedTuple):
 
 
 class Begin(NamedTuple):
-    """The mission begins. aircraft: the state of each of its vehicles, by id."""
+    """The mission begins. aircraft: the states of its vehicles, by id."""
 
     now_ms: int
     aircraft: tuple[tuple[int, AirState], ...]
 
 
 class SetOut(NamedTuple):
-    """Everybody is connected: tell the first ways and command the first tracks."""
+    """All instances are connected: send the first routes and command the first tracks."""
 
 
 class Tick(NamedTuple):
@@ -152,7 +151,7 @@ class Tick(NamedTuple):
 
 
 class Planned(NamedTuple):
-    """The plan that was asked for."""
+    """The requested plan."""
 
     plan: Plan
 
@@ -171,14 +170,14 @@ class Report(NamedTuple):
 
 
 class Closing(NamedTuple):
-    """A step is over: does the flight end? gates: as in `Tick`."""
+    """A step is over: check whether the flight has ended. gates: by vehicle id."""
 
     now_ms: int
     gates: tuple[tuple[int, Gate], ...]
 
 
 class Suspend(NamedTuple):
-    """ICAROUS has a vehicle. act: what the kernel `link_mode` has answered."""
+    """ICAROUS has a vehicle. act: result of the kernel `link_mode`."""
 
     vehicle_id: int
     now_ms: int
@@ -186,7 +185,7 @@ class Suspend(NamedTuple):
 
 
 class Because(NamedTuple):
-    """The vehicle reports what its ICAROUS does with authority (act: as in `Wish`), and the reason."""
+    """The vehicle reports its ICAROUS's request to the gate (act: as in `Wish`), and the reason."""
 
     vehicle_id: int
     act: int
@@ -204,7 +203,7 @@ class TakeBack(NamedTuple):
 
 
 class NotHeard(NamedTuple):
-    """Where the mission says what is flown without the link: a vehicle's ICAROUS is not heard any more."""
+    """A vehicle's ICAROUS is no longer heard. Sent only if the mission sets the behaviour without the link."""
 
     vehicle_id: int
     now_ms: int
@@ -229,9 +228,11 @@ class HeardAgain(NamedTuple):
 
 
 class AskPlan(NamedTuple):
-    """To the planner: a plan for what is left. known: the mission as it is known; starts: where each
-    vehicle is; done: the tasks flown, with start and end [ms]; absent: who takes no part, and why;
-    undone: tasks that have ended undone, and why; begun: tasks that have been begun and not ended."""
+    """To the planner: request a plan for the remaining tasks.
+
+    known: the mission as known now; starts: pose of each vehicle; done: completed tasks, with start and end [ms];
+    absent: vehicles that take no part, with the reason; undone: tasks given up, with the reason; begun: tasks that
+    have begun and not ended."""
 
     now_ms: int
     known: Mission
@@ -243,13 +244,13 @@ class AskPlan(NamedTuple):
 
 
 class Over(NamedTuple):
-    """To the clock: the flight has ended. outcome: how, in one word."""
+    """To the clock: the flight has ended. outcome: in one word."""
 
     outcome: str
 
 
 class RouteAsked(NamedTuple):
-    """To the executive: the ICAROUS that has a vehicle asks for a way from there (start) to a place. number: of the
+    """To the executive: the ICAROUS that has a vehicle requests a route from `start` to `end`. number: of the
     request."""
 
     vehicle_id: int
@@ -259,7 +260,7 @@ class RouteAsked(NamedTuple):
 
 
 class Proposed(NamedTuple):
-    """The answer to `RouteAsked`: the places of a way, none if there is none. speed_m_s: planned on it."""
+    """The answer to `RouteAsked`: the points of a route, empty if there is none. speed_m_s: planned speed."""
 
     vehicle_id: int
     number: int
@@ -303,29 +304,29 @@ class Wished(NamedTuple):
 
 
 class Held(NamedTuple):
-    """Whether the vehicle's ICAROUS has a certificate for its next command."""
+    """The vehicle's ICAROUS offers a certificate for its next command, or reports that it has none."""
 
     now_ms: int
     offer: Offers | Uncertified
 
 
 class Surveyed(NamedTuple):
-    """The aircraft that a vehicle's surveillance shows at a heartbeat."""
+    """The aircraft in a vehicle's surveillance at a heartbeat."""
 
     now_ms: int
     intruders: tuple[Intruder, ...]
 
 
 class LimitsAre(NamedTuple):
-    """What the airframe can do over the ground from now on."""
+    """The airframe limits over the ground from now on."""
 
     vehicle_id: int
     limits: Limits
 
 
 class Look(NamedTuple):
-    """The state is due. payloads: a `CameraState` per camera; tasks: the ids of those that are looked
-    at something for."""
+    """Publish the vehicle's state. payloads: a `CameraState` per camera; tasks: ids of the tasks that the cameras
+    serve."""
 
     vehicle_id: int
     now_ms: int
@@ -334,8 +335,8 @@ class Look(NamedTuple):
 
 
 class Sense(NamedTuple):
-    """The vehicle's surveillance is due. aircraft: as in `Beat`; cooperating: those of our own that
-    avoid; landed: where those of our own are that are on the ground; rolling: those of them that roll to leave it."""
+    """The vehicle's surveillance is due. aircraft: as in `Beat`; cooperating: own vehicles that avoid; landed:
+    positions of other own vehicles on the ground; rolling: ids of those in their take-off run."""
 
     now_ms: int
     aircraft: tuple[tuple[int, AirState], ...]

@@ -1,4 +1,4 @@
-"""What a flight tells of itself besides commands, as LMCP messages: gates, authority, plan, conflicts, truth."""
+"""Reports of a flight as LMCP messages, other than commands: gates, authority, plan, conflicts, truth."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ def gate_state(vehicle_id: int, now_ms: int, gate: Gate) -> Any:
 
 
 def hand_state(vehicle_id: int, now_ms: int, change: Change) -> Any:
-    """A change of the certificate in hand, as a `HandState`: what it was, what came, and what it is."""
+    """A change of the held certificate, as a `HandState`: the hand before and after, and the offer."""
     kind, before, after, offer, permitted, intruder_id, reason = change
-    # of an offer that is refused the log has what was offered
+    # a refusal logs the offer, not the hand
     refused = kind == "Refused"
     return lmcp.new(
         "HandState",
@@ -57,7 +57,7 @@ def _of_gate(name: str, vehicle_id: int, now_ms: int, gate: Gate, **more: Any) -
 
 
 def dropped(command: Any, now_ms: int, sender: int, gate: Gate) -> Any:
-    """A `GatedCommand` that the gate has not let through, as a `CommandDropped`."""
+    """A `GatedCommand` that the gate rejected, as a `CommandDropped` with the reason."""
     reason = "sent by one without authority"
     if not epoch_given(gate, command.Epoch):
         reason = "of an epoch that was never given"
@@ -110,7 +110,7 @@ def plan_accepted(now_ms: int, plan: Plan, done: frozenset[int]) -> Any:
 
 
 def conflict(foreseen: Foresees) -> Any:
-    """What an ICAROUS instance foresees and does about it, as a `Conflict`."""
+    """A conflict predicted by an ICAROUS instance and its resolution, as a `Conflict`."""
     return lmcp.new(
         "Conflict",
         VehicleID=foreseen.vehicle_id,
@@ -122,7 +122,7 @@ def conflict(foreseen: Foresees) -> Any:
 
 
 def link_loss_state(said: WithoutLink) -> Any:
-    """What a vehicle flies while UxAS is not heard, or that it is heard again, as a `LinkLossState`."""
+    """A vehicle's behaviour while UxAS is not heard, or that UxAS is heard again, as a `LinkLossState`."""
     return _mode_told("LinkLossState", said, Chosen=said.chosen)
 
 
@@ -178,7 +178,7 @@ def _mode_told(name: str, said: WithoutLink | TakesOff, **more: Any) -> Any:
 
 
 def guidance(told: Guides, projection: Projection) -> Any:
-    """The alerts and bands of a vehicle, as WellClearViolationIntervals: directions and speeds over ground."""
+    """A vehicle's alerts and bands as WellClearViolationIntervals, with directions and speeds over ground."""
     from cratous.services.daa.intervals import OwnState, intervals_message
 
     now, place = told.motion, told.motion.position
@@ -189,7 +189,7 @@ def guidance(told: Guides, projection: Projection) -> Any:
 
 
 def truth(vehicle_id: int, s: AirState, now_ms: int, cooperative: bool) -> Any:
-    """Where an aircraft is and how it flies until the next step, as the monitor reads it."""
+    """An aircraft's true position and velocity until the next step, as a `TruthState` for the monitor."""
     return lmcp.new(
         "TruthState",
         VehicleID=vehicle_id,
@@ -201,7 +201,7 @@ def truth(vehicle_id: int, s: AirState, now_ms: int, cooperative: bool) -> Any:
 
 
 def mission_change(now_ms: int, what: str, answer: str) -> Any:
-    """What has become known and what was done about it, as a `MissionChange`."""
+    """A mission change and the reaction to it, as a `MissionChange`."""
     return lmcp.new("MissionChange", Time=now_ms, What=what, Consequence=answer)
 
 
@@ -211,7 +211,7 @@ def mission_end(now_ms: int, outcome: str) -> Any:
 
 
 def heartbeat(vehicle_id: int, now_ms: int, direction: str, sequence: int) -> Any:
-    """A heartbeat of the bridge, Down to ICAROUS or Up from it."""
+    """A heartbeat of the bridge: direction "Down" to ICAROUS or "Up" from it."""
     return lmcp.new(
         "Heartbeat", VehicleID=vehicle_id, Time=now_ms, Direction=direction, Sequence=sequence
     )

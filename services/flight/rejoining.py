@@ -1,4 +1,4 @@
-"""A flyable way from where a vehicle is to a pose, around the zones; none where none is found."""
+"""A flyable route from a vehicle's state to a pose, around the zones."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Way = tuple[Position, ...]
 
 
 class Router:
-    """Routes made in flight; the roadmaps around the zones are made once per turn radius."""
+    """Routes made in flight; caches the roadmaps around the zones by turn radius."""
 
     def __init__(self, zones: tuple[Zone, ...]) -> None:
         self._zones = zones
@@ -27,11 +27,11 @@ class Router:
     def way_to(
         self, state: AirState, radius_m: float, target: Pose, max_slope: float = math.inf
     ) -> Way:
-        """A way to the pose that breaks no zone; empty if none is found.
+        """A route to the pose that breaks no zone; empty if none is found.
 
-        The planner's route, else the shortest Dubins path, if its legs obey the zones. A zone that the
-        vehicle is in already is left at once, by the shortest level way found, and for good: that it has been
-        entered is then what ICAROUS and the monitor see. Where that leads on to nowhere it is left on the way.
+        The planner's route, else the shortest Dubins path if its legs keep the zones. A zone that the vehicle
+        is inside is left at once, by the shortest level way found, and not entered again; ICAROUS and the
+        monitor see the violation. If no route continues from there, the zone is left along the route instead.
         """
         radius = round(radius_m, 3)
         out = way_out(state.pose, radius, self._zones)
@@ -45,7 +45,9 @@ class Router:
     def _around(
         self, start: Pose, target: Pose, turning: tuple[float, float], inside: tuple[Zone, ...]
     ) -> Way:
-        """A way around all zones but those that it leaves on the way. turning: radius [m], steepest slope."""
+        """A route around all zones, except that those in `inside` are left along it. turning: radius [m],
+        steepest slope.
+        """
         radius, max_slope = turning
         kept = tuple(zone for zone in self._zones if zone not in inside)
         for slope in (max_slope, math.inf):
@@ -65,7 +67,7 @@ class Router:
 
 
 def _leaves(way: Way, inside: tuple[Zone, ...]) -> bool:
-    """Whether a way comes out of each of these zones and does not enter it again."""
+    """Whether a route leaves each of these zones and does not enter it again."""
     for zone in inside:
         clear = [first_bad_leg(leg, (zone,)) is None for leg in itertools.pairwise(way)]
         if clear[-1:] != [True] or clear != sorted(clear):

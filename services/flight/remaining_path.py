@@ -1,4 +1,4 @@
-"""What lies ahead of a vehicle on its chain: where it left, where it joins, which points follow."""
+"""The rest of a vehicle's chain: where its path was left, where it is rejoined, the points that follow."""
 
 from __future__ import annotations
 
@@ -13,16 +13,18 @@ from cratous.services.icarous.return_to_path import goal_index
 from cratous.spec.mission import Position
 
 OVERLAP_S = 1.0
-"""An interrupted task goes on this much before the place where it was left [s of flight]."""
+"""An interrupted task resumes this much before the point where it was left [s of flight]."""
 
 
 def leaving_m(chain: Chain) -> float:
-    """Arc length at which the path was left, and a little before, so that the sensor overlaps."""
+    """Arc length at which the path is resumed: slightly before where it was left, so that coverage overlaps
+    [m].
+    """
     return max(chain.s_m - OVERLAP_S * chain.speed_m_s, chain.join_m)
 
 
 def join_in_transit(chain: Chain, state: AirState) -> float:
-    """Arc length of the waypoint ahead at which the way goes on, as ICAROUS chooses it."""
+    """Arc length of the waypoint ahead at which the route is rejoined, as ICAROUS chooses it [m]."""
     track, p = chain.track, state.position
     near = track.nearest(p, chain.s_m, track.length_m)
     index = 0
@@ -34,24 +36,24 @@ def join_in_transit(chain: Chain, state: AirState) -> float:
 
 
 def points_left(chain: Chain) -> tuple[Position, ...]:
-    """The present track from here on."""
+    """The points of the present track from its flown arc length on; at least two."""
     points = chain.track.rest(chain.s_m)
     if len(points) > 1:
         return points
     (p,), h = points, chain.track.heading_rad(chain.s_m)
-    # one point alone has no direction: a metre more gives it the track's
+    # a single point has no direction: a second one, one metre on, gives it the track's
     return (p, Position(p.north_m + math.cos(h), p.east_m + math.sin(h), p.alt_m))
 
 
 def last_lap(chain: Chain) -> tuple[Position, ...]:
-    """One more lap of the final loiter, level, at the height that was reached."""
+    """One more lap of the final loiter, level at its final altitude."""
     points = chain.track.points
     lap = points[-chains.LAP_LEGS - 1 :]
     return tuple(p._replace(alt_m=points[-1].alt_m) for p in lap)
 
 
 def points_ahead(chain: Chain, opens_ms: int, ahead_m: float) -> tuple[Position, ...]:
-    """The present track and, beyond it, at least ahead_m of what follows if all goes well, or all of it.
+    """The rest of the present track and at least ahead_m [m] of what is expected to follow, or all of it.
 
     opens_ms: when the next task is expected to begin [ms].
     """
@@ -63,7 +65,7 @@ def points_ahead(chain: Chain, opens_ms: int, ahead_m: float) -> tuple[Position,
         more = list(last_lap(chain)) * 4
     elif chain.phase is not Phase.TASK:
         more = list(laps_expected(chain, opens_ms, ahead_m)) + list(item.path)
-    # where the way ends before it is long enough, nothing follows: ICAROUS takes it for the end
+    # a route that ends earlier has no continuation: ICAROUS treats its end as final
     for following in after:
         if polyline_length_m((points[-1], *more)) >= ahead_m:
             break
@@ -72,7 +74,7 @@ def points_ahead(chain: Chain, opens_ms: int, ahead_m: float) -> tuple[Position,
 
 
 def laps_expected(chain: Chain, opens_ms: int, ahead_m: float) -> tuple[Position, ...]:
-    """The laps of the hold that will be flown until the task opens, no more than ahead_m asks for."""
+    """The laps of the hold expected until the task may begin, limited to about ahead_m [m]."""
     item = chain.item
     if item is None or item.hold is None:
         return ()

@@ -1,4 +1,4 @@
-"""Whether what has become known in flight asks for another plan."""
+"""Whether a mission change in flight requires a new plan."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from cratous.spec.mission.changes import (
 from cratous.spec.mission.plan import Plan, in_part_of, left_out_of, left_out_text
 
 BRANCHES_MAX = 64
-"""So many ways to resolve `+` are looked at for orders that are missed."""
+"""Most resolutions of `+` that are checked for missed orders."""
 KINDS = {
     VEHICLE_LOST: executive.LOST,
     VEHICLE_LANDED: executive.LOST,
@@ -41,18 +41,19 @@ KINDS = {
 
 
 def tasks_text(tasks: Sequence[int]) -> str:
-    """Tasks by number: `task 2`, `tasks 2, 3`."""
+    """Task ids in words: `task 2`, `tasks 2, 3`."""
     return f"task{'' if len(tasks) == 1 else 's'} {', '.join(map(str, tasks))}"
 
 
 def left_by(chains: Mapping[int, Chain]) -> dict[int, list[int]]:
-    """The tasks that each vehicle has still to end."""
+    """The tasks that each vehicle has still to complete."""
     return {c.vehicle.id: [i.task_id for i in c.items[max(c.k, 0) :]] for c in chains.values()}
 
 
 def handed_over(before: Mapping[int, list[int]], plan: Plan) -> str:
-    """Which tasks another plan gives to other vehicles, which are not asked for any more, and which it
-    leaves out, with the reasons."""
+    """What a new plan changes, in words: tasks given to other vehicles, dropped, and left out with the
+    reasons.
+    """
     gone = {one.task_id for one in left_out_of(plan)}
     who = {item.task_id: item.vehicle_id for item in plan.items}
     to: dict[int, list[int]] = {}
@@ -69,7 +70,7 @@ def handed_over(before: Mapping[int, list[int]], plan: Plan) -> str:
 
 
 def nobody_may(known: Mission, left: Collection[int], absent: Mapping[int, str]) -> str:
-    """Which of the tasks that are left no vehicle that takes part is eligible for, and why not."""
+    """The remaining tasks that no available vehicle is eligible for, and why, in words."""
     here = {vehicle.id for vehicle in known.vehicles}
     parts = []
     for task in (t for t in known.tasks if t.id in left):
@@ -83,9 +84,9 @@ def nobody_may(known: Mission, left: Collection[int], absent: Mapping[int, str])
 
 
 def undone_by(change: Change, plan: Plan, settled: Collection[int]) -> list[int]:
-    """The tasks that the plan leaves out, for whatever reason, or does in part because of the zone that ends.
+    """The unsettled tasks that the plan leaves out, or does only in part because of the zone that ends.
 
-    settled: tasks that have ended, or were given up for good.
+    settled: tasks that have ended or were given up. Empty for other changes.
     """
     if not isinstance(change, ZoneEnd):
         return []
@@ -97,7 +98,9 @@ def undone_by(change: Change, plan: Plan, settled: Collection[int]) -> list[int]
 def orders_missed(
     known: Mission, due: Sequence[Change], starts: Mapping[int, int], ends: Collection[int]
 ) -> str:
-    """Which orders can be kept no more, since a task had begun before one that it waits for was asked for."""
+    """Orders that can no longer be met because a task had begun before a new one that it must follow, in
+    words.
+    """
     term = term_of(with_choices(known, set(starts)))
     if term is None:
         return ""
@@ -121,10 +124,11 @@ def touched_by(
     states: Mapping[int, AirState],
     undone: Mapping[Change, Sequence[int]],
 ) -> str:
-    """Why what has become known asks for another plan; empty if it does not.
+    """Why a change requires a new plan, in words; "" if it does not.
 
-    The kernel `change_counts` says which changes do by themselves. A new zone does if a leg that is still to be flown breaks it (kernels by `first_bad_leg`).
-    ended: the tasks that are complete; undone: the tasks of `undone_by`, by change.
+    The kernel `change_counts` decides which changes do by themselves; a new zone does if it breaks a leg
+    still to be flown (kernels by `first_bad_leg`). ended: completed tasks; undone: the tasks of `undone_by`,
+    by change.
     """
     left = left_by(chains)
     for change in due:

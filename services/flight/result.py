@@ -1,4 +1,4 @@
-"""How a flight ended."""
+"""The result of a flight."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class FlightResult:
-    """How a flight ended. outcome: "complete", "failed" or "limit"; times in ms."""
+    """The result of a flight. outcome: "complete", "failed" or "limit"; times in ms."""
 
     outcome: str
     end_ms: int

@@ -1,4 +1,4 @@
-"""Where the cameras look while a task is flown, as payload states and as ground targets."""
+"""Where the cameras point while a task is flown, as payload states and as ground targets."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from cratous.spec.mission import Frame, Mission, Position, Task, Vehicle
 
 
 class Looks(NamedTuple):
-    """payloads: a `CameraState` per camera; tasks: the ids of those that they look at something for."""
+    """payloads: a `CameraState` per camera; tasks: ids of the tasks that they serve."""
 
     payloads: list[Any]
     tasks: list[int]
@@ -25,7 +25,7 @@ class Looks(NamedTuple):
 def looks(
     vehicle: Vehicle, chain: Chain, state: AirState, mission: Mission, projection: Projection
 ) -> Looks:
-    """Where a vehicle's cameras look now; at nothing while ICAROUS has the vehicle."""
+    """Where a vehicle's cameras point; no target while ICAROUS has the vehicle."""
     task = mission.task(chain.item.task_id) if chain.item is not None else None
     frame = mission.frame
     target = None if chain.suspended else target_of(chain, task, state, frame.terrain_m)
@@ -55,9 +55,9 @@ def camera_states(
     frame: Frame,
     task: Task | None = None,
 ) -> list[Any]:
-    """One `CameraState` per camera, angles in degrees, with its footprint if it looks at one.
+    """One `CameraState` per camera, angles in degrees, with its footprint if it has a target.
 
-    task: what it looks at the target for; a camera that can zooms in as the task asks.
+    task: the task that the target serves; a camera with zoom zooms in as the task requires.
     """
     states = []
     for wide in vehicle.cameras:

@@ -1,7 +1,7 @@
-"""How fast to fly so as to be on time: within a few percent of the planned speed, and no more.
+"""Flight speed to be on time, within bounds around the planned speed.
 
-These are wishes of the executive; whether a task may start, and whether a bound is broken, is
-decided by the kernel `row_holds` (`services.flight.timing`).
+These are only requests of the executive; the kernel `row_holds` (`services.flight.timing`) decides whether a
+task may start and whether a bound is broken.
 """
 
 from __future__ import annotations
@@ -15,16 +15,16 @@ from cratous.spec.mission import Vehicle
 from cratous.spec.mission.plan import PlanItem
 
 SLOWEST, FASTEST = 0.8, 1.06
-"""How far the speed may be adapted in order to be on time, as factors of the planned one."""
+"""Bounds of the speed adaptation, as factors of the planned speed."""
 
 
 def trimmed_speed_m_s(
     item: PlanItem, vehicle: Vehicle, left_m: float, spare_ms: float, hurry: bool
 ) -> float:
-    """The speed [m/s] that passes the start pose in spare_ms, after whole laps of the hold.
+    """Speed [m/s] at which the start pose is passed in spare_ms, after whole laps of the hold.
 
-    left_m: way to the start pose [m]; hurry: some deadline is near, so do not dawdle. Without a
-    hold, or with no time to spare, the planned speed (in a hurry the fastest).
+    left_m: remaining way to the start pose [m]; hurry: some deadline is tight. Without a hold, or with no
+    time to spare, the planned speed (with hurry the fastest one).
     """
     low = max(vehicle.min_speed_m_s, SLOWEST * item.speed_m_s)
     high = max(low, min(vehicle.max_speed_m_s, FASTEST * item.speed_m_s))
@@ -42,7 +42,7 @@ def broken_rows(
     ends: Mapping[int, int],
     settled: Collection[int],
 ) -> list[tuple[int, Row]]:
-    """Tasks that are not settled and would break an upper bound at these times, with the row."""
+    """Unsettled tasks that would break an upper bound at these times [ms], each with the row."""
     rows, found = tuple(rows), []
     for task_id in sorted(ends):
         if task_id not in settled:

@@ -1,4 +1,4 @@
-"""What a vehicle's ICAROUS is told before the flight about taking off, and whether each vehicle can."""
+"""Take-off parameters for a vehicle's ICAROUS, and the check before flight that each vehicle can take off."""
 
 from __future__ import annotations
 
@@ -26,8 +26,9 @@ def take_off(mission: Mission, vehicle_id: int) -> TakeOff | None:
 
 
 def require_take_offs(mission: Mission) -> None:
-    """BadInput where a vehicle that stands on the ground could not leave it, by the zones that are known then and with
-    nobody else in the air."""
+    """BadInput where a vehicle on the ground could not take off, given the zones known then and no other
+    traffic.
+    """
     for vehicle in grounded(mission):
         if vehicle.id in mission.instances and (why := _why_not(mission, vehicle)):
             k = mission.vehicles.index(vehicle)
@@ -41,7 +42,7 @@ def require_take_offs(mission: Mission) -> None:
 
 
 def _why_not(mission: Mission, vehicle: GroundedVehicle) -> str:
-    """Why no way up is permitted; "" if one is."""
+    """Why no climb-out is permitted; "" if one is."""
     plan, daa, zones = take_off(mission, vehicle.id), mission.daa, hard_zones(mission.zones)
     sensed = at_start(mission, vehicle, first_state(vehicle))._replace(on_ground=True)
     volume = buffered(daa.well_clear, daa.buffer)

@@ -1,4 +1,4 @@
-"""What has become of each task in flight, as the kernels of `core.executive` have it."""
+"""The state of each task in flight, with the codes of `core.executive`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from cratous.spec.executive import BEGUN, ENDED, FAIL, FAILED, LEFT
 
 
 def life(task_id: int, starts: Container[int], ends: Container[int], failed: Container[int]) -> int:
-    """A task's state, from the lists of tasks that have begun, ended and failed."""
+    """The state of a task, given the tasks that have begun, ended and failed."""
     if task_id in ends:
         return ENDED
     if task_id in failed:
@@ -20,6 +20,6 @@ def life(task_id: int, starts: Container[int], ends: Container[int], failed: Con
 def fails(
     task_id: int, starts: Container[int], ends: Container[int], failed: Container[int]
 ) -> bool:
-    """Whether a task that is given up fails by that; one that is settled stays as it is."""
+    """Whether giving up a task makes it fail; a settled task keeps its state."""
     before = life(task_id, starts, ends, failed)
     return task_after(before, FAIL) != before

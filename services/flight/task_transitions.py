@@ -1,6 +1,6 @@
-"""Events of the chains: how each begins, what happens at the end of a track, and how a task fails.
+"""Events of the chains: start of a plan, end of a track, failure of a task.
 
-Each function gives the executive's state as it is afterwards, and adds what is to be sent to `out`.
+Each function returns the executive's state that results, and appends the messages to send to `out`.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from cratous.spec.mission.plan import PlanItem, in_part_of
 from cratous.spec.records import replace
 
 EARLY_MS = 500
-"""A planned wait may end this much early; the rows themselves are never bent."""
+"""A planned wait may end this much early [ms]; the rows themselves are not relaxed."""
 NO_WAY = "no way there keeps the zones"
 NO_HOLD = "it would have to wait, and no circle at its start keeps the zones"
 NO_CIRCLE = "no circle there or near keeps the zones: it circles across them"
@@ -40,18 +40,18 @@ NO_WAY_OUT = (
     "no way that keeps the zones was found to a circle that does: it crosses them on the way there"
 )
 NAME = "uxas/executive"
-"""The sender of what the executive says of itself."""
+"""Sender of the executive's own messages."""
 
 
 def progress(chain: Chain, at_ms: int, phase: str, note: str = "", served: float = 0.0) -> Say:
-    """How far the present task of a chain is. served: share of its path that has been flown."""
+    """State of a chain's present task as a `TaskProgress`. served: flown fraction of its path."""
     assert chain.item is not None
     task, vid = chain.item.task_id, chain.vehicle.id
     return Say(task_progress(task, vid, at_ms, phase, served, note), NAME)
 
 
 def begin(config: Config, state: State, out: Out) -> State:
-    """Set every vehicle on its way by the plan in force. What that leaves out fails by name, or waits."""
+    """Start every vehicle on the plan in force. Tasks that the plan leaves out fail by name, or wait."""
     settled = (dict(state.starts), dict(state.ends), dict(state.failed))
     before, chains = dict(state.left_out), state.by_vehicle()
     until = awaited(state.to_come)
@@ -75,8 +75,11 @@ def begin(config: Config, state: State, out: Out) -> State:
 
 
 def held_on(state: State, old: Chain, chain: Chain, out: Out) -> tuple[State, bool]:
-    """Whether a vehicle that holds goes on holding by another plan: not where a zone that binds now forbids the
-    way there, nor on the ground. chain: how it would begin the plan."""
+    """The state, and whether a vehicle that holds keeps holding under a new plan.
+
+    It does not if a zone in force breaks its way or its circle, or if it is on the ground. chain: its chain
+    in the new plan.
+    """
     vid, failed = old.vehicle.id, dict(state.failed)
     if vid in dict(state.landed):
         return state, False
@@ -101,13 +104,13 @@ def _items(state: State, vehicle: Vehicle) -> tuple[PlanItem, ...]:
 
 
 def settle(config: Config, state: State, out: Out) -> State:
-    """Handle every passing of an end up to now, the earliest first."""
+    """Handle all ends of tracks passed up to now, the earliest first."""
     passed, tracks = dict[int, int | None](), dict[int, int]()
     new = sorted(c.vehicle.id for c in state.chains)
     down = dict(state.landed)
     while True:
         for vid in new:
-            # who stands on the ground passes nothing more
+            # a vehicle on the ground passes no more ends
             if not state.chain(vid).suspended and vid not in down:
                 state, passed[vid] = _measure(config, state, vid)
                 tracks[vid] = state.chain(vid).version
@@ -116,20 +119,25 @@ def settle(config: Config, state: State, out: Out) -> State:
             return state
         at, vid = min(due)
         state = _on_end(config, state, state.chain(vid), at, out)
-        # a failure can put others on new tracks: they have passed the end of none yet
+        # a failure may put other vehicles on new tracks, whose ends are checked again
         new = [v for v in tracks if v == vid or state.chain(v).version != tracks[v]]
 
 
 def _measure(config: Config, state: State, vehicle_id: int) -> tuple[State, int | None]:
-    """With the progress of a vehicle; and the instant at which the end of a track was passed, if it was."""
+    """The state with a vehicle's progress updated, and when the end of its track was passed [ms]; None if it
+    was not.
+    """
     air = state.air(vehicle_id)
     chain, at_ms = state.chain(vehicle_id).measure(air, state.now_ms, config.dt_s)
     return state.put(chain), None if at_ms is None else _at_its_end(state, chain, at_ms)
 
 
 def _at_its_end(state: State, chain: Chain, at_ms: int) -> int | None:
-    """When the end of a track counts as passed; None: in the next step. A circle is flown a little inside, so its
-    end comes a little early: a loiter that is over in this step or in the next lasts its duration."""
+    """When the end of a track counts as passed [ms]; None: not in this step.
+
+    A circle is flown slightly inside, so its end comes slightly early: a loiter that would end in this step
+    or the next is extended to its full duration.
+    """
     item = chain.item
     if item is None or chain.phase is not Phase.TASK:
         return at_ms
@@ -143,7 +151,7 @@ def _at_its_end(state: State, chain: Chain, at_ms: int) -> int | None:
 
 
 def _on_end(config: Config, state: State, chain: Chain, at_ms: int, out: Out) -> State:
-    """The end of the present track has been passed: what the kernel `end_passed` answers."""
+    """Act on the passed end of the present track as the kernel `end_passed` decides."""
     item = chain.item
     row, opens = _may_begin(state, chain, at_ms)
     more = chain.next_k(dict(state.failed)) < len(chain.items)
@@ -183,7 +191,7 @@ def _may_begin(state: State, chain: Chain, at_ms: int) -> tuple[Row | None, bool
 
 
 def _start(state: State, chain: Chain, item: PlanItem, at_ms: int, out: Out) -> State:
-    """At the start pose: begin the task."""
+    """Begin the task at its start pose."""
     track = Track(item.path, chains.start_pose(item).heading_rad)
     chain = replace(chain, speed_m_s=item.speed_m_s).enter(Phase.TASK, track, at_ms)
     out.append(progress(chain, at_ms, "Active"))
@@ -191,8 +199,10 @@ def _start(state: State, chain: Chain, item: PlanItem, at_ms: int, out: Out) -> 
 
 
 def next_item(config: Config, state: State, chain: Chain, at_ms: int, out: Out) -> State:
-    """On the way to the next item of a chain that has not failed; circling where there is none. An item
-    to which no way keeps the zones fails."""
+    """Start towards the next item that has not failed; circle where there is none.
+
+    An item that no route reaches within the zones fails.
+    """
     chain = replace(chain, k=chain.next_k(dict(state.failed)))
     item, air = chain.item, state.from_where(chain.vehicle.id)
     chain = replace(chain, leg=chain.leg.to(item.task_id if item else None, at_ms))
@@ -210,10 +220,10 @@ def next_item(config: Config, state: State, chain: Chain, at_ms: int, out: Out) 
 
 
 def _loiter(config: Config, state: State, chain: Chain, at_ms: int, out: Out) -> State:
-    """Circle at the end of the chain; raised to a layer of its own while others still fly.
+    """Circle at the end of the chain, in a layer of its own while others still fly.
 
-    The layer is one and a half buffered vertical thresholds per vehicle, in the order of
-    finishing, so that one who has finished is in nobody's way.
+    The layer is one and a half buffered vertical thresholds per finished vehicle, in order of finishing, so
+    that a finished vehicle stays clear of the others.
     """
     finished, vid = state.finished + 1, chain.vehicle.id
     if vid in dict(state.landed):
@@ -229,8 +239,9 @@ def _loiter(config: Config, state: State, chain: Chain, at_ms: int, out: Out) ->
 def circling(
     config: Config, state: State, chain: Chain, layer_m: float, out: Out
 ) -> tuple[Chain, Track]:
-    """A vehicle's track with nothing left to fly, raised by a layer, and its chain at the speed for that. If it
-    breaks a zone, it is said."""
+    """The circle of a vehicle with nothing left to fly, raised by layer_m [m], and its chain at the speed for
+    it. A violation of a zone is reported.
+    """
     vid = chain.vehicle.id
     last = config.ways(state.zones).last(chain, state.from_where(vid), layer_m)
     if not (last.kept and last.way_kept):
@@ -243,7 +254,7 @@ def circling(
 
 
 def fail(config: Config, state: State, task_id: int, why: str, out: Out) -> State:
-    """Name the failure of a task, and of those that can now never begin."""
+    """Fail a task by name, and with it the tasks that can then never begin."""
     state, now_ms = state.has_failed(task_id, why), state.now_ms
     for vid in sorted(c.vehicle.id for c in state.chains):
         chain = state.chain(vid)
@@ -267,6 +278,5 @@ def fail(config: Config, state: State, task_id: int, why: str, out: Out) -> Stat
 
 
 def give_up(config: Config, state: State, asked: Iterable[tuple[int, str]], out: Out) -> State:
-    """Nothing that is left can be done: nobody flies any of it, and all that is asked for fails by
-    name, each with its reason."""
+    """No remaining task can be done: each task asked for fails by name, with its reason."""
     return begin(config, replace(state, plan=nothing_of(state.plan, asked)), out)

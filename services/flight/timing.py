@@ -1,7 +1,7 @@
-"""When tasks start and end in the air: the rows of the plan, held against real times.
+"""Start and end times of tasks in flight: the rows of the plan, checked against actual times.
 
-`starts` and `ends` map task ids to real times [ms]. Whether a task may start, and whether a row holds,
-is decided by the kernels; what is added here are the reference times.
+`starts` and `ends` map task ids to actual times [ms]. The kernels decide whether a task may start and whether
+a row holds; this module adds the reference times.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ LOWER = (AFTER_END, AFTER_START, NOT_BEFORE)
 
 
 def reference(row: Row, starts: Mapping[int, int], ends: Mapping[int, int]) -> int | None:
-    """Latest end or earliest start of the row's group; None if a member's is not known."""
+    """Latest end or earliest start of the row's group [ms]; None while it is not known. 0 for an empty group."""
     if not row.group:
         return 0
     known = ends if row.kind in (AFTER_END, WITHIN_END) else starts
@@ -45,7 +45,7 @@ def closed_by(
     starts: Mapping[int, int],
     ends: Mapping[int, int],
 ) -> Row | None:
-    """The first lower-bound row that forbids the task to start at an instant; None if it may."""
+    """The first lower-bound row that forbids the task to start at an instant; None if none does."""
     for row in rows:
         if row.i == task_id and row.kind in LOWER and not _open(row, at_ms, starts, ends):
             return row
@@ -53,7 +53,7 @@ def closed_by(
 
 
 def _open(row: Row, at_ms: int, starts: Mapping[int, int], ends: Mapping[int, int]) -> bool:
-    """Whether a lower-bound row lets its task start at an instant."""
+    """Whether a lower-bound row permits its task to start at an instant."""
     if not row.group:
         return row_holds(row.kind, at_ms, at_ms, 0, row.lo, row.hi)
     after_end = row.kind == AFTER_END
@@ -66,7 +66,7 @@ def _open(row: Row, at_ms: int, starts: Mapping[int, int], ends: Mapping[int, in
 def opens_ms(
     task_id: int, rows: Iterable[Row], starts: Mapping[int, int], ends: Mapping[int, int]
 ) -> int:
-    """The earliest start that the lower bounds allow, by (expected) times of the others [ms]."""
+    """The earliest start that the lower bounds allow [ms], given the (expected) times of the other tasks."""
     earliest = 0
     for row in rows:
         if row.i != task_id or row.kind not in LOWER:
@@ -85,7 +85,7 @@ def broken_by(
     starts: Mapping[int, int],
     ends: Mapping[int, int],
 ) -> Row | None:
-    """The first upper-bound row that a task from start to end would break, or None."""
+    """The first upper-bound row that a task with these times would break; None if none."""
     for row in rows:
         if row.i != task_id or row.kind in LOWER:
             continue

@@ -1,8 +1,8 @@
-"""One vehicle: airframe, autopilot, actuator gate and surveillance: `handle(state, message) -> (state, messages)`.
+"""One vehicle: airframe, autopilot, actuator gate and surveillance: `handle(state, message) -> (state,
+messages)`.
 
-The gate sits here, at the actuators, and so do the own state and the traffic picture that its
-ICAROUS instance works with: a broken link takes nothing from collision avoidance. All decisions
-about authority are those of the gate kernels.
+The gate sits here, at the actuators, as do the own state and the traffic picture that the vehicle's ICAROUS
+uses: collision avoidance does not depend on the bridge. The gate kernels take all decisions about authority.
 """
 
 from __future__ import annotations
@@ -78,18 +78,21 @@ from cratous.spec.mission.plan import Hold
 from cratous.spec.records import replace
 
 OVERRUN_S = 5.0
-"""Flying on past the end of a path for this long [s] without a new command starts a loiter."""
+"""Flying past the end of a path for this long [s] without a new command starts a loiter."""
 NOTHING_IN_HAND = InHand()
 UNTOUCHED = Gate(UXAS, 0, False)
-"""UxAS commands, and has always done so."""
+"""UxAS commands, and always has."""
 HANDED_BACK = "the way back is free: handed back"
 
 
 @dataclass(frozen=True)
 class State:
-    """air: where it is and how it flies until the next step; command: what the autopilot flies, None for
-    nothing yet; roll_rad: of the last turn; takeovers: how often ICAROUS has taken the vehicle; held: the certificate
-    in hand; landed: it is on the ground, and stays there; on_ground: it has not left it yet."""
+    """State of a vehicle.
+
+    air: its motion until the next step; command: what the autopilot flies, None for nothing yet; roll_rad:
+    bank angle of the last turn; takeovers: how often ICAROUS has taken the vehicle; held: the held
+    certificate; landed: it is on the ground and stays there; on_ground: it has not taken off yet.
+    """
 
     air: AirState
     limits: Limits
@@ -107,9 +110,12 @@ Step = tuple[State, tuple[FromVehicle, ...]]
 
 @dataclass(frozen=True)
 class VehicleNode:
-    """A vehicle in the simulator; what does not change. Steps of dt_s; it descends to floor_m at most; ground: by what
-    it holds a certificate, None where it is offered none; sites: where it may land, terrain_m: the ground elsewhere; it
-    comes to the ground where there are some."""
+    """A simulated vehicle and its fixed configuration.
+
+    dt_s: step [s]; floor_m: lowest altitude [m]; ground: parameters of the held certificate, None where none
+    is offered; sites: landing sites; terrain_m: ground altitude elsewhere [m]. It can touch down only if
+    there are sites.
+    """
 
     vehicle: Vehicle
     projection: Projection
@@ -125,7 +131,7 @@ class VehicleNode:
         return State(first_state(self.vehicle), limits_of(self.vehicle), on_ground=on_ground)
 
     def handle(self, state: State, message: ToVehicle) -> Step:
-        """One step: the state afterwards, and what to send, in order."""
+        """One step: the state that results, and the messages to send, in order."""
         match message:
             case Commanded():
                 return self._commanded(state, message)
@@ -147,7 +153,7 @@ class VehicleNode:
                 return self._moved(replace(state, air=advance(state.air, self.dt_s)))
 
     def _moved(self, state: State) -> Step:
-        """A step was flown: perhaps off the ground, or onto it."""
+        """The state after a step of flight: detects lift-off and touchdown."""
         p = state.air.position
         if isinstance(self.vehicle, GroundedVehicle) and state.on_ground:
             return replace(state, on_ground=is_down(p.alt_m - self.vehicle.ground_m)), ()
@@ -161,7 +167,7 @@ class VehicleNode:
         ), ()
 
     def _rolls(self, state: State) -> Step:
-        """On the ground: straight on and slower, to a stand, which is told."""
+        """After landing: roll straight on, braking to rest, which is reported."""
         air, still = rolling(state.air, BRAKING_M_S2, self.dt_s), state.air.speed_m_s == 0
         after = replace(state, air=air, roll_rad=0.0)
         if still or air.speed_m_s != 0:
@@ -170,7 +176,7 @@ class VehicleNode:
         return after, (Stands(self.vehicle.id, site.name if site is not None else ""),)
 
     def _takes_off(self, state: State, now_ms: int) -> Step:
-        """On the ground before the flight: it rolls as ICAROUS commands, straight on, and brakes where it does not."""
+        """On the ground before take-off: roll straight on as ICAROUS commands, otherwise brake."""
         air, command, wanted, climb = state.air, state.command, 0.0, 0.0
         theirs = gate_accepts(state.gate, ICAROUS, state.gate.epoch)
         silent = self.ground is not None and holding.silent(state.held, now_ms, self.ground)
@@ -178,7 +184,7 @@ class VehicleNode:
             v = command.velocity
             wanted, climb = math.hypot(v.north_m_s, v.east_m_s), -v.down_m_s
         lifts_m_s, steepest_m_s = state.limits.min_speed_m_s, state.limits.max_climb_m_s
-        # a command is rounded: it is to roll, or it is not
+        # commands are rounded on the wire: only roll or stop is distinguished
         if wanted > lifts_m_s / 2:
             moved = rolling_up(air, lifts_m_s, min(climb, steepest_m_s), self.dt_s)
         else:
@@ -189,7 +195,7 @@ class VehicleNode:
         return Say(body, f"vehicle/{self.vehicle.id}")
 
     def _commanded(self, state: State, message: Commanded) -> Step:
-        """Let a GatedCommand through, or say that it was dropped."""
+        """Let a GatedCommand through, or report that it was dropped."""
         command, before = message.command, state.gate
         sender = ICAROUS if command.Sender.name == SENDERS[ICAROUS] else UXAS
         if not gate_accepts(before, sender, command.Epoch):
@@ -219,13 +225,13 @@ class VehicleNode:
         return self._kept(state, kept, now_ms)
 
     def _kept(self, state: State, kept: holding.Kept, now_ms: int) -> Step:
-        """The state with what is in hand now, and what is said of it."""
+        """The state with the new held certificate, and the reports of its changes."""
         held, changes = kept
         said = (self._say(hand_state(self.vehicle.id, now_ms, change)) for change in changes)
         return replace(state, held=held), tuple(said)
 
     def _surveyed(self, state: State, message: Surveyed) -> Step:
-        """What has become known to the hand."""
+        """Check the held certificate against the surveillance."""
         if self.ground is None:
             return state, ()
         now_ms, others = message
@@ -245,7 +251,7 @@ class VehicleNode:
     def _notices(
         self, before: Gate, after: State, now_ms: int, reason: str, intruder_id: int
     ) -> tuple[FromVehicle, ...]:
-        """How the gate stands, if it has changed; who commands from now on, if that has."""
+        """Report the gate if it has changed, and the authority if that has."""
         vid, gate, said = self.vehicle.id, after.gate, list[FromVehicle]()
         if gate != before:
             said += [GateIs(vid, gate), self._say(gate_state(vid, now_ms, gate))]
@@ -254,7 +260,7 @@ class VehicleNode:
         return tuple(said)
 
     def _choose(self, state: State, now_ms: int) -> Step:
-        """Choose the velocity of the coming step."""
+        """Choose the velocity of the coming step, in the air or on the ground."""
         if state.landed:
             return self._rolls(state)
         if state.on_ground:
@@ -276,7 +282,7 @@ class VehicleNode:
         return replace(state, air=moved, command=command, roll_rad=roll_rad), said
 
     def _alone(self, state: State, now_ms: int) -> Step:
-        """While ICAROUS, which has the vehicle, is silent: what is in hand is commanded, or a loiter."""
+        """While ICAROUS has the vehicle but is silent: command the held certificate, or a loiter."""
         theirs = gate_accepts(state.gate, ICAROUS, state.gate.epoch)
         if self.ground is None or not theirs or not holding.silent(state.held, now_ms, self.ground):
             return state, ()
@@ -286,8 +292,9 @@ class VehicleNode:
         return self._kept(replace(state, command=command), (held, changes), now_ms)
 
     def sensed(self, state: State, message: Sense) -> OnBoard:
-        """What the vehicle's ICAROUS instance gets: own state, what the airframe can do at its present
-        speed, everybody else, the gate."""
+        """Input of the vehicle's ICAROUS: own state, the airframe's ability at its present speed, the other
+        aircraft, the gate.
+        """
         air, limits = state.air, state.limits
         rolls = state.landed or state.on_ground
         flown_m_s = limits.min_speed_m_s if rolls else air.speed_m_s
@@ -305,7 +312,7 @@ class VehicleNode:
         return OnBoard(self.vehicle.id, sensed)
 
     def _air_vehicle_state(self, state: State, look: Look) -> Any:
-        """The state that goes out at 2 Hz: degrees, body axes (u forward, v right, w down)."""
+        """The AirVehicleState message: degrees, body axes (u forward, v right, w down) [m/s]."""
         s = state.air
         lat, lon = self.projection.to_geodetic(s.position.north_m, s.position.east_m)
         heading = compass(s.heading_rad)
@@ -332,7 +339,7 @@ class VehicleNode:
 
 
 def commanded(state: State, sender: int, epoch: int, command: Command) -> State:
-    """The state after a command that the gate accepts, of UXAS or ICAROUS in an epoch."""
+    """The state after the gate has accepted a command of UXAS or ICAROUS in an epoch."""
     return replace(state, gate=gate_after(state.gate, sender, epoch), command=command)
 
 
@@ -351,7 +358,7 @@ def _loiter_here(state: State) -> Circle:
 
 
 def traffic_picture(own_id: int, sense: Sense) -> tuple[Intruder, ...]:
-    """Everyone else, as surveillance on board sees them, by id."""
+    """All other aircraft, as the on-board surveillance sees them, in the order of `sense`."""
     return tuple(
         Intruder(other, air.position, air.velocity, other in sense.cooperating)
         for other, air in sense.aircraft

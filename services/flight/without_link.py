@@ -1,4 +1,4 @@
-"""What a vehicle's ICAROUS is told before the flight about acting without UxAS."""
+"""Lost-link parameters for a vehicle's ICAROUS."""
 
 from __future__ import annotations
 

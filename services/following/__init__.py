@@ -1,1 +1,1 @@
-"""Tasks that keep to what moves: where their vehicles fly, what they look at, and when they are over."""
+"""Tasks relative to a moving entity: where their vehicles fly, what they look at, and when they are complete."""

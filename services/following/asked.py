@@ -1,4 +1,4 @@
-"""What a task that keeps to an entity asks for, read from its message."""
+"""Parameters of a task that follows an entity, read from its message."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from cratous.spec.errors import BadInput
 from cratous.spec.mission import Position, Task, TaskKind
 
 VEHICLES_MOST = 8
-"""A task of more vehicles at one time is refused."""
+"""Most vehicles that a task may require at one time."""
 STANDOFF_MOST_M = 100_000.0
 DURATION_MOST_MS = 86_400_000
 DURATION = "Duration_ms"
-"""The task parameter that says for how long an escort or a blockade is kept."""
+"""Task parameter with the duration of an escort or a blockade [ms]."""
 ROUTE_MOST, TOLD_MOST = 1024, 4096
-"""A task with more PrescribedWaypoints is refused, and one of an entity along a line or a plan of more places."""
+"""Limits of PrescribedWaypoints, and of points on the entity's line or plan; beyond them the task is refused."""
 RANGE_MOST_M = 1_000_000.0
 
 
@@ -32,10 +32,13 @@ class Tower(NamedTuple):
 
 
 class Asked(NamedTuple):
-    """entity: its id; needed: vehicles at one time; standoff [m]; least: for how long without a break [ms], 0:
-    until another plan; looks: a search task that it is for the camera, None: it looks at nothing; route: of
-    the entity; protected: the place to keep the entity from; tower: that it is to be in touch with; entity 0: what
-    is supported stands at `stands`."""
+    """Parameters of a task.
+
+    entity: its id; needed: vehicles at one time; standoff_m: standoff distance; least_ms: required duration
+    without a break, 0: until another plan; looks: equivalent search task for the camera, None for no camera;
+    route: of the entity; protected: place to keep the entity away from; tower: radio tower of a relay;
+    stands: place supported by a relay that has no entity (entity 0).
+    """
 
     kind: str
     entity: int
@@ -50,12 +53,12 @@ class Asked(NamedTuple):
 
     @property
     def watches(self) -> bool:
-        """True if the task is served by what the cameras see."""
+        """Whether the task is served by what the cameras see."""
         return self.kind in ("WatchTask", "MultiVehicleWatchTask")
 
 
 def asked_of(body: Any, places: RequestPlaces, tower: Tower | None = None) -> Asked:
-    """What a task's message asks for; BadInput names what cannot be. tower: of a relay."""
+    """The parameters in a task's message; BadInput for values out of range. tower: of a relay."""
     kind, where = type(body).__name__, f"task {body.TaskID}"
     names = {
         "EscortTask": "SupportedEntityID",
@@ -66,7 +69,7 @@ def asked_of(body: Any, places: RequestPlaces, tower: Tower | None = None) -> As
     needed = getattr(body, "NumberVehicles", 1)
     within(needed, 1, VEHICLES_MOST, where, "NumberVehicles")
     standoff = float(getattr(body, "StandoffDistance", 0.0))
-    # an escort may be behind
+    # a negative distance is behind the entity
     least_m = -STANDOFF_MOST_M if kind == "EscortTask" else 0
     within(standoff, least_m, STANDOFF_MOST_M, where, "StandoffDistance")
     dwell = getattr(body, "DwellTime", 0)
@@ -94,7 +97,7 @@ def asked_of(body: Any, places: RequestPlaces, tower: Tower | None = None) -> As
 
 
 def _stands(body: Any, places: RequestPlaces, where: str) -> Vec2 | None:
-    """Where what a relay supports stands, if it is no entity."""
+    """The place that a relay supports, if it supports no entity."""
     if type(body).__name__ != "CommRelayTask" or body.SupportedEntityID:
         return None
     if body.DestinationLocation is None:
@@ -107,7 +110,7 @@ def _stands(body: Any, places: RequestPlaces, where: str) -> Vec2 | None:
 
 
 def tower_of(body: Any, places: RequestPlaces, world: Known) -> Tower:
-    """The radio tower of a relay, by its configuration, and its state if there is one; BadInput for none."""
+    """The radio tower of a relay, from its configuration and its state, if any; BadInput if it is unknown."""
     where, number = f"task {body.TaskID}", body.TowerID
     known = {n: world.get("configuration", n) for n in world.ids("configuration")}
     towers = {n: c for n, c in known.items() if type(c).__name__ == "RadioTowerConfiguration"}
@@ -126,9 +129,9 @@ def tower_of(body: Any, places: RequestPlaces, world: Known) -> Tower:
 
 
 def route_named(body: Any, world: Known) -> tuple[Any, Sequence[Any]]:
-    """The message that says along which places the entity of an escort goes, and these; None: none does.
+    """The message with the route of a task's entity, and the route's points; None and () if there is none.
 
-    RouteID names a line; where it is 0, the entity's own plan is its route.
+    RouteID names a line; for an escort with RouteID 0, the entity's own plan is its route.
     """
     number = getattr(body, "RouteID", 0)
     if number:
@@ -141,7 +144,7 @@ def route_named(body: Any, world: Known) -> tuple[Any, Sequence[Any]]:
 
 
 def unused_of(body: Any, world: Known) -> list[str]:
-    """What a task's message asks for and gets not, in words."""
+    """Parameters of a task's message that are not used, in words."""
     said, of = [], f"of task {body.TaskID} is not used"
     route = getattr(body, "RouteID", 0)
     if route and route_named(body, world)[0] is None:
@@ -165,7 +168,7 @@ def milliseconds(body: Any, key: str, most: int, default: int) -> int:
 
 
 def _looks(body: Any, where: str) -> Task | None:
-    """The search that a SearchTask is for its cameras."""
+    """The search task equivalent to a SearchTask's camera requirements; None for other tasks."""
     if not hasattr(body, "DesiredWavelengthBands"):
         return None
     gsd = float(body.GroundSampleDistance)
@@ -184,7 +187,7 @@ def _looks(body: Any, where: str) -> Task | None:
 def within(
     value: float, least: float, most: float, where: str, item: str, got: str | None = None
 ) -> None:
-    """BadInput for what is out of range."""
+    """BadInput for a value out of range."""
     if not least <= value <= most:
         raise BadInput(
             "out of range",

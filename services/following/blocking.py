@@ -1,4 +1,6 @@
-"""The options of a cordon: one for each vehicle that drives and each place, and the ways to give places vehicles."""
+"""The options of a cordon: one per ground vehicle and place, and the combinations that assign a vehicle to
+each place.
+"""
 
 from __future__ import annotations
 
@@ -18,15 +20,17 @@ from cratous.spec.mission import Position, Task, Vehicle
 from cratous.spec.mission.plan import Pose
 
 BLOCKED_MOST = 8
-"""More roads at one time are refused, as are tasks of more vehicles of any kind."""
+"""Most roads to block at one time, which is also the limit of vehicles for any task."""
 WAYS_MOST = 720
-"""So many ways to give places vehicles are offered at most: all of six vehicles at six places."""
+"""Most combinations offered: all of six vehicles at six places."""
 LOOKED_MOST = 30_000
-"""So many beginnings of ways are looked at, at most."""
+"""Most partial combinations examined."""
 
 
 class Told(NamedTuple):
-    """Where roads cross the circle, for one request: places and headings outwards [deg]; why: nobody has said."""
+    """Road crossings of the circle, for one request: places with outward headings [deg]; why: reason if they
+    are unknown.
+    """
 
     context: Context
     crossings: tuple[tuple[Any, float], ...]
@@ -36,7 +40,9 @@ class Told(NamedTuple):
 def options_of(
     context: Context, task: Task, told: Told, radius_m: float, least_ms: int
 ) -> tuple[list[Option], list[list[int]], list[Dropped]]:
-    """The options, the ways to give each place a vehicle (in numbers of options), and what is not offered."""
+    """The options, the combinations that assign a vehicle to each place (as option numbers), and what is not
+    offered.
+    """
     vehicles, count = context.inputs.mission.vehicles, len(told.crossings)
     may = [v for v in vehicles if not task.eligible or v.id in task.eligible]
     able = [v for v in may if drives(v)]
@@ -86,19 +92,20 @@ def _option(
 
 
 def _soon_s(context: Context, vehicle: Vehicle, place: Pose) -> float:
-    """How long a vehicle takes to a place as the crow flies [s]."""
+    """Straight-line travel time of a vehicle to a place [s]."""
     return math.dist(context.inputs.starts[vehicle.id][:2], place[:2]) / vehicle.speed_m_s
 
 
 def soonest(times: Sequence[Sequence[float]], most: int) -> list[tuple[int, ...]]:
-    """Ways to give each place a vehicle of its own, those first of which the last is there soonest.
+    """Combinations that assign a different vehicle to each place, in order of the time at which the last one
+    arrives.
 
-    times: for each place those of the vehicles. At most `most`; all, if these are no more; fewer, or none, where
-    there are too many beginnings to look at.
+    times: for each place, travel time by vehicle. Returns at most `most`; fewer, or none, where LOOKED_MOST
+    partial combinations do not suffice.
     """
     found: list[tuple[int, ...]] = []
     least = [min(row) for row in times]
-    # the last at least and the sum of all at least, both so far, and who is at the first places
+    # lower bounds on the last arrival and on the sum, both so far, and the vehicles at the first places
     todo: list[tuple[float, float, float, float, tuple[int, ...]]] = [(0.0, 0.0, 0.0, 0.0, ())]
     looked = 0
     while todo and len(found) != most and looked != LOOKED_MOST:
@@ -118,7 +125,7 @@ def soonest(times: Sequence[Sequence[float]], most: int) -> list[tuple[int, ...]
 
 
 def in_turn(times: Sequence[Sequence[float]]) -> tuple[int, ...]:
-    """Each place is given the vehicle of those left that is there soonest."""
+    """Greedy combination: each place in turn gets the unassigned vehicle that arrives first."""
     way: list[int] = []
     for row in times:
         way.append(min((v for v in range(len(row)) if v not in way), key=row.__getitem__))
@@ -136,7 +143,7 @@ def _why_none(count: int, able: int, radius_m: float) -> str:
 
 
 def _zone(context: Context, places: Sequence[Pose]) -> str:
-    """The zone that contains a blocking position; empty if there is none."""
+    """The zone that contains a blocking position, in words; "" if there is none."""
     for k, pose in enumerate(places):
         bad = first_bad_leg((Position(*pose[:3]),), context.inputs.zones)
         if bad is not None:

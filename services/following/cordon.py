@@ -1,9 +1,9 @@
-"""The service of a cordon: vehicles that drive block every road that crosses the circle about a place.
+"""The service of a cordon: ground vehicles block every road that crosses the circle around a place.
 
-It asks the OsmPlannerService where roads cross the circle (EgressRouteRequest). An option is one vehicle at one of
-these places; offered is a choice of all ways to give each place a vehicle of its own. Each drives there along roads,
-and is told to stand there until the last has come. Complete: all of them stand at their places at one time for as long
-as is asked; then each is sent on in its plan.
+It asks the OsmPlannerService for the road crossings (EgressRouteRequest). An option is one vehicle at one
+crossing; the offer is a choice among the combinations that assign a vehicle to each. Each drives to its place
+along roads, and is commanded to stay there until the last has arrived. The task is complete when all have
+stood at their places together for the required time; then each continues its plan.
 """
 
 from __future__ import annotations
@@ -52,11 +52,11 @@ from cratous.spec.errors import BadInput, NoPlan
 
 EGRESS = "uxas.messages.route.EgressRouteResponse"
 PLACE_M, STANDS_M_S = 20.0, 0.5
-"""Who is no farther from its place, and slower, blocks the road there."""
+"""A vehicle within this distance [m] of its place and below this speed [m/s] blocks the road."""
 
 
 AWAITS_PLACES = 3
-"""The task's state (OptionRoutes of `spec.contracts.tasks`) in which it waits for where roads cross the circle."""
+"""Task state (OptionRoutes of `spec.contracts.tasks`) in which it waits for the road crossings."""
 
 
 class CordonTaskService(FollowingTaskService):
@@ -85,7 +85,7 @@ class CordonTaskService(FollowingTaskService):
         return milliseconds(self._body, DURATION, DURATION_MOST_MS, MOMENT_MS)
 
     def _ask_routes(self, state: State, body: Any, out: list[Any]) -> tuple[State, int]:
-        """In the place of the options' ways: the places of which the options are made."""
+        """Ask for the road crossings from which the options are made, instead of the options' routes."""
         context, middle, where = self._context, self._body.CordonLocation, f"task {self._task_id}"
         context.places.pose(middle, 0.0, where, "CordonLocation")
         radius = self._radius_m
@@ -112,7 +112,7 @@ class CordonTaskService(FollowingTaskService):
         return state._replace(lead=lead), out
 
     def _hear(self, told: Told) -> None:
-        """What was made of what was told before holds no longer."""
+        """Store the road crossings, and discard the options made from earlier ones."""
         self._roads, self._made = told, None
 
     def _found(self, context: Context) -> tuple[list[Option], list[Dropped]]:
@@ -131,7 +131,7 @@ class CordonTaskService(FollowingTaskService):
         return choice(context, self._task_id, options, self._ways)
 
     def _plan(self, request: Any, response: Any) -> list[Any]:
-        """Its way along roads, and where it has to wait before, a stand at the beginning of the way."""
+        """The route along roads; if the vehicle has to wait, it stands at the beginning of the route."""
         plan, wait = response.RouteResponses[0] if response.RouteResponses else None, 0
         if plan is not None and not plan.RouteCost < 0:
             wait = max(0, request.TimeThreshold - request.StartTime - plan.RouteCost)
@@ -141,9 +141,9 @@ class CordonTaskService(FollowingTaskService):
         return [self._standing(one, wait) for one in super()._plan(soon, response)]
 
     def _standing(self, said: Any, wait: int) -> Any:
-        """With the actions to wait [ms] where its way begins, and to stand at the place before the plan goes on.
-
-        There it stands a little longer than is asked, so that it is told to stay before it would go on.
+        """The response with actions to wait [ms] at the beginning of the route, and to stand at the place
+        before the plan continues. It stands slightly longer than required, so that it is commanded to stay
+        before it would leave.
         """
         if type(said).__name__ != "TaskImplementationResponse":
             return said
@@ -161,7 +161,7 @@ class CordonTaskService(FollowingTaskService):
         return said.copy(TaskWaypoints=ways, FinalTime=said.FinalTime + wait)
 
     def _stand(self, duration: int, place: Any) -> Any:
-        """The action to stand at a place for so long [ms], -1: until something else is told."""
+        """The action to stand at a place for `duration` [ms], -1 for until further command."""
         return lmcp.new(
             "LoiterAction",
             AssociatedTaskList=[self._task_id],
@@ -173,7 +173,7 @@ class CordonTaskService(FollowingTaskService):
     # what is driven
 
     def _implemented(self, part: Part, more: Iterable[Any]) -> Part:
-        """Who waits where its way begins is not at its place before it goes on from there."""
+        """A vehicle that waits at the beginning of its route is not at its place until it has left there."""
         more = list(more)
         part = super()._implemented(part, more)
         for one in more:
@@ -183,13 +183,13 @@ class CordonTaskService(FollowingTaskService):
         return part
 
     def _told(self, state: Following, body: Any) -> Step:
-        """A vehicle's state: its life, and whether all stand where they have to."""
+        """Process a vehicle's state: its task state, and whether all stand at their places."""
         part = next((p for p in state.parts if p.vehicle == body.ID), None)
         if part is None or part.state.task.state < SELECTED:
             return state, []
         now_ms, out = max(state.now_ms, body.Time, 0), list[Any]()
         needed = len(self._ways[0]) if self._ways else 0
-        # who was silent until now was there until then, not since
+        # a silent vehicle counts as there until its last state
         state = state._replace(now_ms=now_ms, kept=kept_at(state, needed, now_ms, 0))
         number = command_id(self._task_id, part.state.task.request)
         there, why = self._stands(part, body)
@@ -206,14 +206,17 @@ class CordonTaskService(FollowingTaskService):
         state = state._replace(kept=kept_at(state, needed, now_ms, self._least_ms))
         if state.kept.done:
             return self._over(state, body, out)
-        # nobody leaves before the last has come; who is not on its last leg yet would leave its road for its place
+        # no vehicle leaves before the last has arrived; one not yet on its last leg would leave the road for
+        # its place
         if there and self._task_id in body.AssociatedTasks and body.CurrentCommand != number:
             stay = self._stand(-1, part.context.places.sent(part.option.end)[0])
             out.append(self._order(part, stay))
         return state, out
 
     def _stands(self, part: Part, body: Any) -> tuple[bool, str]:
-        """Whether a vehicle stands at its place by its state; why that says nothing."""
+        """Whether a vehicle stands at its place according to its state, and why its state is unusable, if it
+        is.
+        """
         where, at = f"state of vehicle {body.ID}", part.option.path[0]
         try:
             here = part.context.places.pose(body.Location, 0.0, where, "Location")
@@ -225,7 +228,7 @@ class CordonTaskService(FollowingTaskService):
         return stands and in_ring(Vec2(*at[:2]), Vec2(*here[:2]), 0.0, PLACE_M), ""
 
     def _let_go(self, state: Following, part: Part) -> list[Any]:
-        """On to what comes next in its plan, if something does."""
+        """The command to the next waypoint of a vehicle's plan, if there is one."""
         goal = state.plans.get(part.vehicle, {}).get(part.then)
         if goal is None:
             return []
@@ -236,7 +239,7 @@ class CordonTaskService(FollowingTaskService):
         return [self._order(part, lmcp.new("GoToWaypointAction", WaypointNumber=part.then))]
 
     def _sent(self, state: Following) -> list[Any]:
-        """Who was told to stay is sent on."""
+        """Vehicles that were commanded to stay continue their plans."""
         return [one for part in state.parts if part.there for one in self._let_go(state, part)]
 
     def _order(self, part: Part, action: Any) -> Any:

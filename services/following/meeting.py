@@ -1,9 +1,9 @@
-"""What a rendezvous asks for, and its options: for each vehicle and state a way to it.
+"""Parameters of a rendezvous, and its options: for each vehicle and state a route to it.
 
-The way begins at a gate, with room beside it to wait in laps, and is so long that flown slowly it takes a
-lap longer than flown fast, so that who waits there can arrive at any time to come. It ends beyond the state, so
-that the vehicle passes that straight on. There are two: a direct one from just ahead of the vehicle, and a
-straight run-in, for who comes from elsewhere or is too near.
+The route begins at a gate, with room beside it for waiting laps, and is long enough for slow flight to take a
+lap longer than fast flight, so that a waiting vehicle can arrive at any later time. It ends beyond the state,
+so that the vehicle passes the state in straight flight. There are two kinds: a direct one from just ahead of
+the vehicle, and a straight run-in, for a vehicle that comes from elsewhere or is too near.
 """
 
 from __future__ import annotations
@@ -42,28 +42,33 @@ from cratous.spec.mission.plan import Pose
 PARTICIPANTS_MOST = 8
 STATES_MOST = 64
 TOLERANCE = "Tolerance_ms"
-"""The task parameter that says how far from the common time each may arrive."""
+"""Task parameter with the tolerance of each arrival around the common time [ms]."""
 TOLERANCE_MS, TOLERANCE_MOST_MS = 2_000, 600_000
 WAIT = "Wait_ms"
-"""The task parameter that says how long one waits in laps for the others at most."""
+"""Task parameter with the longest time that a vehicle waits for the others [ms]."""
 WAIT_MS, WAIT_MOST_MS = 3_600_000, 86_400_000
 RUN_IN_RADII = 6.0
-"""A run-in is so many turn radii long at least, so that it is flown straight."""
+"""Shortest length of a run-in in turn radii, so that it is flown straight."""
 RUN_IN_RESERVE = 1.25
 RUN_IN_MOST_M = 20_000.0
 RUN_IN = "run-in, waiting at [m/s] "
-"""The label of an option, before the speed at which its vehicle waits."""
+"""The label of a run-in, before the speed at which its vehicle waits."""
 DIRECT_RADII = 1.2
-"""The straight end of a direct way, in radii of a turn at the fastest speed."""
+"""The straight end of a direct route, in turn radii at the fastest speed."""
 LEAD_S = 10.0
-"""A direct way begins so far ahead of where its vehicle is: all are heard before they are there."""
+"""A direct route begins this far ahead of its vehicle [s]: a state of each vehicle arrives before it is
+there.
+"""
 BEYOND_RADII = 2.1
-"""A run-in ends so many radii of a turn at the fastest speed beyond its state: at most two ahead the next begins."""
+"""A route ends this many turn radii at the fastest speed beyond its state: the next waypoint is taken up to
+two ahead.
+"""
 
 
 class Met(NamedTuple):
-    """needed: how many meet; tolerance_ms: of their time; wait_ms: no longer does one wait for the others;
-    states: of whom (0: anybody) and where."""
+    """needed: number of vehicles; tolerance_ms: of their arrival times; wait_ms: longest wait for the others;
+    states: (vehicle, pose), vehicle 0 for any.
+    """
 
     needed: int
     tolerance_ms: int
@@ -72,7 +77,7 @@ class Met(NamedTuple):
 
 
 def meeting_of(body: Any, places: RequestPlaces) -> Met:
-    """What the message of a rendezvous asks for; BadInput names what cannot be."""
+    """The parameters in the message of a rendezvous; BadInput for values out of range."""
     where = f"task {body.TaskID}"
     needed, states = body.NumberOfParticipants, body.RendezvousStates
     within(needed, 1, PARTICIPANTS_MOST, where, "NumberOfParticipants")
@@ -88,24 +93,26 @@ def meeting_of(body: Any, places: RequestPlaces) -> Met:
 
 
 def waits_as(option: Option) -> Flyer:
-    """How the vehicle of an option flies while it waits."""
+    """Speed and turn radius of an option's vehicle while it waits."""
     speed = float(option.label.removeprefix(RUN_IN))
     share = speed / option.flyer.speed_m_s
     return option.flyer._replace(speed_m_s=speed, radius_m=share**2 * option.flyer.radius_m)
 
 
 def is_direct(option: Option) -> bool:
-    """Whether an option is a way from where its vehicle is, with a turn in it; else it is a straight run-in."""
+    """Whether an option is a direct route from the vehicle's position with a turn in it, and not a straight
+    run-in.
+    """
     return len(option.path) > 3
 
 
 def usual_m_s(option: Option, limits: Limits) -> float:
-    """The speed at which the vehicle of an option is planned to come [m/s]."""
+    """Planned approach speed of an option's vehicle [m/s]."""
     return limits.brisk_m_s if is_direct(option) else limits.nominal_m_s
 
 
 def planned_m_s(option: Option) -> float:
-    """The speed at which the waypoints of an option are flown from its gate to its place [m/s]."""
+    """Speed of an option's waypoints from its gate to its place [m/s]."""
     if not is_direct(option):
         return option.flyer.speed_m_s
     length, beyond_ms = polyline_length_m(option.path[:-1]), _beyond_ms(option)
@@ -120,7 +127,9 @@ def _beyond_ms(option: Option) -> int:
 def _together(
     needed: int, able: Sequence[Vehicle], made: Sequence[tuple[Option, int]]
 ) -> list[tuple[Option, int]]:
-    """With direct ways that are planned to be over at one time, where it is known who flies them: by all."""
+    """The options, with direct routes adjusted to end at the same time, if it is certain that all of them are
+    flown.
+    """
     direct = {option.vehicles[0]: option for option, _ in made if is_direct(option)}
     limits = {vehicle.id: limits_of(vehicle) for vehicle in able}
     if not len(direct) == sum(is_direct(option) for option, _ in made) == needed:
@@ -139,7 +148,7 @@ def _together(
 
 
 def at_speed(made: Any, speed_m_s: float) -> Any:
-    """A TaskImplementationResponse whose vehicle flies to its place at a speed, from its gate on."""
+    """A TaskImplementationResponse with a speed [m/s] for the leg from the gate to the place."""
     own = [w for w in made.TaskWaypoints if w.AssociatedTasks]
     there = [w.copy(Speed=speed_m_s) for w in own[1:-1]]
     return made.copy(TaskWaypoints=[*made.TaskWaypoints[: -len(own)], own[0], *there, own[-1]])
@@ -148,9 +157,10 @@ def at_speed(made: Any, speed_m_s: float) -> Any:
 def options_of(
     context: Context, task: Task, met: Met, world: Known
 ) -> tuple[list[tuple[Option, int]], list[Dropped], list[str]]:
-    """The options with the numbers of their states; what is not offered, with the reason; what is not done.
+    """The options with the indices of their states; what is not offered, with the reason; and notes on
+    deviations.
 
-    A direct way comes after the straight run-in of its vehicle and state.
+    A direct route follows the run-in of its vehicle and state.
     """
     made, dropped, notes = list[tuple[Option, int]](), list[Dropped](), list[str]()
     able = flying(context.inputs.mission.vehicles, task, dropped)
@@ -186,7 +196,7 @@ def options_of(
 def _option(
     context: Context, task: Task, vehicle: Vehicle, pose: Pose, world: Known
 ) -> Option | str:
-    """A vehicle's approach to a state, or why none exists."""
+    """A vehicle's run-in to a state, or why none exists."""
     flyer, limits, zones = flyer_of(vehicle), limits_of(vehicle), context.inputs.zones
     wind = wind_of(world.get("state", vehicle.id), pose.heading_rad)
     waiting = waiting_of(flyer, limits, wind)
@@ -217,14 +227,14 @@ def _option(
 
 
 def _widest(flyer: Flyer, limits: Limits) -> float:
-    """The radius of a turn at the fastest speed: it grows with the square of the speed."""
+    """Turn radius at the fastest speed [m]: it grows with the square of the speed."""
     return flyer.radius_m * (limits.fastest_m_s / limits.nominal_m_s) ** 2
 
 
 def _rooms(
     gate: Pose, flyer: Flyer, waiting: Flyer, on: Position | Pose, context: Context
 ) -> tuple[HoldRoom, ...]:
-    """On which sides of a gate a vehicle may wait, and go on from there to a place."""
+    """The sides of a gate on which a vehicle may wait and from which it may continue to a place."""
     zones, goal = context.inputs.zones, Position(*on[:3])
     return tuple(
         room
@@ -234,9 +244,10 @@ def _rooms(
 
 
 def _direct(context: Context, vehicle: Vehicle, straight: Option, state: Any) -> Option | None:
-    """The way to a state from just ahead of where a vehicle is, if it spares a lap and breaks no zone.
+    """The route to a state from just ahead of a vehicle, if it can absorb a lap and breaks no zone; else
+    None.
 
-    Its turns are so wide that they are flown at any speed of the vehicle.
+    Its turns are wide enough for every speed of the vehicle.
     """
     flyer, limits, begin = straight.flyer, limits_of(vehicle), context.inputs.starts[vehicle.id]
     gate = pose_after(begin._replace(alt_m=flyer.alt_m), 0, LEAD_S * flyer.speed_m_s, 1.0)
@@ -260,7 +271,7 @@ def _direct(context: Context, vehicle: Vehicle, straight: Option, state: Any) ->
 
 
 def _middle(gate: Pose, flyer: Flyer, clockwise: bool) -> Position:
-    """The middle of the circle to wait on beside a gate."""
+    """Centre of the waiting circle beside a gate."""
     side = gate.heading_rad + (math.pi / 2 if clockwise else -math.pi / 2)
     return Position(
         gate.north_m + flyer.radius_m * math.cos(side),
@@ -270,7 +281,7 @@ def _middle(gate: Pose, flyer: Flyer, clockwise: bool) -> Position:
 
 
 def waiting_circle(option: Option) -> tuple[Station, bool]:
-    """The circle on which an option's vehicle waits, and whether clockwise."""
+    """The waiting circle of an option's vehicle, and whether it is flown clockwise."""
     clockwise = option.holds[0].clockwise
     waiting = waits_as(option)
     middle = _middle(option.start, waiting, clockwise)
@@ -278,10 +289,14 @@ def waiting_circle(option: Option) -> tuple[Station, bool]:
 
 
 def ways_of(met: Met, options: Sequence[tuple[Option, int]]) -> list[tuple[int, ...]]:
-    """All ways to choose vehicles and to give each a state of its own, as the numbers of options; BadInput if they
-    are too many. One state for anybody is everybody's. The direct ways are taken all together, or none of them."""
+    """All combinations that assign different vehicles to states, as option numbers; BadInput if there are too
+    many.
+
+    A single state for any vehicle is shared by all. Direct routes are used for all vehicles of a combination
+    or for none.
+    """
     found = _all_ways(met, [one for one in options if not is_direct(one[0])])
-    direct = _all_ways(met, options)  # of one vehicle and state the later one is taken
+    direct = _all_ways(met, options)  # of one vehicle and state the later option counts
     return [*direct, *found] if found != direct and 2 * len(found) <= WAYS_MOST else found
 
 
@@ -305,7 +320,7 @@ def _ways(met: Met, by_vehicle: Mapping[int, Mapping[int, int]]) -> Iterator[tup
         if len(met.states) == 1:
             yield tuple(by_vehicle[v][0] for v in chosen)
             continue
-        # who has the least choice comes first, so that nothing is looked at in vain for long
+        # the vehicle with the fewest choices first, to fail early
         rare = tuple(sorted(chosen, key=lambda v: len(by_vehicle[v])))
         yield from _given(rare, by_vehicle, frozenset(range(len(met.states))))
 
@@ -313,7 +328,7 @@ def _ways(met: Met, by_vehicle: Mapping[int, Mapping[int, int]]) -> Iterator[tup
 def _given(
     chosen: tuple[int, ...], by_vehicle: Mapping[int, Mapping[int, int]], free: frozenset[int]
 ) -> Iterator[tuple[int, ...]]:
-    """Each vehicle with a state of its own."""
+    """Assignments of a different state to each vehicle."""
     if not chosen:
         yield ()
         return
@@ -324,7 +339,9 @@ def _given(
 
 
 def offered(context: Context, task_id: int, options: Sequence[Option], ways: Sequence[Any]) -> Any:
-    """TaskPlanOptions: a choice of ways, each flown by all its vehicles; without options where there is none."""
+    """TaskPlanOptions: a choice of combinations, each flown by all of its vehicles; without options if there
+    is none.
+    """
     left = {option.option_id for option in options}
     ways = [way for way in ways if left.issuperset(way)]
     return choice(context, task_id, options, ways)

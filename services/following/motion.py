@@ -1,4 +1,4 @@
-"""How an entity moves, from its newest state, and where it will be. Frame: a request's, metres; seconds."""
+"""Motion of an entity from its newest state, and its prediction. Frame: that of the request; metres, seconds."""
 
 from __future__ import annotations
 
@@ -12,13 +12,15 @@ from cratous.services.pipeline.places import RequestPlaces
 from cratous.spec.errors import BadInput
 
 STALE_MS = 5_000
-"""Of an entity whose newest state is older nobody knows where it is."""
+"""If its newest state is older than this, the entity's position counts as unknown [ms]."""
 SPEED_MOST_M_S = 1_000.0
-"""Of an entity that is said to be faster nobody knows where it will be."""
+"""A state with a higher speed is rejected [m/s]."""
 
 
 class Motion(NamedTuple):
-    """at: north and east [m]; velocity [m/s]; when [ms]; route: corners that it will fly along, () none."""
+    """at: north and east [m]; velocity [m/s]; time_ms: of the state; route: corners that it will follow, ()
+    for none.
+    """
 
     at: Vec2
     velocity: Vec2
@@ -26,13 +28,13 @@ class Motion(NamedTuple):
     route: tuple[Vec2, ...] = ()
 
     def after(self, seconds: float) -> Vec2:
-        """The motion extrapolated by `seconds` [s]: along its route from the nearest point on, else in a straight
-        line."""
+        """Position after `seconds` [s]: along its route from the nearest point on, else in a straight line."""
         return self._along(math.hypot(*self.velocity) * seconds)
 
     def ahead(self, far_m: float) -> Vec2:
-        """The place so far before it on its way [m]; behind it, where that is negative: back along its route, no farther
-        than that begins, or from where it comes if it has still to enter that."""
+        """The position far_m [m] ahead on its route; behind it if negative: back along the route, at most to
+        the route's beginning, or along its course if it has not entered the route yet.
+        """
         back_m = max(-far_m, 0.0)
         if not (back_m and self.route):
             return self._along(far_m)
@@ -45,7 +47,7 @@ class Motion(NamedTuple):
         return _walked(entered, route[k::-1], back_m)
 
     def _along(self, far_m: float) -> Vec2:
-        """Where it has come after so much of its way [m]; before that, where it is negative: straight back."""
+        """The position after far_m [m] of its way; straight back if negative."""
         if self.route:
             return _walked(self.at, _rest(self.at, self.route), far_m)
         speed = math.hypot(*self.velocity)
@@ -63,7 +65,7 @@ class Motion(NamedTuple):
 
 
 def _walked(here: Vec2, corners: Sequence[Vec2], far_m: float) -> Vec2:
-    """The place so far from here [m] on the way along corners; the last one if that is nearer."""
+    """The position far_m [m] along corners from here, at most the last corner."""
     for corner in corners:
         leg_m = math.dist(here, corner)
         step_m = min(far_m, leg_m)
@@ -74,7 +76,7 @@ def _walked(here: Vec2, corners: Sequence[Vec2], far_m: float) -> Vec2:
 
 
 def _rest(at: Vec2, route: Sequence[Vec2]) -> Sequence[Vec2]:
-    """The corners of a route that are still to come, seen from a place."""
+    """The corners of a route that are still ahead of a place."""
     if len(route) == 1:
         return route
     k, t = _nearest(at, route)
@@ -82,7 +84,7 @@ def _rest(at: Vec2, route: Sequence[Vec2]) -> Sequence[Vec2]:
 
 
 def _nearest(at: Vec2, route: Sequence[Vec2]) -> tuple[int, float]:
-    """Where a route of two corners or more is nearest to a place: on which leg, and what share of it is behind."""
+    """Leg and fraction of it at which a route of at least two corners is nearest to a place."""
     gaps = []
     for k, (a, b) in enumerate(pairwise(route)):
         n, e = b.x - a.x, b.y - a.y
@@ -96,9 +98,9 @@ def _nearest(at: Vec2, route: Sequence[Vec2]) -> tuple[int, float]:
 def motion_of(
     state: Any, places: RequestPlaces, where: str, route: tuple[Vec2, ...] = ()
 ) -> Motion:
-    """The motion that an EntityState tells: over ground by speed and course, else by speed ahead and heading.
+    """The motion in an EntityState: ground speed and course, else forward speed and heading.
 
-    BadInput for one at no place, of no speed or of no direction.
+    BadInput for one without a valid place, speed or direction.
     """
     pose = places.pose(state.Location, 0.0, where, "Location")
     names, speed, course = "Groundspeed, Course", state.Groundspeed, state.Course

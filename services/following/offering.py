@@ -1,7 +1,7 @@
-"""The options of a task that keeps to an entity: one for each vehicle and slot, and how they go together.
+"""The options of a task that follows an entity: one per vehicle and slot, and their combinations.
 
-Each option flies to the circle about the place where its vehicle meets the entity. A task of several vehicles is
-a choice of all ways to give each slot a vehicle of its own.
+Each option flies to the circle around the point where its vehicle meets the entity. A task of several
+vehicles is a choice among the combinations that assign a different vehicle to each slot.
 """
 
 from __future__ import annotations
@@ -37,20 +37,21 @@ from cratous.spec.mission import Position, Task, Vehicle, Zone
 from cratous.spec.mission.plan import Pose
 
 APPROACH = 3.0
-"""The way by which a vehicle comes to its circle is so many turn radii long where zones allow it: a waypoint counts
-as reached two radii ahead, and a shorter way might be passed between two states, so that nobody hears of it."""
+"""Length of the approach to a circle in turn radii, where zones allow it: a waypoint counts as reached two
+radii ahead, and a shorter approach might be passed between two states, unnoticed.
+"""
 FAR = 4.0
-"""Who is farther from the rim than so many turn radii has his whole approach before it."""
+"""A vehicle farther from the rim than this many turn radii has its whole approach before the rim."""
 CATCH_UP = 1.25
-"""Who keeps to what is faster than he usually flies flies so many times as fast as that, if he can."""
+"""A vehicle that follows a faster entity flies at up to this many times the entity's speed."""
 WAYS_MOST = 336
-"""More ways to give vehicles to slots (three of eight) are not offered."""
+"""Most combinations of vehicles and slots offered (three of eight)."""
 
 
 def options_of(
     context: Context, task: Task, asked: Asked, motion: Motion
 ) -> tuple[list[Option], list[Dropped]]:
-    """The options of a task, slots in the order of their numbers, and what is not offered, with the reason."""
+    """The options of a task, in order of slots, and what is not offered, with the reason."""
     mission, made, dropped = context.inputs.mission, list[Option](), list[Dropped]()
     able = flying(mission.vehicles, task, dropped)
     if asked.entity in [v.id for v in able]:
@@ -84,7 +85,7 @@ def flying(vehicles: Sequence[Vehicle], task: Task, dropped: list[Dropped]) -> l
 
 
 def named(option: Option, number: int, vehicle: int) -> Option:
-    """With its number and its vehicle."""
+    """The option with its number and its vehicle."""
     from dataclasses import replace
 
     return replace(option, option_id=number, vehicles=(vehicle,))
@@ -111,7 +112,7 @@ def _option(
     if reason:
         return Dropped(task.id, (), "", reason)
     here = Vec2(start.north_m, start.east_m)
-    # where it comes at a usual speed that is too slow, it catches up from there
+    # where its usual speed is too slow, it catches up from there
     found = reached_from(here, asked, slot, flyer, motion, terrain_m)
     if found is None:
         return Dropped(task.id, (), "", f"it would not come up with entity {asked.entity}")
@@ -130,7 +131,7 @@ def _option(
 
 
 def _fast_enough(motion: Motion, usual: Flyer, vehicle: Vehicle) -> Flyer:
-    """How a vehicle flies while it keeps to what moves: as usual, or faster, as far as it can, where that is needed."""
+    """The flyer at its usual speed, or as fast as needed and possible to follow the entity."""
     if outruns(motion.velocity, usual.speed_m_s):
         return usual
     speed = min(CATCH_UP * math.hypot(*motion.velocity), vehicle.max_speed_m_s)
@@ -141,13 +142,13 @@ def _fast_enough(motion: Motion, usual: Flyer, vehicle: Vehicle) -> Flyer:
 def _way_in(
     label: str, here: Vec2, goal: Station, far_m: float, flyer: Flyer, zones: Sequence[Zone]
 ) -> tuple[Way, Zone | None]:
-    """The straight way by which one who comes from here gets to a circle, and a zone that forbids it.
+    """The straight approach from here to a circle, and a zone that forbids it, None if none does.
 
-    far_m: how far from here, on the way to its middle, his place begins.
+    far_m: distance from here, towards the circle's centre, at which the vehicle's station begins.
     """
     heading = math.atan2(goal.at.y - here.y, goal.at.x - here.x)
     bad = broken_by(Position(*goal.at, flyer.alt_m), goal.radius_m, zones)
-    # it comes to the rim of its circle, and makes for the middle
+    # it comes to the rim of its circle, heading for the centre
     rim = Pose(
         goal.at.x - goal.radius_m * math.cos(heading),
         goal.at.y - goal.radius_m * math.sin(heading),
@@ -171,12 +172,12 @@ def _way_in(
 
 
 def slot_of(option: Option) -> int:
-    """Which slot an option is for, from 0."""
+    """The slot of an option, from 0."""
     return int(option.label.removeprefix("slot ")) - 1
 
 
 def offered(context: Context, task_id: int, options: Sequence[Option], needed: int) -> Any:
-    """TaskPlanOptions; without options where too few vehicles are left for all slots."""
+    """TaskPlanOptions; without options if too few vehicles are left for all slots."""
     if needed == 1:
         return offer(context, task_id, options)
     by_slot = {(slot_of(o), o.vehicles[0]): o.option_id for o in options}
@@ -192,7 +193,9 @@ def offered(context: Context, task_id: int, options: Sequence[Option], needed: i
 def choice(
     context: Context, task_id: int, options: Sequence[Option], ways: Sequence[Sequence[int]]
 ) -> Any:
-    """TaskPlanOptions: one of the ways, each flown with all of its options; without options where there is none."""
+    """TaskPlanOptions: one of the combinations, each flown with all of its options; without options if there
+    is none.
+    """
     used = {number for way in ways for number in way}
     made = offer(context, task_id, [o for o in options if o.option_id in used])
     if not ways:

@@ -1,4 +1,4 @@
-"""One vehicle's part in a task that keeps to an entity: what it is told, and what becomes of it."""
+"""One vehicle's part in a task that follows an entity: its commands and its state."""
 
 from __future__ import annotations
 
@@ -22,15 +22,16 @@ from cratous.spec.mission import Position
 from cratous.spec.mission.plan import Pose
 
 COMMANDS_FROM = 2**40
-"""CommandIDs of these tasks: beyond those of plans."""
+"""CommandIDs of these tasks start here, beyond those of plans."""
 
 
 class Part(NamedTuple):
-    """state: of the task's life for this vehicle; option: that it flies, in the context of its request.
+    """One vehicle's part.
 
-    begins: number of the waypoint from which on it follows; then: the one that it goes on to; held: the circle it
-    was told last; seen_ms: when it was heard last; there: whether it then did what is asked; blocked: what
-    keeps it from its circle, which was told.
+    state: task state for this vehicle; option: the one it flies, in the context of its request; begins:
+    number of the waypoint from which it follows; then: the waypoint at which it continues; held: the circle
+    commanded last; seen_ms: when it was last heard; there: whether it then did what the task requires;
+    blocked: reported reason why it does not reach its circle.
     """
 
     state: State
@@ -50,7 +51,7 @@ class Part(NamedTuple):
 
 
 def command_id(task: int, ticket: int) -> int:
-    """The CommandID by which a vehicle's state shows that it does what this task tells it."""
+    """The CommandID by which a vehicle's state shows that it executes this task's command."""
     return COMMANDS_FROM + task % 2**20 * 2**10 + ticket % 2**10
 
 
@@ -62,9 +63,10 @@ def follows(part: Part, body: Any, number: int) -> bool:
 
 
 def heard(part: Part, body: Any, asked: Asked, motion: Motion, fresh: bool, now_ms: int) -> Part:
-    """With a state of the vehicle: where it is to circle now, and whether it does what is asked.
+    """The part after a state of the vehicle: its circle, and whether it does what the task requires.
 
-    motion: of the entity at that time; not fresh: nobody knows where that is, so nobody is there.
+    motion: of the entity at that time; fresh: False if the entity's position is unknown, so that no vehicle
+    counts as there.
     """
     context, flyer, slot = part.context, part.option.flyer, slot_of(part.option)
     frame = context.inputs.mission.frame
@@ -73,7 +75,7 @@ def heard(part: Part, body: Any, asked: Asked, motion: Motion, fresh: bool, now_
     now = station(asked, slot, flyer, motion, frame.terrain_m)
     places = Places(frame)
     there = fresh and at_station(asked, slot, body, at, now, motion, places, camera)
-    # it takes about as long as a turn takes until it is there
+    # aim at where the entity will be after about the duration of a turn
     led = motion._replace(at=motion.after(flyer.radius_m / flyer.speed_m_s))
     goal = station(asked, slot, flyer, led, frame.terrain_m)
     zone = _in_the_way(part, here, goal)
@@ -83,7 +85,7 @@ def heard(part: Part, body: Any, asked: Asked, motion: Motion, fresh: bool, now_
 
 
 def _in_the_way(part: Part, here: Pose, goal: Station) -> str:
-    """The zone that a circle, or the straight way to its middle, breaks; nothing if none."""
+    """The zone that a circle, or the straight way to its centre, breaks; "" if none."""
     zones, middle = part.context.inputs.zones, Position(*goal.at, part.option.flyer.alt_m)
     zone = broken_by(middle, goal.radius_m, zones)
     if zone is None:
@@ -93,7 +95,7 @@ def _in_the_way(part: Part, here: Pose, goal: Station) -> str:
 
 
 def circling(part: Part, task: int, number: int, asked: Asked, motion: Motion) -> Any:
-    """The VehicleActionCommand that keeps a vehicle on its circle, and its camera on the entity."""
+    """The VehicleActionCommand that keeps a vehicle on its circle and its camera on the entity."""
     assert part.held is not None
     flyer = part.option.flyer
     actions = [loiter(part, task)]
@@ -117,7 +119,7 @@ def circling(part: Part, task: int, number: int, asked: Asked, motion: Motion) -
 
 
 def loiter(part: Part, task: int) -> Any:
-    """The LoiterAction of the last circle commanded, without an end."""
+    """The LoiterAction of the circle commanded last, of unlimited duration."""
     assert part.held is not None
     flyer, middle = part.option.flyer, Position(*part.held.at, part.option.flyer.alt_m)
     return lmcp.new(
@@ -133,16 +135,16 @@ def loiter(part: Part, task: int) -> Any:
 
 
 def _location(context: Context, at: Position) -> Any:
-    """A place as a Location3D; it is not remembered, as there are many of them."""
+    """A place as a Location3D; not cached, since there are many."""
     lat, lon = context.places.projection.to_geodetic(at.north_m, at.east_m)
     return lmcp.new("Location3D", Latitude=lat, Longitude=lon, Altitude=at.alt_m)
 
 
 def released(part: Part, task: int, number: int, points: Mapping[int, Position]) -> tuple[Any, str]:
-    """The command that sends a vehicle on to its plan's next waypoint, or None and why it cannot go on.
+    """The command to the next waypoint of a vehicle's plan, or None and why it cannot continue.
 
-    points: the waypoints of its plan by number. The loiter beside it is for autopilots that take
-    GoToWaypointAction alone for the end of all commands, as AMASE's.
+    points: the waypoints of its plan by number. The loiter action is added for autopilots, such as AMASE's,
+    that take a GoToWaypointAction alone as the end of all commands.
     """
     goal = points.get(part.then)
     if goal is None or part.held is None:

@@ -1,4 +1,4 @@
-"""How far the vehicles of a rendezvous are."""
+"""Progress of the vehicles of a rendezvous."""
 
 from __future__ import annotations
 
@@ -18,14 +18,17 @@ from cratous.services.following.speeds import Limits, lap_s, over_ground
 from cratous.services.planning.flyers import Flyer
 
 NEAR_GATE = 1.5
-"""A circle to wait on is left no farther from its gate than so many of its radii."""
+"""A waiting circle is left within this many of its radii from the gate."""
 
 
 class Way(NamedTuple):
-    """What is left of a vehicle's way: left_m: to its state; waits: it can still wait; laps: it does; passed: it
-    is beyond its state; arrived: by when it has come there [ms], None: not yet; wind: along its run-in and across
-    it [m/s]; told: the Time of the state that says so [ms]; before: that of the one before; turn: the share of a lap until
-    who waits heads for its state; here: where who waits is."""
+    """The rest of a vehicle's route.
+
+    left_m: distance to its state; waits: it can still wait; laps: it is waiting; passed: it is beyond its
+    state; arrived: when it arrived there [ms], None: not yet; wind: along and across its run-in [m/s]; told:
+    Time of the latest state [ms]; before: of the one before; turn: fraction of a lap until a waiting vehicle
+    heads for its state; here: its position while waiting.
+    """
 
     left_m: float
     waits: bool
@@ -39,22 +42,24 @@ class Way(NamedTuple):
     here: Vec2 = Vec2(0.0, 0.0)
 
     def over_ground(self, limits: Limits) -> Limits:
-        """The speeds of a vehicle over ground along its run-in."""
+        """The vehicle's speeds over ground along its run-in."""
         return over_ground(limits, self.wind)
 
     def lap_s(self, flyer: Flyer) -> float:
-        """How long a lap of waiting takes in this wind [s], at most ten times as long as without one."""
+        """Duration of a waiting lap in this wind [s], at most ten times that without wind."""
         return lap_s(flyer, self.wind)
 
     def airspeed(self, ground_m_s: float, limits: Limits) -> float:
-        """The speed through the air, within its limits, at which it flies so fast over ground."""
+        """Airspeed, within its limits, for a ground speed [m/s]."""
         speed = math.hypot(ground_m_s - self.wind.x, self.wind.y)
         return min(max(speed, limits.slowest_m_s), limits.fastest_m_s)
 
 
 class Progress(NamedTuple):
-    """common: when all meet [ms], None: not set; ways: of the vehicles; gone: who have left their circles;
-    since: of who waits, when it was told to [ms]; slow: who has come to its circle, and was told to wait slowly."""
+    """common: common arrival time [ms], None if not set; ways: by vehicle; gone: vehicles that have left
+    their circles; since: when each waiting vehicle was commanded to wait [ms]; slow: vehicles on their
+    circle that wait at low speed.
+    """
 
     common: int | None = None
     ways: Mapping[int, Way] = MappingProxyType({})
@@ -63,12 +68,12 @@ class Progress(NamedTuple):
     slow: frozenset[int] = frozenset()
 
     def with_way(self, vehicle: int, way: Way) -> Progress:
-        """With what is left of a vehicle's way."""
+        """The progress with the rest of a vehicle's route."""
         return self._replace(ways={**self.ways, vehicle: way})
 
 
 def heard(state: Following, vehicle: int, now_ms: int) -> Following:
-    """With a vehicle heard now; of those that were never heard the time runs from now on."""
+    """The state after a vehicle was heard; for vehicles never heard, the time of silence starts now."""
     parts = tuple(
         p._replace(seen_ms=now_ms) if p.vehicle == vehicle or not p.seen_ms else p
         for p in state.parts
@@ -77,18 +82,20 @@ def heard(state: Following, vehicle: int, now_ms: int) -> Following:
 
 
 def place_of(part: Part) -> Vec2:
-    """A vehicle's position at the common time."""
+    """The position that a vehicle passes at the common time."""
     return Vec2(*part.option.path[-2][:2])
 
 
 def ahead_of(part: Part) -> Vec2:
-    """The direction in which a vehicle passes its place."""
+    """Unit vector of the direction in which a vehicle passes its place."""
     heading = part.option.end.heading_rad
     return Vec2(math.cos(heading), math.sin(heading))
 
 
 def course_of(part: Part, here: Vec2) -> float:
-    """The heading of what is left of a vehicle's way [rad]: of a direct one, before its end, that of the straight line."""
+    """Heading of the rest of a vehicle's route [rad]; on a direct route, before its end, that of the straight
+    line.
+    """
     path, at = part.option.path, place_of(part)
     if not is_direct(part.option) or in_ring(at, here, 0, math.dist(path[-3][:2], at)):
         return part.option.end.heading_rad
@@ -98,7 +105,7 @@ def course_of(part: Part, here: Vec2) -> float:
 def way_left(
     part: Part, here: Vec2, number: int, laps: bool, gone: bool, plan: Mapping[int, Any]
 ) -> Way:
-    """What is left of a vehicle's way; number: of the waypoint that it makes for; plan: its waypoints by number."""
+    """The rest of a vehicle's route. number: its next waypoint; plan: its waypoints by number."""
     at, gate = place_of(part), Vec2(part.option.start.north_m, part.option.start.east_m)
     on = part.begins + 1 if laps or not gone else number
     if laps:
@@ -114,7 +121,7 @@ def way_left(
 
 
 def _along(part: Part, here: Vec2, number: int, plan: Mapping[int, Any]) -> float:
-    """The way from here to a waypoint and on along the plan to the place [m]; straight there, where that is the way."""
+    """Distance from here to a waypoint and along the plan to the place [m]; straight where that is the route."""
     at, points = place_of(part), [plan.get(k) for k in range(number, part.then)]
     if not is_direct(part.option) or not points or None in points:
         return math.dist(here, at)
@@ -124,7 +131,7 @@ def _along(part: Part, here: Vec2, number: int, plan: Mapping[int, Any]) -> floa
 
 
 def turn_left(part: Part, body: Any) -> float:
-    """The share of a lap until who waits heads for its state again."""
+    """Fraction of a lap until a waiting vehicle heads for its state again."""
     off = part.option.start.heading_rad - math.radians(body.Heading)
     if not waiting_circle(part.option)[1]:
         off = -off
@@ -132,7 +139,7 @@ def turn_left(part: Part, body: Any) -> float:
 
 
 def at_gate(part: Part, here: Vec2, heading_deg: float) -> bool:
-    """Whether a vehicle that waits is near its gate, and heads along its way, 45 degrees off at most."""
+    """Whether a waiting vehicle is near its gate and heads along its route, within 45 degrees."""
     gate, heading = part.option.start, math.radians(heading_deg)
     toward, origin = Vec2(math.cos(heading), math.sin(heading)), Vec2(0.0, 0.0)
     reach_m = NEAR_GATE * waits_as(part.option).radius_m

@@ -1,10 +1,10 @@
-"""The service of a rendezvous: its vehicles pass their states at one time.
+"""The service of a rendezvous: its vehicles pass their states at the same time.
 
-Options, choices and lives go as for a task that keeps to what moves. A vehicle that comes to the gate of its way waits
-in laps beside it until all have begun theirs. Then the common time is set (`common_time`), the first that
-all can keep at their usual speeds; each leaves its circle when `pace` and `another_lap` say so, and with
-each of its states is told the speed at which it arrives then (SpeedOverrideAction). Who is late moves the common
-time on, if the others can wait for it. Complete: all have passed, each within the tolerance of it.
+Options, choices and task states work as for a task that follows an entity. A vehicle that reaches its gate
+waits in laps beside it until all have begun their routes. Then the common time is set (`common_time`): the
+first that all can meet at usual speeds. Each leaves its circle when `pace` and `another_lap` say so, and with
+each of its states is commanded the speed for arriving in time (SpeedOverrideAction). A late vehicle shifts
+the common time, if the others can wait. The task is complete when all have passed, each within the tolerance.
 """
 
 from __future__ import annotations
@@ -77,11 +77,11 @@ from cratous.services.planning.options import Dropped, Option
 from cratous.spec.errors import BadInput
 
 NO_END = -1
-"""No end of waiting, as the kernels have it."""
+"""No limit of waiting, as the kernels have it."""
 VANISHED_MS = 30_000
-"""For a vehicle that was not heard for longer the others do not wait."""
+"""The others do not wait for a vehicle that is silent for longer [ms]."""
 GATE_S = 4.0
-"""Who comes by a direct way is told to wait no sooner than so long before its gate."""
+"""On a direct route, waiting is commanded no sooner than this before the gate [s]."""
 
 
 class RendezvousTaskService(FollowingTaskService):
@@ -125,7 +125,7 @@ class RendezvousTaskService(FollowingTaskService):
     # what is flown
 
     def _asked_for(self, state: Following, envelope: Envelope, now_ms: int) -> Step:
-        """A request that ends it: a plan may come for others, or none."""
+        """Process a request that ends the rendezvous: waiting vehicles continue their plans."""
         after, out = super()._asked_for(state, envelope, now_ms)
         return after, out if after is state else [*out, *self._sent(state)]
 
@@ -137,7 +137,7 @@ class RendezvousTaskService(FollowingTaskService):
         return state, out
 
     def _told(self, state: Following, body: Any) -> Step:
-        """A vehicle's state: its life, its way, and whether all have met."""
+        """Process a vehicle's state: its task state, its progress, and whether all have met."""
         now_ms = max(state.now_ms, body.Time, 0)
         state = heard(state, body.ID, now_ms)
         part = next((p for p in state.parts if p.vehicle == body.ID), None)
@@ -182,7 +182,7 @@ class RendezvousTaskService(FollowingTaskService):
         return self._steered(state, part, body, out)
 
     def _silent(self, state: Following) -> Part | None:
-        """A vehicle that has still to come and was not heard for long."""
+        """A vehicle that has not arrived yet and has been silent for too long; None if there is none."""
         ways = (state.meeting or Progress()).ways
         for part in state.parts:
             way = ways.get(part.vehicle)
@@ -192,7 +192,7 @@ class RendezvousTaskService(FollowingTaskService):
         return None
 
     def _tired(self, state: Following) -> str:
-        """Who has waited for too long, and who has not come; nothing if none has."""
+        """Which vehicle has waited too long, and which have not come, in words; "" if none has."""
         progress = state.meeting or Progress()
         for part in state.parts:
             since, met = progress.since.get(part.vehicle), self._met(part.context)
@@ -208,7 +208,7 @@ class RendezvousTaskService(FollowingTaskService):
         return ""
 
     def _way(self, state: Following, part: Part, body: Any, laps: bool) -> Way:
-        """What is left of a vehicle's way by its state; less than nothing where it has passed its state."""
+        """The rest of a vehicle's route according to its state."""
         progress = state.meeting or Progress()
         gone = part.vehicle in progress.gone or body.CurrentWaypoint > part.begins
         here, plan = self._here(part, body), state.plans.get(part.vehicle, {})
@@ -223,7 +223,7 @@ class RendezvousTaskService(FollowingTaskService):
         return Vec2(pose.north_m, pose.east_m)
 
     def _passed(self, state: Following, part: Part, body: Any, out: list[Any]) -> Step:
-        """It is beyond its state: arrived, if it came by it; and complete, if it is the last one."""
+        """The vehicle has passed its state: check place and time, and complete the task after the last one."""
         here, at = self._here(part, body), place_of(part)
         if not in_ring(at, here, 0, 2 * part.option.flyer.radius_m):
             text = f"vehicle {part.vehicle} passed its place {math.dist(here, at):.0f} m aside"
@@ -238,7 +238,7 @@ class RendezvousTaskService(FollowingTaskService):
         met = self._met(part.context)
         arrived = {v: w for v, w in progress.ways.items() if w.arrived is not None}
         for vehicle, way in sorted(arrived.items()):
-            # it passed between two of its states: nobody knows when, so both have to be in time
+            # it passed at an unknown time between two states, so both must be in time
             ends = (way.before, way.told)
             if not all(in_company(t, progress.common, met.tolerance_ms) for t in ends):
                 off = " to ".join(f"{(t - progress.common) / 1000:.1f}" for t in ends)
@@ -260,7 +260,7 @@ class RendezvousTaskService(FollowingTaskService):
         return state._replace(parts=(), meeting=None), out
 
     def _steered(self, state: Following, part: Part, body: Any, out: list[Any]) -> Step:
-        """It waits, leaves its circle, or flies at the speed at which it arrives in time."""
+        """Let the vehicle wait, leave its circle, or fly at the speed for arriving in time."""
         met, progress = self._met(part.context), state.meeting
         if progress.common is None:
             told = all(in_time(p.seen_ms, state.now_ms, SILENT_MS) for p in state.parts)
@@ -296,7 +296,7 @@ class RendezvousTaskService(FollowingTaskService):
         return state, out
 
     def _late(self, now_ms: int, progress: Progress, part: Part, met: Met) -> bool:
-        """Whether a vehicle cannot come in time any more, or no time is set."""
+        """Whether a vehicle can no longer arrive in time, or no common time is set."""
         if progress.common is None:
             return True
         way = progress.ways[part.vehicle]
@@ -305,7 +305,7 @@ class RendezvousTaskService(FollowingTaskService):
 
     def _pace(self, now_ms: int, common: int, part: Part, way: Way, met: Met) -> Pace:
         limits = way.over_ground(self._limits(part))
-        # half of the tolerance is for what no speed mends: turns, states between which it flies on
+        # half of the tolerance is reserved for turns and for the time between states
         return pace(
             way.left_m,
             (common - now_ms) / 1000,
@@ -315,7 +315,7 @@ class RendezvousTaskService(FollowingTaskService):
         )
 
     def _set(self, state: Following) -> Progress:
-        """The common time by what is left of all ways: at usual speeds, else as fast as they fly; None: none."""
+        """Set the common time: at usual speeds, else at the fastest; None if there is none."""
         progress, now_ms = state.meeting, state.now_ms
         for fast in (False, True):
             meeting = Meeting(0, NO_END)
@@ -335,14 +335,14 @@ class RendezvousTaskService(FollowingTaskService):
         return progress._replace(common=common.time if common.found else None)
 
     def _waits(self, state: Following, part: Part, out: list[Any]) -> Step:
-        """It waits in laps beside its gate, if it can and does not yet: slowly, as soon as it is there."""
+        """Command waiting laps beside the gate, at low speed once the vehicle is on the circle."""
         progress, way = state.meeting, state.meeting.ways[part.vehicle]
         circle, clockwise = waiting_circle(part.option)
         flyer, gate = part.option.flyer, Vec2(*part.option.start[:2])
         if is_direct(part.option) and not (
             way.laps or in_ring(gate, way.here, 0, GATE_S * flyer.speed_m_s)
         ):
-            return state, out  # there is time for the others to be heard
+            return state, out  # the others may still be heard in time
         slow = way.laps and in_ring(circle.at, way.here, 0, 3 * flyer.radius_m)
         if way.laps != slow or part.vehicle in progress.slow or not way.waits:
             return state, out
@@ -357,7 +357,7 @@ class RendezvousTaskService(FollowingTaskService):
         return state.with_part(part)._replace(meeting=progress), out
 
     def _leaves(self, state: Following, part: Part, speed_m_s: float, out: list[Any]) -> Step:
-        """It is sent on along its run-in."""
+        """Send a vehicle from its circle along its run-in."""
         number = parts_of.command_id(self._task_id, part.state.task.request)
         points = state.plans.get(part.vehicle, {})
         along = part._replace(then=part.begins + 1 if is_direct(part.option) else part.then - 1)
@@ -371,7 +371,7 @@ class RendezvousTaskService(FollowingTaskService):
         return state._replace(meeting=state.meeting._replace(gone=gone, since=since)), out
 
     def _speed(self, part: Part, speed_m_s: float) -> Any:
-        """A command to fly at another speed: one of its own, as not every autopilot knows it."""
+        """The command to fly at another speed; separate, since not every autopilot supports it."""
         of = {"AssociatedTaskList": [self._task_id], "VehicleID": part.vehicle}
         action = lmcp.new("SpeedOverrideAction", Speed=speed_m_s, **of)
         return self._command(part, [action])
@@ -393,6 +393,6 @@ class RendezvousTaskService(FollowingTaskService):
         return state._replace(parts=(), meeting=None), [*out, *self._sent(state)]
 
     def _sent(self, state: Following) -> list[Any]:
-        """Who waits is sent on in its plan."""
+        """Waiting vehicles continue their plans."""
         waiting = (state.meeting or Progress()).since
         return [self._sent_on(state, part) for part in state.parts if part.vehicle in waiting]

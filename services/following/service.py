@@ -1,9 +1,10 @@
-"""The service of a task that keeps to what moves: a task's service, with a life of its own for each vehicle.
+"""The service of a task that follows an entity: a task service with a separate task state per vehicle.
 
-Requests, options and routes go as in `pipeline.tasks`. From the choice of an option on, its vehicle has a life by
-the same kernel `task_step`. When it makes for the option's path it is told to circle about the entity
-(VehicleActionCommand), with each of its states anew. The task is complete when as many vehicles as it asks
-for have done what it asks, at one time and without a break, for as long as it asks: `kept_step` says so.
+Requests, options and routes work as in `pipeline.tasks`. From the choice of an option on, its vehicle has a
+task state of its own, driven by the same kernel `task_step`. On reaching the option's path it is commanded to
+circle around the entity (VehicleActionCommand), updated with each of its states. The task is complete when
+enough vehicles have done what it requires, at the same time and without a break, for the required duration,
+as `kept_step` decides.
 """
 
 from __future__ import annotations
@@ -54,17 +55,19 @@ CHOICE = "uxas.messages.task.TaskImplementationRequest"
 ROUTES = "uxas.messages.route.RoutePlanResponse"
 RESPONSE = "afrl.cmasi.AutomationResponse"
 FINAL, SELECTED = 5, 6
-"""A task's states from the choice of an option on, as `spec.contracts.tasks` has them."""
+"""Task states from the choice of an option on, as in `spec.contracts.tasks`."""
 SILENT_MS = 3_000
-"""Of a vehicle that was not heard for longer nobody knows whether it is where it was."""
+"""A vehicle silent for longer does not count as still there [ms]."""
 LOST = "the state of the entity"
-"""What keeps a vehicle from its circle where the entity is told of no more, or by no state that is one."""
+"""The reported reason why a vehicle does not reach its circle if the entity's state is missing or invalid."""
 
 
 class Following(NamedTuple):
-    """lead: the task until options are chosen; parts: of the vehicles; still: the entity stands, and the lead
-    alone does the task; kept: how long the parts have done what is asked; now_ms: of the newest state;
-    plans: waypoints of the vehicles' plans by number; meeting: how far a rendezvous is, None for another task."""
+    """lead: the task until options are chosen; parts: of the vehicles; still: the entity stands still, and
+    the lead alone does the task; kept: how long the parts have done what is required; now_ms: of the
+    newest state; plans: waypoints of the vehicles' plans by number; meeting: progress of a rendezvous,
+    None for other tasks.
+    """
 
     lead: State = State()
     still: bool = False
@@ -75,7 +78,7 @@ class Following(NamedTuple):
     meeting: Any = None
 
     def with_part(self, part: Part) -> Following:
-        """With a part in place of the one of its vehicle."""
+        """The state with a part in place of its vehicle's previous one."""
         rest = [p for p in self.parts if p.option.vehicles != part.option.vehicles]
         return self._replace(parts=(*rest, part))
 
@@ -84,13 +87,15 @@ Step = tuple[Following, list[Any]]
 
 
 def kept_at(state: Following, needed: int, now_ms: int, least_ms: int) -> Kept:
-    """How long as many as are needed have done what is asked, counted now; least_ms: 0 ends nothing."""
+    """How long enough vehicles have done what is required, up to now_ms. least_ms: required duration, 0 never
+    completes.
+    """
     count = sum(p.there and in_time(p.seen_ms, now_ms, SILENT_MS) for p in state.parts)
     return kept_step(state.kept, count, needed, now_ms, least_ms)
 
 
 class FollowingTaskService(TaskService):
-    """One task that keeps to an entity."""
+    """A task that follows an entity."""
 
     def __init__(self, contexts: Contexts, body: Any, name: str, ended: Callable[[], None]) -> None:
         """body: the task's message; name: of the service."""
@@ -116,7 +121,7 @@ class FollowingTaskService(TaskService):
         return self._task_in(context).kind is not TaskKind.OTHER
 
     def _found(self, context: Context) -> tuple[list[Option], list[Dropped]]:
-        """The options as the entity moved when they were first asked for, for the newest request."""
+        """The options for the newest request, computed from the entity's motion when first needed."""
         if self._made is None or self._made[0] is not context:
             asked, motion = self._asked(context), self._motion(context)
             found = options_of(context, self._task_in(context), asked, motion)
@@ -146,7 +151,7 @@ class FollowingTaskService(TaskService):
         return asked_of(self._body, context.places, self._tower(context))
 
     def _tower(self, context: Context) -> Tower | None:
-        """The tower of a relay as it was when the options were made: towers stand."""
+        """The tower of a relay, as known when the options were made: towers do not move."""
         if type(self._body).__name__ != "CommRelayTask":
             return None
         if self._stood is None or self._stood[0] is not context:
@@ -154,7 +159,7 @@ class FollowingTaskService(TaskService):
         return self._stood[1]
 
     def _motion(self, context: Context) -> Motion:
-        """Of the entity; for a relay that of the middle between it and the tower."""
+        """The motion of the entity; for a relay, of the midpoint between it and the tower."""
         asked = self._asked(context)
         motion = self._moves(context, asked)
         return motion if asked.tower is None else motion.halfway_to(asked.tower.at)
@@ -176,7 +181,7 @@ class FollowingTaskService(TaskService):
         return motion_of(state, context.places, f"state of entity {asked.entity}", route)
 
     def _route(self, context: Context) -> tuple[Vec2, ...]:
-        """The places that the entity goes along by the message that the task names; none: it names none."""
+        """The entity's route from the message that the task names; () if it names none."""
         told, along = route_named(self._body, self._contexts.world)
         if self._routed is None or self._routed[0] is not context or self._routed[1] is not told:
             where, found = f"route of task {self._task_id}", []
@@ -218,7 +223,7 @@ class FollowingTaskService(TaskService):
         return state._replace(parts=kept), out
 
     def _implemented(self, part: Part, more: Iterable[Any]) -> Part:
-        """With the waypoints that its plan has for the task, if they are among what is said."""
+        """The part with the waypoint numbers of its implementation, if that is among the answers."""
         for one in more:
             if type(one).__name__ == "TaskImplementationResponse":
                 own = [w for w in one.TaskWaypoints if w.AssociatedTasks]
@@ -227,7 +232,7 @@ class FollowingTaskService(TaskService):
         return part
 
     def _asked_for(self, state: Following, envelope: Envelope, now_ms: int) -> Step:
-        """A request: one with this task ends what is flown of it, as it does for any task."""
+        """Process a request: one with this task ends the present execution, as for any task."""
         lead, more = super().handle(state.lead, envelope, now_ms)
         out = list(more)
         if lead == state.lead:
@@ -241,7 +246,7 @@ class FollowingTaskService(TaskService):
         return Following(lead, still, now_ms=state.now_ms, plans=state.plans), out
 
     def _chosen(self, state: Following, body: Any) -> Step:
-        """A vehicle is to fly an option: from here on it has a life of its own."""
+        """An option is chosen: its vehicle gets a task state of its own."""
         if body.TaskID != self._task_id:
             return state, []
         ticket = state.lead.ticket(body.CorrespondingAutomationRequestID)
@@ -252,7 +257,7 @@ class FollowingTaskService(TaskService):
         return state.with_part(Part(own, option, self._context, 0, 0)), list(out)
 
     def _planned(self, state: Following, response: Any) -> Step:
-        """Plans: their waypoints are kept, and one without this task ends it for its vehicle."""
+        """Process plans: store their waypoints; a plan without this task ends it for its vehicle."""
         out, left = list[Any](), []
         for part in state.parts:
             if self._withdrawn(part.state, response):
@@ -267,7 +272,7 @@ class FollowingTaskService(TaskService):
         return state._replace(parts=tuple(left), plans=plans), out
 
     def _told(self, state: Following, body: Any) -> Step:
-        """A vehicle's state: its life, where it has to circle, and whether all have done what is asked."""
+        """Process a vehicle's state: its task state, its circle, and whether the task is complete."""
         part = next((p for p in state.parts if p.vehicle == body.ID), None)
         if part is None or part.state.task.state < SELECTED:
             return state, []
@@ -285,13 +290,13 @@ class FollowingTaskService(TaskService):
         if part.state.task.state < ACTIVE:
             return state, out
         if not (lists or follows):
-            # it flies by another's command, or went on without having heard this task's
+            # it flies another command, or continued without receiving this task's
             _, more = self._advance(part.state, WITHDRAWN, 0, None)
             rest = tuple(p for p in state.parts if p is not part and p.vehicle != body.ID)
             return state._replace(parts=rest, kept=Kept(-1, False)), [*out, *more]
         now_ms = max(state.now_ms, body.Time, 0)
         asked = self._asked(part.context)
-        # who was silent until now was there until then, not since
+        # a silent vehicle counts as there until its last state
         state = state._replace(now_ms=now_ms, kept=kept_at(state, asked.needed, now_ms, 0))
         waits = not follows and (body.Mode.name != "Waypoint" or body.CurrentWaypoint < part.begins)
         if waits:
@@ -300,7 +305,7 @@ class FollowingTaskService(TaskService):
             motion = self._motion(part.context)
         except BadInput as error:
             return self._lost(state, part, error, out)
-        if asked.stands is not None:  # nobody has to tell where it is
+        if asked.stands is not None:  # a fixed place needs no state
             motion = motion._replace(time_ms=now_ms)
         fresh = in_time(min(motion.time_ms, now_ms), max(motion.time_ms, now_ms), STALE_MS)
         late_s = min(now_ms - motion.time_ms, STALE_MS) / 1000
@@ -321,7 +326,7 @@ class FollowingTaskService(TaskService):
         return self._over(state, body, out) if kept.done else (state, out)
 
     def _lost(self, state: Following, part: Part, error: BadInput, out: list[Any]) -> Step:
-        """The entity's position is lost: treat it as absent, and report that once."""
+        """The entity's position is unknown: the vehicle does not count as there, and that is reported once."""
         asked = self._asked(part.context)
         if part.blocked != LOST:
             out.append(self._warning(f"vehicle {part.vehicle} does not follow: {error}"))
@@ -329,7 +334,7 @@ class FollowingTaskService(TaskService):
         return state._replace(kept=kept_at(state, asked.needed, state.now_ms, asked.least_ms)), out
 
     def _over(self, state: Following, body: Any, out: list[Any]) -> Step:
-        """Complete: the vehicles are let go."""
+        """The task is complete: the vehicles are released."""
         involved = sorted(part.vehicle for part in state.parts)
         out.append(
             lmcp.new(
@@ -346,21 +351,21 @@ class FollowingTaskService(TaskService):
         return state._replace(parts=(), kept=Kept(-1, False)), out
 
     def _let_go(self, state: Following, part: Part) -> list[Any]:
-        """What sends a vehicle on to what comes next in its plan when the task is complete."""
+        """The command that lets a vehicle continue its plan after completion."""
         return [self._sent_on(state, part)]
 
     def _removed(self, state: Following, body: Any) -> Step:
-        """The task is no more: who does it ends it undone, and is sent on in its plan."""
+        """The task is removed: it ends undone, and its vehicles continue their plans."""
         out = [one for p in state.parts for one in self._advance(p.state, WITHDRAWN, 0, body)[1]]
         out += self._sent(state)
         return state._replace(parts=(), kept=Kept(-1, False), meeting=None), out
 
     def _sent(self, state: Following) -> list[Any]:
-        """Who was told to circle is sent on."""
+        """Vehicles that were commanded to circle continue their plans."""
         return [self._sent_on(state, part) for part in state.parts if part.held is not None]
 
     def _sent_on(self, state: Following, part: Part) -> Any:
-        """The command that sends a vehicle on in its plan, or a Warning why it stays on its circle."""
+        """The command that lets a vehicle continue its plan, or a Warning why it stays on its circle."""
         number = parts_of.command_id(self._task_id, part.state.task.request)
         points = state.plans.get(part.vehicle, {})
         command, why = parts_of.released(part, self._task_id, number, points)

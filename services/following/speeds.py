@@ -1,4 +1,4 @@
-"""The speeds of a vehicle that comes to a rendezvous, over ground and in the air, and how it waits in laps."""
+"""Speeds of a vehicle in a rendezvous, over ground and through the air, and its waiting laps."""
 
 from __future__ import annotations
 
@@ -11,15 +11,17 @@ from cratous.spec.errors import BadInput
 from cratous.spec.mission import Vehicle
 
 LEAST_M_S = 1.0
-"""Who makes less way against the wind is taken to make this."""
+"""Assumed lowest ground speed against the wind [m/s]."""
 SLOWER = 2.0
-"""Who waits flies no slower than its nominal speed by this: a lap is so long that states show each quarter of it."""
+"""A waiting vehicle flies at least its nominal speed divided by this, so that a state arrives in each quarter
+of a lap.
+"""
 BRISK = 0.95
-"""The share of its greatest speed at which a vehicle is planned to come; what is left makes up for delays."""
+"""Share of the greatest speed at which a vehicle's approach is planned; the rest makes up for delays."""
 
 
 class Limits(NamedTuple):
-    """Speeds of a vehicle [m/s]."""
+    """Speeds of a vehicle [m/s]. brisk: planned approach speed."""
 
     slowest_m_s: float
     nominal_m_s: float
@@ -28,7 +30,7 @@ class Limits(NamedTuple):
 
 
 def limits_of(vehicle: Vehicle) -> Limits:
-    """The speeds of a vehicle; one that its configuration leaves out is the nominal one. brisk: at which it comes."""
+    """The speeds of a vehicle; those missing in its configuration are the nominal one."""
     nominal = vehicle.speed_m_s
     slowest = min(vehicle.min_speed_m_s or nominal, nominal)
     fastest = max(vehicle.max_speed_m_s, nominal)
@@ -36,7 +38,7 @@ def limits_of(vehicle: Vehicle) -> Limits:
 
 
 def wind_of(state: Any, heading_rad: float) -> Vec2:
-    """The wind that a vehicle's state tells, along a heading and across it [m/s]; BadInput for what is no wind."""
+    """The wind in a vehicle's state, along and across a heading [m/s]; BadInput for non-finite values."""
     speed, source = getattr(state, "WindSpeed", 0.0), getattr(state, "WindDirection", 0.0)
     if not (math.isfinite(speed) and math.isfinite(source)):
         raise BadInput(
@@ -48,7 +50,7 @@ def wind_of(state: Any, heading_rad: float) -> Vec2:
 
 
 def over_ground(limits: Limits, wind: Vec2) -> Limits:
-    """The speeds of a vehicle over ground, at least `LEAST_M_S`; wind: along its way and across it [m/s]."""
+    """The speeds of a vehicle over ground, at least `LEAST_M_S`. wind: along and across its way [m/s]."""
     found = []
     for speed in limits:
         along = math.sqrt(max(speed**2 - wind.y**2, 0.0))
@@ -57,13 +59,13 @@ def over_ground(limits: Limits, wind: Vec2) -> Limits:
 
 
 def lap_s(flyer: Flyer, wind: Vec2 = Vec2(0.0, 0.0)) -> float:
-    """How long a lap of waiting takes [s], in a wind at most ten times as long as without one."""
+    """Duration of a waiting lap [s]; in wind at most ten times that without."""
     calm_s = 2 * math.pi * flyer.radius_m / flyer.speed_m_s
     return calm_s / max(1 - (wind.x**2 + wind.y**2) / flyer.speed_m_s**2, 0.1)
 
 
 def waiting_of(flyer: Flyer, limits: Limits, wind: Vec2) -> Flyer:
-    """How a vehicle flies while it waits: as slowly as it can, on the narrower circle of that, if a lap is shorter so."""
+    """The flyer while waiting: as slow as possible, on the smaller circle, if a lap is shorter that way."""
     share = max(limits.slowest_m_s / limits.nominal_m_s, 1 / SLOWER)
     slow = flyer._replace(
         speed_m_s=share * flyer.speed_m_s, radius_m=share * share * flyer.radius_m

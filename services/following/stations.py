@@ -1,7 +1,9 @@
-"""Where each vehicle of a task circles about what moves, and whether it is there.
+"""The circle of each vehicle of a task around an entity, and whether the vehicle does what the task requires
+there.
 
-A station is a circle. Vehicles of one task have different ones: about one place each is RING_M wider than the
-one before, side by side their centres are two radii and RING_M apart. Who is there the kernels say.
+A station is a circle; vehicles of one task have different ones. Around the same centre, each is RING_M wider
+than the one before; side by side, the centres are two radii and RING_M apart. The kernels decide whether a
+vehicle is there.
 """
 
 from __future__ import annotations
@@ -21,20 +23,20 @@ from cratous.services.planning.point_ways import tilted
 from cratous.spec.mission import Camera
 
 RING_M = 150.0
-"""How far the circles of two vehicles of one task are apart at least."""
+"""Least distance between the circles of two vehicles of a task [m]."""
 
 DOUBLINGS = 16
-"""Who does not come to a station in so many times doubled the time that its place now is away does not come to it."""
+"""A station is unreachable if this many doublings of the travel time do not suffice."""
 HALVINGS = 40
 FLY, EARLY, LATE = 0, 1, 2
-"""What `pace` says."""
+"""Results of `pace`."""
 
 LEAST_TILT_RAD = 0.01
-"""A camera that looks down by less is taken to look down by this much."""
+"""Smallest depression angle assumed for a camera [rad]."""
 
 
 class Station(NamedTuple):
-    """A circle: its middle, north and east [m], and its radius [m]."""
+    """A circle: its centre, north and east [m], and its radius [m]."""
 
     at: Vec2
     radius_m: float
@@ -46,17 +48,17 @@ def camera_of(asked: Asked, flyer: Flyer) -> Camera | None:
 
 
 def station(asked: Asked, slot: int, flyer: Flyer, there: Motion, terrain_m: float) -> Station:
-    """The circle of a slot, counted from 0, about an entity that is where its motion says."""
+    """The circle of a slot, from 0, around an entity at the position of its motion."""
     radius = flyer.radius_m
     if asked.kind == "BlockadeTask":
         return Station(_between(asked, slot, radius, there), radius)
     if asked.tower is not None:
-        return Station(there.at, radius)  # halfway already
+        return Station(there.at, radius)  # its motion is that of the midpoint
     if asked.kind == "EscortTask":
         return Station(there.ahead(asked.standoff_m), radius)
     assert asked.looks is not None
     for view in tilted(asked.looks, camera_of(asked, flyer)):
-        # a camera that cannot look down sees the middle of a wide circle only
+        # a camera that cannot look down sees the centre only from a wide circle
         tilt = max(-view.elevation_rad, LEAST_TILT_RAD)
         radius = max(radius, (flyer.alt_m - terrain_m) / math.tan(tilt))
     return Station(there.at, radius + slot * RING_M)
@@ -65,8 +67,9 @@ def station(asked: Asked, slot: int, flyer: Flyer, there: Motion, terrain_m: flo
 def reached_from(
     start: Vec2, asked: Asked, slot: int, flyer: Flyer, motion: Motion, terrain_m: float
 ) -> tuple[Motion, float] | None:
-    """The entity as it is when one who flies straight to the middle of a slot's circle gets to its place, and how far
-    he has come then [m]; None: he does not get there."""
+    """The entity's motion when a vehicle in straight flight reaches its station, and the distance that it has
+    flown by then [m]; None if it does not reach it.
+    """
 
     def at_time(seconds: float) -> tuple[Motion, float]:
         there = motion._replace(at=motion.after(seconds))
@@ -91,7 +94,7 @@ def reached_from(
 
 
 def _way_m(asked: Asked, start: Vec2, there: Motion, goal: Station) -> float:
-    """How far it is to a circle's rim, or for a relay to where it is in reach of both, by a turn at least [m]."""
+    """Distance to a circle's rim; for a relay, to where a whole turn is in range of both ends [m]."""
     far_m = max(math.dist(start, goal.at) - goal.radius_m, 0.0)
     if asked.tower is None:
         return far_m
@@ -113,7 +116,7 @@ def towards(start: Vec2, goal: Vec2, far_m: float) -> Vec2:
 
 
 def _between(asked: Asked, slot: int, radius_m: float, there: Motion) -> Vec2:
-    """On the way from an entity to what is to be kept from it, or ahead of it, and beside that."""
+    """The point between an entity and the protected place, or ahead of the entity, offset sideways by slot."""
     north, east = there.velocity
     far_m = asked.standoff_m
     if asked.protected is not None:
@@ -131,13 +134,12 @@ def at_station(
     asked: Asked, slot: int, state: Any, here: Vec2, goal: Station, there: Motion, places: Places,
     camera: Camera | None,
 ) -> bool:  # fmt: skip
-    """Whether a vehicle, by its state, does at this moment what its task asks of it.
+    """Whether a vehicle, according to its state, does what its task requires.
 
-    A watch: a footprint of its camera contains the entity's place, and it is no farther from that than two
-    radii of its circle. An escort: no farther from its circle's middle than that. A blockade: no farther than two radii
-    from the way between the entity and what is protected, on its side of it; without one, no farther from its own
-    circle's middle.
-    A relay: no farther than the tower reaches from the tower and from what is supported.
+    Watch: a footprint of its camera contains the entity, within two radii of its circle. Escort: within that
+    distance of its circle's centre. Blockade: within two radii of the line between the entity and the
+    protected place, on its side; without such a place, of its own circle's centre. Relay: within the tower's
+    range of both the tower and what is supported.
     """
     if asked.tower is not None:
         return relays(asked.tower, there, here)
@@ -153,9 +155,9 @@ def at_station(
 
 
 def relays(tower: Tower, middle: Motion, here: Vec2, spare_m: float = 0.0) -> bool:
-    """Whether who is here is in reach of the tower and of what is supported; middle: between them.
+    """Whether a place is in range of the tower and of what is supported, by a margin of spare_m [m].
 
-    spare_m: so much farther from both it would still be.
+    middle: motion of the midpoint between the two.
     """
     reach_m = max(tower.range_m - spare_m, 0.0)
     supported = Vec2(2 * middle.at.x - tower.at.x, 2 * middle.at.y - tower.at.y)
@@ -163,7 +165,7 @@ def relays(tower: Tower, middle: Motion, here: Vec2, spare_m: float = 0.0) -> bo
 
 
 def _seen(state: Any, camera: Camera, at: Vec2, places: Places) -> bool:
-    """Whether the footprint that a state tells of a camera contains a place."""
+    """Whether the footprint that a state reports for a camera contains a place."""
     for payload in state.PayloadStateList:
         footprint = getattr(payload, "Footprint", None)
         if footprint is None or len(footprint) < 3 or payload.PayloadID != camera.camera_id:

@@ -1,1 +1,1 @@
-"""The report with all its sections, and as PDF: views of a confirmed report.json."""
+"""The report with all sections, also as PDF: views of a confirmed report.json."""

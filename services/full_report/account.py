@@ -21,7 +21,7 @@ Data = dict[str, Any]
 
 
 def proofs(report: Data, names: dict[str, str]) -> document.Section:
-    """Section 7. names: how each kernel is called, of `trace.traced`."""
+    """Section 7. names: display names of the kernels, of `trace.traced`."""
     return document.Section("proofs", "7 Proofs of the kernels that were called", tuple(_proofs(report, names)))  # fmt: skip
 
 
@@ -173,7 +173,7 @@ def _tools(report: Data) -> Iterator[document.Part]:
 
 
 def argued(subject: Subject) -> document.Section:
-    """Section 12, from the ledger as it is now; says so where it cannot be made."""
+    """Section 12, from the current ledger; states the reason if it cannot be made."""
     return document.Section("argument", "12 Assurance argument", tuple(_argued(subject)))
 
 

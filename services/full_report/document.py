@@ -1,4 +1,4 @@
-"""What a page is made of, before it is HTML or PDF: plain data, the same for both."""
+"""Content of a page, independent of HTML and PDF, as plain data."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ VERDICTS = {
     "violated": "violated", "broken": "violated",
     "unknown": "unknown", "excused": "unknown", "not observed": "unknown",
 }  # fmt: skip
-"""Cells that say one of these are drawn in the colour of that verdict."""
+"""Cells with one of these texts are drawn in the colour of that verdict."""
 
 
 class Words(NamedTuple):
-    """A paragraph. kind: text, soft, alarm, code, item (of a list) or a verdict (a banner in its colour)."""
+    """A paragraph. kind: text, soft, alarm, code, item (of a list), or a verdict (a banner in its colour)."""
 
     text: str
     kind: str = "text"
@@ -30,9 +30,10 @@ class Head(NamedTuple):
 
 
 class Table(NamedTuple):
-    """head: of the columns; rows: a text for each column, whose lines after the first are softer; shares:
-    of the width, by column; numbers: the columns that stand to the right; empty: what is said where no
-    row is, instead of a table."""
+    """head: of the columns; rows: a text for each column, with lines after the first in a lighter
+    ink; shares: of the width, by column; numbers: right-aligned columns; empty: text shown instead
+    of a table without rows.
+    """
 
     head: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
@@ -42,8 +43,9 @@ class Table(NamedTuple):
 
 
 class Picture(NamedTuple):
-    """A drawing in units of its own, y downwards, cut at its frame; caption: pairs of a text and the
-    style of the line that it explains, empty for none."""
+    """A drawing in its own units, y downwards, clipped to its frame; caption: pairs of a text and
+    the line style that it explains, empty for none.
+    """
 
     title: str
     width: float
@@ -53,7 +55,7 @@ class Picture(NamedTuple):
 
 
 class Beside(NamedTuple):
-    """A large picture on the left, and smaller ones beside it."""
+    """A large picture on the left, with smaller ones beside it."""
 
     left: Picture
     right: tuple[Picture, ...]
@@ -63,7 +65,7 @@ Part = Words | Head | Table | Picture | Beside
 
 
 class Section(NamedTuple):
-    """name: of its address in the page; title: with its number; parts: in their order."""
+    """name: its anchor in the page; title: with its number; parts: in order."""
 
     name: str
     title: str
@@ -71,7 +73,7 @@ class Section(NamedTuple):
 
 
 class Document(NamedTuple):
-    """title: of the whole; about: a line below it; sections: each begins a page of its own in print."""
+    """title: of the document; about: a line below it; sections: each starts a new page in print."""
 
     title: str
     about: str

@@ -1,4 +1,4 @@
-"""Page one, which says the verdict and what it is worth, and page two, on the flight."""
+"""Page one, with the verdict and its basis, and page two, on the flight."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def _verdict(report: Data) -> Iterator[Part]:
 
 
 def _own(report: Data) -> str:
-    """How many requirements of the user's own hold, violated, unknown; nothing where there are none."""
+    """Number of user requirements that hold, are violated, or unknown; empty if there are none."""
     words = [one["verdict"] for one in own_requirements(report)]
     said = ", ".join(
         f"{words.count(w)} {'hold' if w == 'holds' else w}" for w in WORDS if w in words
@@ -66,7 +66,7 @@ def _own(report: Data) -> str:
 
 
 def alarms(report: Data) -> Iterator[Words]:
-    """What takes the worth from the verdicts, if anything does."""
+    """Facts that invalidate or weaken the verdicts, if any."""
     problems = report["proofs"]["problems"]
     if problems:
         yield Words(
@@ -85,7 +85,7 @@ def alarms(report: Data) -> Iterator[Words]:
 
 
 def requirement_table(report: Data) -> Table:
-    """The requirements with their verdicts, the user's own among them, and where the margin is least."""
+    """The requirements, including the user's, with their verdicts and the location of the least margin."""
     rows: list[tuple[str, ...]] = []
     for one in report["requirements"]:
         place = one["item"] or DASH
@@ -118,7 +118,7 @@ def not_covered(report: Data) -> str:
 
 
 def flight_page(report: Data) -> Section:
-    """What was flown: time line, tasks, takeovers, losses, changes."""
+    """The flight: time line, tasks, takeovers, losses, changes."""
     return Section("flight", "The flight", tuple(_flight(report)))
 
 
@@ -178,7 +178,7 @@ def later_plans(report: Data) -> Iterator[Words]:
 
 
 def loss_parts(report: Data) -> Iterator[Part]:
-    """Losses of well clear, with what was tried before each; nothing where there is none."""
+    """Losses of well clear, with the manoeuvres tried before each; empty if there are none."""
     found = losses(report)
     if found:
         yield Head("Losses of well clear")

@@ -1,4 +1,4 @@
-"""Sections 5, 6 and 8: trajectories, what was seen at run time, assumptions."""
+"""Sections 5, 6 and 8: trajectories, run-time observations, assumptions."""
 
 from __future__ import annotations
 

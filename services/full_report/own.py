@@ -1,4 +1,4 @@
-"""What the sections of the full report say of requirements of the user's own: source, lint, margins, blame, trace."""
+"""User requirements in the sections of the full report: source, lint, margins, blame, trace."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Rows = list[tuple[str, ...]]
 
 
 def of_own(report: Data) -> Iterator[document.Part]:
-    """For section 2: the requirements with severity and source, the files, what is odd about them."""
+    """For section 2: the requirements with severity and source, the files, and lint findings."""
     own = report["own"]
     yield document.Head("Requirements of one's own")
     rows: Rows = [
@@ -40,7 +40,7 @@ def of_own(report: Data) -> Iterator[document.Part]:
 
 
 def margins_of_own(report: Data) -> Iterator[document.Part]:
-    """For section 3: samples and margins, and what is wrong with the samples; nothing where there are none."""
+    """For section 3: samples and margins, and faults of the samples; empty if there are none."""
     own = own_requirements(report)
     if not own:
         return
@@ -58,7 +58,7 @@ def margins_of_own(report: Data) -> Iterator[document.Part]:
 
 
 def untested_own(report: Data) -> Rows:
-    """For section 9: those that nothing in the flight tested."""
+    """For section 9: requirements that nothing in the flight tested."""
     return [
         (row["requirement"], row["item"], doubt(row) or row["note"])
         for row in own_constraints(report)
@@ -67,7 +67,7 @@ def untested_own(report: Data) -> Rows:
 
 
 def trace_of_own(report: Data) -> Iterator[document.Part]:
-    """For section 9: from each of them to the kernels that decided it and to theorems, by the ledger as it is now."""
+    """For section 9: from each requirement to its deciding kernels and their theorems, by the current ledger."""
     own = own_requirements(report)
     if not own:
         return
@@ -89,7 +89,7 @@ def trace_of_own(report: Data) -> Iterator[document.Part]:
 
 
 def _held(known: Data, name: str) -> str:
-    """The theorems that hold a kernel, or the fold that it is a step of, against its definition."""
+    """The theorems that relate a kernel, or the fold to which it belongs, to its definition."""
     if name not in known:
         return "not in the ledger"
     one = known[name]

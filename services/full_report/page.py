@@ -1,4 +1,4 @@
-"""A document as one HTML page: nothing is loaded from elsewhere, every text is escaped."""
+"""A document as one HTML page: no external resources, every text escaped."""
 
 from __future__ import annotations
 

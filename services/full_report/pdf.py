@@ -1,7 +1,8 @@
 """A document as PDF, by reportlab: the same document gives the same bytes.
 
-Nothing is compressed, as libraries that compress differ in their bytes, and no time of day is in it. The
-fonts are those that every reader has; a character that they have not is written as its code.
+Nothing is compressed, since compression libraries differ in their output, and there is no time
+stamp. The fonts are those that every reader has; characters missing in them are written as their
+code.
 """
 
 from __future__ import annotations
@@ -25,16 +26,16 @@ from cratous.services.full_report.shapes import BAD, GOOD, RULE, SOFT, TEXT
 from cratous.spec.files.printable import printable
 
 WIDTH, HEIGHT, EDGE, FOOT = 595.28, 841.89, 34.0, 30.0
-ROOM = WIDTH - 2 * EDGE - 12  # a frame of reportlab has 6 points of its own on each side
+ROOM = WIDTH - 2 * EDGE - 12  # a reportlab frame has 6 points of padding on each side
 HIGH = HEIGHT - 160.0
-"""A row that is higher than this [points] fits no page beside the head of its table."""
+"""Maximum height of a row that fits on a page below the head of its table [points]."""
 OWN_PAGES = 2
 COLOURS = {"holds": GOOD, "violated": BAD, "unknown": "#9a6700", "excused": "#9a6700"}
 PLAIN = {"→": "->", "≤": "<=", "≥": ">=", "−": "-", "≠": "!="}
 
 
 def shown(text: object) -> str:
-    """A text in the characters that the fonts have; others as their code."""
+    """A text in the characters of the fonts; others as their code."""
     said = printable(text, keep="\n")
     for sign, plain in PLAIN.items():
         said = said.replace(sign, plain)
@@ -50,7 +51,7 @@ def pdf(pages: Document) -> bytes:
     story: list[Any] = [Paragraph(_line(pages.title), make.title), Paragraph(_line(pages.about), make.soft)]  # fmt: skip
     for number, section in enumerate(pages.sections):
         if number:
-            # the first two are pages of their own; a later one begins where there is room for it
+            # the first two start on new pages; later ones wherever there is room
             story += [PageBreak()] if number < OWN_PAGES else [Spacer(1, 12), CondPageBreak(150)]
             story.append(Paragraph(_line(section.title), make.section))
         for part in section.parts:
@@ -78,7 +79,7 @@ def _line(text: object) -> str:
 
 
 class _Maker:
-    """Parts of a document as what reportlab lays out."""
+    """Converts parts of a document to reportlab flowables."""
 
     def __init__(self, style: Any) -> None:
         def of(name: str, size: float, colour: str = TEXT, **more: Any) -> Any:
@@ -108,7 +109,7 @@ class _Maker:
             )  # fmt: skip
 
     def flowables(self, part: Part) -> list[Any]:
-        """What stands for one part."""
+        """The flowables of one part."""
         from reportlab.platypus import CondPageBreak, Paragraph, Spacer
 
         if isinstance(part, Words):
@@ -153,7 +154,7 @@ class _Maker:
             for row in part.rows
         ]  # fmt: skip
         widths = [ROOM * share / whole for share in part.shares]
-        # only a row that is higher than a page is split inside: the head stands again above its rest, wherever that is
+        # only rows higher than a page are split, with the head repeated above the rest
         tall = any(
             cell.wrap(width, HIGH)[1] > HIGH
             for row in rows

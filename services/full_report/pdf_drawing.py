@@ -1,4 +1,4 @@
-"""A picture as vectors on a page of reportlab, with the lines that its caption explains below it."""
+"""Draws a picture as vectors with reportlab, with its caption below."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ FONT = "Helvetica"
 
 
 def needed() -> None:
-    """Raise ModuleNotFoundError where reportlab is not installed."""
+    """Raise ModuleNotFoundError if reportlab is not installed."""
     import reportlab.platypus  # noqa: F401
 
 
 def drawing(picture: Picture, width: float, shown: Callable[[object], str]) -> Any:
-    """The picture `width` points wide. shown: a text in the characters of the font."""
+    """The picture `width` points wide. shown: maps a text to the characters of the font."""
     from reportlab.pdfbase.pdfmetrics import stringWidth
     from reportlab.platypus import Flowable
 
@@ -77,7 +77,7 @@ def drawing(picture: Picture, width: float, shown: Callable[[object], str]) -> A
 
 
 def _key(canvas: Any, at: tuple[float, float], style: str) -> None:
-    """A piece of the line, or of the area, that a text of the caption is about."""
+    """A sample of the line or area that a caption text explains."""
     canvas.saveState()
     canvas.translate(at[0], at[1] + 2)
     canvas.scale(0.5, 0.5)
@@ -91,7 +91,7 @@ def _key(canvas: Any, at: tuple[float, float], style: str) -> None:
 
 
 def _draw(canvas: Any, shape: Line | Disc | Label, shown: Callable[[object], str]) -> None:
-    """A shape; y of shapes grows downwards."""
+    """Draw a shape; y of shapes grows downwards."""
     if isinstance(shape, Label):
         canvas.setFillColor(SOFT if shape.soft else TEXT, alpha=1.0)
         canvas.setFont(FONT, FONT_SIZE)

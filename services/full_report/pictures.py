@@ -1,4 +1,4 @@
-"""Map, altitudes, distances and time line of a report as shapes; what is drawn is that of report.html."""
+"""Map, altitudes, distances and time line of a report as shapes; the content is that of report.html."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from cratous.services.full_report.shapes import Disc, Label, Line, Shape, box, p
 
 Data = dict[str, Any]
 NAMED = 6
-"""So many curves are named below a chart."""
+"""Maximum number of curves named below a plot."""
 ROWS = 20
-"""So many vehicles stand in one time line: more would not fit on a page."""
+"""Maximum number of vehicles in one time line, as fit on a page."""
 NORTH = ((0.0, 0.0), (9.0, 26.0), (0.0, 20.0), (-9.0, 26.0))
 
 
 def flight_pictures(report: Data) -> Beside:
-    """The map, with the charts of altitude and distance beside it, those of them that there are."""
+    """The map, with the altitude and distance plots beside it, as far as they exist."""
     charts = [one for one in (_altitudes(report), _distances(report)) if one is not None]
     return Beside(_map(report), tuple(charts))
 
@@ -135,7 +135,7 @@ def _distances(report: Data) -> Picture | None:
 
 
 def time_line(report: Data) -> tuple[Picture | Words, ...]:
-    """What each vehicle did, from left to right, ROWS vehicles a picture; in words where no bar can be drawn."""
+    """What each vehicle did over time, ROWS vehicles per picture; a text if no bar can be drawn."""
     view = time_view(report)
     if not view["bars"]:
         return (Words("Time line: not observed.", "soft"),)
@@ -144,7 +144,7 @@ def time_line(report: Data) -> tuple[Picture | Words, ...]:
 
 
 def _rows(view: Data, begin: int, end: int) -> Picture:
-    """The time line of the vehicles of some rows: from `begin` on, before `end`."""
+    """The time line of the vehicles of rows `begin` to `end` (exclusive)."""
     top, bottom = begin * BAR_ROW, (end - begin) * BAR_ROW
     shapes: list[Shape] = []
     for tick in view["ticks"]:
@@ -155,7 +155,7 @@ def _rows(view: Data, begin: int, end: int) -> Picture:
     for bar in view["bars"]:
         y = bar["y"] - top
         if 0 <= y < bottom:
-            # who commands stands in a row of its own below what is done
+            # the commander is drawn in a row below the activity
             high, down = (8.0, 30.0) if bar["what"] == "icarous" else (20.0, 10.0)
             corners = box(bar["x"], y + down, bar["width"], high)
             shapes.append(Line(corners, f"bar {bar['what']}", closed=True))

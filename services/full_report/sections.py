@@ -1,4 +1,4 @@
-"""The sections of a report in their order: two pages, or all."""
+"""The sections of a report in order: two pages, or all."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from cratous.services.full_report.document import Document
 
 
 def document(about: Subject, full: bool) -> Document:
-    """The pages of a confirmed report. full: all sections behind the first page, else the flight alone."""
+    """The pages of a confirmed report. full: all sections after the first page, otherwise only the flight."""
     report = about.report
     first = (front.verdict_page(report), front.flight_page(report))
     chains = traced(report) if full else {}

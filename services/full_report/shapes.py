@@ -1,4 +1,4 @@
-"""Lines, discs and words of a picture, and how each style of them is drawn."""
+"""Lines, discs and labels of a picture, and their styles."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ Place = tuple[float, float]
 
 
 class Line(NamedTuple):
-    """Through places; closed: back to the first, and filled if its style fills."""
+    """A polyline; closed: back to its start, and filled if its style has a fill."""
 
     places: tuple[Place, ...]
     style: str
@@ -74,13 +74,13 @@ STYLES = {
         for k, c in enumerate(COLOURS)
     },
 }  # fmt: skip
-"""By name; the number is that of a vehicle, modulo the number of colours."""
+"""Ink by style name; a number in it is that of a vehicle, modulo the number of colours."""
 FONT_SIZE = 13.0
-"""Of labels, in units of the drawing."""
+"""Font size of labels, in drawing units."""
 
 
 def places(text: str) -> tuple[Place, ...]:
-    """Places from the `points` of a polyline."""
+    """The points of a polyline's `points` attribute."""
     pairs = (pair.split(",") for pair in text.split())
     return tuple((float(x), float(y)) for x, y in pairs)
 

@@ -1,4 +1,4 @@
-"""The views of this folder by their names, as bytes."""
+"""The views of this package by name, as bytes."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from cratous.services.full_report.sections import document
 
 
 def view(subject: Subject, name: str) -> bytes:
-    """The bytes of a view; the same report, list of what was not checked, and ledger give the same.
+    """The bytes of a view, determined by the report, the list of what was not checked, and the
+    ledger.
 
-    subject: confirmed from its log; name: of `attestation.names`. Raises ModuleNotFoundError for a PDF
-    without reportlab, which the command line tells as NotInstalled.
+    subject: confirmed from its log; name: of `attestation.names`. Raises ModuleNotFoundError for a
+    PDF without reportlab, which the command line reports as NotInstalled.
     """
     if name == FULL_NAME:
         return html(document(subject, full=True)).encode("utf-8", "backslashreplace")

@@ -1,4 +1,4 @@
-"""Where the ground station listens, and who is let in: by which name it may be called, and with which token."""
+"""Where the ground station listens, and access control: permitted Host names, and the token."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from cratous.spec.errors import BadInput
 from cratous.spec.files.text_file import text_of
 
 LOOPBACK = "127.0.0.1"
-"""This machine alone; the only address where nothing has to be shown."""
+"""The loopback address; the only one that needs no token by default."""
 ENVIRONMENT, PARAMETER, BEARER = "CRATOUS_ACCESS_TOKEN", "access", "Bearer "
 HTTP = 80
 TOKEN_BYTES = 24
@@ -27,23 +27,24 @@ EXPECTED = "16 to 200 letters, digits, - or _"
 
 
 class Access:
-    """host: where to listen, an address or name of this machine; token: what a client has to show, "" if nothing;
-    told: whether the printed address contains the token. Raises BadInput for no address."""
+    """host: listening address or name of this machine; token: required from clients, "" if none;
+    told: whether the printed address contains the token. Raises BadInput for an invalid address.
+    """
 
     def __init__(self, host: str = LOOPBACK, token: str = "", told: bool = False) -> None:
         self.host, self.token, self.told = host, token, told
         self.family, self.address = _resolved(host)
 
     def shown_host(self) -> str:
-        """The host of the printed address: where it listens everywhere, the name of this machine."""
+        """The host in the printed address: this machine's name if it listens on all interfaces."""
         return socket.gethostname() if self._everywhere() else self.host
 
     def url(self, port: int) -> str:
-        """Of the first page, without any token."""
+        """The URL of the first page, without any token."""
         return f"http://{_in_url(self.shown_host())}:{port}/"
 
     def whole_url(self, port: int, commands: str) -> str:
-        """With the token of access, if it was made here, and that of the commands, if there is one."""
+        """The URL with the access token, if generated here, and the command token, if there is one."""
         said = {PARAMETER: self.token if self.told else "", "token": commands}
         words = urlencode({name: token for name, token in said.items() if token})
         return self.url(port) + (f"?{words}" if words else "")
@@ -53,31 +54,35 @@ class Access:
         return not self._ip().is_loopback
 
     def names(self, port: int) -> set[str]:
-        """What a Host header may say whichever address of this machine was asked."""
+        """Host names accepted for any address of this machine."""
         hosts = {self.host, self.shown_host()} | (
             {"localhost"} if self._everywhere() or not self.from_elsewhere() else set()
         )
         return _with_port(hosts, port)
 
     def called(self, hosts: list[str], near: tuple[Any, ...], port: int) -> bool:
-        """Whether the Host headers of a request, one, call this server; near: the own end of its connection.
+        """Whether the single Host header of a request names this server; near: the local end of its
+        connection.
 
-        An address, other than a name, leads nowhere else, so that of the connection is right too.
+        An IP address cannot be redirected like a name, so that of the connection is accepted too.
         """
         names = self.names(port) | _with_port({str(near[0]).removeprefix("::ffff:")}, port)
         return len(hosts) == 1 and hosts[0].lower() in names
 
     def cookie(self, port: int) -> str:
-        """Its name: cookies are of a host, whatever the port."""
+        """Name of the cookie, with the port, since cookies belong to a host whatever the port."""
         return f"cratous_{PARAMETER}_{port}"
 
     def kept(self, port: int) -> str:
-        """The cookie that shows the token from now on, to this server alone, by no script and from no other site."""
+        """The cookie that carries the token: for this server only, not readable by scripts, not
+        sent from other sites.
+        """
         return f"{self.cookie(port)}={self.token}; Path=/; HttpOnly; SameSite=Strict"
 
     def shown_by(self, request: Request) -> str | None:
-        """How a request shows the token: `cookie`, `header` or `address`, "" where it need not; None if it does not, or a
-        wrong one."""
+        """How a request presents the token: `cookie`, `header` or `address`, "" if none is needed;
+        None if it is missing or wrong.
+        """
         if not self.token:
             return ""
         bearer = request.headers.get("authorization", "")
@@ -100,9 +105,9 @@ class Access:
 
 
 def access_of(host: str, token_file: Path | None) -> Access:
-    """Of an address that is asked for, with the token of a file, of the environment, or else a new one.
+    """Access for a requested address, with the token from a file, the environment, or a new one.
 
-    A token that is given is asked for on 127.0.0.1 too. Raises BadInput for no address and for no token.
+    A given token is required on 127.0.0.1 too. Raises BadInput for an invalid address or token.
     """
     if token_file is not None:
         given = text_of(token_file, expected="a file with a token").strip()
@@ -115,7 +120,7 @@ def access_of(host: str, token_file: Path | None) -> Access:
 
 
 def _checked(token: str, item: str) -> str:
-    if not TOKEN.fullmatch(token):  # it is not shown: terminals are seen and kept
+    if not TOKEN.fullmatch(token):  # do not print it: terminals are watched and recorded
         got = f"{len(token)} characters"
         raise BadInput("not a token", item=item, expected=EXPECTED, got=got)
     return token

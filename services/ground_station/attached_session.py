@@ -1,8 +1,8 @@
-"""A running UxAS or AMASE as the page watches it: where its aircraft are, its plans, zones and tasks.
+"""State of a running UxAS or AMASE for the page: aircraft, plans, zones and tasks.
 
-Nothing is sent to it. Times are those of arrival, ms since the first connection. What is kept is
-bounded: the last hour, and less where there is more in it; what had to go is told. A connection that
-is lost is told too, and made again.
+Nothing is sent to it. Times are arrival times, ms since the first connection. The stored data are
+bounded: the last hour, or less if there is more in it; what is dropped is reported. A lost
+connection is reported, and re-established.
 """
 
 from __future__ import annotations
@@ -28,24 +28,26 @@ from cratous.services.requirements.attached import Attached
 from cratous.spec.mission import Frame
 
 WINDOW_MS, MOST_ROWS, LOOK_MS = 3_600_000, 200_000, 5000
-"""So far back is kept, and of rows of tracks and bands together; so often it is looked whether that is so."""
+"""Length of the stored window [ms], maximum number of track and band rows together, and interval of
+the check [ms].
+"""
 AIRCRAFT, ROUTES, SHAPES, PLACES, EVENTS, WAITING = 1000, 2000, 2000, 100_000, 1000, 1000
 UPDATES = 600
-"""So many updates a page may be behind; one that is further behind begins anew."""
+"""Number of updates that a page may lag behind; beyond that it starts anew."""
 UPDATE_MS = 100
-"""What comes within it is one update."""
+"""Messages within this time form one update [ms]."""
 SILENT_MS = 3000
-"""If nothing has come for so long, it is said."""
+"""Time without messages after which silence is reported [ms]."""
 CONNECTED = "connected"
-"""As the port says it."""
+"""Status text of the port when connected."""
 WATCHING = "a running system is watched; `cratous monitor --attach` judges it"
 
 
 class AttachedSession:
-    """Watches in a thread of its own from the beginning; `close` ends it."""
+    """Watches in its own thread from its creation; `close` ends it."""
 
     token = ""
-    """Nobody commands."""
+    """No token: there are no commands."""
 
     def __init__(self, where: Address) -> None:
         self._where = where
@@ -92,7 +94,7 @@ class AttachedSession:
                 self._connected = True
                 self._event(text)
             if not self._connected or text == CONNECTED:
-                self._said = text  # why there is no connection; what is refused is counted
+                self._said = text  # why there is no connection; refused messages are counted
 
     def _find(self, kind: str, _time_ns: int) -> None:
         with self._changed:
@@ -124,7 +126,7 @@ class AttachedSession:
             self._event(told_text(entry))
 
     def _flush(self, now_ms: int) -> None:
-        """What is new becomes an update."""
+        """Collect new data into an update."""
         self._flushed_ms = now_ms
         self._forget(now_ms)
         fixed: dict[str, Any] = {"end_ms": now_ms, "unread": self._unread()}
@@ -184,7 +186,7 @@ class AttachedSession:
             return {"state": state, "rate": 1.0, "text": "; ".join([text, *rest])}
 
     def begun(self) -> dict[str, Any]:
-        """All that is kept, for a page that opens; next: the update that it asks for first."""
+        """All stored data, for a page that opens; next: the first update that it should request."""
         with self._changed:
             self._flush(self._attached.now_ms())
             return {
@@ -203,7 +205,7 @@ class AttachedSession:
             }  # fmt: skip
 
     def told(self, first: int) -> dict[str, Any]:
-        """The updates from a number on, and how it stands; again: the page is too far behind and begins anew."""
+        """The updates from a number on, and the status; again: the page lags too far behind and must start anew."""
         with self._changed:
             oldest = self._count - len(self._updates)
             again = not oldest <= first <= self._count
@@ -214,7 +216,7 @@ class AttachedSession:
             }  # fmt: skip
 
     def who(self, _token: str, _page: str) -> str:
-        """Every page watches."""
+        """Every page may only watch."""
         return "watch"
 
     def order(self, _token: str, _page: str, _asked: Any) -> None:
@@ -222,7 +224,7 @@ class AttachedSession:
         raise NotObeyed(403, "a running system is watched, and not commanded")
 
     def close(self) -> None:
-        """Watch no longer."""
+        """Stop watching."""
         with self._changed:
             self._ending = True
         self._thread.join()

@@ -1,4 +1,4 @@
-"""Bands and alerts of vehicles, as the WellClearViolationIntervals in a log tell them; none is computed here."""
+"""Bands and alerts of vehicles, from the WellClearViolationIntervals in a log; nothing is computed here."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Band = tuple[float, float, str]
 
 
 class Dimension(NamedTuple):
-    """How the message spells one: own value, intervals with their regions, recovery, and the ends of both."""
+    """Message fields of one dimension: own value, intervals with regions, recovery, and the range of both."""
 
     own: str
     intervals: str
@@ -47,7 +47,7 @@ DIMENSIONS = {
 
 
 class Bands:
-    """Reads the bands of each vehicle in the order of the log. unread: the number of messages that could not be read."""
+    """Reads the bands of each vehicle in log order. unread: number of messages that could not be read."""
 
     def __init__(self) -> None:
         self._rows: dict[str, dict[int, dict[str, Any]]] = {}
@@ -55,7 +55,7 @@ class Bands:
         self.unread = 0
 
     def add(self, entry: Entry, time_ms: int) -> None:
-        """Take a message of a time of the page; those of other types change nothing."""
+        """Process a message with its display time [ms]; other types are ignored."""
         if entry.topic != BANDS:
             return
         body, error = any_data(entry)
@@ -65,22 +65,22 @@ class Bands:
             return
         vehicle = str(body["EntityId"])
         rows, second = self._rows.setdefault(vehicle, {}), time_ms // PERIOD_MS
-        if second not in rows:  # the first of each second stays
+        if second not in rows:  # the first of each second is kept
             rows[second] = row
             self._new.setdefault(vehicle, []).append(row)
 
     @property
     def found(self) -> dict[str, list[dict[str, Any]]]:
-        """By the number of a vehicle, the first message of each second, in the order of time.
+        """By vehicle number, the first message of each second, in time order.
 
-        Time [ms]; own: a value for each of DIMENSIONS; bands: by dimension, where there are any, from
-        and to (of headings clockwise) and region; intruders: number, time to the violation [s], alert
-        level. Degrees, m/s, m; what is not finite is None.
+        Time [ms]; own: a value for each of DIMENSIONS; bands: by dimension, if any, with start, end
+        (for headings clockwise) and region; intruders: number, time to the violation [s], alert
+        level. Units are degrees, m/s, m; non-finite values are None.
         """
         return {vehicle: [rows[k] for k in sorted(rows)] for vehicle, rows in self._rows.items()}
 
     def forget(self, before_ms: int) -> None:
-        """Let go of what is older."""
+        """Drop data older than before_ms."""
         first = before_ms // PERIOD_MS
         for vehicle, rows in list(self._rows.items()):
             self._rows[vehicle] = {k: row for k, row in rows.items() if k >= first}
@@ -89,7 +89,7 @@ class Bands:
 
     @property
     def size(self) -> int:
-        """How many rows, bands and intruders are kept."""
+        """Number of stored rows, bands and intruders."""
         return sum(
             1 + sum(map(len, row["bands"].values())) + len(row["intruders"])
             for rows in self._rows.values()
@@ -97,13 +97,13 @@ class Bands:
         )
 
     def take_new(self) -> dict[str, list[dict[str, Any]]]:
-        """What came since the last time that this was asked."""
+        """The data that arrived since the last call."""
         taken, self._new = self._new, {}
         return taken
 
 
 def _row(body: Any, time_ms: int) -> dict[str, Any] | None:
-    """What is shown of a message; None where it lacks something, or its lists do not fit together."""
+    """The displayed data of a message; None if it lacks something, or its lists are inconsistent."""
     try:
         int(body["EntityId"])
         bands = {name: _bands(body, one) for name, one in DIMENSIONS.items()}

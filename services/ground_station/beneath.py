@@ -1,4 +1,4 @@
-"""What lies beneath the map: shapes of the user's files and pictures of a tile server, by the query of a page."""
+"""Background of the map: shapes of user files and tiles of a tile server, requested by pages."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ LARGEST = 1e9
 
 
 class Beneath:
-    """images: from where the page may load pictures, besides its own server."""
+    """images: origin from which the page may load images, besides its own server."""
 
     def __init__(self, shapes: Sequence[Shape] = (), tiles: Tiles | None = None) -> None:
         self._shapes, self._tiles = shapes, tiles
         self.images = "" if tiles is None else tiles.origin
 
     def answer(self, path: str, query: str) -> dict[str, Any] | None:
-        """As JSON; None for a path that it has nothing for. Raises NotObeyed and BadInput."""
+        """The answer as JSON data; None for an unknown path. Raises NotObeyed and BadInput."""
         if path == "/overlays.json":
             attribution = None if self._tiles is None else self._tiles.attribution
             return {"shapes": in_frame(self._shapes, _origin(query)), "tiles": attribution}

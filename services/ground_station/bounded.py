@@ -1,4 +1,4 @@
-"""Rows of which only so many are kept: what is new of a thing takes its place, what is oldest goes."""
+"""A bounded list of rows: a new row replaces the one with the same key, and the oldest are dropped."""
 
 from __future__ import annotations
 
@@ -10,17 +10,19 @@ Row = dict[str, Any]
 
 
 class Bounded:
-    """Rows in their order. let_go: how many had to go before anything took their place."""
+    """Rows in order. let_go: number of rows dropped without being replaced."""
 
     def __init__(self, most: int, places: int, key: Callable[[Row], Any] | None = None) -> None:
-        """most: rows; places: on the map, of all rows together; key: rows with the same one are of one thing."""
+        """most: maximum number of rows; places: maximum number of map points in all rows; key: rows
+        with equal keys describe one object.
+        """
         self._most, self._places, self._key = most, places, key
         self._rows: dict[Any, Row] = {}
         self._held = self._number = self.let_go = 0
         self._new: deque[Row] = deque(maxlen=most)
 
     def append(self, row: Row) -> None:
-        """Keep one more."""
+        """Add a row."""
         self._number += 1
         key = self._number if self._key is None else self._key(row)
         self._drop(key)
@@ -39,7 +41,7 @@ class Bounded:
         return iter(list(self._rows.values()))
 
     def take_new(self) -> list[Row]:
-        """What came since the last time that this was asked, and is still kept."""
+        """The rows added since the last call that are still stored."""
         kept = {id(row) for row in self._rows.values()}
         taken = [row for row in self._new if id(row) in kept]
         self._new.clear()

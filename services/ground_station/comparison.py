@@ -1,11 +1,10 @@
-"""Two runs side by side, as plain data: both recordings and the rows in which they differ.
+"""Compares two runs: both recordings, and the rows in which they differ, as plain data.
 
-A row names what only one of the runs has, or what is not the same in both, with its instants [ms
-after mission start]. What comes several times, such as takeovers of a vehicle, is paired in its
-order: the third with the third. Nothing is judged. Times, texts, verdicts and margins are compared
-exactly. Positions are compared as the page has them, to 0.1 m: those of aircraft once a second and
-where another one commands, those of waypoints north and east. What differs by less, or only in
-between, makes no row.
+A row names what only one run has, or what differs, with its instants [ms after mission start].
+Repeated items, such as takeovers of a vehicle, are paired in order: the third with the third.
+Nothing is judged. Times, texts, verdicts and margins are compared exactly. Positions are compared
+as displayed, to 0.1 m: those of aircraft once a second and at changes of command, those of
+waypoints as north and east. Smaller differences, and those in between, give no row.
 """
 
 from __future__ import annotations
@@ -24,12 +23,12 @@ from cratous.spec.mission import Mission
 
 FORMAT = "cratous-comparison/1"
 SETTINGS = ("avoidance", "seed")
-"""Beside the mission, what a run says of how it was made."""
+"""Settings of a run that are compared besides the mission."""
 OTHERWISE = "otherwise than A"
 
 
 class Said(NamedTuple):
-    """What one run says; value: all of it, by which it is compared; time_ms: None without an instant."""
+    """An item of one run; value: everything by which it is compared; time_ms: None without an instant."""
 
     item: str
     text: str
@@ -50,11 +49,11 @@ def check_comparable(run: Path, other: Path) -> None:
 
 
 def comparison(run: Path, other: Path) -> dict[str, Any]:
-    """All that is shown of two runs. Raises BadInput as `recording` and `check_comparable` do."""
+    """The data displayed for two runs. Raises BadInput as `recording` and `check_comparable` do."""
     check_comparable(run, other)
     a, b = ({**recording(path), "run": str(path)} for path in (run, other))
     for one in (a, b):
-        one["verdicts"].pop("proofs", None)  # they are shown of one run
+        one["verdicts"].pop("proofs", None)  # shown for single runs only
     unknown = [
         f"{name}: {one['verdicts']['why_none']}"
         for name, one in (("A", a), ("B", b))
@@ -62,14 +61,14 @@ def comparison(run: Path, other: Path) -> dict[str, Any]:
     ]
     rows = _settings(_meta(run), _meta(other))
     for kind, said in KINDS.items():
-        if not (unknown and kind in JUDGED):  # a verdict that is not known differs from none
+        if not (unknown and kind in JUDGED):  # an unknown verdict is not the absence of one
             rows += _rows(kind, said(a), said(b))
     rows += _parting(a["tracks"], b["tracks"])
     return {"format": FORMAT, "a": a, "b": b, "differences": rows, "verdicts_why_none": unknown}
 
 
 def _meta(path: Path) -> tuple[Mission, dict[str, Any]]:
-    """The mission of a run and all else that its log says at the beginning."""
+    """The mission of a run, and the remaining meta data of its log."""
     with open_log(path) as source:
         meta = source.meta()
     if "mission" not in meta:
@@ -88,7 +87,7 @@ def _meta(path: Path) -> tuple[Mission, dict[str, Any]]:
 def _settings(
     a: tuple[Mission, dict[str, Any]], b: tuple[Mission, dict[str, Any]]
 ) -> list[dict[str, Any]]:
-    """Settings and parts of the mission that are not the same, or that one of the logs alone names."""
+    """Settings and parts of the mission that differ, or that only one of the logs has."""
     found = []
     for name in SETTINGS:
         sides = [
@@ -113,7 +112,7 @@ def _short(value: Any) -> str:
 
 
 def _numbered(said: Iterable[Said]) -> dict[tuple[str, int], Said]:
-    """By item and its number in the order of the log."""
+    """Items by name and occurrence number in log order."""
     count: Counter[str] = Counter()
     found = {}
     for one in said:
@@ -123,7 +122,7 @@ def _numbered(said: Iterable[Said]) -> dict[tuple[str, int], Said]:
 
 
 def _rows(kind: str, a: Iterable[Said], b: Iterable[Said]) -> list[dict[str, Any]]:
-    """The rows of one kind, in the order of their instants; what is equal has none."""
+    """The differing rows of one kind, in time order."""
     one, two = _numbered(a), _numbered(b)
     found = []
     for key in {**one, **two}:
@@ -134,7 +133,7 @@ def _rows(kind: str, a: Iterable[Said], b: Iterable[Said]) -> list[dict[str, Any
         item = key[0] if key[1] == 1 else f"{key[0]}, number {key[1]}"
         times = [said.time_ms for said in (left, right) if said and said.time_ms is not None]
         row = {"kind": kind, "item": item, "side": side, "a": _cell(left), "b": _cell(right)}
-        if row["a"] == row["b"]:  # what differs is more than what is told of it
+        if row["a"] == row["b"]:  # the items differ in more than the displayed text
             row["b"] = _cell(right, f", {OTHERWISE}")
         found.append((min(times, default=-1), row))
     return [row for _, row in sorted(found, key=lambda one: one[0])]
@@ -147,7 +146,7 @@ def _cell(said: Said | None, more: str = "") -> dict[str, Any] | None:
 def _parting(
     a: dict[str, list[list[float]]], b: dict[str, list[list[float]]]
 ) -> list[dict[str, Any]]:
-    """For each aircraft whose track is not the same in both, the first instant at which it is not."""
+    """For each aircraft with differing tracks, the first instant at which they differ."""
     found = []
     for number in {**a, **b}:
         one, two = ([row[:4] for row in tracks.get(number, ())] for tracks in (a, b))
@@ -227,7 +226,7 @@ def _routes(run: dict[str, Any]) -> list[Said]:
 
 
 def _phases(run: dict[str, Any]) -> list[Said]:
-    """What was told of tasks: where their phase changed, and again while it did not."""
+    """Reports on tasks: changes of phase, and repeated reports without a change."""
     return [
         _said_at(
             one["time_ms"],
@@ -245,7 +244,7 @@ def _who(phase: dict[str, Any]) -> str:
 
 
 def _others(run: dict[str, Any]) -> list[Said]:
-    """Events that no other kind tells."""
+    """Events that no other kind covers."""
     return [
         _told(event, event["text"] if event["vehicle"] is None else f"vehicle {event['vehicle']}")
         for event in _events(run, OTHER)
@@ -276,6 +275,6 @@ KINDS: dict[str, Callable[[dict[str, Any]], list[Said]]] = {
     "end": _end,
     "verdict in detail": _parts,
 }
-"""What is compared, in the order of the page."""
+"""The compared kinds, in page order."""
 JUDGED = ("verdict", "verdict in detail")
-"""What only the report of a run says."""
+"""Kinds that only the report of a run has."""

@@ -1,4 +1,4 @@
-"""What an operator commands vehicles of a flight to do at once: kept until the next step, then changes of its mission."""
+"""Direct operator commands to vehicles in flight: queued until the next step, then changes of the mission."""
 
 from __future__ import annotations
 
@@ -18,27 +18,29 @@ class Directed(NamedTuple):
 
 
 class DirectOrders:
-    """Orders, from any thread, that the flight takes up when it next steps; the mission grows by them."""
+    """Commands, from any thread, that the flight executes at its next step; the mission grows by them."""
 
     def __init__(self, text: str, put: Callable[[str, int, Any], Directed]) -> None:
-        """text: of the mission as it is flown now; put: a text with a command that is known at a time [ms].
+        """text: of the current mission; put: adds a command known at a time [ms] to a text.
 
-        Of put: raises CratousError where the mission cannot have it.
+        put raises CratousError if the mission cannot have it.
         """
         self.text = text
         self.mission: Mission | None = None
-        """With all commands so far, None without any."""
+        """The mission with all commands so far, None without any."""
         self._put = put
         self._given: list[Any] = []
         self._lock = threading.Lock()
 
     def give(self, command: Any) -> None:
-        """Have a command taken up at the next step."""
+        """Queue a command for the next step."""
         with self._lock:
             self._given.append(command)
 
     def due(self, now_ms: int, told: Callable[[dict[str, Any]], None]) -> tuple[Change, ...]:
-        """The changes that are commanded at a step; told: hears, of each command, the text with it, or why it is refused."""
+        """The commanded changes at a step; told: called for each command with the new text, or with
+        why it is refused.
+        """
         with self._lock:
             given, self._given = self._given, []
         found = []

@@ -1,4 +1,4 @@
-"""What the page shows of a flight of ours, from its mission and its messages, one at a time."""
+"""Display data of a CRATOUS flight, from its mission and its messages, processed one at a time."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from cratous.spec.mission import Mission
 from cratous.spec.mission.changes import VEHICLE_LOST, without_vehicles
 
 READ_BY_FLIGHT = "cratous."
-"""Types of flights of ours begin so."""
+"""Prefix of the message types of CRATOUS flights."""
 HEARTBEAT, GATED = "cratous.Heartbeat", "cratous.GatedCommand"
 LINK, STATE = "cratous.BridgeStatus", "afrl.cmasi.AirVehicleState"
 
 
 class FlownRecording:
-    """Takes the messages of a flight in their order."""
+    """Processes the messages of a flight in order."""
 
     def __init__(self, mission: Mission) -> None:
         self._last: Entry | None = None
@@ -33,7 +33,7 @@ class FlownRecording:
         self.reader = FlightReader(vehicle.id for vehicle in mission.vehicles)
 
     def add(self, entry: Entry) -> None:
-        """Take the next message. Raises LookupError, TypeError or ValueError if it lacks something."""
+        """Process the next message. Raises LookupError, TypeError or ValueError if it lacks something."""
         self._last = entry
         topic = entry.topic
         if topic == HEARTBEAT:
@@ -49,11 +49,11 @@ class FlownRecording:
 
     @property
     def place(self) -> str:
-        """The message that was taken last, as an error names it."""
+        """The last message, as named in errors."""
         return "" if self._last is None else self._last.place
 
     def first(self) -> dict[str, Any]:
-        """What the mission says; nothing of what was flown."""
+        """The data from the mission, without the flight."""
         plain = self._plain
         zones = [{**zone, "from_ms": 0} for zone in plain["zones"]]
         zones += [
@@ -74,7 +74,7 @@ class FlownRecording:
         }
 
     def whole(self) -> dict[str, Any]:
-        """All of it, once there are no more messages."""
+        """The complete data, after the last message."""
         flight = self.reader.finish()
         return {
             **self.first(),
@@ -96,16 +96,16 @@ class FlownRecording:
 
     @property
     def unread(self) -> int:
-        """Of how many messages the body could not be decoded, or does not fit."""
+        """Number of messages whose body could not be decoded, or is invalid."""
         return self.shapes.unread + self.bands.unread
 
     def footprints(self) -> list[dict[str, Any]]:
-        """What was seen so far, in the frame of the page."""
+        """Sensor footprints so far, in the frame of the page."""
         return _footprints(self.reader.flight, self._to_local)
 
 
 def _absences(mission: Mission) -> list[dict[str, Any]]:
-    """From when to when [ms] a vehicle takes no part, and whether it is lost or has not joined yet."""
+    """The times [ms] between which a vehicle is absent, and whether it is lost or has not joined yet."""
     instants = sorted({0, *(change.at_ms for change in mission.changes)})
     found: list[dict[str, Any]] = []
     for begin_ms, end_ms in zip(instants, [*instants[1:], None], strict=True):

@@ -1,6 +1,8 @@
-"""Who is let in, ahead of whatever is asked: by the server's own name, with its token; and what each answer tells browsers.
+"""Access check before every request: the server's own name and its token; and security headers of
+each answer.
 
-starlette's TrustedHostMiddleware looks at no port: what another server of this machine is called by would be trusted.
+starlette's TrustedHostMiddleware ignores the port: names of other servers on this machine would be
+trusted.
 """
 
 from __future__ import annotations
@@ -28,10 +30,10 @@ HEADERS = {
 
 
 class Guard:
-    """An application, for those who are let in."""
+    """Wraps an application with the access check."""
 
     def __init__(self, app: ASGIApp, access: Access, images: Callable[[], str]) -> None:
-        """images: from where pages may load pictures besides, "" for nowhere."""
+        """images: origins from which pages may load additional images, "" for none."""
         self._app, self._access, self._images = app, access, images
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -53,7 +55,7 @@ class Guard:
         await (refused or self._app)(scope, receive, send_guarded)
 
     def _refused(self, request: Request, shown: str | None) -> Response | None:
-        """The refusal of a request that calls the server by another name, or without the token; None for its own."""
+        """The refusal of a request that names another server, or lacks the token; None if it is permitted."""
         near = request.scope["server"]
         if not self._access.called(request.headers.getlist("host"), near, near[1]):
             told = f"this server is {self._access.url(near[1])} and answers to no other name"

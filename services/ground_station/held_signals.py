@@ -1,4 +1,4 @@
-"""Signals that end a process wait while it is copied: Python drops what their handlers raise within a fork."""
+"""Defers termination signals while the process forks: Python drops exceptions of signal handlers within a fork."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ ENDING = (signal.SIGTERM, signal.SIGHUP)
 
 @contextmanager
 def held_back() -> Iterator[None]:
-    """In here these signals wait for the end of it; in the copy as well, if they had come before it was made."""
+    """Inside the block these signals wait for its end; in the child too, if they arrived before the fork."""
     if threading.current_thread() is not threading.main_thread():
         yield  # handlers run in the main thread
         return
     came: list[int] = []
     before = {number: signal.getsignal(number) for number in ENDING}
     for number, handler in before.items():
-        if handler is not None:  # None: not made by Python, and not to be made again by it
+        if handler is not None:  # None: not installed by Python, so Python cannot restore it
             signal.signal(number, lambda number, _frame: came.append(number))
     try:
         yield

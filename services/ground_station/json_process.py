@@ -1,4 +1,4 @@
-"""A process that is told, and tells, JSON objects, one a line: what flies, or plans, for a page."""
+"""A child process that communicates by JSON objects, one per line: it flies or plans for a page."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any
 
 
 class JsonProcess:
-    """Starts at once. What it tells comes from one thread, in order."""
+    """Starts immediately. Its messages are delivered from one thread, in order."""
 
     def __init__(
         self,
@@ -21,8 +21,9 @@ class JsonProcess:
         ended: Callable[[str], None],
         *words: str,
     ) -> None:
-        """module, words: what runs, as `python -m` takes it; heard: gets each object, and its
-        line; ended: told at the end by which signal or exit code."""
+        """module, words: arguments of `python -m`; heard: called with each object and its line;
+        ended: called at the end with the signal or exit code.
+        """
         self._heard, self._ended = heard, ended
         self._saying = threading.Lock()
         self._process = subprocess.Popen(
@@ -37,20 +38,20 @@ class JsonProcess:
             try:
                 told = json.loads(line)
             except ValueError:
-                break  # it was cut off in the middle of a line
+                break  # cut off in the middle of a line
             self._heard(told, line)
         code = self._process.wait()
         self._ended(f"signal {-code}" if code < 0 else f"exit code {code}")
 
     def say(self, asked: dict[str, Any]) -> None:
-        """Tell it something; nothing if it has ended, which `ended` is told."""
+        """Send an object; no effect if the process has ended, which `ended` reports."""
         assert self._process.stdin is not None
         with self._saying, suppress(OSError, ValueError):
             self._process.stdin.write(json.dumps(asked) + "\n")
             self._process.stdin.flush()
 
     def end(self, patience_s: float) -> None:
-        """Close its stdin, which asks it to end; kill it if it has not after so long."""
+        """Close its stdin, which asks it to end; kill it after patience_s seconds."""
         assert self._process.stdin is not None
         with self._saying, suppress(OSError):
             self._process.stdin.close()

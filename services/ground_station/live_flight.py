@@ -1,7 +1,7 @@
-"""A flight as it is told while it is flown: what is new on the page, as JSON lines, and its commands.
+"""A flight in progress: publishes new display data as JSON lines, and executes commands.
 
-It looks at the messages and calls no kernel, so what the flight counts and writes is the same as
-without it. Verdicts so far are asked of the monitor in a fork of the process, for the same reason.
+It reads the messages and calls no kernel, so that the flight's counts and log are unaffected. For
+the same reason the monitor is asked for interim verdicts in a fork of the process.
 """
 
 from __future__ import annotations
@@ -28,21 +28,21 @@ from cratous.spec.mission import Change, Mission
 from cratous.spec.mission.guarantees import Outcome, Verdict, worst
 
 TOLD_S = 0.1
-"""So often, at most, it is told what is new."""
+"""Minimum interval of updates [s]."""
 JUDGED_S = 1.0
-"""So often, at most, the monitor is asked for the verdicts so far."""
+"""Minimum interval of interim verdicts from the monitor [s]."""
 GROWING = ("authority", "phases", "events", "routes", "links")
 CHANGED = "cratous.MissionChange"
 DIRECT = "direct"
-"""An order with a command that the flight obeys as it is."""
+"""Kind of order that contains a command for direct execution."""
 Send = Callable[[dict[str, Any]], None]
 
 
 class LiveFlight:
-    """Taps a bus, holds the flight to its pace and sends what is new.
+    """Taps a bus, paces the flight and sends updates.
 
-    send: gets each update, from any thread; judged: descriptor of a pipe to which verdicts are written,
-    a line each; orders: what the operator has vehicles do at once.
+    send: called with each update, from any thread; judged: descriptor of a pipe for verdict lines;
+    orders: direct commands of the operator.
     """
 
     def __init__(
@@ -80,7 +80,7 @@ class LiveFlight:
         self.tell()
 
     def command(self, asked: dict[str, Any]) -> None:
-        """Do what the operator asks for: play, pause, step or rate; a direct command at the next step."""
+        """Execute an operator command: play, pause, step or rate; a direct command at the next step."""
         what = asked.get("do")
         if what == "play":
             self.pace.play()
@@ -105,7 +105,7 @@ class LiveFlight:
         return None if self._orders is None else self._orders.mission
 
     def state(self) -> None:
-        """Send whether it flies, and how fast."""
+        """Send whether it flies, and its rate."""
         state = "paused" if self.pace.paused else "flying"
         if self._monitor is not None:
             self._send({"status": {"state": state, "rate": self.pace.rate}})
@@ -129,13 +129,13 @@ class LiveFlight:
         )
 
     def _standing(self) -> None:
-        """Everything up to where it stands is told and judged."""
+        """Publish and judge everything up to the current instant, when paused."""
         self._reap(wait=True)
         self.tell()
         self._ask()
 
     def tell(self) -> None:
-        """Send what is new since the last time."""
+        """Send what is new since the last call."""
         self._told_s = time.monotonic()
         recording, flight = self._recording, self._recording.reader.flight
         lists: dict[str, list[Any]] = {
@@ -173,7 +173,7 @@ class LiveFlight:
         self._send({"set": {"verdicts": shown(report, "report")}})
 
     def _ask(self) -> None:
-        """Ask a copy of this process for the verdicts so far; nothing if one is at it still."""
+        """Request interim verdicts in a fork; no effect while one is still running."""
         if self._monitor is None or self._now_ms == self._asked_ms or not self._reap(wait=False):
             return
         self._asked_s, self._asked_ms = time.monotonic(), self._now_ms
@@ -188,10 +188,10 @@ class LiveFlight:
             self._write(self._so_far())
             code = 0
         finally:
-            os._exit(code)  # nothing of the flight is cleaned up by its copy
+            os._exit(code)  # the child must not run the flight's cleanup
 
     def _write(self, update: dict[str, Any]) -> None:
-        """Write a line to the pipe of the verdicts; it begins a line of its own, whatever was written before."""
+        """Write a line to the verdict pipe; it starts on a new line, whatever was written before."""
         data = b"\n" + json_text(update).encode() + b"\n"
         while data:
             data = data[os.write(self._judged, data) :]
@@ -206,7 +206,7 @@ class LiveFlight:
         return {"set": {"verdicts": {**shown(found, "monitor"), "so_far_ms": self._now_ms}}}
 
     def _reap(self, *, wait: bool) -> bool:
-        """True iff no copy is at work any more."""
+        """True iff no child is running any more."""
         if self._judge:
             done, how = os.waitpid(self._judge, 0 if wait else os.WNOHANG)
             if not done:
@@ -216,13 +216,13 @@ class LiveFlight:
             if code:
                 ended = f"signal {-code}" if code < 0 else f"exit code {code}"
                 why = f"at {self._asked_ms / 1000:.1f} s the monitor could not be asked: its process failed ({ended})"
-                # by the same pipe, so that no older verdicts come after it
+                # through the same pipe, so that no older verdicts follow it
                 self._write({"set": {"verdicts": {"why_none": why}}})
         return True
 
     def end_judge(self) -> None:
-        """End the copy that judges, if one is at work; what it would have said is not needed any more."""
-        self._monitor = None  # nobody is asked again
+        """Terminate the judging child, if any; its result is no longer needed."""
+        self._monitor = None  # no further verdicts are requested
         if self._judge:
             os.kill(self._judge, signal.SIGKILL)
             os.waitpid(self._judge, 0)
@@ -230,16 +230,16 @@ class LiveFlight:
 
 
 def _keep_open(kept: int) -> None:
-    """Close all other descriptors of a copy of this process: locks and ends of pipes are the flight's alone."""
+    """Close all other descriptors in the child: locks and pipe ends belong to the flight."""
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     for number in map(int, os.listdir("/dev/fd")):
         if number > 2 and number != kept:
-            with suppress(OSError):  # the one that listed them
+            with suppress(OSError):  # the descriptor used for listing
                 os.close(number)
 
 
 def forward(source: int, send: Send) -> threading.Thread:
-    """A thread that sends each line of a pipe on, until it is closed; a line that was cut off is left out."""
+    """A thread that forwards each line of a pipe until it is closed; an incomplete line is dropped."""
 
     def run() -> None:
         with os.fdopen(source, "rb") as lines, suppress(BrokenPipeError):

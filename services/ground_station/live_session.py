@@ -1,4 +1,4 @@
-"""The flight's process as the server has it: what it told so far, whether it lives, who commands it."""
+"""The server's view of the flight process: its output so far, its status, and who commands it."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from cratous.services.ground_station.pace import RATES
 from cratous.spec.errors import BadInput
 
 ABSENT_S = 3.0
-"""A page that has not asked for so long commands no more."""
+"""Time without requests after which a page loses command [s]."""
 MOST_TOLD = 300
-"""Updates in one answer."""
+"""Maximum number of updates in one answer."""
 OVER = ("ended", "stopped", "failed", "lost")
 ORDERS = ("play", "pause", "step", "rate", "stop", "take")
 COMMAND = "command"
-"""An order of the page that changes the mission: the flight is flown anew up to now, and then with it."""
+"""An order that changes the mission: the flight is flown again up to now, and then with the change."""
 ENDING_S = 20.0
 
 
@@ -30,8 +30,9 @@ Amend = Callable[[int, Any], dict[str, Any]]
 
 
 class Direct(NamedTuple):
-    """Commands that the flight obeys as it is. kinds: what they are; checked(now_ms, command): raises NotObeyed or
-    BadInput where it is none; flown: hears the text of the mission with those that the flight has taken up."""
+    """Commands for direct execution. kinds: their names; checked(now_ms, command): raises NotObeyed
+    or BadInput for an invalid one; flown: receives the mission's text with the executed commands.
+    """
 
     kinds: tuple[str, ...]
     checked: Callable[[int, Any], None]
@@ -39,7 +40,7 @@ class Direct(NamedTuple):
 
 
 class NotObeyed(Exception):
-    """A command that is not obeyed; status: of HTTP."""
+    """A command that is not executed; status: of HTTP."""
 
     def __init__(self, status: int, why: str) -> None:
         super().__init__(why)
@@ -47,7 +48,7 @@ class NotObeyed(Exception):
 
 
 class LiveSession:
-    """Starts the flight's process and keeps all that it tells, in order.
+    """Starts the flight process and stores all its output, in order.
 
     token: whoever has it may command, one page at a time. status: state and text for the page.
     """
@@ -59,8 +60,10 @@ class LiveSession:
         commanded: Amend | None = None,
         direct: Direct | None = None,
     ) -> None:
-        """module: what flies, as `python -m` takes it; asked: its argument; commanded: gives, for a time of the
-        flight [ms] and a command, the argument of the flight with it, which has `until_ms`. Raises NotObeyed or BadInput; direct: what needs no flight anew."""
+        """module: argument of `python -m` for the flight; asked: its request; commanded: for a
+        flight time [ms] and a command, returns the request for the flight with it, which has
+        `until_ms`, or raises NotObeyed or BadInput; direct: commands that need no new flight.
+        """
         self.token = secrets.token_urlsafe(24)
         self.status: dict[str, Any] = {"state": "loading", "rate": 1.0, "text": ""}
         self._updates: list[str] = []
@@ -70,12 +73,12 @@ class LiveSession:
         self._operator, self._seen_s = "", 0.0
         self._module, self._commanded, self._direct = module, commanded, direct
         self._given = 0
-        """Direct commands that the flight has not taken up yet."""
+        """Number of direct commands not yet executed."""
         self._flight = self._now_ms = self._until_ms = 0
         self._process = self._start(asked)
 
     def _start(self, asked: dict[str, Any]) -> JsonProcess:
-        """A process that flies; what one that was before it still says is not heard."""
+        """Start a flight process; later output of a previous one is ignored."""
         number = self._flight
 
         def heard(told: dict[str, Any], line: str) -> None:
@@ -122,7 +125,7 @@ class LiveSession:
             self._changed.notify_all()
 
     def begun(self) -> dict[str, Any]:
-        """What the mission says, for a page that opens; waits for it. Raises BadInput if there is none."""
+        """The data from the mission, for a page that opens; waits for it. Raises BadInput if there is none."""
         with self._changed:
             self._changed.wait_for(lambda: self._begin is not None or self.status["state"] in OVER)
             if self._begin is None:
@@ -134,7 +137,7 @@ class LiveSession:
             return {**self._begin, "flight": self._flight}
 
     def told(self, first: int) -> dict[str, Any]:
-        """The updates from a number on, some hundreds at most, and how the flight is."""
+        """The updates from a number on, some hundreds at most, and the flight's status."""
         with self._changed:
             found = self._updates[first : first + MOST_TOLD]
             total, status = len(self._updates), dict(self.status)
@@ -147,11 +150,11 @@ class LiveSession:
         }
 
     def knows(self, token: str) -> bool:
-        """True iff it is the token."""
+        """True iff the token is right."""
         return hmac.compare_digest(token.encode(), self.token.encode())
 
     def who(self, token: str, page: str) -> str:
-        """What a page may do that asks how it stands: "you" command, "other" does, or only "watch"."""
+        """Role of a page: "you" command, "other" commands, or "watch" only."""
         if not self.knows(token) or not page:
             return "watch"
         with self._changed:
@@ -162,7 +165,7 @@ class LiveSession:
             return "you"
 
     def order(self, token: str, page: str, asked: Any) -> None:
-        """Obey a command of a page. Raises NotObeyed, with why."""
+        """Execute a command of a page. Raises NotObeyed, with the reason."""
         if not self.knows(token):
             raise NotObeyed(
                 403, "commands need the token of the address that `cratous serve` printed"
@@ -221,7 +224,7 @@ class LiveSession:
         return isinstance(command, dict) and command.get("what") in kinds
 
     def _give(self, direct: Direct, command: Any) -> None:
-        """Have the flight obey a command at its next step."""
+        """Let the flight execute a command at its next step."""
         with self._commanding:
             if self.status["state"] not in ("paused", "flying"):
                 raise NotObeyed(409, "the flight has not begun")
@@ -232,5 +235,5 @@ class LiveSession:
             self._process.say({"do": "direct", "command": command})
 
     def close(self) -> None:
-        """End the process if it flies; a flight that is not over leaves no results."""
+        """End the process; an unfinished flight leaves no results."""
         self._process.end(ENDING_S)

@@ -1,7 +1,7 @@
-"""GeoJSON (RFC 7946) that the map shows beneath all else: coast, roads, airspace, or whatever a user has of the place.
+"""GeoJSON (RFC 7946) as background of the map: coasts, roads, airspace, or other user data.
 
-Points, lines and areas, also several in one geometry, with `label` or `name` of their properties. What is shown so is a
-picture: nothing is planned, flown or judged by it.
+Points, lines and areas, also several in one geometry, with `label` or `name` from their properties.
+They are displayed only: nothing is planned, flown or judged by them.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from cratous.spec.mission import Frame
 
 MOST_BYTES = 32 << 20
 MOST_PLACES = 200_000
-"""Places of all files together: more of them, and the map is slow."""
+"""Maximum number of positions in all files; more would make the map slow."""
 DEPTH = {
     "Point": 0,
     "MultiPoint": 1,
@@ -29,7 +29,7 @@ DEPTH = {
     "Polygon": 2,
     "MultiPolygon": 3,
 }
-"""How many lists of positions lie in each other in the coordinates of a geometry."""
+"""Nesting depth of the coordinates of each geometry."""
 FEATURES, SEVERAL = "FeatureCollection", "GeometryCollection"
 
 
@@ -58,7 +58,9 @@ def overlays_of(paths: Sequence[Path]) -> tuple[Shape, ...]:
 
 
 def in_frame(shapes: Sequence[Shape], frame: Frame) -> list[dict[str, Any]]:
-    """The shapes as the page draws them: places north and east [m] in a frame; none that has a place too far from it."""
+    """The shapes as the page draws them: positions north and east [m] in a frame; shapes with a
+    position too far away are omitted.
+    """
     plane, told = Projection(frame), []
     for one in shapes:
         north, east = plane.to_local_many(*zip(*one.places, strict=True))
@@ -71,7 +73,7 @@ def in_frame(shapes: Sequence[Shape], frame: Frame) -> list[dict[str, Any]]:
 
 
 def _shapes(data: Any, name: str, place: tuple[str, str]) -> Iterator[Shape]:
-    """Those of an object of GeoJSON; place: file, and where in it."""
+    """The shapes of a GeoJSON object; place: file, and position in it."""
     kind = data.get("type") if isinstance(data, dict) else None
     kind = kind if isinstance(kind, str) else None
     file, item = place
@@ -88,7 +90,7 @@ def _shapes(data: Any, name: str, place: tuple[str, str]) -> Iterator[Shape]:
         said = data.get("properties")
         said = said if isinstance(said, dict) else {}
         name = str(said.get("label") or said.get("name") or "")[:60]
-        if data.get("geometry") is not None:  # a feature without a place is allowed
+        if data.get("geometry") is not None:  # a feature without a geometry is permitted
             yield from _shapes(data["geometry"], name, (file, f"{item}.geometry"))
     elif kind in DEPTH:
         area = kind.endswith("Polygon")
@@ -104,7 +106,7 @@ def _shapes(data: Any, name: str, place: tuple[str, str]) -> Iterator[Shape]:
 def _lines(
     data: Any, depth: int, place: tuple[str, str]
 ) -> Iterator[tuple[tuple[float, float], ...]]:
-    """The lists of positions in coordinates of that depth; a point is a list of one."""
+    """The position lists in coordinates of that depth; a point is a list of one."""
     file, item = place
     if depth == 0:
         yield (_position(data, place),)

@@ -1,4 +1,4 @@
-"""When a flight goes on: paused, for a step, or at so many times the speed of the clock."""
+"""Pacing of a flight: paused, single steps, or at a multiple of real time."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ STEP_MS = 1000
 
 
 class Ended(Exception):
-    """The flight is to stop."""
+    """The flight has to stop."""
 
 
 class Pace:
-    """Holds a flight back. `wait` is called by the flight, everything else by whoever commands it.
+    """Paces a flight. `wait` is called by the flight, everything else by the operator's side.
 
-    A flight that is slower than its rate does not catch up later. It begins paused.
+    A flight that falls behind its rate does not catch up later. It starts paused.
     """
 
     def __init__(self) -> None:
@@ -25,56 +25,56 @@ class Pace:
         self._rate, self._paused, self._ended = 1.0, True, False
         self._now_ms, self._until_ms = 0, 0
         self._since: tuple[float, int] | None = None
-        """Clock [s] and time of the flight [ms] from which the rate counts."""
+        """Reference for the rate: clock [s] and flight time [ms]."""
 
     @property
     def rate(self) -> float:
-        """Seconds of flight in a second of the clock."""
+        """Seconds of flight per second of the clock."""
         return self._rate
 
     @property
     def paused(self) -> bool:
-        """Whether the flight stands, or will after its step."""
+        """Whether the flight is paused, or will be after its step."""
         return self._paused
 
     def play(self) -> None:
-        """Go on at the rate."""
+        """Resume at the current rate."""
         with self._changed:
             self._paused, self._since = False, None
             self._changed.notify_all()
 
     def pause(self) -> None:
-        """Stand."""
+        """Pause the flight."""
         with self._changed:
             self._paused, self._until_ms = True, self._now_ms
             self._changed.notify_all()
 
     def end(self) -> None:
-        """Let the flight go no further: its next `wait` raises Ended."""
+        """Stop the flight: its next `wait` raises Ended."""
         with self._changed:
             self._ended = True
             self._changed.notify_all()
 
     def fly_to(self, time_ms: int) -> None:
-        """Fly up to a time as fast as it goes, then stand."""
+        """Fly up to a time at full speed, then pause."""
         with self._changed:
             self._paused, self._until_ms = True, time_ms
             self._changed.notify_all()
 
     def step(self) -> None:
-        """Fly a second as fast as it goes, then stand."""
+        """Fly one second at full speed, then pause."""
         with self._changed:
             self._paused, self._until_ms = True, self._now_ms + STEP_MS
             self._changed.notify_all()
 
     def set_rate(self, rate: float) -> None:
-        """Take one of RATES."""
+        """Set the rate to one of RATES."""
         with self._changed:
             self._rate, self._since = rate, None
             self._changed.notify_all()
 
     def due(self, time_ms: int) -> float | None:
-        """How long it is until the flight may be at a time [s], at most 0 if now; None if paused."""
+        """Seconds until the flight may reach a time, at most 0 if now; None if paused."""
         if self._paused:
             return 0.0 if time_ms <= self._until_ms else None
         now_s = time.monotonic()
@@ -86,7 +86,7 @@ class Pace:
         return left_s
 
     def wait(self, time_ms: int, standing: Callable[[], None]) -> None:
-        """Return when the flight may be at that time [ms]; `standing` is called when it is paused. Raises Ended."""
+        """Return when the flight may reach that time [ms]; `standing` is called when it is paused. Raises Ended."""
         told = False
         while True:
             with self._changed:

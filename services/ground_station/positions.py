@@ -1,4 +1,4 @@
-"""Tracks from the states in a log that has no mission: one position a second of each aircraft."""
+"""Tracks from the states in a log without a mission: one position per second of each aircraft."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from cratous.spec.mission import Frame
 PERIOD_MS = 1000
 CONFIGURATION = "afrl.cmasi.EntityConfiguration"
 NOBODY = -1
-"""In the place of the owner: the log does not say who commands."""
+"""Placeholder for the commander: the log does not contain it."""
 
 
 Local = Callable[[float, float], tuple[float, float]]
@@ -25,12 +25,12 @@ Local = Callable[[float, float], tuple[float, float]]
 def local_place(
     to_local: Local, latitude_deg: float, longitude_deg: float
 ) -> tuple[float, float] | None:
-    """North and east [m] to a decimetre; None for degrees that are nowhere on the earth."""
+    """North and east [m] to a decimetre; None for invalid coordinates."""
     from pyproj.exceptions import ProjError
 
     try:
         north_m, east_m = to_local(latitude_deg, longitude_deg)
-    except ProjError:  # there is no frame about such a place
+    except ProjError:  # no frame can contain such a place
         return None
     if not math.isfinite(north_m) or not math.isfinite(east_m):
         return None
@@ -38,8 +38,9 @@ def local_place(
 
 
 def state_of(entry: Entry) -> tuple[Any, tuple[float, float, float] | None, bool]:
-    """Of a state: of which vehicle, where (latitude, longitude [deg], altitude [m]; None where it says no numbers), and
-    whether it could be decoded."""
+    """For a state: its vehicle, position (latitude, longitude [deg], altitude [m]; None if not
+    numeric), and whether it could be decoded.
+    """
     if not isinstance(entry.body, bytes):
         body, error = any_data(entry)
         told = isinstance(body, dict)
@@ -52,7 +53,7 @@ def state_of(entry: Entry) -> tuple[Any, tuple[float, float, float] | None, bool
         state = to_object(entry)
     except BadInput:
         return None, None, False
-    # no JSON form in between: it takes as long as all the rest of an hour's log
+    # avoid the JSON form: it takes as long as all other work on the log
     at = getattr(state, "Location", None)
     place = None if at is None else (at.Latitude, at.Longitude, at.Altitude)
     finite = place is not None and all(map(math.isfinite, place))
@@ -60,10 +61,10 @@ def state_of(entry: Entry) -> tuple[Any, tuple[float, float, float] | None, bool
 
 
 class Positions:
-    """Reads states and configurations, in the order of the log.
+    """Reads states and configurations, in log order.
 
-    frame: about the first position, None before there is one; unread: of how many states the body
-    could not be decoded; left_out: how many were of aircraft beyond the most that are kept.
+    frame: about the first position, None before there is one; unread: number of states that could
+    not be decoded; left_out: number of states of aircraft beyond the maximum.
     """
 
     def __init__(self, most: int | None = None) -> None:
@@ -77,7 +78,9 @@ class Positions:
         self._labels: dict[str, str] = {}
 
     def add(self, entry: Entry, time_ms: int) -> None:
-        """Take in one message, with its time since the first of the log; only vehicle states and configurations matter."""
+        """Process one message, with its time since the first of the log; only vehicle states and
+        configurations matter.
+        """
         names = names_of(entry.topic)
         if CONFIGURATION in names:
             body, _ = any_data(entry)
@@ -93,7 +96,7 @@ class Positions:
         if not self._has_place(self._tracks, number):
             self.left_out += 1
             return
-        # the first of each second stays
+        # the first of each second is kept
         rows, second = self._tracks.get(number, {}), time_ms // PERIOD_MS
         if second in rows:
             return
@@ -112,12 +115,12 @@ class Positions:
         return number in kept or self._most is None or len(kept) < self._most
 
     def take_new(self) -> dict[str, list[list[float]]]:
-        """What came since the last time that this was asked."""
+        """The data that arrived since the last call."""
         taken, self._new = self._new, {}
         return taken
 
     def forget(self, before_ms: int) -> None:
-        """Let go of what is older; an aircraft of which nothing is left is gone."""
+        """Drop older data; an aircraft without remaining data is removed."""
         first = before_ms // PERIOD_MS
         for number, rows in list(self._tracks.items()):
             self._tracks[number] = {k: row for k, row in rows.items() if k >= first}
@@ -126,11 +129,11 @@ class Positions:
 
     @property
     def size(self) -> int:
-        """How many rows are kept."""
+        """Number of stored rows."""
         return sum(map(len, self._tracks.values()))
 
     def tracks(self) -> dict[str, list[list[float]]]:
-        """By number, rows of time [ms], north, east, altitude [m] and `NOBODY`, in the order of time."""
+        """By number, rows of time [ms], north, east, altitude [m] and `NOBODY`, in time order."""
         return {number: sorted(rows.values()) for number, rows in self._tracks.items()}
 
     def vehicles(self) -> list[dict[str, Any]]:

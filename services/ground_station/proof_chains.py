@@ -1,7 +1,7 @@
-"""From a verdict of a report to its proofs: kernels, theorems, what both solvers said, mutants.
+"""From a verdict of a report to its proofs: kernels, theorems, answers of both solvers, mutants.
 
-Chains, theorems and what z3 said are those of the report. What cvc5 said of the same theorems, and the
-mutants, are read from the records of the product as it is now; nothing is proved or judged here.
+Chains, theorems and z3's answers are those of the report. cvc5's answers on the same theorems, and
+the mutants, come from the product's current records; nothing is proved or judged here.
 """
 
 from __future__ import annotations
@@ -26,13 +26,12 @@ OF_THEOREM = (
 
 
 def proofs_of(report: Data, where: str) -> Data:
-    """The chains of each constraint of a report, in their order, with all that they lead to.
+    """The chains of each constraint of a report, in order, with everything they refer to.
 
-    rows: chains, what is missing, and whether it decides nothing; names: the short ones of kernels;
-    theorems: those of the chains, and the lemmas that they rest on, each with the count of its
-    obligations by what cvc5 said; mutants: of a kernel, by what became of them; solvers: the first and
-    the second; same_ledger: whether the ledger is still the one of the report. Raises BadInput where
-    the report lacks something.
+    rows: chains, missing links, and whether the row decides nothing; names: short names of kernels;
+    theorems: those of the chains and their lemmas, each with the number of obligations by cvc5's
+    answer; mutants: of a kernel, by result; solvers: the first and the second; same_ledger: whether
+    the ledger is still that of the report. Raises BadInput if the report lacks something.
     """
     try:
         return _proofs(report)
@@ -73,7 +72,7 @@ def _proofs(report: Data) -> Data:
 
 
 def _reached(names: list[str], proofs: Data) -> list[str]:
-    """These theorems and the lemmas that they rest on, as far as the report has them."""
+    """These theorems and the lemmas they depend on, as far as the report has them."""
     todo, found = list(names), set[str]()
     while todo:
         name = todo.pop()
@@ -84,14 +83,14 @@ def _reached(names: list[str], proofs: Data) -> list[str]:
 
 
 def _record(name: str) -> Data:
-    """A record beside the proofs; empty where the product has none."""
+    """A record beside the proofs; empty if the product has none."""
     path = ROOT / "proofs" / name
     return dict(json.loads(path.read_text(encoding="utf-8"))) if path.is_file() else {}
 
 
 @cache
 def _second() -> Data:
-    """The second solver, and of each theorem how many obligations have which answer of it."""
+    """The second solver, and for each theorem the number of obligations by its answer."""
     record, theorems = _record("recheck.json"), dict[str, Counter[str]]()
     for one in record.get("obligations", {}).values():
         for of in one["of"]:

@@ -1,8 +1,8 @@
-"""What the page shows of a run or a message log, as plain data: made once, when it is opened.
+"""Display data of a run or a message log, as plain data, created once when opened.
 
-Times are ms after mission start; of a log without a mission after its first message. Places are
-north, east [m] in the mission frame, or in one about the first position that the log has. Nothing
-is judged here: verdicts are those of the run's report.json, and without one there are none.
+Times are ms after mission start; in a log without a mission, after its first message. Positions are
+north, east [m] in the mission frame, or in a frame about the log's first position. Nothing is
+judged here: verdicts are those of the run's report.json, and without one there are none.
 """
 
 from __future__ import annotations
@@ -26,21 +26,21 @@ from cratous.spec.mission import Frame, Mission
 
 FORMAT = "cratous-recording/1"
 CLOCKS = {"afrl.cmasi.SessionStatus": "ScenarioTime", STATE: "Time"}
-"""Where the messages of a capture that has no times say what time it is [ms]."""
+"""Message fields with the time [ms], for captures without times."""
 TIMELESS = ("frames", "lmcp")
 TOLD = ("Request", "Response", "Command", "Action", "Complete", "Status", "Zone", "Task")
-"""Messages of other logs whose types end so are listed as events."""
+"""Messages of foreign logs with these type suffixes are listed as events."""
 
 
 def recording(path: Path) -> dict[str, Any]:
-    """All that is shown of a results folder or a message log.
+    """The display data of a results folder or a message log.
 
-    Raises BadInput, with file and place, where the log, or report.json beside it, is damaged.
+    Raises BadInput, with file and position, if the log, or report.json beside it, is damaged.
     """
     folder = path if path.is_dir() else None
     with open_log(path) as source:
         try:
-            # verdicts are shown of the log that they were made of, and of no other
+            # verdicts are shown only for the log from which they were derived
             judged = folder is not None and (folder / REPORT_NAME).exists()
             entries = source.verified_entries() if judged else source.entries()
             mission = _mission(source)
@@ -54,7 +54,7 @@ def recording(path: Path) -> dict[str, Any]:
 
 
 def _mission(source: Source) -> Mission | None:
-    """The mission that the log was made for; None if it does not say."""
+    """The mission for which the log was made; None if it has none."""
     meta = source.meta()
     return from_data(Mission, meta["mission"], "meta.mission") if "mission" in meta else None
 
@@ -85,7 +85,7 @@ def _flown(entries: Iterator[Entry], mission: Mission) -> dict[str, Any]:
 
 
 def _told(source: Source, entries: Iterator[Entry]) -> dict[str, Any]:
-    """A log of others: states, routes and zones as its messages tell them."""
+    """A foreign log: states, routes and zones from its messages."""
     positions, bands, end_ms = Positions(), Bands(), 0
     shapes: Shapes | None = None
     waiting: list[tuple[Entry, int]] = []
@@ -130,7 +130,7 @@ def _told(source: Source, entries: Iterator[Entry]) -> dict[str, Any]:
 
 
 def is_told(entry: Entry) -> bool:
-    """Whether a message of a log of others is listed as an event."""
+    """Whether a message of a foreign log is listed as an event."""
     return entry.topic.rpartition(".")[2].endswith(TOLD) and entry.topic not in CLOCKS
 
 
@@ -141,7 +141,7 @@ def told_text(entry: Entry) -> str:
 
 
 def _timed(source: Source, entries: Iterator[Entry]) -> Iterator[tuple[Entry, int]]:
-    """The messages with their times after the first of them [ms]; time never goes back."""
+    """The messages with their times after the first one [ms]; times never decrease."""
     begin_ms: int | None = None
     now_ms = 0
     for entry in entries:

@@ -1,9 +1,11 @@
-"""Serves the page and what it shows, a recording or two, over HTTP, to this machine alone unless asked otherwise.
+"""HTTP server of the page and its data, a recording or two, on the loopback interface unless
+configured otherwise.
 
-It answers only requests whose Host header names it as it is called, since a page of somewhere else could reach it
-under a name of its own (DNS rebinding). At another address than 127.0.0.1 whatever is asked needs a token (`guard`).
-It gives out the page and the recording, and nothing of the disk by a name from outside. Of a replay it takes GET and
-HEAD alone; while a mission is flown or edited, commands too, from its own page (Origin) with their token.
+It answers only requests whose Host header names this server, since a foreign page could reach it
+under a name of its own (DNS rebinding). On addresses other than 127.0.0.1 every request needs a
+token (`guard`). It serves the page and the recording, and no file by a name from outside. For a
+replay it accepts only GET and HEAD; while a mission is flown or edited also commands, from its own
+page (Origin) with their token.
 """
 
 from __future__ import annotations
@@ -35,36 +37,38 @@ from cratous.services.web.server import WebServer
 from cratous.spec.errors import BadInput
 
 LONGEST = 1000
-"""Of a command [bytes]."""
+"""Maximum size of a command [bytes]."""
 PAGE, PAGE_OF_TWO, PAGE_OF_EDITOR = "index.html", "compare.html", "edit.html"
 Order = Callable[[str, str, Any], dict[str, Any] | None]
-"""Obeys what a page asks for, by its token and number; its answer, if there is one. Raises NotObeyed."""
+"""Executes the order of a page, given its token and number; returns its answer, if any. Raises NotObeyed."""
 Endpoint = Callable[[Request], Awaitable[Response]]
 TYPES = {
     ".css": "text/css", ".html": "text/html", ".js": "text/javascript", ".png": "image/png",
     ".svg": "image/svg+xml",
 }  # fmt: skip
-"""Of files of the page, whatever the machine has in its own tables."""
+"""Media types of the page's files, independent of the machine's tables."""
 
 
 class Watched(Protocol):
-    """What is shown while it happens: a flight of ours, or a running system; token: what its orders need."""
+    """Source of live data: a CRATOUS flight, or a running system; token: required for its orders."""
 
     token: str
 
     def told(self, first: int) -> dict[str, Any]:
-        """The updates from a given number on, and the present status."""
+        """The updates from a given number on, and the current status."""
 
     def who(self, token: str, page: str) -> str:
-        """What a page may do that asks."""
+        """Role of the asking page."""
 
     def order(self, token: str, page: str, asked: Any) -> None:
-        """Obey a command of a page. Raises NotObeyed, with why."""
+        """Execute a command of a page. Raises NotObeyed, with the reason."""
 
 
 class Commands(NamedTuple):
-    """What pages may send. orders: what answers them, by path; longest: the most bytes of an order; polled: what pages may
-    read again and again, by path; token: every order needs it, and the printed address contains it."""
+    """Requests that pages may make. orders: handlers by path; longest: maximum size of an order
+    [bytes]; polled: data that pages may poll, by path; token: required by every order, and part of
+    the printed address.
+    """
 
     orders: Mapping[str, Order]
     longest: int = LONGEST
@@ -84,15 +88,16 @@ class GroundStation(WebServer):
         first: str = PAGE,
         commands: Commands | None = None,
     ) -> None:
-        """port: 0 takes a free one; access: where it listens and who is let in; live: the flight that is shown, if any;
-        first: which page shows it; commands: what pages may ask for, by default those of the flight. Raises
-        BadInput if the port cannot be had."""
+        """port: 0 takes a free one; access: listening address and access control; live: the flight
+        shown, if any; first: name of the first page; commands: permitted requests, by default those
+        of the flight. Raises BadInput if the port is unavailable.
+        """
         if commands is None:
             orders = {"/command": live.order} if live is not None and live.token else {}
             commands = Commands(orders, token="" if live is None else live.token)
         self.recorded, self.access = recorded, access
         self.beneath = Beneath()
-        """What the map shows beneath all else."""
+        """Background of the map."""
         routes = [
             Route("/", _page(first)),
             Route("/recording.json", self._recording),
@@ -144,17 +149,17 @@ def _page(name: str) -> Endpoint:
 
 
 async def _absent(_: Request) -> Response:
-    raise HTTPException(404)  # of the pages there is the one that `/` is
+    raise HTTPException(404)  # only the page at `/` is served
 
 
 def _sender(request: Request) -> tuple[str, str]:
-    """Token and number of the page, as it gives them."""
+    """Token and number of the page, as sent by it."""
     headers = request.headers
     return headers.get("x-cratous-token", ""), headers.get("x-cratous-page", "")[:64]
 
 
 def _told(live: Watched) -> Endpoint:
-    """What is new of the flight, from the number of an update on."""
+    """New data of the flight, from an update number on."""
 
     async def answer(request: Request) -> Response:
         first = request.query_params.get("from", "0")
@@ -176,11 +181,11 @@ def _polled(read: Callable[[], dict[str, Any]]) -> Endpoint:
 
 
 def _order(obey: Order, longest: int) -> Endpoint:
-    """A command of a page."""
+    """Handles a command of a page."""
 
     async def answer(request: Request) -> Response:
         headers = request.headers
-        if request.url.query:  # a token of an address is not for commands
+        if request.url.query:  # a token in the address is not accepted for commands
             raise HTTPException(404)
         if headers.get("origin") != f"http://{headers['host'].lower()}":
             raise HTTPException(403, "commands come from this page alone")

@@ -1,4 +1,4 @@
-"""Routes, zones and tasks that messages tell, in the frame of the page."""
+"""Routes, zones and tasks from messages, in the frame of the page."""
 
 from __future__ import annotations
 
@@ -23,23 +23,24 @@ from cratous.services.logs.views import (
 GATED = "cratous.GatedCommand"
 POINT, LINE, AREA = (f"afrl.cmasi.{kind}SearchTask" for kind in ("Point", "Line", "Area"))
 REMOVED = {"afrl.cmasi.RemoveZones": "ZoneList", "afrl.cmasi.RemoveTasks": "TaskList"}
-"""Messages that take shapes away, and where their numbers stand."""
+"""Messages that remove shapes, with the field of their ids."""
 SHAPED = frozenset((COMMAND, RESPONSE, ZONE, GATED, POINT, LINE, AREA, *REMOVED))
 
 
 class Kept(Protocol):
-    """Where rows are kept: a list, or what lets go of the oldest."""
+    """Storage of rows: a list, or a bounded one."""
 
     def append(self, row: dict[str, Any], /) -> None:
-        """Keep one more."""
+        """Add a row."""
 
     def __iter__(self) -> Iterator[dict[str, Any]]: ...
 
 
 class Shapes:
-    """Collects them in the order of the log.
+    """Collects shapes in log order.
 
-    unread: of how many messages the body could not be decoded; changes: of zones and tasks.
+    unread: number of messages that could not be decoded; changes: number of changes of zones and
+    tasks.
     """
 
     def __init__(
@@ -49,7 +50,7 @@ class Shapes:
         zones: Kept | None = None,
         tasks: Kept | None = None,
     ) -> None:
-        """to_local: latitude, longitude [deg] to north, east [m]; the others: where they are kept, lists by default."""
+        """to_local: latitude, longitude [deg] to north, east [m]; the others: their storage, lists by default."""
         self._to_local, self._views = to_local, Views()
         self._routes: Kept = [] if routes is None else routes
         self._zones: Kept = [] if zones is None else zones
@@ -59,21 +60,21 @@ class Shapes:
 
     @property
     def routes(self) -> list[dict[str, Any]]:
-        """In the order of the log: time, vehicle, sender and places."""
+        """In log order: time, vehicle, sender and waypoints."""
         return list(self._routes)
 
     @property
     def zones(self) -> list[dict[str, Any]]:
-        """Number, kind, label, corners, from when, and until when if they were taken away."""
+        """Number, kind, label, corners, start time, and end time if removed."""
         return list(self._zones)
 
     @property
     def tasks(self) -> list[dict[str, Any]]:
-        """Number, label, kind and places; until when if they were taken away."""
+        """Number, label, kind and points; end time if removed."""
         return list(self._tasks)
 
     def add(self, entry: Entry, time_ms: int) -> None:
-        """Take a message of a time of the page; one that tells no shape changes nothing."""
+        """Process a message with its display time [ms]; messages without shapes change nothing."""
         names = self._names.get(entry.topic)
         if names is None:
             names = names_of(entry.topic) or (entry.topic,)
@@ -85,7 +86,7 @@ class Shapes:
             self.unread += 1
             return
         sender = ""
-        if GATED in names:  # a command that the gate let through, whoever sent it
+        if GATED in names:  # a command accepted by the gate, from any sender
             sender, body, names = str(body.get("Sender", "")), body.get("Command"), (COMMAND,)
             if not isinstance(body, dict) or body.get("$type") != "CMASI/MissionCommand":
                 return
@@ -118,7 +119,7 @@ class Shapes:
                 yield json.loads(view.data["geojson"])["geometry"]
 
     def _places(self, corners: Any) -> list[tuple[float, float]]:
-        """Of latitudes and longitudes, or nothing in their place, in the frame of the page."""
+        """Points from latitudes and longitudes in the frame of the page, or empty if invalid."""
         found = (local_place(self._to_local, *c[:2]) for c in corners if c is not None)
         return [place for place in found if place is not None]
 
@@ -136,7 +137,7 @@ class Shapes:
             )
 
     def _route(self, command: Any, sender: str, time_ms: int) -> None:
-        # one without waypoints takes the place of the route before it, too
+        # an empty route replaces the previous one too
         self._routes.append(
             {
                 "time_ms": time_ms,

@@ -1,4 +1,4 @@
-"""What the first page shows, read once, anew for each page, or from a flight."""
+"""Data of the first page: read once, read again for each page, or from a flight."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from cratous.spec.errors import BadInput
 
 
 class Recording(Protocol):
-    """What is shown."""
+    """Source of the displayed data."""
 
     async def answer(self) -> Response:
-        """As JSON, or why there is none; waits until that is known. Raises BadInput."""
+        """The JSON response, or the reason for its absence; waits until it is known. Raises BadInput."""
 
 
 class Recorded:
-    """The recording, read in a thread of its own: the page is there at once and says that it waits."""
+    """Reads the recording in its own thread: the page opens immediately and shows that it waits."""
 
     def __init__(self, read: Callable[[], dict[str, Any]], failed: Callable[[Exception], None]):
-        """read: gives the recording or raises BadInput; failed: is told why there is none."""
+        """read: returns the recording or raises BadInput; failed: called with the reason if there is none."""
         self._read, self._failed = read, failed
         self._told = Future[tuple[bytes, int]]()
-        self._told.set_running_or_notify_cancel()  # who waits for it may go, and cancels nothing
+        self._told.set_running_or_notify_cancel()  # a disconnecting client cancels nothing
         threading.Thread(target=self._run, daemon=True).start()
 
     def _run(self) -> None:
@@ -50,10 +50,10 @@ class Recorded:
 
 
 class ReadAnew:
-    """What is read each time that a page opens."""
+    """Data that are read again each time a page opens."""
 
     def __init__(self, read: Callable[[], dict[str, Any]]) -> None:
-        """read: gives it or raises BadInput."""
+        """read: returns the data or raises BadInput."""
         self._read = read
 
     async def answer(self) -> Response:
@@ -62,10 +62,10 @@ class ReadAnew:
 
 
 class LiveRecorded:
-    """A mission that is flown: what it says, and once the flight has ended, its results."""
+    """A mission in flight: its data and, after the end of the flight, its results."""
 
     def __init__(self, live: LiveSession, replay: Callable[[str], Recorded]) -> None:
-        """replay: of a folder of results."""
+        """replay: returns the recording of a results folder."""
         self._live, self._replay = live, replay
         self._results: Recorded | None = None
 

@@ -1,7 +1,8 @@
-"""Pictures of the ground from a tile server (web mercator), laid beneath the map in the frame of what is shown.
+"""Tiles of a tile server (web mercator) as background of the map, in the frame of the displayed
+data.
 
-The server of pictures is asked by the browser, for the part of the world that is looked at. A picture: nothing is
-planned, flown or judged by it.
+The browser requests them from the tile server, for the visible part of the world. They are
+displayed only: nothing is planned, flown or judged by them.
 """
 
 from __future__ import annotations
@@ -20,22 +21,22 @@ from cratous.spec.mission import Frame
 ITEM = "--tiles"
 EXPECTED = "https://HOST/PATH with {z}, {x} and {y} in its path or query, each once"
 WRITTEN = re.compile(r"[A-Za-z0-9._~:/?\[\]@!$&()*+=%{}-]+")
-"""Of an address: nothing that ends a source of a content security policy."""
+"""Characters permitted in a URL: none that ends a source in a content security policy."""
 HOST = re.compile(r"[A-Za-z0-9.-]+|\[[0-9A-Fa-f:.]+\]")
 NAMES = ("{z}", "{x}", "{y}")
 MOST_ATTRIBUTION = 200
 TILE_PX = 256
 CLOSEST, FARTHEST = 19, 4
-"""Zooms that are asked for; farther out a picture is not nearly flat."""
+"""Maximum and minimum zoom; at smaller ones a tile is not nearly flat."""
 MOST = 120
-"""Pictures of one view."""
+"""Maximum number of tiles of one view."""
 MERCATOR_DEG = 85.0511
-"""Beyond this latitude web mercator has nothing."""
+"""Maximum latitude of web mercator [deg]."""
 EQUATOR_M = 2 * math.pi * 6_378_137.0
 
 
 class Tiles(NamedTuple):
-    """url: of a picture, with {z}, {x} and {y}; origin: of all of them; attribution: what the map says of them."""
+    """url: of a tile, with {z}, {x} and {y}; origin: of all tiles; attribution: shown on the map."""
 
     url: str
     origin: str
@@ -43,7 +44,7 @@ class Tiles(NamedTuple):
 
 
 class View(NamedTuple):
-    """What a map shows: its middle and size [m] in the mission frame, and the pixels of the screen to a metre."""
+    """The visible area: centre and size [m] in the mission frame, and screen pixels per metre."""
 
     north_m: float
     east_m: float
@@ -53,7 +54,7 @@ class View(NamedTuple):
 
 
 def tiles_of(url: str, attribution: str = "") -> Tiles:
-    """What `--tiles` and `--tiles-attribution` say. Raises BadInput."""
+    """The tiles given by `--tiles` and `--tiles-attribution`. Raises BadInput."""
 
     def refused(what: str) -> BadInput:
         return BadInput(what, item=ITEM, expected=EXPECTED, got=url[:100])
@@ -86,9 +87,9 @@ def _without(text: str) -> str:
 
 
 def seen(tiles: Tiles, frame: Frame, view: View) -> list[dict[str, Any]]:
-    """The tiles of a view: the url of each, and its corners in the frame, [north, east] [m].
+    """The tiles of a view: the URL of each, and its corners in the frame, [north, east] [m].
 
-    corners: north-west, north-east, south-west. Raises BadInput for an origin where web mercator has nothing.
+    corners: north-west, north-east, south-west. Raises BadInput for an origin outside web mercator.
     """
     if abs(frame.latitude_deg) > MERCATOR_DEG:
         raise BadInput(
@@ -111,7 +112,7 @@ def seen(tiles: Tiles, frame: Frame, view: View) -> list[dict[str, Any]]:
 
 
 def _degrees(plane: Projection, frame: Frame, view: View) -> tuple[float, ...] | None:
-    """South, north, west, east [deg] of a view, west and east about the origin; None of one too far for a plane."""
+    """South, north, west, east [deg] of a view, west and east about the origin; None if too far for the plane."""
     reach_m = math.hypot(view.height_m, view.width_m) / 2
     if not is_near(Vec2(view.north_m, view.east_m), reach_m):
         return None
@@ -126,7 +127,7 @@ def _degrees(plane: Projection, frame: Frame, view: View) -> tuple[float, ...] |
 
 
 def _between(box: tuple[float, ...], zoom: int) -> list[tuple[int, int]]:
-    """Columns and rows of the tiles; a column beyond the last one is one of the first again."""
+    """Columns and rows of the tiles; columns wrap around at the last one."""
     south, north, west, east = box
     count = 1 << zoom
     columns = range(
@@ -139,7 +140,7 @@ def _between(box: tuple[float, ...], zoom: int) -> list[tuple[int, int]]:
 
 
 def _down(latitude_deg: float) -> float:
-    """How far down the picture of the world a latitude is, from 0 to 1."""
+    """Vertical position of a latitude in the world map, from 0 (top) to 1."""
     kept = math.radians(max(-MERCATOR_DEG, min(MERCATOR_DEG, latitude_deg)))
     return (1 - math.asinh(math.tan(kept)) / math.pi) / 2
 

@@ -1,4 +1,4 @@
-"""The verdicts that a run's report.json has, picked for the page; it judges nothing anew."""
+"""The verdicts in a run's report.json, selected for the page; nothing is judged again."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ OTHER_LOG = "report.json is of another log: its digest is not the one that this 
 
 
 class VerdictRow(NamedTuple):
-    """A verdict of the report, over the whole flight; time_ms: where its margin is least, or it broke."""
+    """A verdict of the report on the whole flight; time_ms: of its least margin, or of the violation."""
 
     requirement: str
     item: str
@@ -30,10 +30,11 @@ class VerdictRow(NamedTuple):
 
 
 def verdicts_of(folder: Path | None, digest: str | None) -> dict[str, Any]:
-    """Overall verdict, rows for the requirements and their parts, and their proofs; or why there are none.
+    """Overall verdict, rows for the requirements and their parts, and their proofs; or why there
+    are none.
 
-    folder: of the run, None for a log alone; digest: what the log was closed with. Raises BadInput
-    where report.json is damaged.
+    folder: of the run, None for a log alone; digest: recorded when the log was closed. Raises
+    BadInput if report.json is damaged.
     """
     if folder is None or not (folder / REPORT_NAME).exists():
         return {"why_none": NO_REPORT}
@@ -46,7 +47,7 @@ def verdicts_of(folder: Path | None, digest: str | None) -> dict[str, Any]:
 
 
 def shown(report: dict[str, Any], where: str) -> dict[str, Any]:
-    """What the page shows of the verdicts of a report. Raises BadInput where one is damaged."""
+    """The displayed verdicts of a report. Raises BadInput if one is damaged."""
     return {
         "overall": str(report.get("verdict")),
         "requirements": _rows(report, "requirements", where),

@@ -1,1 +1,1 @@
-"""ICAROUS: one instance per protected vehicle watches, avoids and hands back."""
+"""ICAROUS: one instance per protected vehicle monitors, avoids and hands back."""

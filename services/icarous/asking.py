@@ -1,9 +1,10 @@
-"""ICAROUS asks UxAS's route planner for a way back, where its own is not free: WPREQ up, RPRSP down.
+"""ICAROUS requests a way back from UxAS's route planner where its own is blocked: WPREQ up, RPRSP down.
 
-UxAS allows it (COMND UXAS_PLANS) and takes it back (ICAROUS_PLANS). While an instance flies and the direct way back is
-not free, say because a zone lies across it, it asks at most once a second. The answer is a proposal: it is put to
-the same kernels as the own way back, at each heartbeat anew from where the vehicle is, and only one that they permit is
-handed back on. No answer in time, and one without a way: the instance goes on by itself, and says so.
+UxAS permits such requests (COMND UXAS_PLANS) and revokes that (ICAROUS_PLANS). While an instance flies and
+the direct way back is not free, e.g. because a zone lies across it, it sends at most one request per second.
+The answer is only a proposal: the kernels that check the instance's own way back check it too, at each
+heartbeat from the present position, and control is handed back on it only if they permit it. If no answer
+arrives in time, or an empty one, the instance continues on its own and reports that.
 """
 
 from __future__ import annotations
@@ -25,13 +26,13 @@ from cratous.spec.mission import Position
 from cratous.spec.mission.plan import Pose
 
 PERIOD_MS = 1000
-"""It is not asked more often than this [ms]."""
+"""Shortest interval between two requests [ms]."""
 ANSWER_MS = 3000
-"""So long an answer is waited for [ms]: six heartbeats."""
+"""An answer must arrive within this time [ms]: six heartbeats."""
 PAUSE_MS = 10_000
-"""So long nothing is asked after an answer that did not come [ms]."""
+"""No request is sent for this long after an overdue answer [ms]."""
 MOST_POINTS = 256
-"""An answer of more places is none."""
+"""A longer answer is discarded."""
 OVERDUE = f"UxAS has not answered within {ANSWER_MS / 1000:g} s: ICAROUS finds its way back itself"
 NO_WAY = "UxAS's planner has found no way back: ICAROUS finds its way back itself"
 TOO_LONG = f"UxAS's way back has more than {MOST_POINTS} places: ICAROUS finds its way back itself"
@@ -39,11 +40,11 @@ NOT_ASKED = "a way has come that nobody asks for"
 
 
 class Asking(NamedTuple):
-    """What is known of the ways that UxAS is asked for.
+    """State of the requests to UxAS for a way back.
 
-    allowed: UxAS plans live; number: of the last request; asked_ms: since when it waits for an answer, None: nothing is
-    asked; next_ms: not asked again before; gathered: of the answer that comes, None before its beginning; proposal: the
-    last answer, to request `answered`; said: for the log.
+    allowed: UxAS plans live; number: of the last request; asked_ms: when the pending request was sent, None
+    if none is pending; next_ms: earliest next request; gathered: points of the answer received so far, None
+    before its beginning; proposal: the last answer, to request `answered`; said: sentences to log.
     """
 
     allowed: bool = False
@@ -56,16 +57,16 @@ class Asking(NamedTuple):
     said: tuple[str, ...] = ()
 
     def tells(self, text: str) -> Asking:
-        """The same state with a sentence for the log, added once until it is logged."""
+        """The state with a sentence to log, unless it is already there."""
         return self if text in self.said else self._replace(said=(*self.said, text))
 
     def idle(self) -> Asking:
-        """Nothing is asked any more: UxAS flies."""
+        """The state without a pending request or proposal: UxAS flies."""
         return Asking(self.allowed, self.number)
 
 
 def heard(asking: Asking, line: Message, projection: Projection) -> Asking:
-    """The same after a line of UxAS."""
+    """The state after a line from UxAS."""
     match line:
         case UxasPlans():
             return asking._replace(allowed=True)
@@ -96,7 +97,7 @@ def _answer(
 
 
 def waited(asking: Asking, now_ms: int) -> Asking:
-    """The same at a heartbeat: an answer that is overdue is given up."""
+    """The state at a heartbeat: an overdue request is given up."""
     if asking.asked_ms is None or not lasted(asking.asked_ms, now_ms, ANSWER_MS):
         return asking
     given_up = asking._replace(asked_ms=None, gathered=None, proposal=())
@@ -111,7 +112,9 @@ def asks(
     end: Position,
     projection: Projection,
 ) -> tuple[Asking, RouteRequest | None]:
-    """The same after asking for a way from a pose to a place, and the line to UxAS, if it is time for one."""
+    """The state after requesting a way from a pose to a place, and the line to send; None if no request is
+    due.
+    """
     if asking.asked_ms is not None or not lasted(asking.next_ms, now_ms, 0):
         return asking, None
     number = asking.number + 1

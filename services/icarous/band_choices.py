@@ -1,8 +1,8 @@
-"""Manoeuvres that the bands propose: those that resolve, and where nothing does those that regain well clear soonest.
+"""Manoeuvres that the bands propose: resolutions, and recoveries where no manoeuvre keeps well clear.
 
-One step of the bands beyond the edge of a band, on the preferred side first: another direction, another speed, or a climb
-or descent to another altitude, at what the airframe can do. What is flown of it is decided by `core.avoidance` and the
-permit, against the ways that are known and the zones, of which the bands know nothing.
+Each lies one step of the bands beyond the edge of a band, the preferred side first: another direction,
+another speed, or a climb or descent to another altitude within the airframe's ability. `core.avoidance` and
+the permit decide which is flown, with the known routes and zones, which the bands do not consider.
 """
 
 from __future__ import annotations
@@ -20,7 +20,9 @@ from cratous.spec.mission import Daa
 
 
 def of_bands(bands: Bands, daa: Daa, sensed: Sensed, level: Choice) -> tuple[Choice, ...]:
-    """Changes of the kind that the mission asks for first, on the heading of `level`; none where that is turns."""
+    """Resolutions of the kind that the mission prefers, on the heading of `level`; none where it prefers
+    turns.
+    """
     return tuple(
         one
         for dimension in steered_by(daa)
@@ -60,7 +62,7 @@ def _choices(
 
 
 def _climb(motion: Motion, ability: Ability, alt_m: float, level: Choice) -> Choice:
-    """To an altitude, as fast as the airframe climbs."""
+    """A climb or descent to an altitude at the airframe's greatest rate."""
     rise_m, most = alt_m - motion.position.alt_m, ability.max_climb_m_s
     climb = math.copysign(most, rise_m)
     return level._replace(kind="altitude", climb_m_s=climb, climb_for_s=abs(rise_m) / most)

@@ -1,4 +1,4 @@
-"""What an instance remembers of its alerts and bands from look to look, as plain values."""
+"""An instance's alert and band history between evaluations, as plain values."""
 
 from __future__ import annotations
 
@@ -20,9 +20,12 @@ class AlertHistory(NamedTuple):
 
 
 class DimensionHistory(NamedTuple):
-    """Of one dimension: the last bands, the one that is held since held_s [s]; the resolutions that are shown, the
-    preferred side, how often recovery was shrunk for each, and since when the side is preferred [s]. See
-    `core.daa.history.BandMemory` and `core.daa.persistence.Ways`."""
+    """History of one dimension.
+
+    last: the last bands; held: the bands shown, since held_s [s]; up, down: the resolutions shown; prefer_up:
+    the preferred side; shrunk_up, shrunk_down: how often recovery was shrunk; since_s: since when the side
+    has been preferred [s]. See `core.daa.history.BandMemory` and `core.daa.persistence.Ways`.
+    """
 
     last: tuple[tuple[Band, ...], ...]
     held: tuple[Band, ...]
@@ -36,9 +39,12 @@ class DimensionHistory(NamedTuple):
 
 
 class Bands(NamedTuple):
-    """When was looked last [ms], what the airframe could do then, whether some intruder was known within bounds only, the
-    history by intruder and by dimension (heading first), and the dimensions in which nothing keeps well clear: what
-    they resolve with regains it."""
+    """Result of the last evaluation.
+
+    at_ms: when [ms]; ability: the airframe's ability then; loose: some intruder was known only within bounds;
+    alerts, dimensions: history by intruder and by dimension (heading first); recovers: dimensions in which no
+    manoeuvre keeps well clear, so that their resolutions regain it.
+    """
 
     at_ms: int
     ability: Ability

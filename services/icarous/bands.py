@@ -1,12 +1,12 @@
-"""Alerts and bands of a vehicle in flight: who will take well clear, and which manoeuvres keep it.
+"""Alerts and bands of a vehicle in flight: predicted losses of well clear and the manoeuvres that avoid them.
 
-Once a second, while a loss of well clear is foreseen or ICAROUS flies, the proved engine of detect and avoid
-(`core.daa.session`) looks at the present flight and all traffic, straight on. Two levels: corrective (MID) is the
-mission's buffered volume within the look-ahead; warning (NEAR) is its own volume within the time at which even the
-one with the right of way acts. M of N, hysteresis, persistence and recovery are those of the mission, or of DO-365B. An intruder that
-is known within bounds only is judged by the SUM volume, with the bounds in place of the deviations. Directions and
-speeds are over ground. Zones and the ways that are told are not looked at here: whether a manoeuvre is flown is decided by
-`core.avoidance` and the permit.
+Once a second, while a loss of well clear is predicted or ICAROUS flies, the proved detect-and-avoid engine
+(`core.daa.session`) evaluates the present motion and all traffic in straight flight. Two levels: corrective
+(MID) is the mission's buffered volume within the look-ahead; warning (NEAR) is the unbuffered volume within
+the time at which even the vehicle with the right of way acts. M of N, hysteresis, persistence and recovery
+follow the mission's `daa.guidance`, by default DO-365B. An intruder known only within bounds is evaluated with
+the SUM volume, with the bounds as deviations. Directions and speeds are over ground. Zones and announced routes
+are not considered here: `core.avoidance` and the permit decide what is flown.
 """
 
 from __future__ import annotations
@@ -48,20 +48,21 @@ from cratous.spec.mission import (
 )
 
 PERIOD_MS = 1000
-"""Alerts and bands are looked for so often [ms]."""
+"""Interval of the evaluation [ms]."""
 STEP_DEG = 5.0
-"""Headings are tried in such steps, as manoeuvres are."""
+"""Step of the headings, the same as for manoeuvres [deg]."""
 STEPS = 12
-"""Speeds, climbs and altitudes are tried in so many steps over what the airframe can do."""
+"""Number of steps over the range of speeds, climb rates and altitudes."""
 HIGHEST_M = 1e5
-"""Altitudes are bounded by what can be reached within the look-ahead, and not by a ceiling [m MSL]."""
+"""No ceiling: altitudes are bounded by what is reachable within the look-ahead [m MSL]."""
 FIRST = {Resolution.ALTITUDE: ALT, Resolution.SPEED: HS}
-"""The dimension of a kind of manoeuvre that a mission may ask for first."""
+"""The band dimension of a manoeuvre kind that a mission may prefer."""
 
 
 class Whose(NamedTuple):
-    """Whose bands: the vehicle, what it keeps clear of, its heartbeat [ms]; told: somebody reads them, so all that the
-    airframe can change is looked at, and not only what is steered by."""
+    """Parameters of a vehicle's evaluation: id, volume to keep clear of, heartbeat [ms]. told: the bands are
+    recorded, so all dimensions are evaluated, not only those used for manoeuvres.
+    """
 
     vehicle_id: int
     daa: Daa
@@ -70,7 +71,7 @@ class Whose(NamedTuple):
 
 
 def parameters_of(whose: Whose, ability: Ability, sum_volumes: bool) -> Parameters:
-    """What a vehicle is guided by. sum_volumes: an intruder is known within bounds only."""
+    """The parameters of detect and avoid. sum_volumes: whether an intruder is known only within bounds."""
     daa, heartbeat_ms = whose.daa, whose.heartbeat_ms
     own, kind = daa.well_clear, TAUMOD_SUM if sum_volumes else TAUMOD
     wide = buffered(own, daa.buffer)
@@ -133,15 +134,18 @@ def parameters_of(whose: Whose, ability: Ability, sum_volumes: bool) -> Paramete
 
 
 def reach_m(daa: Daa, ability: Ability) -> float:
-    """How far up and down altitudes are looked at [m]."""
+    """Altitude range evaluated above and below the vehicle [m]."""
     return max(ability.max_climb_m_s * daa.lookahead_s, daa.well_clear.zthr_m)
 
 
 def watched(
     whose: Whose, before: Bands | None, sensed: Sensed
 ) -> tuple[Bands | None, Instant | None]:
-    """What is remembered and what is said now: nothing new where a second has not gone by since, nothing at all where
-    nobody is seen."""
+    """The history, and the result if an evaluation was due.
+
+    The history is returned unchanged within PERIOD_MS of the last evaluation, and is None while there are no
+    intruders.
+    """
     if before is not None and not lasted(before.at_ms, sensed.now_ms, PERIOD_MS):
         return before, None
     if not sensed.intruders:
@@ -162,13 +166,13 @@ def watched(
 
 
 def steered_by(daa: Daa) -> tuple[int, ...]:
-    """The dimensions by which manoeuvres are proposed, the one that the mission asks for first."""
+    """The dimensions used for manoeuvres, the one that the mission prefers first."""
     first = FIRST.get(daa.looks_first)
     return (HDIR,) if first is None else (first, HDIR)
 
 
 def _history(session: Session, sensed: Sensed, loose: bool) -> Bands:
-    """A session as plain values."""
+    """The session's history as plain values."""
     alerts = tuple(
         AlertHistory(*key, tuple(one.values), one.level, one.raised_s)
         for key, one in sorted(session.shown.items())
@@ -184,7 +188,7 @@ def _history(session: Session, sensed: Sensed, loose: bool) -> Bands:
 
 
 def _remember(session: Session, before: Bands) -> None:
-    """Let a new session go on from the history of another one under the same parameters."""
+    """Restore a session's history from one under the same parameters."""
     p = session.parameters
     session.time_s = before.at_ms / 1000
     for one in before.alerts:
@@ -199,20 +203,22 @@ def _remember(session: Session, before: Bands) -> None:
 
 
 def _dimensions(ability: Ability) -> list[int]:
-    """What the airframe can change."""
+    """The dimensions that the airframe can change."""
     found = [HDIR, HS] if ability.max_speed_m_s - ability.min_speed_m_s else [HDIR]
     return [*found, VS, ALT] if ability.max_climb_m_s else found
 
 
 def resolutions(bands: Bands | None, course_rad: float) -> tuple[float, ...]:
-    """The turns off a course that the heading bands resolve with, the preferred side first: one step of the bands
-    beyond the nearest value that resolves, since that is the edge of a band [rad]."""
+    """The turns off a course that the heading bands propose, the preferred side first [rad].
+
+    Each is one step beyond the nearest conflict-free value, which is the edge of a band.
+    """
     found = () if bands is None else values(bands, HDIR, STEP_DEG * DEG)
     return tuple(smallest_turn(course_rad, value) for value in found)
 
 
 def values(bands: Bands, dimension: int, beyond: float) -> tuple[float, ...]:
-    """What a dimension resolves with, or recovers with, the preferred side first: so far beyond the edge of a band."""
+    """The values that a dimension proposes, `beyond` past the edge of a band, the preferred side first."""
     held = bands.dimensions[dimension]
     sides = [(held.up, beyond), (held.down, -beyond)]
     if not held.prefer_up:

@@ -1,10 +1,11 @@
-"""A certificate: the manoeuvre that is flown and the hold that ends it, with what they are clear of and until when.
+"""A certificate: the manoeuvre being flown and the hold that ends it, with the intruders it is permitted
+against and its expiry.
 
-What is permitted is decided by the proved kernels behind `core.permit.remainder`: the buffered cylinder about each
-intruder that was seen, straight on or along its told way; half of what the buffer leaves is for how far an intruder may
-be off that, the rest for the vehicle, and what a turn may be off by more (`core.avoidance.drift`) is added. A part
-of it that is over does not count any more: the rest is permitted too, and against one that was not known the
-rest is asked alone.
+The proved kernels behind `core.permit.remainder` decide what is permitted: the buffered cylinder around each
+intruder seen, in straight flight or along its announced route. Half of the buffer's margin allows for the
+intruder's deviation, the rest for the vehicle's; a turn's larger drift (`core.avoidance.drift`) is added. The
+remainder of a permitted certificate is permitted too, so against a newly seen intruder only the remainder is
+checked.
 """
 
 from __future__ import annotations
@@ -31,21 +32,25 @@ from cratous.spec.mission import Daa, Position, Velocity
 from cratous.spec.mission.plan import Hold
 
 SAME_M_S = 0.001
-"""A velocity that is commanded is the certificate's if they differ by less, horizontally and in climb [m/s]."""
+"""A commanded velocity follows the certificate if it differs by less than this, horizontally and in climb
+[m/s].
+"""
 
 
 class Track(NamedTuple):
-    """An intruder as it was seen at an instant [ms], and is taken to fly from then on."""
+    """An intruder as seen at seen_ms [ms], from which its flight is predicted."""
 
     seen_ms: int
     seen: Intruder
 
 
 class Certificate(NamedTuple):
-    """offer: what it is to the hand, `core.permit.hand`; pieces: the manoeuvre from offer.sigma_ms on, one turn to one
-    velocity; hold: the circle after it, None where there is none that is permitted; hold_m: no farther from its middle
-    is the vehicle there [m]; off_m, rise_m: no farther off the pieces, and no farther off in height, also in the hold
-    [m]; rho_m: as much of that as the buffer has no room for [m]; tracks: whom it allows for."""
+    """offer: its identity and times for the hand, see `core.permit.hand`; pieces: the manoeuvre from
+    offer.sigma_ms on, a turn to one velocity; hold: the circle after it, None if none is permitted;
+    hold_m: radius of the disc around the hold's centre that contains the vehicle [m]; off_m, rise_m:
+    largest horizontal and vertical deviation from the pieces, rise_m also in the hold [m]; rho_m: the part
+    of these that exceeds the buffer's margin [m]; tracks: intruders it allows for.
+    """
 
     offer: Offer
     pieces: tuple[Piece, ...]
@@ -58,19 +63,19 @@ class Certificate(NamedTuple):
 
     @property
     def pieces_ms(self) -> int:
-        """How long the manoeuvre takes, up to the hold [ms]."""
+        """Duration of the manoeuvre up to the hold [ms]."""
         last = self.pieces[-1]
         return math.floor(1000 * (last.start_s + last.duration_s))
 
     @property
     def middle(self) -> Position:
-        """The middle of the hold; where the manoeuvre ends, if there is none."""
+        """The centre of the hold; without one, the end of the manoeuvre."""
         if self.hold is None:
             return after(self.pieces[-1], self.pieces[-1].duration_s)
         return Position(self.hold.north_m, self.hold.east_m, self.hold.alt_m)
 
     def age_s(self, now_ms: int) -> float:
-        """How long it has been flown [s]."""
+        """Time since it began [s]."""
         return (now_ms - self.offer.sigma_ms) / 1000
 
     def turns_into_hold(self, now_ms: int) -> bool:
@@ -78,12 +83,14 @@ class Certificate(NamedTuple):
         return lasted(self.offer.sigma_ms, now_ms, self.pieces_ms)
 
     def velocity(self, now_ms: int) -> Velocity:
-        """What is steered for at an instant of the manoeuvre: the velocity at its end, and the climb of its piece."""
+        """The velocity to command at an instant of the manoeuvre: horizontally that at its end, with the
+        climb of the present piece.
+        """
         age_s, v = self.age_s(now_ms), self.pieces[-1].velocity
         return v._replace(down_m_s=rest_of(self.pieces, age_s)[0].velocity.down_m_s)
 
     def steers(self, commanded: Velocity, now_ms: int) -> bool:
-        """Whether a velocity that is commanded is the one of the manoeuvre, at an instant of it."""
+        """Whether a commanded velocity is that of the manoeuvre at an instant."""
         if self.turns_into_hold(now_ms):
             return False
         v = self.velocity(now_ms)
@@ -92,7 +99,7 @@ class Certificate(NamedTuple):
         return bool(disc_within(beside, 0.0, SAME_M_S) and disc_within(climb, 0.0, SAME_M_S))
 
     def is_on_it(self, place: Position, now_ms: int) -> bool:
-        """Whether a vehicle at a place is as near to what is flown then as was allowed for."""
+        """Whether a vehicle at a place is within the certificate's allowed deviation at an instant."""
         if self.turns_into_hold(now_ms):
             holds = self.hold is not None
             return holds and _near(self.middle, place, self.hold_m, self.rise_m)
@@ -100,7 +107,7 @@ class Certificate(NamedTuple):
         return _near(here, place, self.off_m, self.rise_m)
 
     def knows(self, other: Intruder, now_ms: int, daa: Daa) -> bool:
-        """Whether it allows for an intruder that is seen now: it is one of the tracks, where that leads."""
+        """Whether it allows for an intruder and that intruder is where its track predicts it."""
         track = next((one for one in self.tracks if one.seen.id == other.id), None)
         if track is None:
             return False
@@ -108,16 +115,16 @@ class Certificate(NamedTuple):
         return keeps_to(told, other.position, daa)
 
     def allows_for(self, intruder_id: int) -> bool:
-        """Whether it allows for an intruder, wherever that may be now."""
+        """Whether it allows for an intruder, regardless of the intruder's position."""
         return any(one.seen.id == intruder_id for one in self.tracks)
 
     def with_track(self, other: Intruder, now_ms: int) -> Certificate:
-        """The same, which allows for an intruder as it is seen now."""
+        """The certificate with an intruder's track replaced by its present state."""
         others = tuple(one for one in self.tracks if one.seen.id != other.id)
         return self._replace(tracks=(*others, Track(now_ms, other)))
 
     def permits(self, other: Intruder, now_ms: int, daa: Daa) -> bool:
-        """Whether what is left of it is permitted against an intruder that is seen now."""
+        """Whether the remainder of it is permitted against an intruder seen now."""
         age_s, volume = self.age_s(now_ms), buffered(daa.well_clear, daa.buffer)
         left = () if self.turns_into_hold(now_ms) else rest_of(self.pieces, age_s)
         return way_permits(left, other, volume, self.rho_m) and self.hold_is_permitted(
@@ -125,12 +132,14 @@ class Certificate(NamedTuple):
         )
 
     def hold_is_permitted(self, other: Intruder, now_ms: int, daa: Daa) -> bool:
-        """Whether what is left of its hold is: without what is flown before it."""
+        """Whether the remainder of its hold is permitted, without the manoeuvre before it."""
         standing, volume = self._standing(now_ms), buffered(daa.well_clear, daa.buffer)
         return standing is None or hold_permits(standing, other, volume, self.hold_m, self.rise_m)
 
     def _standing(self, now_ms: int) -> Piece | None:
-        """What is left of the hold, until it all expires, as a piece that begins that much later than now."""
+        """The remainder of the hold until expiry, as a stationary piece timed from now; None if nothing
+        remains.
+        """
         offer = self.offer
         begin_ms = max(offer.sigma_ms + self.pieces_ms, now_ms)
         if self.hold is None or lasted(offer.expiry_ms, begin_ms, 0):

@@ -1,4 +1,4 @@
-"""A way that an instance flies by itself, with the circle that ends it, or a circle alone, and how it is steered."""
+"""A route that an instance flies autonomously, ending in a circle or on the ground, and its steering."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ from cratous.spec.mission.plan import Hold, Pose
 
 
 class Course(NamedTuple):
-    """hold: the circle at the end; speed_m_s: flown at; track: the way to it, None where there is none; s_m: how much
-    of that has been flown; offset_m: how far off it the vehicle is [m]; site: on whose ground the way ends, and not in
-    the circle, None for none: its last leg is the last descent; pace: at which speed its way is flown, if the vehicle has
-    to come to it first."""
+    """hold: the circle at the end; speed_m_s: flown speed; track: the route to it, None for a circle alone;
+    s_m: arc length flown; offset_m: distance from the track [m]; site: the landing site on which the route
+    ends instead of in the circle, None for none: its last leg is the final descent; pace: the speed to
+    accelerate to, if it differs.
+    """
 
     hold: Hold
     speed_m_s: float
@@ -36,16 +37,16 @@ class Course(NamedTuple):
 
     @property
     def left(self) -> tuple[Position, ...]:
-        """The points of the way that are still to be flown; () at its end."""
+        """The points of the route still to be flown; () at its end."""
         return () if self.track is None else self.track.rest(self.s_m)[1:]
 
     @property
     def flown_to_its_end(self) -> bool:
-        """True if all of its way has been flown; for a landing, all but the final descent."""
+        """Whether its route has been flown; for a landing, all but the final descent."""
         return not self.left[0 if self.site is None else 1 :]
 
     def flown(self, motion: Motion, beat_s: float) -> Course:
-        """The same with the vehicle where it is a heartbeat later."""
+        """The course with its progress updated after a heartbeat of beat_s [s]."""
         if self.track is None:
             return self
         window_m = 2 * motion.speed_m_s * beat_s + abs(self.offset_m)
@@ -56,7 +57,7 @@ class Course(NamedTuple):
 def courses(
     end: Pose, motion: Motion, radius_m: float, track: Track | None
 ) -> tuple[Course, Course]:
-    """The way with the circle that touches its end to the right, and to the left."""
+    """The route with the circle tangent to its end on the right, and with that on the left."""
     right, left = (
         Hold(
             end.north_m - side * radius_m * math.sin(end.heading_rad),
@@ -71,12 +72,14 @@ def courses(
 
 
 def radius_m(sensed: Sensed) -> float:
-    """The radius of the turns and circles that are flown [m]."""
+    """Radius of turns and circles at the present speed [m]."""
     return TURN_MARGIN * sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s
 
 
 def steered(course: Course, sensed: Sensed, beat_s: float) -> Choice:
-    """The velocity until the next heartbeat: to where the vehicle is then on its way, as the autopilot aims."""
+    """The velocity until the next heartbeat: towards an aim point ahead on the route, as the autopilot
+    steers.
+    """
     motion, ability = sensed.motion, sensed.ability
     p, step_m = motion.position, motion.speed_m_s * beat_s
     wide_m = 1.5 * motion.speed_m_s / ability.turn_rate_rad_s

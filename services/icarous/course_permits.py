@@ -1,9 +1,10 @@
-"""Whether a way that an instance flies by itself is permitted, with the circle that ends it.
+"""Whether a course that an instance flies autonomously is permitted, with the circle that ends it.
 
-It is put to the kernels at each heartbeat, from where the vehicle is: each leg keeps the zones by how far it may
-be off it, the rest of the way and the laps of the look-ahead after it keep the buffered volume of everybody who is
-known, straight on or along a told way, with its thresholds of time, and the disc of the circle keeps its cylinder.
-A way to a landing site has no circle: it ends on the ground, and nothing after that is looked at.
+The kernels check it at each heartbeat from the present position. Each leg keeps the zones, given the
+deviation from it; the rest of the route and the laps within the look-ahead keep the buffered volume of every
+known intruder clear, in straight flight or along its announced route, with the time thresholds; the disc of
+the circle keeps the cylinder clear. A route to a landing site ends on the ground, without a circle or
+anything after it.
 """
 
 from __future__ import annotations
@@ -27,13 +28,13 @@ from cratous.spec.mission import Daa, Position, Zone
 
 ORIGIN = Vec2(0.0, 0.0)
 LEGS = 24
-"""A lap is looked at as so many legs: 1 % of its radius off."""
+"""Number of legs per lap; the polyline deviates by 1 % of the radius."""
 TAKEN = "somebody is on its ground"
-"""Why a site is not landed at: it has room for the roll of one vehicle."""
+"""Reason for not landing at a site, which has room for the roll of one vehicle."""
 
 
 def refused(course: Course, sensed: Sensed, scene: Scene, daa: Daa, beat_s: float) -> str:
-    """Why a course is not permitted from here on; "" if it is."""
+    """Why a course is not permitted from the present position; "" if it is."""
     return next(_refused(course, sensed, scene, daa, beat_s), "")
 
 
@@ -76,7 +77,7 @@ def _refused(
     pieces = way_along(motion, course.left, math.inf, pace=course.pace).pieces
     if course.pace is not None:
         motion = motion._replace(speed_m_s=course.pace.speed_m_s)
-    # between two commands the vehicle flies straight on where the way may turn
+    # between two commands the vehicle flies straight on, where the route may turn
     aside_m = motion.speed_m_s * beat_s / 2
     yield from _against_zones(pieces, scene, aside_m)
     if course.site is not None:
@@ -102,7 +103,7 @@ def _refused(
 
 
 def _points(course: Course, motion: Motion, scene: Scene) -> list[Position]:
-    """The rest of the way, and as many laps as are flown in the look-ahead."""
+    """The rest of the route, and the laps flown within the look-ahead."""
     hold, left = course.hold, course.left
     here = left[-1] if left else motion.position
     north, east = here.north_m - hold.north_m, here.east_m - hold.east_m

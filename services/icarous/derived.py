@@ -1,6 +1,6 @@
-"""What follows from a vehicle and its mission for the ICAROUS instance of it: the numbers that nobody gives.
+"""Parameters of a vehicle's ICAROUS instance that follow from the vehicle and its mission.
 
-All are for the vehicle at its cruise speed; in flight they are those of the speed that is flown.
+They hold at the vehicle's cruise speed; in flight, those for the present speed apply.
 """
 
 from __future__ import annotations
@@ -20,16 +20,19 @@ from cratous.services.icarous.traffic_monitor import PERSIST_MS, nearest
 from cratous.spec.mission import Mission, Vehicle, WellClear
 
 QUARTER_RAD = math.pi / 2
-"""The turn that takes the own velocity out of the line of an encounter."""
+"""The turn that takes the own velocity out of the line of an encounter [rad]."""
 BUFFER_SHARE = 0.5
-"""Of what the buffer leaves, so much is for how far the vehicle may be off its prediction."""
+"""Share of the buffer's margin that allows for the vehicle's own deviation from its prediction."""
 
 
 class Derived(NamedTuple):
-    """Seconds, metres, radians per second. volume: the buffered one; least_lookahead_s: a loss that is seen later
-    is seen too late; room_m, room_high_m: how far the vehicle may be off its prediction; drift_m: how far the flown
-    quarter turn may be off the predicted one; hold_m, wide_hold_m: the disc that the vehicle keeps to in the hold at
-    the end of its way, and where zones are near; hold_high_m: how far off its height it may be there."""
+    """Units: seconds, metres, radians per second.
+
+    volume: the buffered one; least_lookahead_s: shortest adequate look-ahead; room_m, room_high_m: allowed
+    deviation of the vehicle from its prediction; drift_m: deviation of a flown quarter turn from the
+    predicted one; hold_m, wide_hold_m: radius of the disc that contains the vehicle in its final hold, and
+    near zones; hold_high_m: vertical deviation there.
+    """
 
     volume: WellClear
     horizon_s: float
@@ -53,7 +56,7 @@ class Derived(NamedTuple):
 
 
 def derived(mission: Mission, vehicle: Vehicle) -> Derived:
-    """The numbers of one vehicle, by the functions that fly it."""
+    """The parameters of one vehicle, by the functions used in flight."""
     speed, daa, beat_ms = vehicle.speed_m_s, mission.daa, mission.simulation.heartbeat_ms
     radius_m = turn_radius_m(speed, vehicle.max_bank_rad)
     ability = Ability(

@@ -1,4 +1,4 @@
-"""How far another aircraft may be from where it was predicted."""
+"""Deviation of another aircraft from its predicted position."""
 
 from __future__ import annotations
 
@@ -11,8 +11,11 @@ from cratous.spec.mission import Daa, Position
 def keeps_to(
     predicted: Position, now: Position, daa: Daa, told: Spread = EXACT, seen: Spread = EXACT
 ) -> bool:
-    """No farther off, beside and in altitude, than half of what the buffer leaves: the other half is the own vehicle's.
-    told, seen: how far off the prediction may be, and what is seen: as far as the places that both leave may be apart."""
+    """Whether the deviation, horizontally and vertically, is within half of the buffer's margin; the other
+    half is the own vehicle's.
+
+    told, seen: uncertainty of the prediction and of the observation, added to that.
+    """
     share, volume = (daa.buffer - 1) / 2, daa.well_clear
     beside = Vec2(now.north_m - predicted.north_m, now.east_m - predicted.east_m)
     above = Vec2(now.alt_m - predicted.alt_m, 0.0)

@@ -1,13 +1,12 @@
-"""The end of the way that an instance was told: the hold there is looked at, and nothing beyond it.
+"""The end of the announced route: the hold there is checked, and nothing beyond it.
 
-UxAS tells the way for farther than is looked, or to its end, where the vehicle loiters. The circle that touches
-the end, to the right or to the left, is looked at on both sides: each is a disc that stands beside the end, which
-proved kernels permit or not. The hold that is flown may be elsewhere: higher, while other vehicles still have
-tasks, or at a place near by where a circle keeps the zones (`services.flight.inflight_routes`). That way is told
-once it is flown. Zones are not the hold's to watch: UxAS circles where they are kept, or says that it does not.
-
-Straight flight is predicted, and no hold is looked at, where the vehicle is more than 30 m off its path, more than
-2 s of flight past the end, or has been told no way (`foresight.predicted`).
+UxAS sends the route for longer than the look-ahead, or to its end, where the vehicle loiters. The circles
+tangent to the end on either side are both checked: each is a stationary disc, which proved kernels permit or
+not. The hold actually flown may be elsewhere: higher, while other vehicles still have tasks, or at a nearby
+place where a circle keeps the zones (`services.flight.inflight_routes`); that route is sent once it is flown.
+The hold is not checked against zones: UxAS circles where they are kept, or reports a violation. Straight
+flight is predicted, without a hold, where the vehicle is more than 30 m off its path, more than 2 s of flight
+past the end, or has no route (`foresight.predicted`).
 """
 
 from __future__ import annotations
@@ -23,11 +22,11 @@ from cratous.services.icarous.messages import Sensed
 from cratous.spec.mission import Position, WellClear, Zone
 
 TURN_MARGIN = 1.1
-"""A way back, and a loiter, is made of turns this much wider than the tightest."""
+"""Turns of a way back and of a loiter are this much wider than the tightest."""
 TRACKING_S = 1.0
-"""A circle is flown to less than what the vehicle flies in this time [s]."""
+"""Tracking error on a circle: less than the distance flown in this time [s]."""
 WIDEST = 1.5
-"""Where a zone is in the way of the circle it is up to so much wider."""
+"""Where a zone blocks the circle, its radius is up to this many times larger."""
 
 
 class Hold(NamedTuple):
@@ -38,7 +37,9 @@ class Hold(NamedTuple):
 
 
 class Beside(NamedTuple):
-    """Discs of a radius [m] beside the end of a way that were held against zones, and whether both obey them all."""
+    """Discs of radius_m [m] beside the end of a route, checked against zones. obey: all of them keep all
+    zones.
+    """
 
     centres: tuple[Position, ...]
     radius_m: float
@@ -47,10 +48,10 @@ class Beside(NamedTuple):
 
 
 class Ahead(NamedTuple):
-    """The way that is predicted, the volumes that it keeps clear, and the holds of which one may end it.
+    """The predicted route, the volumes that it must keep clear, and the candidate holds at its end.
 
-    volumes: each is kept by the way; held: the volume whose cylinder the holds keep clear; rise_m: how far a
-    hold may be off its height [m]; beside: what was asked of zones for the holds.
+    volumes: each is checked along the route; held: volume whose cylinder the holds must keep clear; rise_m:
+    vertical deviation in a hold [m]; beside: result of the zone check for the holds.
     """
 
     pieces: tuple[Piece, ...]
@@ -61,14 +62,16 @@ class Ahead(NamedTuple):
     beside: Beside | None = None
 
     def first_s(self, other: Intruder) -> float | None:
-        """When the way, or the hold that ends it, first comes too near to an intruder [s], or None."""
+        """When the route or a hold at its end first violates a volume of an intruder [s]; None if never."""
         times = [first_violation_s(self.pieces, other, volume) for volume in self.volumes]
         if self.held is not None:
             times += [self._held_s(hold, other, self.held) for hold in self.holds]
         return min((t for t in times if t is not None), default=None)
 
     def meets(self, other: Intruder) -> bool:
-        """Whether the way, or a hold that ends it, comes too near to an intruder: `first_s` without the instant."""
+        """Whether the route or a hold at its end violates a volume of an intruder: `first_s` without the
+        time.
+        """
         if any(meets(self.pieces, other, volume) for volume in self.volumes):
             return True
         return self.held is not None and not all(
@@ -85,12 +88,12 @@ class Ahead(NamedTuple):
 
 
 def cylinder(radius_m: float, half_m: float) -> WellClear:
-    """A volume without thresholds of time."""
+    """A volume without time thresholds."""
     return WellClear(radius_m, half_m, 0.0, 0.0)
 
 
 def horizon_s(scene: Scene) -> float:
-    """How far a way is followed [s]: thresholds of time reach so far past what is looked at."""
+    """How far ahead a route is followed [s]: the look-ahead and TTHR of the volume."""
     return scene.lookahead_s + scene.volume.tthr_s
 
 
@@ -102,11 +105,11 @@ def with_hold(
     margin: float,
     before: Beside | None = None,
 ) -> Ahead:
-    """What is looked at of a predicted way, and where it ends sooner the holds of which one follows.
+    """The part of a predicted route within the look-ahead, and the candidate holds if it ends sooner.
 
-    way: followed to `horizon_s`; own: the mission's volume, without buffer; margin: a loiter is flown this
-    much wider than the tightest turn; before: what was asked of zones last, which is not asked again. A way to its end keeps the buffered cylinder, and the mission's own
-    thresholds of time: how long it goes on is known.
+    way: followed to `horizon_s`; own: the mission's volume, without buffer; margin: radius of the loiter in
+    tightest turns; before: the last zone check, reused if it is the same. A route followed to its end must
+    keep the buffered cylinder and the mission's own volume clear, since its duration is known.
     """
     pieces, beyond = looked_at(way, scene.lookahead_s)
     if way.beyond is None:
@@ -122,7 +125,7 @@ def with_hold(
 def _holds(
     beyond: Piece, sensed: Sensed, scene: Scene, margin: float, before: Beside | None
 ) -> tuple[tuple[Hold, ...], Beside]:
-    """Where the loiter at the end may be. beyond: straight flight from the end on, for the time that is left."""
+    """Candidate loiters at the end. beyond: straight flight from the end on, for the remaining time."""
     motion = sensed.motion
     radius_m = margin * motion.speed_m_s / sensed.ability.turn_rate_rad_s
     off_m = TRACKING_S * motion.speed_m_s

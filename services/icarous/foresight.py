@@ -1,4 +1,4 @@
-"""What an instance puts to the kernels of avoidance: its way ahead, and its way back."""
+"""The predictions that an instance submits to the avoidance kernels: its route ahead and its way back."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from cratous.services.icarous.state import Config, State
 from cratous.spec.mission import Daa, Position
 
 ON_PATH_M = 30.0
-"""Nearer than this to its path a vehicle is taken to fly along it; else straight on [m]."""
+"""Within this distance of its path a vehicle is predicted to fly along it, otherwise straight on [m]."""
 REACHED_S = 0.5
-"""A waypoint that is nearer than this [s of flight] is as good as reached."""
+"""A waypoint closer than this [s of flight] counts as reached."""
 PASSED_S = 2.0
-"""The last waypoint has been passed just now if it is nearer than this [s of flight]."""
+"""The last waypoint counts as just passed within this distance [s of flight]."""
 
 
 def scene_of(config: Config, state: State, sensed: Sensed) -> Scene:
-    """What manoeuvres are judged against now."""
+    """The scene against which manoeuvres are checked now."""
     daa = config.daa
     volume = buffered(daa.well_clear, daa.buffer)
     zones = state.told.zones
@@ -37,13 +37,14 @@ def scene_of(config: Config, state: State, sensed: Sensed) -> Scene:
 
 
 def looked_s(daa: Daa) -> float:
-    """How far ahead all that `predicted` gives is at most held against others [s]."""
+    """How far ahead any result of `predicted` is checked against others [s]."""
     return daa.lookahead_s + buffered(daa.well_clear, daa.buffer).tthr_s
 
 
 def predicted(config: Config, state: State, sensed: Sensed, scene: Scene) -> Ahead:
-    """The own way ahead: along the waypoints and into the hold at their end while on the path (within ON_PATH_M),
-    and in the hold for PASSED_S past the last one; else straight on."""
+    """The predicted flight: along the waypoints and into the hold at their end while on the path (within
+    ON_PATH_M), in the hold for PASSED_S past the last one; otherwise straight on.
+    """
     told, motion, lookahead_s = state.told, sensed.motion, scene.lookahead_s
     pace = pace_of(told, sensed) if state.paces(sensed.now_ms) else None
     paced, own = at_pace(sensed, pace), config.daa.well_clear
@@ -52,14 +53,14 @@ def predicted(config: Config, state: State, sensed: Sensed, scene: Scene) -> Ahe
         ahead = told.waypoints[index:]
         goal = flat(ahead[0])
         if near_line(here, flat(told.waypoints[index - 1]), goal, ON_PATH_M):
-            # a waypoint that is as good as reached says nothing about the direction of flight
+            # a waypoint that counts as reached does not give the direction of flight
             if len(ahead) > 1 and there_within(here, goal, motion.speed_m_s, REACHED_S):
                 ahead = ahead[1:]
             way = way_along(motion, ahead, horizon_s(scene), pace=pace)
             return with_hold(way, paced, scene, own, TURN_MARGIN, state.beside)
     passed = bool(told.waypoints) and index >= len(told.waypoints)
     if passed and there_within(here, flat(told.waypoints[-1]), motion.speed_m_s, PASSED_S):
-        # until another way is told the vehicle circles here
+        # until another route is sent the vehicle circles here
         way = way_along(motion, (), horizon_s(scene), pace=pace)
         return with_hold(way, paced, scene, own, TURN_MARGIN, state.beside)
     v = velocity_of(motion.heading_rad, motion.speed_m_s, motion.climb_m_s)
@@ -69,12 +70,12 @@ def predicted(config: Config, state: State, sensed: Sensed, scene: Scene) -> Ahe
 def way_back_is_free(
     config: Config, state: State, sensed: Sensed, in_turn: frozenset[int], lasting: bool = False
 ) -> bool:
-    """The way onto the path and along it, up to the hold at its end, is free of predicted conflict over the
-    look-ahead. Against the intruders that were avoided it is permitted to the end of what was told: one that flies
-    straight on is not met again.
+    """Whether the way onto the path and along it, up to the hold at its end, is free of predicted conflict
+    over the look-ahead. Against avoided intruders it must be permitted to the end of the announced route,
+    so that one that flies straight on is not met again.
 
-    in_turn: the intruders in a turn: of where they will be beyond the look-ahead a straight line says nothing.
-    lasting: it is to be permitted so against every intruder that is seen, avoided or not, and to meet no zone.
+    in_turn: intruders in a turn, whose straight-line prediction beyond the look-ahead is meaningless.
+    lasting: the way must be permitted to its end against every intruder seen, and meet no zone.
     """
     if not state.told.waypoints:
         scene = scene_of(config, state, sensed)
@@ -84,7 +85,7 @@ def way_back_is_free(
 
 
 def points_back(state: State, sensed: Sensed) -> tuple[Position, ...]:
-    """The points that UxAS flies by if it takes the vehicle back now, of a plan that has some."""
+    """The points along which UxAS flies if it takes the vehicle back now; requires waypoints."""
     tightest_m = sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s
     return way_on(state.told, sensed.motion, tightest_m)
 
@@ -97,7 +98,7 @@ def way_is_free(
     points: tuple[Position, ...],
     lasting: bool = False,
 ) -> bool:
-    """The same of the way from here by flyable turns onto points[0], and on by the others."""
+    """`way_back_is_free` for the way from here by flyable turns onto points[0], and along the rest of points."""
     scene = scene_of(config, state, sensed)
     pace = pace_of(state.told, sensed)
     flown = at_pace(sensed, pace)
@@ -113,7 +114,7 @@ def way_is_free(
             return False
     whole = [one.pieces for one in ways_back(now, radius_m, points, math.inf, pace)]
     if lasting:
-        # where a zone lies across it UxAS flies another way than this
+        # if a zone lies across it UxAS flies another way than this one
         if any(first_zone_s(pieces, scene.zones, 5.0) is not None for pieces in whole):
             return False
         if not all(keeps_volume(pieces, o, config.daa) for pieces in whole for o in asked):

@@ -1,4 +1,4 @@
-"""Whether the way ahead of the ownship, flown as it flies now, meets a zone too soon."""
+"""Whether the ownship's predicted flight meets a zone within its turn-back time."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from cratous.spec.mission import Zone
 def zone_ahead_s(
     now: Motion, ability: Ability, pieces: tuple[Piece, ...], zones: tuple[Zone, ...]
 ) -> float | None:
-    """When a zone is met [s from now], if that is sooner than a half circle takes; else None.
+    """When a zone is met [s from now], if that is sooner than the turn-back time; else None.
 
-    pieces: the predicted way. Only its part within the turn-back time is checked: farther away
-    there is still time to see it and turn.
+    pieces: the predicted flight; only its part within the turn-back time is checked, since beyond it there is
+    still time to turn.
     """
     if not zones:
         return None

@@ -1,4 +1,4 @@
-"""What an ICAROUS instance has been told over the bridge: zones, waypoints, and how far it is."""
+"""What an ICAROUS instance has been told over the bridge: zones, waypoints, and progress along them."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ from cratous.spec.mission import Position, Velocity, Zone, ZoneKind
 from cratous.spec.records import replace
 
 MOST_OTHERS = 1000
-"""Of so many other vehicles it is known how they fly; of others told before it is forgotten."""
+"""Most other vehicles whose routes or velocities are kept; the oldest are dropped."""
 
 
 @dataclass(frozen=True)
 class Told:
-    """The mission as told so far.
+    """The mission as received so far.
 
-    waypoints: the plan in force; next_index: the one to fly to; resume: where the task's path was
-    left, while ICAROUS has control; gathering and vertices: what is not yet complete.
-    heard_ms: when UxAS was last heard; others: the ways that UxAS flies other vehicles by, and of_others: lines
-    of them that are not yet complete; steered: to which velocity its ICAROUS steers another vehicle.
+    waypoints: the plan in force; next_index: the waypoint to fly to; resume: where the path is to be resumed,
+    while ICAROUS has control; gathering, vertices: incomplete plan and zone. heard_ms: when UxAS was last
+    heard; others: routes of other vehicles under UxAS, of_others: incomplete lines of one; steered:
+    velocities of other vehicles under ICAROUS.
     """
 
     zones: tuple[Zone, ...] = ()
@@ -52,21 +52,21 @@ class Told:
     steered: tuple[tuple[int, Velocity], ...] = ()
 
     def alone(self) -> Told:
-        """The same inbox without the messages about other vehicles."""
+        """The inbox without messages about other vehicles."""
         return replace(self, others=(), of_others=(), steered=())
 
     def way_of(self, vehicle_id: int) -> tuple[Position, ...]:
-        """The way that UxAS flies another vehicle by; () if none is known."""
+        """Another vehicle's route under UxAS; () if unknown."""
         return dict(self.others).get(vehicle_id, ())
 
 
 def hear(
     told: Told, message: Message, projection: Projection, now_ms: int, original: bool = False
 ) -> Told:
-    """The same after one more line, which has come now [ms]. original: from a UxAS of the original's."""
+    """The inbox after one more line, received at now_ms [ms]. original: from a UxAS of the original's."""
     after = _hear(told, message, projection, original)
     if after is told and not lasted(told.heard_ms, now_ms, 1):
-        return told  # most lines: other aircraft, at one heartbeat
+        return told  # the usual case: lines about other aircraft within one heartbeat
     return replace(after, heard_ms=now_ms)
 
 
@@ -109,12 +109,14 @@ def _hear(told: Told, message: Message, projection: Projection, original: bool) 
 
 
 def beaten(told: Told) -> Told:
-    """The same at a heartbeat, between two of which UxAS tells each way to its end: lines of a part are none of the next."""
+    """The inbox at a heartbeat. UxAS sends each route completely between two heartbeats, so an incomplete one
+    is dropped.
+    """
     return replace(told, of_others=()) if told.of_others else told
 
 
 def _of_another(told: Told, line: WayOfAnother, projection: Projection) -> Told:
-    """The way of another is known once its lines have come, in order and all; until then none is."""
+    """Another vehicle's route is known once all of its lines have arrived in order; until then it is unknown."""
     before = () if line.index == 0 else told.of_others
     lines = (*before, line)
     others = tuple(one for one in told.others if one[0] != line.vehicle_id)
@@ -136,9 +138,9 @@ def _of_another(told: Told, line: WayOfAnother, projection: Projection) -> Told:
 
 
 def _start(told: Told, projection: Projection, original: bool) -> Told:
-    """The plan that was gathered is in force; one in which waypoints are missing never is.
+    """Put the received plan into force; a plan with missing waypoints is dropped.
 
-    The original's `total` is a running count: its last line has the number of all that were told.
+    The original's `total` is a running count: only its last line carries the final number.
     """
     if not told.gathering:
         return replace(told, started=True)
@@ -166,10 +168,10 @@ def _start(told: Told, projection: Projection, original: bool) -> Told:
 
 
 def _close_fence(told: Told, done: FenceDone, projection: Projection) -> Told:
-    """A zone counts only when it is whole; until then it is not in force.
+    """Put a zone into force if all of its lines have arrived; otherwise drop them.
 
-    Whole: vertices 1 to `total` in order, all of one zone, kind, total, floor and ceiling, and of
-    the zone that GEOFN_SEND names; one that names none closes the zone that was told.
+    Complete means: vertices 1 to `total` in order, with the same zone, kind, total, floor and ceiling, and
+    the zone that GEOFN_SEND names; a GEOFN_SEND without a zone closes the one received.
     """
     vertices = told.vertices
     if not vertices:

@@ -1,12 +1,12 @@
 """The ICAROUS instance of one vehicle: `handle(state, message) -> (state, messages)`.
 
-MONITOR: UxAS flies; the way ahead, up to the hold that ends it, is checked against traffic and zones. AVOID: ICAROUS has taken
-over and flies the turn after which the way back is free soonest, or the manoeuvre that deviates least from the course. HANDBACK: the way back has been
-free for a while, control is offered; ICAROUS steers on until UxAS takes it, and withdraws the
-offer when a conflict shows up. Own state and traffic come from the vehicle itself; the bridge
-brings zones and waypoints, and takes away SETMOD, SETVEL and HBEAT. Without the bridge there is no
-offer: the instance flies on along the waypoints it knows. Who flies, and what is done with authority,
-is decided by the kernels of `core.authority.cycle`.
+MONITOR: UxAS flies; the predicted route, up to the hold that ends it, is checked against traffic and zones.
+AVOID: ICAROUS has taken over and flies the turn after which the way back is free soonest, or the manoeuvre
+that deviates least from the course. HANDBACK: the way back has been free for a while and control is offered;
+ICAROUS steers until UxAS takes it, and withdraws the offer on a new conflict. Own state and traffic come from
+the vehicle itself; the bridge delivers zones and waypoints, and carries away SETMOD, SETVEL and HBEAT.
+Without the bridge there is no offer: the instance flies along the waypoints it knows. The kernels of
+`core.authority.cycle` decide who flies and every change of authority.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ from cratous.spec.mission.plan import Pose
 from cratous.spec.records import replace
 
 LINK_LOST_MS = 2000
-"""The bridge counts as lost when nothing was heard for this long [ms]: four heartbeats."""
+"""The bridge counts as lost when nothing has been heard for this long [ms]: four heartbeats."""
 REASONS = {
     OFFER: "the way back is free",
     WITHDRAW: "offer withdrawn: the way back is no longer free",
@@ -74,7 +74,9 @@ Step = tuple[State, tuple[messages.FromInstance, ...]]
 
 
 class Conflict(NamedTuple):
-    """Why to take over: "traffic" or "zone", with whom (0: a zone), in how many seconds."""
+    """Why to take over: "traffic" or "zone", the intruder (0 for a zone), and the predicted time to violation
+    [s].
+    """
 
     why: str
     intruder_id: int
@@ -83,12 +85,12 @@ class Conflict(NamedTuple):
 
 @dataclass(frozen=True)
 class Instance:
-    """The service of one ICAROUS instance; constant: its vehicle, and what it keeps clear of."""
+    """The service of one ICAROUS instance. config: its fixed configuration."""
 
     config: Config
 
     def handle(self, state: State, message: messages.ToInstance) -> Step:
-        """One step: the state afterwards, and what to send, in order."""
+        """One step: the state that results, and the messages to send, in order."""
         match message:
             case messages.Line(now_ms, line):
                 config = self.config
@@ -96,7 +98,7 @@ class Instance:
                 asked = asking.heard(state.asking, line, config.projection)
                 if told is state.told and asked is state.asking:
                     return state, ()
-                # an index into the waypoints of another way says nothing
+                # a waypoint index is meaningless for another route
                 goal = state.goal if told.waypoints is state.told.waypoints else 0
                 return replace(state, told=told, goal=goal, asking=asked), ()
             case messages.Talk():
@@ -105,12 +107,12 @@ class Instance:
                 return self._beat(state, message)
 
     def _beat(self, state: State, sensed: messages.Sensed) -> Step:
-        """One heartbeat: notice of the gate, then watch or fly, and a sign of life."""
+        """One heartbeat: read the gate, then monitor or fly, and send a sign of life."""
         commands = gate_accepts(sensed.gate, ICAROUS, sensed.gate.epoch)
         cycle = cycle_begun(state.cycle, commands, sensed.now_ms)
         flew, watches = state.cycle.mode != MONITOR, cycle.mode == MONITOR
         now, beat_s = courses(sensed.intruders), self.config.heartbeat_ms / 1000
-        # on the ground it banks as it does when it leaves it
+        # on the ground, its turn ability is that at take-off speed
         able = sensed
         if sensed.on_ground:
             able = sensed._replace(
@@ -122,7 +124,7 @@ class Instance:
             state.ways, told, able, self.config.daa, beat_s, state.courses, until_s
         )
         state, sensed = replace(state, told=beaten(state.told)), sensed._replace(intruders=others)
-        # one whose way is known is where that leads, in a turn too
+        # an intruder with a known route is predicted along it, in a turn as well
         loose = loose_courses(sensed.intruders)
         in_turn = turning(now, state.courses, beat_s, loose) - {o.id for o in others if o.way}
         if flew and watches:
@@ -146,7 +148,9 @@ class Instance:
         return state, (*up, *lost, *merges, *hears, *out, messages.Up(self.config.vehicle_id, beat))
 
     def _hears(self, state: State, now_ms: int) -> tuple[State, tuple[messages.Hears, ...]]:
-        """Whether UxAS is heard still, or again, for the record; one that acts without the link says so anyway."""
+        """A change of whether UxAS is heard, for the record; not reported here if the instance has a
+        lost-link behaviour, which reports it itself.
+        """
         last_ms = state.told.heard_ms
         heard = in_time(last_ms, now_ms, LINK_LOST_MS)
         says_so = self.config.lost_link is not None
@@ -156,8 +160,9 @@ class Instance:
         return replace(state, unheard=not heard), (told,)
 
     def _needed_s(self, state: State, watches: bool, now_ms: int) -> float:
-        """How far the ways of others are needed at a heartbeat [s]: as far as is looked, unless permits or courses are
-        held against them."""
+        """How far ahead the routes of others are needed at a heartbeat [s]: the look-ahead, or without limit
+        where permits or courses are checked against them.
+        """
         daa, plan = self.config.daa, self.config.lost_link
         linked = plan is None or in_time(state.told.heard_ms, now_ms, plan.after_ms)
         linked = linked and state.no_link.loss.mode == LINKED
@@ -166,7 +171,9 @@ class Instance:
         return looked_s(daa) + 1.0
 
     def _watch(self, state: State, sensed: messages.Sensed, in_turn: frozenset[int]) -> Step:
-        """MONITOR: take over if a conflict is foreseen that is ours to act on, or the link is lost, or to take off."""
+        """MONITOR: take over on a predicted conflict that requires own action, on loss of the link, or to
+        take off.
+        """
         if take_off.departs(self.config, state):
             departure = take_off.rising(self.config, state).departure
             takes = departure_takes(departure, False)
@@ -208,7 +215,7 @@ class Instance:
         cycled: Cycled,
         why: str,
     ) -> Step:
-        """Take over since UxAS is not heard, to take off, or to merge."""
+        """Take over because UxAS is not heard, to take off, or to merge."""
         state = replace(state, cycle=cycled.cycle, goal=state.told.next_index)
         state, choice = self._flown_by_itself(state, sensed, in_turn)
         wish = messages.Wish(self.config.vehicle_id, cycled.act, why, 0)
@@ -218,7 +225,7 @@ class Instance:
     def _flown_by_itself(
         self, state: State, sensed: messages.Sensed, in_turn: frozenset[int]
     ) -> tuple[State, Choice]:
-        """What is flown off the ground, without the link, or over a merge fix."""
+        """The manoeuvre of a take-off, of flight without the link, or over a merge fix."""
         if take_off.departs(self.config, state):
             return take_off.flown(self.config, state, sensed)
         if state.no_link.loss.mode == LINKED:
@@ -228,7 +235,9 @@ class Instance:
     def _foreseen(
         self, state: State, sensed: messages.Sensed, in_turn: frozenset[int]
     ) -> tuple[State, Conflict | None]:
-        """All predicted losses of well clear, what is still permitted, and the conflict to act on."""
+        """Predict losses of well clear and re-check the permits. Returns the conflict to act on, None if
+        there is none.
+        """
         scene = scene_of(self.config, state, sensed)
         ahead = predicted(self.config, state, sensed, scene)
         if ahead.beside is not None and ahead.beside is not state.beside:
@@ -247,7 +256,7 @@ class Instance:
         return state, None
 
     def _fly(self, state: State, sensed: messages.Sensed, in_turn: frozenset[int]) -> Step:
-        """AVOID and HANDBACK: fly the manoeuvre, and see whether the way back is free."""
+        """AVOID and HANDBACK: fly the manoeuvre, and check whether the way back is free."""
         state, guides = self._guided(state, sensed, not (sensed.landed or sensed.on_ground))
         departure = take_off.rising(self.config, state).departure
         departs = take_off.departs(self.config, state)
@@ -273,7 +282,7 @@ class Instance:
             of_uxas = cycled.act == OFFER and proposed is not None
             reason = f"{UXAS_WAY} (request {proposed})" if of_uxas else REASONS[cycled.act]
             out.append(messages.Wish(vid, cycled.act, reason, 0))
-        # along a course the heading changes at each heartbeat
+        # along a course the heading changes at each heartbeat: not recorded
         course = state.no_link.course if lost else state.merging.course
         on_course = departs or course is not None
         changed = not on_course and (before is None or describe(before) != text)
@@ -286,8 +295,11 @@ class Instance:
     def _proposed(
         self, state: State, sensed: messages.Sensed, in_turn: frozenset[int], free: bool
     ) -> tuple[State, int | None, list[messages.FromInstance]]:
-        """The number of the request whose answer is free, where the own way back is not; what UxAS is asked, if it plans
-        live, and what there is to say of it."""
+        """Handle requests for a way back, where the own one is not free and UxAS plans live.
+
+        Returns the state, the number of the request whose answer is free (None if none is), and the messages
+        to send.
+        """
         now_ms, motion, before = sensed.now_ms, sensed.motion, state.asking
         if free or not (before.allowed and state.told.waypoints):
             return replace(state, asking=before._replace(proposal=())), None, []
@@ -314,7 +326,7 @@ class Instance:
     def _guided(
         self, state: State, sensed: messages.Sensed, wanted: bool
     ) -> tuple[State, tuple[messages.FromInstance, ...]]:
-        """With what detect and avoid says, once a second while it is wanted, and that for the record."""
+        """The state with alerts and bands evaluated, once a second while wanted, and their record."""
         if not wanted:
             return replace(state, bands=None), ()
         # not needed in a flight without conflicts
@@ -349,8 +361,9 @@ class Instance:
     def _commands(
         self, sensed: messages.Sensed, choice: Choice, act: int, proposed: int | None = None
     ) -> tuple[messages.FromInstance, ...]:
-        """The velocity of a manoeuvre, to the autopilot and to UxAS, and the mode, which UxAS needs to
-        hear once: a line that is lost is made good by the next one."""
+        """The manoeuvre's velocity, for the autopilot and for UxAS, and the mode, repeated at each heartbeat
+        so that a lost line does no harm.
+        """
         vid, gate = self.config.vehicle_id, gate_wished(sensed.gate, act)
         v = velocity_of(choice.heading_rad, choice.speed_m_s, choice.climb_m_s)
         mode = SetMode("ACTIVE", gate.epoch)

@@ -1,8 +1,8 @@
-"""Ways to the landing sites: to the gate of the last descent, as low as ICAROUS flies, and straight down from there.
+"""Routes to landing sites: to the gate of the final descent at ICAROUS's lowest altitude, then straight down.
 
-The vehicle touches down half of its roll before the middle of the site. Where the way is too short to come down on,
-laps of a circle at the gate are flown before it. The last descent is as steep as half of what the vehicle can do, so that it
-comes down even if it is late; it is flown as slowly as the vehicle may fly, and the way to it too.
+The vehicle touches down half of its roll before the centre of the site. Where the route is too short for the
+descent, laps of a circle are flown before the gate. The final descent uses half of the greatest descent rate,
+to keep a margin for delay; it and the route to it are flown at the lowest speed.
 """
 
 from __future__ import annotations
@@ -25,22 +25,23 @@ from cratous.spec.mission.link_loss import LandingSite
 from cratous.spec.mission.plan import Pose
 
 DIRECTIONS = 8
-"""A site is approached straight on, or from so many directions, the nearest to that first."""
+"""A site is approached straight on, or from this many directions, those closest to straight on first."""
 STEEP = 0.5
-"""The last descent uses this share of the climb rate."""
+"""Share of the climb rate used in the final descent."""
 EVEN = 0.8
-"""A way down uses at most this share of it."""
+"""Largest share of the climb rate used on the route down to the gate."""
 LEGS = 24
-"""A lap is flown as so many legs."""
+"""Number of legs per lap."""
 MOST_LAPS = 50
-"""A vehicle that would have to circle more often does not land there."""
+"""A landing that would need more laps is rejected."""
 LONGEST_MS = 1_800_000
-"""Nor does one whose last descent would take longer [ms]."""
+"""So is one whose final descent would take longer [ms]."""
 
 
 def in_order(plan: LostLink, place: Position) -> list[LandingSite]:
-    """The sites, the one to try first in front: the named one, or else those that are none to ditch at, the nearest first;
-    then those to ditch at, the nearest first."""
+    """The sites in the order in which they are tried: the named one (without a name, all that are not for
+    ditching), then those for ditching, each group by distance.
+    """
 
     def rank(site: LandingSite) -> tuple[bool, float]:
         first = site.name == plan.site or not (plan.site or site.ditch)
@@ -53,7 +54,7 @@ def in_order(plan: LostLink, place: Position) -> list[LandingSite]:
 def approaches(
     plan: LostLink, site: LandingSite, sensed: Sensed, zones: tuple[Zone, ...]
 ) -> Iterator[Course]:
-    """Ways from where the vehicle is to the ground of a site; none where it sinks too slowly."""
+    """Routes from the vehicle to the ground of a site; none where the final descent would take too long."""
     motion, ability = sensed.motion, sensed.ability
     if sinks_too_slowly(site, ability):
         return
@@ -63,7 +64,7 @@ def approaches(
     for turn in turns:
         heading = straight + 2 * math.pi * turn / DIRECTIONS
         touch, gate = _last_descent(site, heading, ability)
-        # there the vehicle has slowed down
+        # by then the vehicle has slowed down
         lead_m = max(motion.speed_m_s**2 - ability.min_speed_m_s**2, 0.0)
         lead_m /= 2 * ability.acceleration_m_s2
         before = along(gate, heading, -lead_m)
@@ -83,13 +84,13 @@ def approaches(
 
 
 def sinks_too_slowly(site: LandingSite, ability: Ability) -> bool:
-    """Whether the last descent of a vehicle to a site takes longer than it may."""
+    """Whether the final descent to a site would take longer than LONGEST_MS."""
     down_m = max(ability.floor_m - site.ground_m, 0.0)
     return not in_time(0, math.ceil(1000 * down_m / (STEEP * ability.max_climb_m_s)), LONGEST_MS)
 
 
 def _last_descent(site: LandingSite, heading: float, ability: Ability) -> tuple[Position, Position]:
-    """Where the vehicle touches down, and the gate where the descent begins."""
+    """The touchdown point, and the gate where the final descent begins."""
     speed = ability.min_speed_m_s
     middle = Position(site.north_m, site.east_m, site.ground_m)
     touch = along(middle, heading, -speed * speed / (4 * BRAKING_M_S2))
@@ -99,7 +100,7 @@ def _last_descent(site: LandingSite, heading: float, ability: Ability) -> tuple[
 
 
 def along(place: Position, heading: float, by_m: float) -> Position:
-    """The place so much farther in a direction, as high."""
+    """The place by_m [m] farther in a direction, at the same altitude."""
     north_m, east_m = (
         place.north_m + by_m * math.cos(heading),
         place.east_m + by_m * math.sin(heading),
@@ -110,7 +111,9 @@ def along(place: Position, heading: float, by_m: float) -> Position:
 def with_laps(
     way: tuple[Position, ...], end: Pose, wide_m: float, slope: float, side: int
 ) -> tuple[Position, ...]:
-    """The way, evenly down, with as many laps to the right (1) or left (-1) at its end as that takes; () for too many."""
+    """The route with an even descent and the laps at its end that it requires, right (1) or left (-1); () for
+    too many.
+    """
     middle = (
         end.north_m - side * wide_m * math.sin(end.heading_rad),
         end.east_m + side * wide_m * math.cos(end.heading_rad),
@@ -126,7 +129,7 @@ def with_laps(
 
 
 def _evenly(points: tuple[Position, ...], begin_m: float, end_m: float) -> tuple[Position, ...]:
-    """The points with altitudes from one to the other, by the way that is flown."""
+    """The points with altitudes interpolated over the flown length."""
     total_m, flown_m, found = polyline_length_m(points), 0.0, [points[0]._replace(alt_m=begin_m)]
     for before, after in pairwise(points):
         flown_m += math.dist(before[:2], after[:2])

@@ -1,9 +1,10 @@
-"""What an instance does by itself while UxAS is not heard: what the mission chooses, if it is permitted, else a circle.
+"""Autonomous behaviour while UxAS is not heard: what the mission chooses if permitted, otherwise a circle.
 
-Which mode is flown, since when, and until when is answered by the kernel `loss_step` at each heartbeat. What is
-chosen and the circle are courses (`services.icarous.course`), permitted from where the vehicle is; where not even a
-circle is, the manoeuvre that deviates least is flown, as in any takeover. A way that was not permitted is looked for
-anew after AGAIN_MS. A landing is flown to the gate of its last descent as any way is, and from there to the ground.
+The kernel `loss_step` decides at each heartbeat which mode is flown, since when, and until when. The chosen
+behaviour and the circle are courses (`services.icarous.course`), permitted from the present position; if not
+even a circle is permitted, the manoeuvre of least deviation is flown, as in any takeover. A route that was
+not permitted is searched for again after AGAIN_MS. A landing is flown to the gate of its final descent like
+any route, and from there to the ground.
 """
 
 from __future__ import annotations
@@ -45,11 +46,11 @@ WAITS = "; a circle is flown until it is"
 NO_WAY = "no way there was found"
 STAYS = "it does not leave the ground"
 ENDED = (OVER, FINAL, LANDED)
-"""In these nothing else is looked for."""
+"""Modes in which no other course is searched for."""
 
 
 class Tried(NamedTuple):
-    """A course of what is chosen that is permitted, None for none, and why there is none."""
+    """A permitted course for the chosen behaviour, or None and the reason."""
 
     course: Course | None
     why: str = ""
@@ -58,7 +59,7 @@ class Tried(NamedTuple):
 def heartbeat(
     config: Config, state: State, sensed: Sensed
 ) -> tuple[State, tuple[WithoutLink, ...]]:
-    """The mode at this heartbeat, with the course that is flown in it, and what is new."""
+    """The state with the mode and course for this heartbeat, and what to report."""
     plan, now_ms, before = config.lost_link, sensed.now_ms, state.no_link
     if plan is None:
         return state, ()
@@ -83,7 +84,7 @@ def heartbeat(
     elif stepped.act == COMMIT:
         course = tried.course
     elif mode in (FINAL, LANDED):
-        pass  # the last descent is flown as it was permitted
+        pass  # the final descent is flown as it was permitted
     elif mode == chosen and chosen != LOITER:
         course = tried.course
     elif mode != LINKED:
@@ -120,8 +121,9 @@ def _words(act: int, plan: LostLink, tried: Tried, course: Course | None, silent
 def flown(
     config: Config, state: State, sensed: Sensed, in_turn: frozenset[int]
 ) -> tuple[State, Choice]:
-    """The manoeuvre to fly now without the link: along the course, or around what is in the way of all of them; none on
-    the ground."""
+    """The manoeuvre to fly without the link: along the course, or by avoidance if no course is permitted; on
+    the ground none.
+    """
     course, goal = state.no_link.course, config.lost_link.goal if config.lost_link else None
     if state.no_link.loss.mode == LANDED:
         stands = Choice("heading", sensed.motion.heading_rad, 0.0, 0.0, 0.0, True, None)
@@ -130,7 +132,7 @@ def flown(
         choice = courses.steered(course, sensed, _beat_s(config))
         return replace(state, held=None, search=IDLE), choice
     told = state.told
-    # whoever returns makes for that place; else for nothing
+    # with RETURN it makes for that place, otherwise it has no goal
     points = () if goal is None else (goal,)
     alone = replace(told, waypoints=points, next_index=0, resume=None)
     after, choice = manoeuvre(config, replace(state, told=alone, goal=0), sensed, in_turn, False)
@@ -144,13 +146,13 @@ def _beat_s(config: Config) -> float:
 def _tried(
     config: Config, state: State, sensed: Sensed, plan: LostLink, going: Course | None
 ) -> Tried:
-    """The course that is flown if it is permitted still, else another one from here."""
+    """The present course if it is still permitted, else another one from here."""
     scene, told = scene_of(config, state, sensed), dict[str, str]()
     for course in _candidates(state, sensed, plan, going):
         why = refused(course, sensed, scene, config.daa, _beat_s(config))
         site = course.site.name if course.site is not None else ""
         if not why:
-            # of a site that was wanted more it is said why it is not landed at
+            # report why a preferred site was not used
             found = course is not going and site not in ("", plan.site)
             return Tried(course, _why_not(plan, sensed, told, site) if found else "")
         if not site or site not in told:
@@ -159,7 +161,9 @@ def _tried(
 
 
 def _why_not(plan: LostLink, sensed: Sensed, told: dict[str, str], site: str) -> str:
-    """Why the sites that are tried before one are not landed at. told: why a way there is not permitted."""
+    """Why the sites before this one in order are not used. told: reason by site why no route there is
+    permitted.
+    """
     names = [one.name for one in in_order(plan, sensed.motion.position)] if plan.sites else []
     before = names[: names.index(site)] if site in names else names
     told = {**dict.fromkeys(sensed.taken, TAKEN), **told}
@@ -191,7 +195,7 @@ def _candidates(
 
 
 def _known_way(state: State, sensed: Sensed, wide_m: float) -> tuple[Position, ...]:
-    """The rest of the way that was told, from here; how far it was flown was last told before the silence."""
+    """The rest of the announced route from here; progress is estimated for the time of the silence."""
     told, motion = state.told, sensed.motion
     known = told.waypoints[max(told.next_index - 1, 0) :]
     if not known:
@@ -209,7 +213,7 @@ def _known_way(state: State, sensed: Sensed, wide_m: float) -> tuple[Position, .
 
 
 def _circle(config: Config, state: State, sensed: Sensed, going: Course | None) -> Course | None:
-    """The circle that is flown if it is permitted still, else one from here; None where none is."""
+    """The present circle if it is still permitted, else a new one from here; None where none is."""
     motion, scene = sensed.motion, scene_of(config, state, sensed)
     here, wide_m = Pose(*motion.position, motion.heading_rad), courses.radius_m(sensed)
     found = [going] if going is not None else []

@@ -1,4 +1,4 @@
-"""What an instance knows about acting without UxAS, and remembers of it."""
+"""Lost-link parameters of an instance, and its state while UxAS is not heard."""
 
 from __future__ import annotations
 
@@ -12,13 +12,16 @@ from cratous.spec.mission.link_loss import LandingSite
 from cratous.spec.mission.plan import Pose
 
 FindWay = Callable[[Pose, Pose, float, float, tuple[Zone, ...]], tuple[Position, ...]]
-"""From a pose to a pose by turns of a radius [m], climbing at most so steeply, around zones; () if none is found."""
+"""(start, end, turn radius [m], steepest slope, zones) -> the points of a route around the zones; () if none
+is found.
+"""
 
 
 class LostLink(NamedTuple):
-    """choice: FINISH, LOITER, RETURN or LAND of `core.authority.link_loss`; after_ms: how long UxAS may be silent [ms];
-    words: the choice; find: looks for a way; goal: where to return to, else None; site: the landing site that is named,
-    "" for none; sites: all of them."""
+    """choice: FINISH, LOITER, RETURN or LAND of `core.authority.link_loss`; after_ms: tolerated silence of
+    UxAS [ms]; words: the choice in words; find: route search; goal: place to return to, else None; site:
+    name of the preferred landing site, "" for none; sites: all landing sites.
+    """
 
     choice: int
     after_ms: int
@@ -30,8 +33,9 @@ class LostLink(NamedTuple):
 
 
 class NoLink(NamedTuple):
-    """loss: the mode, as the kernels have it; course: what is flown in it, None where nothing is permitted; tried_ms:
-    when a way of what is chosen was last looked for [ms]."""
+    """loss: the mode, as the kernels have it; course: what is flown in it, None where nothing is permitted;
+    tried_ms: when a course for the choice was last searched for [ms].
+    """
 
     loss: Loss = Loss(LINKED, 0)
     course: Course | None = None

@@ -1,8 +1,8 @@
-"""What a vehicle and its ICAROUS instance say to each other: plain values, times in ms of virtual time.
+"""The messages between a vehicle and its ICAROUS instance: plain values, times in ms of virtual time.
 
-To the instance: lines that have come over the bridge, and at each heartbeat what the vehicle senses.
-From it, in this order: alerts and bands, what it wants of the gate, what it foresees, a certificate for the manoeuvre or why there is
-none, the velocity to fly, lines to UxAS.
+To the instance: lines received over the bridge, and at each heartbeat what the vehicle senses. From it, in
+this order: alerts and bands, its request to the gate, predicted conflicts, a certificate for the manoeuvre or
+why there is none, the velocity to fly, lines to UxAS.
 """
 
 from __future__ import annotations
@@ -23,24 +23,26 @@ if TYPE_CHECKING:
     from cratous.core.daa.session import Instant
 
 EMPTY = Hand(0, 0, 0, 0)
-"""Nothing is in hand, and nothing has become known."""
+"""No certificate is held, and nothing has become known."""
 
 # to the instance --------------------------------------------------------------------------------
 
 
 class Line(NamedTuple):
-    """A line from UxAS has come over the bridge."""
+    """A line from UxAS, received over the bridge."""
 
     now_ms: int
     line: Message
 
 
 class Sensed(NamedTuple):
-    """A heartbeat is due. motion, ability: of the vehicle itself; intruders: everybody else, as its
-    surveillance sees them; gate: how its actuator gate stands; here: how far the vehicle may be from where it is
-    taken to be; hand: the certificate behind the gate; landed: it is on the ground; taken: the landing
-    sites on whose ground somebody else is; on_ground: it has not left the ground yet; rolling: the others of ours that
-    roll to leave it."""
+    """A heartbeat is due.
+
+    motion, ability: of the vehicle itself; intruders: all others, as its surveillance sees them; gate: its
+    actuator gate; here: uncertainty of the vehicle's own position; hand: the held certificate; landed: it is
+    on the ground; taken: names of landing sites on which another vehicle stands; on_ground: it has not taken
+    off yet; rolling: ids of other own vehicles in their take-off run.
+    """
 
     now_ms: int
     motion: Motion
@@ -66,8 +68,9 @@ class Talk(NamedTuple):
 
 
 class Wish(NamedTuple):
-    """To the gate. act: what the kernels of `core.authority.cycle` have answered, for
-    `gate_wished`; intruder_id: because of whom, 0 for none."""
+    """To the gate. act: result of the kernels of `core.authority.cycle`, for `gate_wished`; intruder_id: the
+    intruder concerned, 0 for none.
+    """
 
     vehicle_id: int
     act: int
@@ -76,8 +79,9 @@ class Wish(NamedTuple):
 
 
 class Foresees(NamedTuple):
-    """To the record: a manoeuvre in words, and the predicted loss that it avoids, with whom and in how
-    many seconds (0 and -1 where there is nothing new of it)."""
+    """To the record: a manoeuvre in words, and the predicted loss that it avoids (intruder, seconds); 0 and
+    -1 if there is no new prediction.
+    """
 
     vehicle_id: int
     now_ms: int
@@ -87,8 +91,9 @@ class Foresees(NamedTuple):
 
 
 class WithoutLink(NamedTuple):
-    """To the record. mode, chosen: what is flown from now on while UxAS is not heard, and what the mission wants, by
-    the numbers of `core.authority.link_loss`; heard_ms: when UxAS was last heard."""
+    """To the record. mode, chosen: the behaviour flown while UxAS is not heard, and that set by the mission,
+    as codes of `core.authority.link_loss`; heard_ms: when UxAS was last heard.
+    """
 
     vehicle_id: int
     now_ms: int
@@ -99,8 +104,9 @@ class WithoutLink(NamedTuple):
 
 
 class TakesOff(NamedTuple):
-    """To the record. mode: how the vehicle leaves the ground from now on, by the numbers of `core.authority.take_off`;
-    heard_ms: when UxAS was last heard."""
+    """To the record. mode: the vehicle's take-off mode, as a code of `core.authority.take_off`; heard_ms:
+    when UxAS was last heard.
+    """
 
     vehicle_id: int
     now_ms: int
@@ -131,8 +137,7 @@ class Tells(NamedTuple):
 
 
 class Hears(NamedTuple):
-    """To the record: whether UxAS has been heard within the time after which nothing is offered to it, said when that
-    changes; last_ms: when a line of its came last."""
+    """To the record: whether UxAS is heard, sent when that changes; last_ms: when its last line arrived."""
 
     vehicle_id: int
     now_ms: int
@@ -141,7 +146,7 @@ class Hears(NamedTuple):
 
 
 class Guides(NamedTuple):
-    """To the record: the alerts and bands of a vehicle that flies so at now_ms [ms]."""
+    """To the record: a vehicle's alerts and bands in this motion at now_ms [ms]."""
 
     vehicle_id: int
     now_ms: int
@@ -150,14 +155,14 @@ class Guides(NamedTuple):
 
 
 class Offers(NamedTuple):
-    """To the gate: a certificate for what is commanded next."""
+    """To the gate: a certificate for the next command."""
 
     vehicle_id: int
     certificate: Certificate
 
 
 class Uncertified(NamedTuple):
-    """To the gate: what is commanded next is not permitted. intruder_id: against whom, 0 for a zone."""
+    """To the gate: the next command is not permitted. intruder_id: the intruder concerned, 0 for a zone."""
 
     vehicle_id: int
     intruder_id: int
@@ -165,7 +170,7 @@ class Uncertified(NamedTuple):
 
 
 class Steer(NamedTuple):
-    """To the autopilot, through the gate: fly this velocity. epoch: in which it is commanded."""
+    """To the autopilot, through the gate: fly this velocity, commanded in this epoch."""
 
     vehicle_id: int
     epoch: int

@@ -1,10 +1,9 @@
-"""What an instance offers to the actuator gate with each command: a certificate for what it commands.
+"""The certificate that an instance offers to the actuator gate with each command.
 
-The manoeuvre is followed up to the look-ahead, or to a quarter, half or three quarters of it, and then a circle is
-flown, to the right or to the left: the one of these that is permitted for longest, and of those the longest
-manoeuvre. Where no circle is permitted the manoeuvre alone is offered, for as long as it is permitted. Zones are kept
-by the drift of the turn and by how far the vehicle may be from where it is taken to be, and the disc of the hold keeps
-them at its height.
+The manoeuvre is followed up to the look-ahead, or to a quarter, half or three quarters of it, and then a
+circle to the right or left: the combination that is permitted longest, and of those the longest manoeuvre.
+Where no circle is permitted the manoeuvre alone is offered, for as long as it is permitted. Zones are checked
+with the drift of the turn and the position uncertainty added, and the disc of the hold at its altitude.
 """
 
 from __future__ import annotations
@@ -25,13 +24,13 @@ from cratous.spec.mission import Daa
 from cratous.spec.mission.plan import Hold
 
 PARTS = (1.0, 0.75, 0.5, 0.25)
-"""The manoeuvre is followed for these shares of the look-ahead."""
+"""Shares of the look-ahead for which the manoeuvre is followed."""
 HOLDS_S = (600.0, 240.0, 120.0, 60.0, 30.0, 10.0)
-"""A hold is permitted for the longest of these times for which it can be [s]."""
+"""Durations of the hold, the longest permitted one is used [s]."""
 
 
 class Refused(NamedTuple):
-    """Why a manoeuvre is not permitted: intruder_id: against whom, 0 for a zone."""
+    """Why a manoeuvre is not permitted. intruder_id: the intruder concerned, 0 for a zone."""
 
     intruder_id: int
     reason: str
@@ -70,7 +69,7 @@ def certified(sensed: Sensed, scene: Scene, choice: Choice, daa: Daa) -> Certifi
 def _with_hold(
     sensed: Sensed, pieces: tuple[Piece, ...], drift: Drift, hold: Hold | None, daa: Daa
 ) -> Certificate:
-    """The certificate that begins on the hand now, and ends with the manoeuvre."""
+    """The certificate that would follow the present hand, begins now, and ends with the manoeuvre."""
     end_s, hand = pieces[-1].start_s + pieces[-1].duration_s, sensed.hand
     room, volume = (daa.buffer - 1) / 2, daa.well_clear
     aside_m = drift.aside_m(end_s)
@@ -89,11 +88,11 @@ def _with_hold(
 
 
 def _circles(sensed: Sensed, pieces: tuple[Piece, ...]) -> list[Hold]:
-    """The circles that touch the end of a manoeuvre, to the right and to the left."""
+    """The circles tangent to the end of a manoeuvre, right and left."""
     last, speed = pieces[-1], _speed_m_s(pieces)
     end, v = after(last, last.duration_s), last.velocity
     heading = math.atan2(v.east_m_s, v.north_m_s)
-    # the same bank turns slower at another speed
+    # at another speed the same bank angle gives another turn rate
     fast = max(speed, sensed.motion.speed_m_s)
     rate = sensed.ability.turn_rate_rad_s * sensed.motion.speed_m_s / fast
     radius_m = TURN_MARGIN * fast / rate
@@ -115,9 +114,9 @@ def _speed_m_s(pieces: tuple[Piece, ...]) -> float:
 def _held(
     circles: list[Certificate], hold_s: float, scene: Scene, sensed: Sensed, daa: Daa
 ) -> list[Certificate]:
-    """Those of the certificates with a hold that are permitted if it lasts hold_s [s], so much longer.
+    """The certificates whose hold is permitted for hold_s [s], extended by that time.
 
-    circles: their manoeuvre, the same of all, is permitted without a hold (`certified`).
+    circles: certificates with the same manoeuvre, which is permitted without a hold (`certified`).
     """
     until_ms = circles[0].offer.expiry_ms + math.floor(1000 * hold_s)
     longer = [c._replace(offer=c.offer._replace(expiry_ms=until_ms)) for c in circles]

@@ -1,8 +1,9 @@
-"""How other vehicles of ours are taken to fly: along the way that UxAS flies them by, while they keep to it.
+"""Predicted flight of other own vehicles: along their routes under UxAS, while they keep to them.
 
-UxAS tells each instance the ways of the other vehicles, and that one is over as ICAROUS takes the other vehicle. One
-that is farther off the way that was told than what the permits allow for is taken to fly straight on, like an intruder
-of which nothing was told; so is everybody while UxAS is not heard, and one that flies in another direction than its way.
+UxAS sends each instance the routes of the other vehicles, and revokes a route when ICAROUS takes that vehicle
+over. A vehicle farther off its route than the permits allow for is predicted to fly straight on, like an
+unknown intruder; so is one that flies in another direction than its route, and every vehicle while UxAS is
+not heard.
 """
 
 from __future__ import annotations
@@ -24,17 +25,17 @@ from cratous.services.icarous.traffic_monitor import TURNING_RAD_S, Tracks
 from cratous.spec.mission import Daa, Position, Velocity
 
 WINDOW_BEATS = 4
-"""Where a vehicle is on its way is looked for as far ahead of where it was as it flies in so many heartbeats."""
+"""The progress of a vehicle is searched for within the distance that it flies in this many heartbeats."""
 LINK_LOST_MS = 2000
-"""What was told counts for so long after UxAS was last heard [ms]: four heartbeats."""
+"""Routes remain valid for this long after UxAS was last heard [ms]: four heartbeats."""
 ASTRAY_S = 2.0
-"""One whose course is farther off its way than it turns in this time does not fly along it [s]."""
+"""A vehicle is off its route if aligning with it would take a turn longer than this [s]."""
 ALWAYS_S = 3600.0
-"""One that ICAROUS steers is taken to fly on straight for this long [s]."""
+"""A vehicle steered by ICAROUS is predicted to fly straight on for this long [s]."""
 
 
 class Followed(NamedTuple):
-    """A way as it was told, and where on it the vehicle was at the last heartbeat [m of arc length]."""
+    """A route as received, and the vehicle's arc length on it at the last heartbeat [m]."""
 
     vehicle_id: int
     points: tuple[Position, ...]
@@ -54,41 +55,44 @@ def with_ways(
     courses: Tracks = (),
     until_s: float = math.inf,
 ) -> tuple[Ways, tuple[Intruder, ...]]:
-    """The ways that were told, and everybody as is to be reckoned with: by the way that was told while it is kept to.
-    before, courses: what this and everybody's course were at the last heartbeat; beat_s: from one to the next [s];
-    until_s: no leg of a way that was told is needed that begins later than this [s from now]."""
+    """The routes with progress, and the intruders, each with its predicted path if it keeps to its route.
+
+    before, courses: the result and everybody's courses at the last heartbeat; beat_s: heartbeat [s]; until_s:
+    legs that begin later than this are not needed [s from now].
+    """
     if not in_time(told.heard_ms, sensed.now_ms, LINK_LOST_MS):
         return (), sensed.intruders
     steered, was = dict(told.steered), dict(courses)
-    known = {one.vehicle_id: one for one in before}
+    known, points_of = {one.vehicle_id: one for one in before}, dict(told.others)
     ways, others = list[Followed](), list[Intruder]()
     for other in sensed.intruders:
-        points = told.way_of(other.id)
         if other.id in steered:
             others.append(_steered(other, steered[other.id], was.get(other.id), sensed, beat_s))
             continue
-        if not points or not _speed_m_s(other):
+        points, speed = points_of.get(other.id, ()), _speed_m_s(other)
+        if not points or not speed:
             others.append(other)
             continue
         old = known.get(other.id)
-        window_m = WINDOW_BEATS * beat_s * _speed_m_s(other)
+        window_m = WINDOW_BEATS * beat_s * speed
         if old is None or old.points is not points:
-            # on a new connection it may be anywhere on it
+            # on a new connection its progress is unknown
             old = Followed(other.id, points, Track(points), 0.0)
             window_m = old.track.length_m
         at_m = old.track.nearest(other.position, old.at_m, window_m).s_m
-        ways.append(old._replace(at_m=at_m))
+        ways.append(Followed(other.id, points, old.track, at_m))
         kept = keeps_to(old.track.at(at_m), other.position, daa, seen=other.spread)
         off_rad = smallest_turn(old.track.heading_rad(at_m), _course_rad(other.velocity))
         kept = kept and not turns(off_rad, _turn_rate(other, sensed), ASTRAY_S)
         way = _along(old.track, at_m, other, until_s) if kept else ()
         hold_m = _hold_m(other, sensed) if way else 0.0
-        others.append(other._replace(way=way, hold_m=hold_m))
+        id_, position, velocity, cooperates, _, _, spread = other
+        others.append(Intruder(id_, position, velocity, cooperates, way, hold_m, spread))
     return tuple(ways), tuple(others)
 
 
 def to_their_ends(ways: Ways, others: tuple[Intruder, ...]) -> tuple[Intruder, ...]:
-    """The same with each way to its end that `with_ways` has given for a while only; ways: as it gave them."""
+    """The intruders with the paths that `with_ways` limited to until_s extended to the end of their routes."""
     known = {one.vehicle_id: one for one in ways}
     return tuple(
         other._replace(way=_along(known[other.id].track, known[other.id].at_m, other))
@@ -103,22 +107,26 @@ def _speed_m_s(other: Intruder) -> float:
 
 
 def _hold_m(other: Intruder, sensed: Sensed) -> float:
-    """How far from the end of its way a vehicle is that circles there, if it banks like this one [m]."""
+    """Radius around the end of its route that contains a vehicle circling there, assuming the own bank angle
+    [m].
+    """
     speed = _speed_m_s(other)
     tightest_m = speed / _turn_rate(other, sensed)
     return 2 * TURN_MARGIN * tightest_m + TRACKING_S * speed
 
 
 def _turn_rate(other: Intruder, sensed: Sensed) -> float:
-    """How fast a vehicle that flies turns, if it banks like this one [rad/s]."""
+    """Turn rate of another vehicle, assuming the own bank angle [rad/s]."""
     return sensed.ability.turn_rate_rad_s * sensed.motion.speed_m_s / _speed_m_s(other)
 
 
 def _steered(
     other: Intruder, to: Velocity, was_rad: float | None, sensed: Sensed, beat_s: float
 ) -> Intruder:
-    """One that turns to a velocity and then flies straight on, if it banks like this one and turns there; was_rad:
-    its course a heartbeat ago."""
+    """A vehicle predicted to turn to the announced velocity and then fly straight on, assuming the own bank
+    angle; unchanged if it is neither at that course nor turning towards it. was_rad: its course a
+    heartbeat ago.
+    """
     speed, v = _speed_m_s(other), other.velocity
     course, goal = _course_rad(v), _course_rad(to)
     if not speed:
@@ -126,13 +134,13 @@ def _steered(
     if was_rad is not None:
         left = abs(smallest_turn(course, goal))
         nearer = max(0.0, abs(smallest_turn(was_rad, goal)) - left)
-        # neither there nor turning there: what was told is not what it flies
+        # neither there nor turning there: it does not fly what was announced
         if turns(left, TURNING_RAD_S, beat_s) and not turns(nearer, TURNING_RAD_S, beat_s):
             return other
     own = sensed.ability
     ability = own._replace(turn_rate_rad_s=_turn_rate(other, sensed))
     now = Motion(other.position, course, speed, -v.down_m_s)
-    # no faster, slower or steeper than it or this one flies, whatever is told
+    # limited to the speeds and climb rates of either vehicle, whatever was announced
     low, high = min(own.min_speed_m_s, speed), max(own.max_speed_m_s, speed)
     most = max(own.max_climb_m_s, abs(v.down_m_s))
     speed, climb = min(max(math.hypot(*to[:2]), low), high), min(max(-to.down_m_s, -most), most)
@@ -147,8 +155,9 @@ def _course_rad(v: Velocity) -> float:
 def _along(
     track: Track, at_m: float, other: Intruder, until_s: float = math.inf
 ) -> tuple[Piece, ...]:
-    """Flight along a track from at_m on at the present speed, as far beside it as the vehicle is now. until_s: legs that
-    begin later than this [s] are left out."""
+    """Flight along a track from at_m on at the present speed, offset by the vehicle's present deviation. Legs
+    that begin later than until_s [s] are omitted.
+    """
     speed, pieces = _speed_m_s(other), list[Piece]()
     if not speed:
         return ()

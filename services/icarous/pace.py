@@ -1,4 +1,4 @@
-"""At which speed UxAS flies the way that it has told: the vehicle comes to it as fast as it can."""
+"""The speed at which UxAS flies the announced route; the vehicle accelerates to it as fast as it can."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def pace_of(told: Told, sensed: Sensed) -> Pace | None:
 
 
 def at_pace(sensed: Sensed, pace: Pace | None) -> Sensed:
-    """The same at that speed, where the same bank turns slower or faster."""
+    """The same inputs at that speed, with the turn rate of the same bank angle."""
     if pace is None:
         return sensed
     motion, ability = sensed.motion, sensed.ability
@@ -31,7 +31,7 @@ def at_pace(sensed: Sensed, pace: Pace | None) -> Sensed:
 
 
 def change_ms(sensed: Sensed, pace: Pace | None) -> int:
-    """How long the change to that speed takes [ms]."""
+    """Duration of the acceleration to that speed [ms]."""
     if pace is None or not pace.acceleration_m_s2:
         return 0
     gap = abs(pace.speed_m_s - sensed.motion.speed_m_s)

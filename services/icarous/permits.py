@@ -1,12 +1,12 @@
-"""What the way that UxAS flies after a handback is permitted against, intruder by intruder.
+"""Permits of the route after a handback, intruder by intruder.
 
-At a handback the whole way that was told is held against each intruder because of which ICAROUS has taken over: the
-buffered cylinder, and the mission's own volume, against an intruder that flies straight on. Half of what the buffer
-leaves is for how far it may be off that line, the rest for the vehicle (`docs/proofs/assumptions.md`). While it is
-within it the way is permitted and ICAROUS does not take over because of it, unless a loss of the mission's own
-volume is predicted, or one in the hold that ends the way. Where the intruder leaves its line, or another way is
-told, that is looked at anew: the way is permitted too, or it is a surprise. How often ICAROUS takes over is counted
-by the kernels of `core.permit.encounter`.
+At a handback the whole announced route is checked against each intruder for which ICAROUS has taken over: the
+buffered cylinder, and the mission's own volume, against straight flight of the intruder. Half of the buffer's
+margin allows for the intruder's deviation, the rest for the vehicle's (`docs/proofs/assumptions.md`). While
+the intruder stays within that, the route is permitted and ICAROUS does not take over for it, unless a loss of
+the mission's own volume, or one in the final hold, is predicted. When the intruder leaves its line, or
+another route is announced, the check is repeated: the new route is permitted as well, or the permit ends as a
+surprise. The kernels of `core.permit.encounter` count the takeovers.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from cratous.spec.mission import Daa
 from cratous.spec.records import replace
 
 NONE = Encounter(0, 0, 0, False, False, 0)
-"""An intruder because of which ICAROUS has never taken over."""
+"""An intruder for which ICAROUS has never taken over."""
 OFF_LINE = "it does not fly as predicted"
 OTHER_WAY = "another way was told, which is not permitted"
 ITS_WAY = "it flies another way than was told, and the own way is not permitted against that"
@@ -43,7 +43,7 @@ ENDED = "what was permitted had ended"
 
 
 def resumed(config: Config, state: State, sensed: Sensed, in_turn: frozenset[int]) -> State:
-    """UxAS has the vehicle again: which intruders its way is permitted against, and until when."""
+    """UxAS has the vehicle again: determine which intruders its route is permitted against, and until when."""
     seen = {other.id: other for other in sensed.intruders}
     pieces = _whole(state, sensed)
     until_ms = sensed.now_ms + math.floor(1000 * sum(piece.duration_s for piece in pieces))
@@ -59,7 +59,9 @@ def resumed(config: Config, state: State, sensed: Sensed, in_turn: frozenset[int
 
 
 def looked(config: Config, state: State, sensed: Sensed, ahead: Ahead) -> State:
-    """Re-check the permits at a heartbeat under UxAS: those that still hold are kept. ahead: the path predicted now."""
+    """Re-check the permits at a heartbeat under UxAS and keep those that still hold. ahead: the route
+    predicted now.
+    """
     seen = {other.id: other for other in sensed.intruders}
     after = []
     own = ahead._replace(volumes=(config.daa.well_clear,))
@@ -90,21 +92,21 @@ def _made(
     sensed: Sensed,
     why: str,
 ) -> Met:
-    """What is known of an intruder against which the way that is told now was held now."""
+    """The record of an intruder against which the present route was checked now."""
     told = state.told
     its_way = told.way_of(intruder_id)
     return Met(intruder_id, encounter, other, sensed.now_ms, told.waypoints, why, its_way)
 
 
 def _whole(state: State, sensed: Sensed) -> tuple[Piece, ...]:
-    """The way that was told, from here to its end."""
+    """The announced route from here to its end."""
     told = state.told
     pace = pace_of(told, sensed) if state.paces(sensed.now_ms) else None
     return way_along(sensed.motion, told.waypoints[told.next_index :], math.inf, pace=pace).pieces
 
 
 def acting(state: State, found: Sequence[Threat]) -> tuple[Threat, ...]:
-    """The threats on which ICAROUS acts: those that are its own, and that nothing permits."""
+    """The threats that ICAROUS acts on: those that require own action and have no permit."""
     met = {one.intruder_id: one.encounter for one in state.met}
     return tuple(
         threat
@@ -114,7 +116,7 @@ def acting(state: State, found: Sequence[Threat]) -> tuple[Threat, ...]:
 
 
 def taken_over(state: State, intruder_id: int) -> State:
-    """ICAROUS takes over because of an intruder."""
+    """The state after a takeover because of an intruder."""
     before = state.find(intruder_id) or Met(intruder_id, NONE)
     after = before._replace(encounter=encounter_watched(before.encounter, True).encounter)
     others = [one for one in state.met if one.intruder_id != intruder_id]
@@ -122,28 +124,30 @@ def taken_over(state: State, intruder_id: int) -> State:
 
 
 def told_why(state: State, intruder_id: int) -> str:
-    """Why ICAROUS takes over once more because of an intruder; "" if it is the first time."""
+    """Why ICAROUS takes over again because of an intruder, in words; "" if it is the first time."""
     met = state.find(intruder_id)
     return f"; again, since {met.why}" if met is not None and met.why else ""
 
 
 def _permitted(pieces: Sequence[Piece], other: Intruder, daa: Daa) -> bool:
-    """The way keeps the buffered cylinder and the mission's own volume clear of one that flies straight on."""
+    """Whether the route keeps the buffered cylinder and the mission's own volume clear of the intruder in
+    straight flight.
+    """
     return keeps_volume(pieces, other, daa) and way_is_clear(pieces, other, daa)
 
 
 def keeps_volume(pieces: Sequence[Piece], other: Intruder, daa: Daa) -> bool:
-    """The way keeps the mission's own volume clear of one that flies straight on, which is soon said."""
+    """Whether the route keeps the mission's own volume clear of the intruder: a fast check."""
     return not meets(pieces, other, daa.well_clear)
 
 
 def way_is_clear(pieces: Sequence[Piece], other: Intruder, daa: Daa) -> bool:
-    """The way keeps the buffered cylinder clear of one that flies straight on."""
+    """Whether the route keeps the buffered cylinder clear of the intruder."""
     return way_permits(pieces, other, buffered(daa.well_clear, daa.buffer))
 
 
 def _on_line(met: Met, other: Intruder, now_ms: int, daa: Daa) -> bool:
-    """No farther from where it was predicted than half of what the buffer leaves."""
+    """Whether the intruder is within half of the buffer's margin of its prediction."""
     if met.predicted is None:
         return False
     told = later(met.predicted, (now_ms - met.made_ms) / 1000)

@@ -1,12 +1,12 @@
-"""The manoeuvre that an instance flies: the turn after which the way back is free soonest, if there is one.
+"""The manoeuvre that an instance flies: preferably the turn after which the way back is free soonest.
 
-A turn that keeps clear over the whole look-ahead, off the course by up to 60 degrees, or by up to 90 where that is over
-much sooner, is flown on until the way back is free, at one of the instants that are looked at: for good (permitted to
-its end against everybody, no zone across it) if that can be had, else for the look-ahead. Where there is none, the
-manoeuvre that deviates least from the course is flown (`core.avoidance.resolution`). Where the mission asks for changes of
-altitude or of speed first, these are looked at before turns, first of all those that the bands resolve with. Where nothing
-keeps well clear, what is flown comes from the recovery bands first. What is proposed here decides
-nothing: control goes back only on a way that is free when it is flown.
+Candidates are turns that keep clear over the whole look-ahead, up to 60 degrees off the course, or up to 90
+where that is over much sooner. Such a turn is flown until the way back is free at one of the instants
+checked: permanently (permitted to its end against everybody, no zone across it) if possible, else for the
+look-ahead. If there is none, the manoeuvre of least deviation is flown (`core.avoidance.resolution`). Where
+the mission prefers changes of altitude or speed, these are tried before turns, starting with the bands'
+resolutions. Where nothing keeps well clear, the recovery bands are tried first. This module only proposes:
+control goes back only on a way that is free when it is flown.
 """
 
 from __future__ import annotations
@@ -37,20 +37,21 @@ from cratous.spec.mission import Position, WellClear
 from cratous.spec.records import replace
 
 STEPS = 15
-"""The instants at which the way back may be free are so many in the look-ahead; the last third is left out."""
+"""Number of instants per look-ahead at which the way back is checked; the last third is left out."""
 TURNS_DEG = (10, 20, 30, 40, 50, 60)
-"""The headings that are looked at, off the course to the right and to the left."""
+"""Turns off the course that are tried, right and left [deg]."""
 WIDE_DEG = (75, 90)
-"""Those that are looked at besides: they lead farther away, so they are flown only for a way back for good,"""
+"""Wider turns [deg]. They lead farther away, so they are used only for a permanently free way back,"""
 SOONER = 4
-"""and only so many of the instants sooner than after a smaller turn, where one leads to such a way."""
+"""and only if it is free this many instants sooner than after a smaller turn that also leads to one."""
 AGAIN_MS = 5000
-"""Where there is no such manoeuvre one is looked for again so much later [ms]."""
+"""After an unsuccessful search, the next one follows this much later [ms]."""
 
 
 class Found(NamedTuple):
-    """A turn, the instant at which the way back is free after it, of those that are looked at, and whether it is then
-    permitted to its end against everybody."""
+    """A manoeuvre, the number of the instant at which the way back is free after it, and whether it is then
+    permitted to its end against everybody.
+    """
 
     choice: Choice
     step: int
@@ -60,7 +61,9 @@ class Found(NamedTuple):
 def manoeuvre(
     config: Config, state: State, sensed: Sensed, in_turn: frozenset[int], free: bool
 ) -> tuple[State, Choice]:
-    """The manoeuvre to fly now, remembered, with the waypoint that it makes for. free: the way back is, now."""
+    """The manoeuvre to fly now, and the state that records it with its goal waypoint. free: the way back is
+    free now.
+    """
     state, goal = _with_goal(state, sensed)
     motion, now_ms, search = sensed.motion, sensed.now_ms, state.search
     course = bearing_rad(motion.position, goal) if goal is not None else motion.heading_rad
@@ -93,9 +96,12 @@ def _soonest(
     in_turn: frozenset[int],
     flying: tuple[float, float],
 ) -> Found | None:
-    """The turn after which the way back is free soonest: of those the course, else one that the bands resolve with,
-    else the smallest. One after which it is so for good goes before one after which it is for the look-ahead.
-    flying: course [rad], speed [m/s]."""
+    """The manoeuvre after which the way back is free soonest; among equals the course itself, then the bands'
+    resolutions, then the smallest turn. None if there is none.
+
+    A permanently free way back is preferred to one that is free for the look-ahead. flying: course [rad],
+    speed [m/s].
+    """
     course, speed = flying
     scene = scene_of(config, state, sensed)
     level = Choice("heading", course, speed, 0.0, 0.0, True, None)
@@ -136,7 +142,7 @@ def _soonest(
 
 
 def _by_bands(config: Config, state: State, sensed: Sensed, level: Choice) -> tuple[Choice, ...]:
-    """The changes of the kind that the mission asks for first that the bands resolve with."""
+    """The bands' resolutions of the kind that the mission prefers."""
     if state.bands is None:
         return ()
     from cratous.services.icarous.band_choices import of_bands
@@ -145,9 +151,12 @@ def _by_bands(config: Config, state: State, sensed: Sensed, level: Choice) -> tu
 
 
 def _recovery(config: Config, state: State, sensed: Sensed, least: Choice) -> Choice | None:
-    """What regains well clear soonest by the bands, where no manoeuvre keeps it: the first that keeps a near mid-air
-    collision clear over the look-ahead, and the zones until a turn back would; None where there is none, or the bands
-    know of a way to keep it. least: the one that keeps it longest."""
+    """The recovery manoeuvre of the bands where no manoeuvre keeps well clear: the first that avoids a near
+    mid-air collision over the look-ahead, and zones for the turn-back time. None if there is none, or the
+    bands have no recovery.
+
+    least: the manoeuvre that keeps well clear longest.
+    """
     if state.bands is None or not state.bands.recovers:
         return None
     from cratous.services.icarous.band_choices import recovering
@@ -166,13 +175,13 @@ def _recovery(config: Config, state: State, sensed: Sensed, least: Choice) -> Ch
 
 
 def nmac_of(own: WellClear) -> WellClear:
-    """The cylinder of a near mid-air collision, no larger than the mission's own."""
+    """The near mid-air collision cylinder, no larger than the mission's own volume."""
     radius_m, half_m = min(NMAC_RADIUS_M, own.dthr_m), min(NMAC_HALF_HEIGHT_M, own.zthr_m)
     return cylinder(radius_m, half_m)
 
 
 def _told(state: State, course_rad: float) -> tuple[float, ...]:
-    """The turns off the course that the bands resolve with, the preferred one first, as far as small turns go [rad]."""
+    """The turns off the course that the bands propose, the preferred one first, within the small turns [rad]."""
     if state.bands is None:
         return ()
     from cratous.services.icarous.bands import resolutions
@@ -182,13 +191,13 @@ def _told(state: State, course_rad: float) -> tuple[float, ...]:
 
 
 def _either_side(turns_deg: Sequence[int], right_first: bool) -> list[float]:
-    """Turns to the right and to the left [rad], or to the left and to the right."""
+    """Turns to either side, one side first for each angle [rad]."""
     sides = (1, -1) if right_first else (-1, 1)
     return [side * math.radians(k) for k in turns_deg for side in sides]
 
 
 def _later(sensed: Sensed, choice: Choice, t_s: float) -> Sensed:
-    """What is sensed t_s [s] from now, if the manoeuvre is flown, and everybody else flies as is foreseen."""
+    """The predicted sensor input t_s [s] from now, if the manoeuvre is flown and all others fly as predicted."""
     last = fly_to(sensed.motion, sensed.ability, *choice[1:5], t_s)[-1]
     place, v = after(last, last.duration_s), last.velocity
     heading, speed = math.atan2(v.east_m_s, v.north_m_s), math.hypot(v.north_m_s, v.east_m_s)
@@ -197,7 +206,7 @@ def _later(sensed: Sensed, choice: Choice, t_s: float) -> Sensed:
 
 
 def _with_goal(state: State, sensed: Sensed) -> tuple[State, Position | None]:
-    """The waypoint to make for; none if no waypoints are known."""
+    """The waypoint to make for, recorded in the state; None if no waypoints are known."""
     waypoints = state.told.waypoints
     if not waypoints:
         return state, None
@@ -207,7 +216,7 @@ def _with_goal(state: State, sensed: Sensed) -> tuple[State, Position | None]:
 
 
 def describe(choice: Choice) -> str:
-    """A manoeuvre in words, for the record; it says when none is free of conflict."""
+    """A manoeuvre in words, for the record; it says when it is not free of conflict."""
     heading = round(math.degrees(choice.heading_rad)) % 360
     text = f"heading {heading:03d}"
     if choice.kind == "altitude":

@@ -1,9 +1,8 @@
-"""The way back: which waypoint to make for, and whether the way there is free of conflict.
+"""The way back: the waypoint to make for, and the flyable ways there.
 
-Control is handed back only when the whole way back (the turn towards the resume point, the leg to
-it and the waypoints after it) is free of predicted conflict over the look-ahead, and has been for
-a persistence time. The persistence doubles with each takeover that follows soon after a handback,
-so authority does not chatter.
+Control is handed back only when the whole way back (the turn towards the resume point, the leg to it and the
+waypoints after it) has been free of predicted conflict over the look-ahead for a persistence time. This time
+doubles with each takeover soon after a handback, which provides hysteresis against chattering authority.
 """
 
 from __future__ import annotations
@@ -23,27 +22,27 @@ from cratous.spec.mission.plan import Pose
 PERSIST_MS = 1500
 """The way back must have been free for this long [ms]: three heartbeats."""
 RELAPSE_MS = 20_000
-"""A takeover this soon after a handback is a relapse."""
+"""A takeover this soon after a handback is a relapse [ms]."""
 ALIKE = 1.02
-"""A way that is longer than another by less than this factor may be taken for the shorter one."""
+"""A way longer than the shortest one by less than this factor may be taken for it."""
 SAME_M = 1.0
-"""What is told twice, over the bridge, is one place if it is no farther apart [m]."""
+"""Places received over the bridge are the same if they are no farther apart than this [m]."""
 
 
 def flat(p: Position) -> Vec2:
-    """North and east of a place [m]."""
+    """North and east coordinates of a place [m]."""
     return Vec2(p.north_m, p.east_m)
 
 
 def bearing_rad(p: Position, q: Position) -> float:
-    """Direction from p to q, clockwise from north."""
+    """Direction from p to q, clockwise from north [rad]."""
     return math.atan2(q.east_m - p.east_m, q.north_m - p.north_m)
 
 
 def goal_index(now: Motion, radius_m: float, waypoints: tuple[Position, ...], index: int) -> int:
-    """The waypoint to make for: the first from `index` on that is not near nor passed abeam.
+    """Index of the waypoint to make for: the first from `index` on that is neither near nor passed abeam.
 
-    Near is three turn radii: inside them a turn may not reach the point at all.
+    Near means within three turn radii, where a turn may not reach the point.
     """
     last, here = len(waypoints) - 1, flat(now.position)
     while index < last:
@@ -54,11 +53,11 @@ def goal_index(now: Motion, radius_m: float, waypoints: tuple[Position, ...], in
 
 
 def way_on(told: Told, now: Motion, radius_m: float) -> tuple[Position, ...]:
-    """The points that UxAS will fly by if it takes the vehicle back now: the waypoint ahead that it makes for, and
-    those after it.
+    """The points along which UxAS will fly if it takes the vehicle back now: the waypoint ahead and those
+    after it.
 
-    It passes over no waypoint after the one that it has told as the place to resume, say where a task begins; if the
-    place lies between two waypoints, as where a task's path was left, it comes back there.
+    It does not skip the waypoint announced as the resume point, e.g. the start of a task. If that point lies
+    between two waypoints, as where a task's path was left, it returns there.
     """
     waypoints, index = told.waypoints, min(told.next_index, len(told.waypoints) - 1)
     last = len(waypoints) - 1
@@ -75,12 +74,13 @@ def way_on(told: Told, now: Motion, radius_m: float) -> tuple[Position, ...]:
 
 
 JOINS_AFTER = 3.0
-"""A way that was planned a moment ago is joined so many turn radii farther on: nearer, a turn may not reach it."""
+"""A route from another planner is joined this many turn radii ahead: closer, a turn may not reach it."""
 
 
 def onto(points: tuple[Position, ...], now: Motion, radius_m: float) -> tuple[Position, ...]:
-    """The points that are flown if a route which another planner made a moment ago, from near here, is joined now: those from
-    JOINS_AFTER turn radii along it on, or its end alone."""
+    """The points flown if another planner's recent route from near here is joined now: those from JOINS_AFTER
+    turn radii ahead, or its end alone.
+    """
     track = Track(points, now.heading_rad)
     near = track.nearest(now.position, 0.0, track.length_m)
     return tuple(track.rest(min(track.length_m, near.s_m + JOINS_AFTER * radius_m)))
@@ -100,8 +100,10 @@ def rejoin(
 def rejoining(
     now: Motion, radius_m: float, target: Position, beyond: Position | None
 ) -> tuple[tuple[Position, ...], ...]:
-    """The flyable ways that UxAS may take for the shortest one after a handback: that is it, and those that are
-    hardly longer. To turn left or right is often all but the same, and both ends reckon with rounded numbers."""
+    """The flyable ways that UxAS may fly after a handback: the shortest, and those that are nearly as short.
+
+    A left and a right turn are often nearly equal, and both sides compute with rounded numbers.
+    """
     if beyond is None:
         return ((now.position, target),)
     heading = math.atan2(beyond.east_m - target.east_m, beyond.north_m - target.north_m)
@@ -109,7 +111,7 @@ def rejoining(
     paths = dubins_paths(Pose(*now.position, now.heading_rad), end, radius_m)
     lengths_m = [sum(path.lengths_m) for path in paths]
     alike = paths[: bisect_right(lengths_m, ALIKE * lengths_m[0] + SAME_M)]
-    # words whose turns have no length are one way, but for rounding
+    # paths with turns of zero length are the same way, up to rounding
     ways = dict[tuple[tuple[float, float], ...], tuple[Position, ...]]()
     for way in (cut(path, end) for path in alike):
         ways.setdefault(tuple((round(p.north_m, 2), round(p.east_m, 2)) for p in way), way)
@@ -123,7 +125,8 @@ def ways_back(
     horizon_s: float,
     pace: Pace | None = None,
 ) -> tuple[Way, ...]:
-    """The flights from here onto points[0] and on through the others, of which UxAS takes one, at the speed of a pace
-    as soon as the vehicle comes to it."""
+    """The predicted flights from here onto points[0] and along the rest, of which UxAS flies one. pace: speed
+    to accelerate to.
+    """
     onto = rejoining(now, radius_m, points[0], points[1] if len(points) > 1 else None)
     return tuple(way_along(now, (*way[1:], *points[1:]), horizon_s, pace=pace) for way in onto)

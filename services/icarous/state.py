@@ -1,4 +1,4 @@
-"""Everything that one ICAROUS instance remembers, and what does not change about it."""
+"""The state of one ICAROUS instance, and its fixed configuration."""
 
 from __future__ import annotations
 
@@ -26,16 +26,17 @@ from cratous.spec.authority.cycle import MONITOR
 from cratous.spec.mission import Daa, Position
 
 START = Cycle(MONITOR, 0, False, 0, False, 0)
-"""UxAS flies, and has always done so."""
+"""UxAS flies, and always has."""
 
 
 class Config(NamedTuple):
-    """What does not change: whose instance, what it keeps clear of, and the heartbeat [ms].
+    """Fixed configuration: vehicle id, detect-and-avoid parameters, projection, heartbeat [ms].
 
-    original: UxAS's end is the original's, whose WAYPT lines carry a running count; certifies: what it commands is
-    offered to the gate with a certificate; records: alerts and bands go to a record; lost_link: what it does while UxAS
-    is not heard, None where the mission does not say; take_off: what it takes off to, None where it starts in the air; merging: the fix
-    where it merges with others, None for none."""
+    original: the UxAS end is the original's, whose WAYPT lines carry a running count; certifies: each command
+    comes with a certificate for the gate; records: alerts and bands are recorded; lost_link: behaviour while
+    UxAS is not heard, None if the mission sets none; take_off: its take-off, None if it starts in the air;
+    merging: the fix where it merges with others, None for none.
+    """
 
     vehicle_id: int
     daa: Daa
@@ -50,8 +51,10 @@ class Config(NamedTuple):
 
 
 class Rising(NamedTuple):
-    """departure: the mode of a vehicle that takes off, as the kernels have it; course: the way up that is rolled or
-    flown, None while it stands; why: it stands, as was said last; tried_ms: when a way up was last looked for [ms]."""
+    """departure: the take-off mode, as the kernels have it; course: the climb-out being rolled or flown, None
+    while it stands; why: why it stands, as last reported; tried_ms: when a climb-out was last searched for
+    [ms].
+    """
 
     departure: Departure = Departure(STANDING, 0)
     course: Course | None = None
@@ -60,8 +63,11 @@ class Rising(NamedTuple):
 
 
 class Met(NamedTuple):
-    """An intruder because of which ICAROUS has taken over. predicted: as it was seen when the way was permitted
-    against it, at made_ms [ms]; way, its_way: as UxAS had told them, its own and the other's; why: the last permit did not last, "" while each has."""
+    """An intruder for which ICAROUS has taken over.
+
+    predicted: its state when the route was checked against it, at made_ms [ms]; way, its_way: the own and the
+    intruder's route at that time; why: why the last permit ended, "" while none has.
+    """
 
     intruder_id: int
     encounter: Encounter
@@ -73,16 +79,17 @@ class Met(NamedTuple):
 
 
 class Search(NamedTuple):
-    """The manoeuvre that is over soonest. at_ms: when it was last looked for; until_ms: for how long the one that is
-    held is flown as it is, 0 if it is none of these [ms]; lasting: until then control goes back only on a way that is
-    permitted to its end against everybody."""
+    """The search for the manoeuvre that is over soonest. at_ms: when it was last run; until_ms: how long its
+    result is flown, 0 if another manoeuvre is flown [ms]; lasting: until then, control goes back only on a
+    way that is permitted to its end against everybody.
+    """
 
     at_ms: int
     until_ms: int
     lasting: bool = False
 
     def waits(self, now_ms: int) -> bool:
-        """Whether a way back that is free for the look-ahead alone is not taken yet."""
+        """Whether a way back that is free for the look-ahead alone is not accepted yet."""
         return self.lasting and not lasted(self.until_ms, now_ms, 0)
 
 
@@ -91,13 +98,16 @@ IDLE = Search(0, 0)
 
 @dataclass(frozen=True)
 class State:
-    """cycle: who flies, as the kernels have it; told: what has come over the bridge; threats and
-    courses: of the last heartbeat; held: the manoeuvre being flown; goal: index of the waypoint that
-    it makes for; beats: heartbeats so far; met: the intruders because of which it has taken over; search: of the
-    manoeuvre that is over soonest; ways: of the other vehicles of ours; asking: UxAS for a way back; bands: what detect
-    and avoid said last, while a loss is foreseen or ICAROUS flies; no_link: what it does while UxAS is not heard;
-    beside: what was asked of zones for the hold at the end of the way; rising: how far it is off the ground, where it started there; pace_ms: until when UxAS, after a handback, may be bringing the vehicle to the speed that was told [ms];
-    unheard: UxAS was not heard at the last heartbeat; merging: how it flies over a merge fix."""
+    """State of an instance.
+
+    cycle: who flies, as the kernels have it; told: messages received over the bridge; threats, courses: of
+    the last heartbeat; held: the manoeuvre being flown; goal: index of its goal waypoint; beats: heartbeats
+    so far; met: intruders for which it has taken over; search: for the manoeuvre that is over soonest; ways:
+    routes of other own vehicles; asking: requests for a way back; bands: last alerts and bands; no_link:
+    state without the link; pace_ms: until when UxAS may be accelerating after a handback [ms]; unheard: UxAS
+    was not heard at the last heartbeat; rising: state of the take-off; beside: last zone check for the final
+    hold; merging: state of the merge.
+    """
 
     cycle: Cycle = START
     told: Told = field(default_factory=Told)
@@ -119,14 +129,14 @@ class State:
     merging: Merging = field(default_factory=Merging)
 
     def paces(self, now_ms: int) -> bool:
-        """Whether UxAS, which has just taken it back, may still bring the vehicle to the speed that was told."""
+        """Whether UxAS may still be accelerating the vehicle to the announced speed after a handback."""
         return not lasted(self.pace_ms, now_ms, 0)
 
     @property
     def avoided(self) -> frozenset[int]:
-        """The intruder because of which ICAROUS took over."""
+        """The intruders for which ICAROUS has taken over."""
         return frozenset(one.intruder_id for one in self.met)
 
     def find(self, intruder_id: int) -> Met | None:
-        """What is known of an intruder because of which it has taken over."""
+        """The record of an intruder; None if ICAROUS has never taken over for it."""
         return next((one for one in self.met if one.intruder_id == intruder_id), None)

@@ -1,8 +1,9 @@
-"""How an instance takes its vehicle off the ground: ways up, permitted from where it stands, and one mode at a time.
+"""Take-off by the instance: climb-outs, permitted from the vehicle's position on the ground, and the take-off
+mode.
 
-A way up goes straight along the ground in the direction in which the vehicle stands, to where it is fast enough, then up:
-straight on, or straight on to as low as ICAROUS flies and round from there; then a circle. Which mode the vehicle is in is
-answered by the kernel `departure_step` at each heartbeat. One of ours rolls at a time: each looks at heartbeats of its own.
+A climb-out runs straight along the ground to the take-off speed, then up: straight on, or straight on to
+ICAROUS's lowest altitude and then in laps; it ends in a circle. The kernel `departure_step` decides the mode
+at each heartbeat. Only one own vehicle rolls at a time: each may begin only at its own heartbeats.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ from cratous.spec.mission.plan import Pose
 from cratous.spec.records import replace
 
 AGAIN_MS = 2000
-"""Where no way up is permitted one is looked for again so much later [ms]."""
+"""Where no climb-out is permitted, the next search follows this much later [ms]."""
 NO_LINK = "UxAS is not heard"
 NO_WAY = "there is no way up"
 WORDS = {
@@ -49,17 +50,17 @@ WORDS = {
 
 
 def rising(config: Config, state: State) -> Rising:
-    """How far an instance has its vehicle off the ground; that of one that starts in the air is up."""
+    """Take-off state of an instance; UP for one that starts in the air."""
     return Rising(Departure(UP, 0)) if config.take_off is None else state.rising
 
 
 def departs(config: Config, state: State) -> bool:
-    """Whether the vehicle is not up yet."""
+    """Whether the vehicle has not completed its take-off."""
     return rising(config, state).departure.mode != UP
 
 
 def heartbeat(config: Config, state: State, sensed: Sensed) -> tuple[State, tuple[TakesOff, ...]]:
-    """The mode at this heartbeat, with the way up that is flown in it, and what is new."""
+    """The state with the mode and climb-out for this heartbeat, and what to report."""
     plan, before = config.take_off, rising(config, state)
     mode = before.departure.mode
     if plan is None or mode == UP:
@@ -85,7 +86,7 @@ def heartbeat(config: Config, state: State, sensed: Sensed) -> tuple[State, tupl
     )  # fmt: skip
     mode = stepped.departure.mode
     kept = course if mode in (ROLLING, CLIMBING) else None
-    # the roll was permitted: whether the climb still is is asked at the next heartbeat
+    # the roll was permitted; the climb is checked at the next heartbeat
     kept = before.course if mode == CLIMBING and kept is None else kept
     tried_ms = state.rising.tried_ms
     after = replace(state, rising=Rising(stepped.departure, kept, why, tried_ms))
@@ -100,7 +101,7 @@ def heartbeat(config: Config, state: State, sensed: Sensed) -> tuple[State, tupl
 
 
 def flown(config: Config, state: State, sensed: Sensed) -> tuple[State, Choice]:
-    """What to fly now: nothing, along the ground, or up."""
+    """The manoeuvre to fly now: standing, the take-off run, or the climb."""
     held, motion, beat_s = rising(config, state), sensed.motion, _beat_s(config)
     state, mode, course = replace(state, held=None), held.departure.mode, held.course
     choice = Choice("heading", motion.heading_rad, 0.0, 0.0, 0.0, True, None)
@@ -115,7 +116,9 @@ def flown(config: Config, state: State, sensed: Sensed) -> tuple[State, Choice]:
 
 
 def _ways_up(plan: TakeOff, sensed: Sensed) -> Iterator[Course]:
-    """Ways from where the vehicle stands to the altitude of its plan, with the circle at their end to either side."""
+    """Climb-outs from where the vehicle stands to the altitude of its plan, with the final circle on either
+    side.
+    """
     motion, ability = sensed.motion, sensed.ability
     speed, heading, here = ability.min_speed_m_s, motion.heading_rad, motion.position
     lift = along(here, heading, roll_m(motion.speed_m_s, speed, ability.acceleration_m_s2))
@@ -143,7 +146,7 @@ def _ways_up(plan: TakeOff, sensed: Sensed) -> Iterator[Course]:
 
 
 def _why_not(config: Config, state: State, sensed: Sensed, course: Course) -> str:
-    """Why a way up is not permitted from here on; "" if it is."""
+    """Why a climb-out is not permitted from here on; "" if it is."""
     if sensed.on_ground and sensed.rolling:
         return f"vehicle {sensed.rolling[0]} rolls"
     if not _at_its_speed(course, sensed):
@@ -154,20 +157,20 @@ def _why_not(config: Config, state: State, sensed: Sensed, course: Course) -> st
 
 
 def why_forbidden(course: Course, sensed: Sensed, scene: Scene, daa: Daa, beat_s: float) -> str:
-    """Why zones or somebody in the air forbid a way up from here on; "" if they do not."""
+    """Why zones or traffic forbid a climb-out from here on; "" if they do not."""
     if sensed.on_ground and not _may_stop(course, sensed, scene.zones):
         return "a zone is where the roll would end if it were broken off"
     return refused(course, sensed, scene, daa, beat_s)
 
 
 def _at_its_speed(course: Course, sensed: Sensed) -> bool:
-    """Whether a way up is flown at the speed that it was made for: wind changes the lowest over the ground."""
+    """Whether a climb-out is flown at its planned speed: wind changes the lowest speed over ground."""
     lowest = sensed.ability.min_speed_m_s
     return lowest == course.speed_m_s or (not sensed.on_ground and lowest < course.speed_m_s)
 
 
 def _may_stop(course: Course, sensed: Sensed, zones: tuple[Zone, ...]) -> bool:
-    """Whether the ground ahead keeps the zones up to where a roll that is broken off at its end comes to a stand."""
+    """Whether the ground ahead keeps the zones up to the stop of a take-off run aborted at its end."""
     here, heading, track = sensed.motion.position, sensed.motion.heading_rad, course.track
     left_m = 0.0 if track is None else max(track.s_m[1] - course.s_m, 0.0)
     stop = along(here, heading, left_m + course.speed_m_s**2 / (2 * BRAKING_M_S2))
@@ -177,7 +180,9 @@ def _may_stop(course: Course, sensed: Sensed, zones: tuple[Zone, ...]) -> bool:
 def first_way_up(
     plan: TakeOff, sensed: Sensed, why_not_by: Callable[[Course], str]
 ) -> tuple[Course | None, str]:
-    """A way up that is permitted, or why the first is not; why_not_by: says it of one, "" if it is."""
+    """A permitted climb-out, or None and why the first one is not. why_not_by: reason for one, "" if it is
+    permitted.
+    """
     first = ""
     for course in _ways_up(plan, sensed):
         why = why_not_by(course)
@@ -188,7 +193,7 @@ def first_way_up(
 
 
 def _is_due(config: Config, plan: TakeOff, sensed: Sensed, before: Rising) -> bool:
-    """Whether this heartbeat is one at which the vehicle may begin to roll, and it is time to look for a way up."""
+    """Whether this heartbeat is one of the vehicle's own for beginning to roll, and a search is due."""
     turn = sensed.now_ms // config.heartbeat_ms % plan.many == plan.turn
     return turn and (not before.why or lasted(before.tried_ms, sensed.now_ms, AGAIN_MS))
 

@@ -1,9 +1,8 @@
-"""Who will take well clear from us, when, and whether it is for us to act.
+"""Predicted losses of well clear, and whether the own vehicle must act on them.
 
-The own trajectory is checked against each intruder (flying straight on) with the exact-in-time
-kernel, on thresholds widened by the mission's buffer. A predicted loss must persist before it
-counts, so that an intruder that is merely turning past does not take a vehicle off its task,
-unless the loss is so near that waiting would cost the way out.
+The own trajectory is checked against each intruder with the exact-in-time kernel, on thresholds widened by
+the mission's buffer. A predicted loss must persist before it counts, so that an intruder that is merely
+turning past does not interrupt a task, unless the loss is so near that waiting would preclude an escape.
 """
 
 from __future__ import annotations
@@ -25,14 +24,14 @@ PERSIST_MS = 2000
 
 
 TURNING_RAD_S = 0.02
-"""An intruder that turns faster than this [rad/s] does not fly straight on: about 1 deg/s."""
+"""An intruder that turns faster than this does not count as flying straight on [rad/s]: about 1 deg/s."""
 
 Tracks = tuple[tuple[int, float], ...]
 """Last seen courses of the intruders: (id, course [rad])."""
 
 
 class Threat(NamedTuple):
-    """A predicted loss of well clear: with whom, in how many seconds, since when it is seen."""
+    """A predicted loss of well clear: intruder, time to it [s], and when it was first predicted [ms]."""
 
     intruder_id: int
     first_violation_s: float
@@ -41,24 +40,24 @@ class Threat(NamedTuple):
 
 
 class Nearest(NamedTuple):
-    """How near a predicted loss may come [s]: see `last_time_s` and `hard_limit_s`."""
+    """Limits of the time to a predicted loss [s]: see `last_time_s` and `hard_limit_s`."""
 
     last_s: float
     hard_s: float
 
 
 def nearest(ability: Ability, volume: WellClear, heartbeat_ms: int) -> Nearest:
-    """Both limits for a vehicle as it flies now."""
+    """Both limits at the vehicle's present motion."""
     return Nearest(last_time_s(ability, volume, heartbeat_ms), hard_limit_s(ability, heartbeat_ms))
 
 
 def last_time_s(ability: Ability, volume: WellClear, heartbeat_ms: int) -> float:
-    """The nearest predicted loss [s] at which the one with the right of way still waits.
+    """The shortest time to a predicted loss at which the vehicle with the right of way still waits [s].
 
-    Derivation: whatever the geometry, a turn of 90 degrees takes the own velocity out of the
-    line of the encounter; it takes (pi / 2) / turn rate. The other may need TTHR of the volume
-    for its own turn to show in the prediction, since the volume reaches TTHR ahead of contact.
-    One heartbeat passes until the prediction is renewed, one until the command acts:
+    Derivation: whatever the geometry, a turn of 90 degrees takes the own velocity out of the line of the
+    encounter; it takes (pi / 2) / turn rate. The other vehicle may need TTHR of the volume for its own turn
+    to show in the prediction, since the volume reaches TTHR ahead of contact. One heartbeat passes until the
+    prediction is renewed, one until the command acts:
 
         T_last = (pi / 2) / turn_rate + TTHR + 2 heartbeats
 
@@ -68,12 +67,14 @@ def last_time_s(ability: Ability, volume: WellClear, heartbeat_ms: int) -> float
 
 
 def hard_limit_s(ability: Ability, heartbeat_ms: int) -> float:
-    """The nearest predicted loss [s] that may wait for any reason: the turn and two heartbeats."""
+    """The shortest time to a predicted loss at which waiting is permitted at all [s]: the turn and two
+    heartbeats.
+    """
     return (math.pi / 2) / ability.turn_rate_rad_s + 2 * heartbeat_ms / 1000
 
 
 def courses(intruders: tuple[Intruder, ...]) -> Tracks:
-    """The present course of every intruder."""
+    """The present course of every intruder, (id, course [rad])."""
     return tuple(
         (other.id, math.atan2(other.velocity.east_m_s, other.velocity.north_m_s))
         for other in intruders
@@ -81,8 +82,11 @@ def courses(intruders: tuple[Intruder, ...]) -> Tracks:
 
 
 def turning(now: Tracks, before: Tracks, dt_s: float, loose: Tracks = ()) -> frozenset[int]:
-    """The intruders that are in a turn: their course has changed since the last heartbeat, by more than it may be off.
-    loose: by how much that is [rad], of those whose course is not known exactly."""
+    """The intruders in a turn: their course has changed since the last heartbeat by more than its
+    uncertainty.
+
+    loose: uncertainty of the course [rad], for those whose course is not known exactly.
+    """
     was, off = dict(before), dict(loose)
     turned = {
         other: max(0.0, abs(smallest_turn(was[other], course)) - off.get(other, 0.0))
@@ -111,10 +115,10 @@ def threats(
     limits: Nearest,
     in_turn: frozenset[int] = frozenset(),
 ) -> tuple[Threat, ...]:
-    """All predicted losses, by intruder; `before` is what the last heartbeat gave.
+    """All predicted losses, by intruder. before: the result of the last heartbeat.
 
-    An intruder in a turn is not where a straight line leads, so unless the loss is nearer than
-    hard_s its threat has to persist.
+    An intruder in a turn does not follow its straight-line prediction, so its threat must persist unless the
+    loss is nearer than hard_s.
     """
     since = {threat.intruder_id: threat.since_ms for threat in before}
     found = []
@@ -137,6 +141,6 @@ def threats(
 
 
 def most_urgent(found: tuple[Threat, ...]) -> Threat | None:
-    """The threat to act on: the nearest of those that are ours, or None."""
+    """The threat to act on: the nearest one that requires own action; None if there is none."""
     ours = [threat for threat in found if threat.ours_to_act]
     return min(ours, key=lambda t: (t.first_violation_s, t.intruder_id), default=None)

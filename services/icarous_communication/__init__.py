@@ -1,1 +1,1 @@
-"""IcarousCommunicationService: UxAS's end of the CRATOUS bridge, as a service of any configuration."""
+"""IcarousCommunicationService: the UxAS end of the CRATOUS bridge, as a service for any configuration."""

@@ -1,4 +1,4 @@
-"""Where instances come in: an address, the dialect that is spoken there, and whose instances those are."""
+"""Addresses at which instances connect, the dialect spoken there, and for which vehicles."""
 
 from __future__ import annotations
 
@@ -11,11 +11,13 @@ from cratous.bridge.text_protocol.dialects import Dialect
 from cratous.bridge.text_protocol.keys import Keys
 
 FORMS = "v2", "cratous", "original", "thesis"
-"""What may be spoken: `v2` are the lines of `cratous` in authenticated packets."""
+"""The configurable dialects: `v2` is `cratous` in authenticated packets."""
 
 
 class Door(NamedTuple):
-    """An address at which the instances of some vehicles come in. ids: theirs, none for the lowest known; keys: then it is v2."""
+    """An address at which the instances of some vehicles connect. ids: the vehicles, () for the lowest known;
+    keys: set for v2.
+    """
 
     where: Address
     dialect: Dialect = Dialect.CRATOUS
@@ -25,14 +27,14 @@ class Door(NamedTuple):
 
 @dataclass(frozen=True)
 class Dialects:
-    """What the peers of one service speak. usual: those of vehicles that are not in `others`."""
+    """The dialects of one service's peers. usual: for vehicles not in `others`."""
 
     usual: Dialect = Dialect.CRATOUS
     others: Mapping[int, Dialect] = field(default_factory=dict)
 
     @property
     def all(self) -> tuple[Dialect, ...]:
-        """Each that some peer may speak."""
+        """Every dialect that some peer may speak."""
         return (self.usual, *self.others.values())
 
     def of(self, vehicle_id: int) -> Dialect:
@@ -40,14 +42,14 @@ class Dialects:
         return self.others.get(vehicle_id, self.usual)
 
     def ours(self, vehicle_id: int) -> bool:
-        """Whether that of the instance of a vehicle has heartbeats and epochs."""
+        """Whether the dialect of a vehicle's instance has heartbeats and epochs."""
         return self.of(vehicle_id).ours
 
     def original(self, vehicle_id: int) -> bool:
-        """Whether a client of the original's flies a vehicle."""
+        """Whether a vehicle is flown by a client of the original's."""
         return self.of(vehicle_id) is Dialect.ORIGINAL
 
 
 def form_of(text: str) -> Dialect:
-    """The dialect of the lines of one of FORMS."""
+    """The dialect of the lines for one of FORMS."""
     return Dialect.CRATOUS if text == "v2" else Dialect(text)

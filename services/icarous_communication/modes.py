@@ -1,4 +1,4 @@
-"""Which SETMOD is believed: the one that says the next step of the vehicle's gate."""
+"""Validation of SETMOD lines: accepted if they state the next transition of the vehicle's gate."""
 
 from __future__ import annotations
 
@@ -24,11 +24,13 @@ from cratous.services.icarous_communication.state import Out, Refuse
 from cratous.spec.authority.link_end import OVERTAKEN, REFUSED
 
 NO_EPOCH = -1
-"""No epoch has been heard on a connection."""
+"""No epoch has been received on the connection."""
 
 
 class Said(NamedTuple):
-    """line: with an epoch; gate: as the line leaves it; believed: whether the line can be true."""
+    """line: with its epoch; gate: the gate after the line; believed: whether the line is consistent with the
+    gate.
+    """
 
     line: SetMode
     gate: Gate
@@ -36,8 +38,10 @@ class Said(NamedTuple):
 
 
 def read(peer: Peer, line: SetMode, fresh: bool) -> Said:
-    """What a SETMOD says, as the kernel `link_mode` has it. fresh: the first of a connection, which may
-    say any epoch after those that are known here, up to MOST_SAID."""
+    """Interpret a SETMOD, as the kernel `link_mode` decides.
+
+    fresh: the first on a connection, which may carry any later epoch than the known ones, up to MOST_SAID.
+    """
     active, gate = line.mode == "ACTIVE", peer.gate
     epoch_told = gate.epoch if line.epoch is None else line.epoch
     if fresh and _after(gate, epoch_told):
@@ -52,7 +56,7 @@ def read(peer: Peer, line: SetMode, fresh: bool) -> Said:
 
 
 def _after(gate: Gate, epoch: int) -> bool:
-    """True for an epoch after those of a gate that leaves room for others."""
+    """Whether an epoch is later than those of a gate and leaves room for further ones."""
     return not epoch_given(gate, epoch) and epoch_given(MOST_SAID, epoch)
 
 
@@ -62,8 +66,9 @@ def anew(peer: Peer) -> Peer:
 
 
 def forgotten(peer: Peer, line: SetMode, fresh: bool) -> EpochTold | None:
-    """What to tell an instance whose first mode on a connection is of an epoch that is over: it was started anew and
-    does not know which epochs it has given. None for any other line."""
+    """The EPOCH line for an instance whose first mode on a connection carries a past epoch: it was restarted
+    and does not know which epochs it has issued. None for any other line.
+    """
     if (
         not fresh
         or line.epoch is None
@@ -75,14 +80,16 @@ def forgotten(peer: Peer, line: SetMode, fresh: bool) -> EpochTold | None:
 
 
 def told(vehicle_id: int, line: SetMode, over: EpochTold) -> list[Out]:
-    """Reply to a SETMOD of an epoch that is over: the EPOCH line, and the reason for the log."""
+    """Reply to a SETMOD of a past epoch: the EPOCH line, and the reason for the log."""
     text = f"vehicle {vehicle_id}: ICAROUS is in epoch {line.epoch}, which is over"
     why = Refuse("mode of an epoch that is over", f"{text}: it is told that {over.epoch} was given")
     return [why, Down(vehicle_id, (over,))]
 
 
 def forged(name: str, peer: Peer, now_ms: int, why: str) -> Say:
-    """What a SETMOD comes to that nobody who has the vehicle's key has sent: G4 counts it. name: of the service."""
+    """A ModeRefused for a SETMOD without a valid authentication tag, which monitor G4 counts. name: of the
+    service.
+    """
     epoch = peer.gate.epoch
     body = lmcp.new(
         "ModeRefused", VehicleID=peer.vehicle_id, Time=now_ms, Owner="ICAROUS", Epoch=epoch,
@@ -92,11 +99,11 @@ def forged(name: str, peer: Peer, now_ms: int, why: str) -> Say:
 
 
 def unknown(peer: Peer, fresh: bool) -> bool:
-    """True until a restarted end has received the vehicle's current epoch."""
+    """Whether a restarted end has not received the vehicle's epoch yet."""
     return fresh and peer.gate == UNTOUCHED and not epoch_given(peer.gate, peer.end.epoch)
 
 
 def begins(peer: Peer, said: Said, fresh: bool) -> bool:
-    """True if this line tells a restarted end that UxAS is in command."""
+    """Whether this line tells a restarted end that UxAS is in command."""
     may = gate_accepts(said.gate, UXAS, said.gate.epoch)
     return said.believed and unknown(peer, fresh) and may

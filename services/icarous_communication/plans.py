@@ -1,7 +1,7 @@
-"""MissionCommands as ICAROUS is told them, where a vehicle leaves its way, and how it is sent on.
+"""MissionCommands as routes for ICAROUS, deviations from them, and the way back after a handback.
 
-A vehicle that has left its way by more than is allowed comes back to where it left it, so that the sensor
-misses nothing; one that has stayed near makes for the waypoint that it was making for.
+A vehicle that has deviated by more than is allowed returns to where it left its route, so that no coverage is
+lost; one that has stayed close continues to its next waypoint.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from cratous.services.mission.frames import Projection
 from cratous.spec.mission import Position
 
 START = -1
-"""The number of the place where a vehicle was when it got a plan; no command bears it."""
+"""Number of the added waypoint where a vehicle was when it received a plan; no command uses it."""
 
 
 class Plan(NamedTuple):
     """A MissionCommand in force.
 
-    command: as it was given; waypoints: in the order of flight, before them the place where the vehicle was
-    (START) if that is known, and a way back; where each is, and which point of the track it is; goal: index
-    of the one that the vehicle makes for; since_ms: given at; settled: the vehicle flies it; back: index of
-    the last that is none of the mission's (-1: they all are); resume: where it comes back to its way, if
-    that is where it was left; told: point of the track with which what is told to its ICAROUS begins; begun: tasks
-    that were being done when the way back began.
+    command: as received; waypoints: in flight order, preceded by the vehicle's place at that time (START), if
+    known, and a way back; positions, marks: place of each, and its point of the track; goal: index of the
+    next waypoint; since_ms: when it was received; settled: whether the vehicle flies it; back: index of the
+    last waypoint that is not the mission's (-1: none); resume: where it rejoins its route, if that is where
+    it was left; told: first point of the track in the part sent to its ICAROUS; begun: tasks in progress when
+    the way back began.
     """
 
     command: Any
@@ -49,19 +49,20 @@ class Plan(NamedTuple):
 
     @property
     def speed_m_s(self) -> float:
-        """Planned on it [m/s]."""
+        """Planned speed [m/s]."""
         return float(self.waypoints[0].Speed)
 
 
 def part(plan: Plan, most: int | None) -> tuple[Position, ...]:
-    """The part of a plan that is sent to a peer: all of it, or from `told` on as much as the peer can hold."""
+    """The part of a plan that is sent to a peer: all of it, or at most `most` points from `told` on."""
     points = plan.track.points[plan.told :]
     return points if most is None else points[:most]
 
 
 def next_part(plan: Plan, most: int, spare: int) -> Plan:
-    """The plan as it is to be told, when the vehicle has no more than `spare` points of its part ahead: from
-    the point that it has passed last; the same plan otherwise, and where the part holds the end already."""
+    """The plan with the next part to send, from the point passed last, if the vehicle has at most `spare`
+    points of the present part ahead; otherwise, or if that part contains the end, the plan itself.
+    """
     at = plan.marks[plan.goal]
     if plan.told + most - at > spare or plan.told + most >= len(plan.track.points):
         return plan
@@ -69,10 +70,10 @@ def next_part(plan: Plan, most: int, spare: int) -> Plan:
 
 
 def being_done(plan: Plan | None, tasks: Iterable[int]) -> tuple[int, ...]:
-    """Those of the tasks of a state that the vehicle does, and is not still on its way to.
+    """The tasks in progress, of those that a state lists.
 
-    A task begins at the first waypoint of the way that bears its number in AssociatedTasks; states bear it already while
-    that waypoint is made for. Of a task of no waypoint that is known nothing tells where it begins: it is being done.
+    A task begins at the first waypoint that names it in AssociatedTasks; states list it already on the way
+    there. A task that no known waypoint names counts as in progress.
     """
     if plan is None:
         return tuple(tasks)
@@ -86,14 +87,15 @@ def being_done(plan: Plan | None, tasks: Iterable[int]) -> tuple[int, ...]:
 
 
 def begun_with(plan: Plan | None, tasks: tuple[int, ...]) -> Plan | None:
-    """A plan that may be a part of a way, as it begins within these tasks."""
+    """The plan with the tasks in progress at its beginning."""
     return None if plan is None else plan._replace(begun=tasks)
 
 
 class Away(NamedTuple):
-    """ICAROUS commands a vehicle. left: where its way was left; tasks: that it was doing then; paused:
-    it is farther from its leg than is allowed, and these tasks are told to pause; proposed: the way of UxAS's
-    planner onto which its ICAROUS hands back, none: the direct one; waypoint: of the way told, that ICAROUS goes on with."""
+    """ICAROUS has a vehicle. left: where its route was left; tasks: in progress then; paused: it has deviated
+    more than is allowed and these tasks were paused; proposed: route of UxAS's planner on which ICAROUS
+    hands back, () for the direct one; waypoint: index of the waypoint with which ICAROUS continues.
+    """
 
     left: Position
     tasks: tuple[int, ...]
@@ -103,7 +105,7 @@ class Away(NamedTuple):
 
 
 def position_of(place: Any, projection: Projection) -> Position:
-    """A place (a Location3D or a Waypoint) in the plane."""
+    """The position of a Location3D or Waypoint in the local plane."""
     north_m, east_m = projection.to_local(place.Latitude, place.Longitude)
     return Position(north_m, east_m, float(place.Altitude))
 
@@ -111,8 +113,9 @@ def position_of(place: Any, projection: Projection) -> Position:
 def plan_of(
     command: Any, projection: Projection, now_ms: int, here: Position | None
 ) -> Plan | None:
-    """The way of a MissionCommand, from its first waypoint each to the next that it names; a way that
-    leads back into itself is told once around. None if it has no waypoints. here: where the vehicle is."""
+    """The route of a MissionCommand, following NextWaypoint from its first waypoint; a loop is flown once.
+    None without waypoints. here: the vehicle's position.
+    """
     known = {w.Number: w for w in command.WaypointList}
     if not known:
         return None
@@ -134,7 +137,7 @@ def plan_of(
 
 
 def begins_as(plan: Plan | None, told: Plan | None) -> bool:
-    """True if a vehicle that flies a plan, and has passed nothing of it, is given the same way again."""
+    """Whether a vehicle that has passed none of a plan's waypoints is given the same route again."""
     return (
         plan is not None
         and told is not None
@@ -144,16 +147,16 @@ def begins_as(plan: Plan | None, told: Plan | None) -> bool:
 
 
 def _legs(plan: Plan) -> list[tuple[float, ...]]:
-    """What makes the way of a plan, from its first waypoint on."""
+    """What identifies the route of a plan from its next waypoint on."""
     found = plan.waypoints[plan.goal :]
     return [(w.Number, w.Latitude, w.Longitude, w.Altitude, w.Speed) for w in found]
 
 
 def shown(plan: Plan, number: int, long_enough: bool) -> Plan:
-    """The plan with the waypoint that the vehicle says it makes for.
+    """The plan with the waypoint that the vehicle reports as its next.
 
-    As long as it does not show this plan's first waypoint, its number may be one of a former plan: that
-    is over when it has had long_enough.
+    Until the vehicle reports this plan's first waypoint, the number may belong to an earlier plan, unless it
+    has had long_enough to switch.
     """
     settled = plan.settled or long_enough or number == plan.waypoints[plan.goal].Number
     numbers = [w.Number for w in plan.waypoints]
@@ -163,8 +166,9 @@ def shown(plan: Plan, number: int, long_enough: bool) -> Plan:
 
 
 def deviates(plan: Plan, here: Position, allowed_m: float) -> bool:
-    """True iff the vehicle is farther than allowed from the leg that it is flying; before the first
-    waypoint it has none."""
+    """Whether the vehicle is farther from its present leg than allowed; before the first waypoint there is no
+    leg.
+    """
     if plan.goal == 0:
         return False
     a, b = plan.positions[plan.goal - 1], plan.positions[plan.goal]
@@ -172,8 +176,9 @@ def deviates(plan: Plan, here: Position, allowed_m: float) -> bool:
 
 
 def resume_point(plan: Plan, left: Position) -> Position | None:
-    """Where a vehicle that was too far from its way comes back to it: the nearest place of its leg to where
-    it left it; on a way back, where that leads. None: to the waypoint that it makes for."""
+    """Where a vehicle that deviated too far rejoins its route: the point of its leg nearest to where it left;
+    on a way back, that way's resume point. None: at its next waypoint.
+    """
     if plan.goal <= plan.back:
         return plan.resume
     if plan.goal == 0:
@@ -183,8 +188,9 @@ def resume_point(plan: Plan, left: Position) -> Position | None:
 
 
 def going_on(plan: Plan, away: Away) -> Plan:
-    """The plan as it makes for the waypoint with which ICAROUS goes on; the same plan where the way is resumed at
-    another place, or a waypoint with actions or tasks would be left out."""
+    """The plan with the waypoint at which ICAROUS continues as its next; unchanged if the route is resumed
+    elsewhere, or if a waypoint with actions or tasks would be skipped.
+    """
     goals = [k for k, mark in enumerate(plan.marks) if mark == away.waypoint]
     if not goals or away.paused or away.proposed or plan.goal <= plan.back:
         return plan
@@ -195,7 +201,7 @@ def going_on(plan: Plan, away: Away) -> Plan:
 
 
 class Resumed(NamedTuple):
-    """command: for the autopilot; back: how many waypoints its way back has; resume: as in `Plan`."""
+    """command: for the autopilot; back: number of waypoints of the way back; resume: as in `Plan`."""
 
     command: Any
     back: int
@@ -205,10 +211,10 @@ class Resumed(NamedTuple):
 def resumed(
     plan: Plan, away: Away, now: Motion, radius_m: float, projection: Projection, command_id: int
 ) -> Resumed:
-    """What sends a vehicle on: the shortest flyable way, or that of UxAS's planner, which ICAROUS has found free, onto
-    its own way.
+    """The command for a vehicle after a handback: the shortest flyable way, or UxAS's proposal accepted by
+    ICAROUS, onto its route, and along it.
 
-    radius_m: of its turns.
+    radius_m: turn radius.
     """
     again = away.paused or plan.goal <= plan.back
     resume = resume_point(plan, away.left) if again else None
@@ -223,7 +229,7 @@ def resumed(
     else:
         way = rejoin(now, radius_m, onward[0], onward[1] if len(onward) > 1 else None)[1:]
     if resume is None:
-        way = way[:-1]  # the last is the waypoint itself
+        way = way[:-1]  # the last point is the waypoint itself
     following, points = plan.waypoints[goal], list(plan.command.WaypointList)
     first = 1 + max(w.Number for w in points)
     numbers = [*range(first, first + len(way)), following.Number]
@@ -234,14 +240,14 @@ def resumed(
 
 
 def leading_back(plan: Plan, away: Away, sent: Resumed, way: Plan | None) -> Plan | None:
-    """The plan of a way back, as it is flown after `plan`: the mission's own command is what the next way back leads to."""
+    """The plan of a way back flown after `plan`. It keeps the mission's own command, for a later way back."""
     if way is None:
         return None
     return way._replace(command=plan.command, back=sent.back, resume=sent.resume, begun=away.tasks)
 
 
 def _at(waypoint: Any, place: Position, projection: Projection, number: int, following: int) -> Any:
-    """A waypoint like another one at another place."""
+    """A copy of a waypoint at another place, without its actions."""
     latitude, longitude = projection.to_geodetic(place.north_m, place.east_m)
     return waypoint.copy(
         Number=number,
@@ -254,7 +260,7 @@ def _at(waypoint: Any, place: Position, projection: Projection, number: int, fol
 
 
 def _marks(positions: tuple[Position, ...]) -> tuple[int, ...]:
-    """Which point of their `Track` each place is; places that are one are one point of it."""
+    """Index of each position in their `Track`, in which coincident positions are one point."""
     marks = [0]
     for a, b in itertools.pairwise(positions):
         apart_m = math.hypot(b.north_m - a.north_m, b.east_m - a.east_m)

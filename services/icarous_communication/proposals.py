@@ -1,8 +1,9 @@
-"""Ways that ICAROUS asks UxAS for in a takeover: WPREQ up, answered by RPRSP with what UxAS's planner in flight finds.
+"""Routes that ICAROUS requests from UxAS during a takeover: WPREQ, answered by RPRSP from UxAS's in-flight
+planner.
 
-UxAS plans live where the configuration says so (`UseUxasRoutePlanner`): each instance is told by COMND UXAS_PLANS, and
-by ICAROUS_PLANS when an OwnRoutePlanner of somebody else says that UxAS's planner leaves planning to others. What is
-answered is a proposal: ICAROUS puts it to its kernels, and hands back onto it by its number, or not at all.
+UxAS plans live if configured (`UseUxasRoutePlanner`): each instance is told by COMND UXAS_PLANS, and by
+ICAROUS_PLANS when an OwnRoutePlanner message says that UxAS's planner leaves planning to others. An answer is
+only a proposal: ICAROUS has its kernels check it, and hands back on it by its number, or not at all.
 """
 
 from __future__ import annotations
@@ -38,14 +39,14 @@ from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.plan import Pose
 
 KEPT = 4
-"""So many answers are kept of each vehicle: it hands back onto one of the last."""
+"""Answers kept per vehicle, for a handback on one of them."""
 MOST, WITHIN_MS = 4, 2000
-"""So many ways are planned for an instance in this time [ms]; ours asks once a second."""
+"""At most this many routes are planned for an instance in this time [ms]; ours requests one per second."""
 Places = tuple[tuple[float, float, float], ...]
 
 
 class Proposals:
-    """Plan proposals of one service. on: the configuration lets UxAS plan in flight."""
+    """Route proposals of one service."""
 
     def __init__(self) -> None:
         self._on, self._zones, self._router = True, tuple[Zone, ...](), Router(())
@@ -58,7 +59,7 @@ class Proposals:
         return [Down(vid, (UxasPlans() if self._on else IcarousPlans(),))]
 
     def planner_says(self, plans: bool, seated: list[int]) -> list[Out]:
-        """UxAS's planner plans from now on, or leaves it to others. seated: whose instances are there."""
+        """UxAS's planner starts or stops planning. seated: vehicles whose instances are connected."""
         if plans == self._on:
             return []
         self._on = plans
@@ -67,12 +68,14 @@ class Proposals:
         return [*out, *(one for vid in seated for one in self.connected(vid))]
 
     def asked(self, state: State, vid: int, line: RouteRequest, now_ms: int) -> list[Out]:
-        """A WPREQ of an instance; it is answered where that has its vehicle. state: of the service."""
+        """A WPREQ of an instance: answered with a route only while ICAROUS has the vehicle. state: of the
+        service.
+        """
         number, away = line.request, state.craft(vid).away is not None
         if number is None or not (self._on and away):
             why = "WPREQ without a number" if number is None else "WPREQ that is not for now"
             return [Refuse(why, f"vehicle {vid}: {line}"), *_answer(vid, number, (), 0.0)]
-        last = self._planned_ms.get(vid, ())  # kept over connections
+        last = self._planned_ms.get(vid, ())  # kept across connections
         if len(last) >= MOST and in_time(last[0], now_ms, WITHIN_MS):
             why = f"more than {MOST} WPREQ in {WITHIN_MS / 1000:g} s"
             return [Refuse(why, f"vehicle {vid}: {line}"), *_answer(vid, number, (), 0.0)]
@@ -86,13 +89,13 @@ class Proposals:
         return [note, *_answer(vid, number, places, line.horizontal_mps)]
 
     def chosen(self, vid: int, line: SetMode) -> Places:
-        """The way onto which an instance hands back, if it names one that it was given."""
+        """The proposal on which an instance hands back, if it names one that it was given; else ()."""
         if line.mode != "PASSIVE" or line.request is None:
             return ()
         return self._given.get(vid, {}).get(line.request, ())
 
     def _found(self, state: State, vid: int, line: RouteRequest) -> tuple[Places, str]:
-        """The places of a way among the zones that the instance is told, or why there is none."""
+        """The points of a route around the zones known to the instance, or () and the reason."""
         craft = state.craft(vid)
         if state.frame is None or craft.air is None:
             return (), "nothing is known of the vehicle"
@@ -101,7 +104,7 @@ class Proposals:
         end = Position(*projection.to_local(line.end_lat_deg, line.end_long_deg), line.end_alt_m)
         if craft.plan is None:
             heading_rad = bearing_rad(Position(*start, line.start_alt_m), end)
-        else:  # as the vehicle goes on from there
+        else:  # the vehicle's track direction there
             track = craft.plan.track
             heading_rad = track.heading_rad(track.nearest(end, 0.0, track.length_m).s_m)
         zones, _ = tellable(state.frame, state.zones.values())

@@ -1,10 +1,10 @@
-"""Routes that ICAROUS plans for UxAS: WPREQ and RPRSP around RoutePlanRequest and RoutePlanResponse.
+"""Routes that ICAROUS plans for UxAS: RoutePlanRequest to WPREQ, RPRSP to RoutePlanResponse.
 
-Each RouteConstraints of a request for waypoints is one WPREQ, to the vehicle's own instance or else to that of the
-lowest vehicle; an instance has one at a time, the others wait in order. What comes back is places alone: they are
-led over by flyable turns, and each leg is put to the proved kernels, as those of any route
-(`services.planning.vias`). No instance, no answer in time, and an answer that is no route: then UxAS's own planner
-plans this way, and log, RoutePlan and a ServiceStatus say why.
+Each RouteConstraints of a request for waypoints becomes one WPREQ, to the vehicle's own instance or else to
+that of the lowest vehicle id; an instance has one at a time, the others are queued. The answer contains only
+places: they are connected by flyable turns, and the proved kernels check each leg as those of any route
+(`services.planning.vias`). If there is no instance, no answer in time, or an invalid one, UxAS's own planner
+plans the route, and log, RoutePlan and a ServiceStatus give the reason.
 """
 
 from __future__ import annotations
@@ -32,19 +32,21 @@ from cratous.services.pipeline.status import status
 from cratous.spec.errors import CratousError
 
 PLANNERS = ("GRID", "ASTAR", "RRT", "SPLINE")
-"""The planners of RoutePlannerUsed 0 to 3, as WPREQ names them."""
+"""The planners of RoutePlannerUsed 0 to 3, by their names in WPREQ."""
 REQUEST, GROUP = "uxas.messages.route.RoutePlanRequest", "IcarousPathPlanner"
 MOST_POINTS = 256
-"""An answer of more places is none."""
+"""A longer answer is rejected."""
 MOST_WAITING = 1000
-"""Ways that wait for an instance; those beyond are planned by UxAS's own planner at once."""
+"""Most queued routes; UxAS's own planner plans further ones at once."""
 FAILURES = (CratousError, MemoryError)
-"""What one way may end in: it cannot be, or takes more memory than there is."""
+"""Expected failures of planning one route, including lack of memory."""
 RouteLine = RouteStart | RoutePoint | RouteEnd
 
 
 class Request(NamedTuple):
-    """A RoutePlanRequest that is being answered. plans: by position in it; said: why UxAS has planned ways of it."""
+    """A RoutePlanRequest in progress. plans: by position in it; said: reasons reported for routes that UxAS
+    planned.
+    """
 
     asked: Envelope
     plans: dict[int, Any]
@@ -52,15 +54,16 @@ class Request(NamedTuple):
 
 
 class Wanted(NamedTuple):
-    """One way: which of a request."""
+    """One requested route: request and position in it."""
 
     ticket: int
     position: int
 
 
 class Outstanding(NamedTuple):
-    """A WPREQ that is out. until_s: None before the first look after it was sent; places: of the answer, None before
-    it has begun; told: how many came."""
+    """A pending WPREQ. until_s: deadline, None until the first `look` after it was sent; places: received so
+    far, None before the answer begins; told: how many were received.
+    """
 
     wanted: Wanted
     number: int
@@ -84,12 +87,12 @@ class Routes:
         self._tickets = self._numbers = 0
 
     def begun(self) -> Say:
-        """The message saying that UxAS's own planner leaves route requests to ICAROUS."""
+        """The message that UxAS's own planner leaves route requests to ICAROUS."""
         text = f"{self._name}: ICAROUS plans the routes ({self._kind})"
         return Say(lmcp.new("OwnRoutePlanner", Plans=False, Reason=text), self._name)
 
     def asked(self, envelope: Envelope) -> list[Out]:
-        """A RoutePlanRequest has come; those for costs are UxAS's own planner's."""
+        """Queue the routes of a RoutePlanRequest; cost-only requests are left to UxAS's own planner."""
         body = envelope.body
         if body.IsCostOnlyRequest:
             return []
@@ -104,8 +107,9 @@ class Routes:
         return out if wanted else [*out, *self._answered(self._tickets)]
 
     def look(self, now_s: float) -> list[Out]:
-        """Give up what is overdue. An answer's time runs from the first look after its WPREQ was sent: what this
-        process does in between is no time of the instance's."""
+        """Give up overdue requests. The time for an answer starts at the first call after the WPREQ was sent,
+        so that delays of this process do not count.
+        """
         out: list[Out] = []
         for vid, one in list(self._out.items()):
             if one.until_s is None:
@@ -115,7 +119,7 @@ class Routes:
         return out
 
     def step(self, seated: Sequence[int]) -> list[Out]:
-        """Send the route requests that can be sent. seated: the vehicles whose instances are connected."""
+        """Send queued requests to instances that are free. seated: vehicles whose instances are connected."""
         out: list[Out] = []
         kept: deque[Wanted] = deque()
         while self._waiting:
@@ -131,7 +135,7 @@ class Routes:
         return out
 
     def heard(self, vid: int, line: RouteLine) -> list[Out]:
-        """A line of an answer has come from the instance of a vehicle."""
+        """Process a line of an answer from a vehicle's instance."""
         one = self._out.get(vid)
         if isinstance(line, RouteEnd):
             self._mute.discard(vid)
@@ -153,7 +157,7 @@ class Routes:
         return self._ended(vid, one, one.places)
 
     def gone(self, vid: int) -> list[Out]:
-        """The connection of an instance has ended."""
+        """An instance's connection has closed: UxAS plans its pending route."""
         self._mute.discard(vid)
         one = self._out.pop(vid, None)
         return [] if one is None else self._own(one.wanted, _of(vid, "the connection has ended"))
@@ -164,7 +168,7 @@ class Routes:
         return own if own in able else min(able, default=None)
 
     def _sent(self, vid: int, wanted: Wanted) -> list[Out]:
-        """The WPREQ of a way; what it is cannot be known here, UxAS's own planner says why."""
+        """Send the WPREQ of a route; if the request cannot be resolved, UxAS's own planner reports why."""
         body = self._requests[wanted.ticket].asked.body
         try:
             places, way = planner.asked_way(
@@ -190,7 +194,7 @@ class Routes:
         return [Down(vid, (line,))]
 
     def _overdue(self, vid: int) -> list[Out]:
-        """No answer in time: ask again only after it has finished a request or has reconnected."""
+        """An overdue answer: the instance gets no further request until it finishes its answer or reconnects."""
         self._mute.add(vid)
         why = _of(vid, f"no answer within {self._wait_s:g} s")
         return self._own(self._out.pop(vid).wanted, why)
@@ -216,7 +220,7 @@ class Routes:
         return self._complete(one.wanted.ticket)
 
     def _own(self, wanted: Wanted, why: str) -> list[Out]:
-        """Have UxAS's own planner plan the route, and report that."""
+        """Let UxAS's own planner plan a route, and report why."""
         request = self._requests[wanted.ticket]
         body = request.asked.body
         constraint = body.RouteRequests[wanted.position]
@@ -228,7 +232,7 @@ class Routes:
         plan.RouteError = [*plan.RouteError, lmcp.new("KeyValuePair", Key="reason", Value=text)]
         request.plans[wanted.position] = plan
         out: list[Out] = []
-        if text not in request.said:  # once, however many ways it is true of
+        if text not in request.said:  # once per request, however many routes it concerns
             request.said.add(text)
             facts = [("VehicleID", str(body.VehicleID)), ("reason", text)]
             out = [Note("WARN", text), Say(status(0, "Warning", facts), self._name)]
@@ -241,7 +245,7 @@ class Routes:
         return self._answered(ticket)
 
     def _answered(self, ticket: int) -> list[Out]:
-        """The response to a request all of whose ways are planned."""
+        """The response to a request whose routes are all planned."""
         request = self._requests.pop(ticket)
         body = request.asked.body
         plans = [request.plans[k] for k in range(len(body.RouteRequests))]
@@ -251,7 +255,7 @@ class Routes:
 
 
 def _why(error: CratousError | MemoryError) -> str:
-    """What goes wrong with one way neither ends UxAS nor leaves its request without an answer."""
+    """The reason in words; a failure of one route neither ends UxAS nor leaves its request unanswered."""
     if isinstance(error, CratousError):
         return "; ".join(reasons_of(error))
     return f"it cannot be planned: {error!r}"

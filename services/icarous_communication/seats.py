@@ -1,4 +1,4 @@
-"""Which connection speaks for which vehicle: by its HELLO, or in the order of arrival by ascending ids."""
+"""Assignment of connections to vehicles: by HELLO, or by ascending vehicle id in order of arrival."""
 
 from __future__ import annotations
 
@@ -8,39 +8,41 @@ from typing import NamedTuple
 from cratous.bridge.port import is_due
 
 GRACE_S = 1.0
-"""A connection that has said nothing for this long [s] is one that never says HELLO."""
+"""A connection that has sent nothing for this long is assumed never to send HELLO [s]."""
 
 
 class Refusal(NamedTuple):
-    """Why a connection is refused. why: one of a few fixed reasons, by which refusals are counted; detail: this refusal, with what
-    the peer said."""
+    """Why a connection is refused. why: a fixed reason, by which refusals are counted; detail: of this
+    refusal, including what the peer sent.
+    """
 
     why: str
     detail: str
 
 
 class Seats:
-    """The connections of one service. count: how many instances there are; ids: their vehicles, none for
-    the lowest of those that are known."""
+    """The connections of one service. count: number of instances; ids: their vehicles, () for the lowest
+    known ids.
+    """
 
     def __init__(self, count: int, ids: tuple[int, ...]) -> None:
         self._count, self._ids = count, ids
-        self._new: dict[int, float] = {}  # connections that may still say HELLO, and until when
+        self._new: dict[int, float] = {}  # connections that may still send HELLO, with the deadline
         self._unnamed: list[int] = []
         self._vehicle: dict[int, int] = {}
-        self._only: dict[int, tuple[int, ...]] = {}  # for whom a connection may speak
+        self._only: dict[int, tuple[int, ...]] = {}  # vehicles that a connection may speak for
 
     @property
     def come(self) -> int:
-        """How many instances are there, with or without a name."""
+        """Number of instances connected, assigned or not."""
         return len(self._vehicle) + len(self._unnamed) + len(self._new)
 
     def vehicle(self, key: int) -> int | None:
-        """For whom a connection speaks; None as long as that is not known."""
+        """The vehicle that a connection is assigned to; None while undecided."""
         return self._vehicle.get(key)
 
     def key(self, vehicle_id: int) -> int | None:
-        """Which connection speaks for a vehicle."""
+        """The connection assigned to a vehicle; None if there is none."""
         return next((k for k, vid in self._vehicle.items() if vid == vehicle_id), None)
 
     @property
@@ -50,12 +52,13 @@ class Seats:
 
     @property
     def due_s(self) -> float | None:
-        """When `settle` has something to do."""
+        """When `settle` is next due [s]; None if never."""
         return min(self._new.values(), default=None)
 
     def opened(self, key: int, now_s: float, only: tuple[int, ...] = ()) -> Refusal | None:
-        """A connection is open; why it is refused, if it is. only: the vehicles whose instances come in where it came,
-        none: any."""
+        """Register a new connection; returns why it is refused, None if it is not. only: vehicles accepted at
+        its address, () for any.
+        """
         if self.come >= self._count:
             return Refusal("too many", f"more instances than NumberOfUAVs = {self._count}")
         here = [k for k in (*self._new, *self._unnamed, *self._vehicle) if self._only[k] == only]
@@ -89,9 +92,9 @@ class Seats:
             self._unnamed.append(key)
 
     def settle(self, known: Iterable[int], now_s: float) -> list[tuple[int, int]]:
-        """Connections without a name and the vehicles that they now speak for.
+        """Assign vehicles to connections without HELLO; returns the new (connection, vehicle) pairs.
 
-        The lowest ids are theirs, so all vehicles have to be known first.
+        The lowest ids are assigned first, so all vehicles must be known before.
         """
         for key in [k for k, until_s in self._new.items() if is_due(until_s, now_s)]:
             self.speaks(key)
@@ -109,7 +112,7 @@ class Seats:
         return given
 
     def gone(self, key: int) -> int | None:
-        """A connection has ended; for whom it spoke."""
+        """Remove a closed connection; returns its vehicle, None if it had none."""
         self._forget(key)
         self._only.pop(key, None)
         return self._vehicle.pop(key, None)

@@ -1,7 +1,7 @@
 """The service IcarousCommunicationService: connections, seats and clock around the step of `step`.
 
-It listens for the ICAROUS instances, or connects to each of them, and gives each its vehicle. A process that holds it waits for them
-before it says StartupComplete, and is refused when they do not come.
+It listens for the ICAROUS instances, or connects to each of them, and assigns each to its vehicle. Its
+process waits for them before it sends StartupComplete, and ends with an error when they do not come.
 """
 
 from __future__ import annotations
@@ -51,23 +51,23 @@ CONFIGURED = "afrl.cmasi.AirVehicleConfiguration"
 KEEP_IN, KEEP_OUT = "afrl.cmasi.KeepInZone", "afrl.cmasi.KeepOutZone"
 REMOVE_ZONES = "afrl.cmasi.RemoveZones"
 WATCH_MS = 500
-"""How often it looks for instances that have fallen silent [ms]."""
+"""Interval of the check for silent instances [ms]."""
 MOST_VEHICLES, MOST_ZONES = 1000, PROGRAM_LIMITS.zones
-"""So many are known at once; of others that come it is said that they are not avoided."""
+"""Limits of vehicles and zones; for further ones a refusal is logged: they are not avoided."""
 MOST_EARLY = 1000
-"""Lines of a connection that are kept until it is known for which vehicle it speaks."""
+"""Lines kept of a connection until its vehicle is known."""
 PROGRESS_S = 10.0
-"""How often it says for whom it waits [s]."""
+"""Interval of the report while waiting for instances [s]."""
 
 
 class NobodyCame(CratousError):
-    """ICAROUS instances that the configuration counts on have not come in time."""
+    """ICAROUS instances required by the configuration have not connected in time."""
 
     exit_code = 3
 
 
 class IcarousCommunicationService:
-    """UxAS's end of the bridge."""
+    """The UxAS end of the bridge."""
 
     subscribes: tuple[str, ...] = (
         MISSION,
@@ -91,8 +91,9 @@ class IcarousCommunicationService:
         routes: Routes | None = None,
         proposals: Proposals | None = None,
     ) -> None:
-        """BadInput if it cannot listen. report(severity, sentence): to the log; routes: ICAROUS plans them; proposals:
-        ICAROUS may ask UxAS for ways."""
+        """BadInput if it cannot listen. report(severity, sentence): to the log; routes: set if ICAROUS plans
+        routes; proposals: set if ICAROUS may request routes from UxAS.
+        """
         self.name, self._bus, self._report, self._settings = name, bus, report, settings
         bounds = Bounds(silence_s=None, connections=4 * settings.instances)
         self._doors = settings.doors
@@ -140,7 +141,7 @@ class IcarousCommunicationService:
         return State()
 
     def begin(self, state: State) -> tuple[State, Iterable[Any]]:
-        """Start the periodic check of which instances are still heard, and announce who plans routes."""
+        """Start the periodic check for silent instances, and announce who plans routes."""
         said = [] if self._routes is None else [self._routes.begun()]
         return state, [*self._deliver(said), Wake(WATCH_MS)]
 
@@ -180,7 +181,7 @@ class IcarousCommunicationService:
         return self._step.zone(state, body)
 
     def stop(self, state: State) -> None:
-        """Close all connections and say what they have brought."""
+        """Close all connections and log their counts."""
         self.port.close()
         refused = sorted(self._tally.counts.refused.items())
         lines = ", ".join(f"{why}: {n}" for why, n in refused) or "none"
@@ -189,7 +190,7 @@ class IcarousCommunicationService:
     # of the loop ----------------------------------------------------------------------------------
 
     def pump(self, now_s: float) -> int:
-        """What has arrived, to the step; how much that was."""
+        """Process received input. Returns the number of events."""
         self._redial.step(now_s)
         arrived = self.port.step(now_s)
         for came in arrived:
@@ -202,7 +203,7 @@ class IcarousCommunicationService:
         return len(arrived)
 
     def _planned(self) -> list[Out]:
-        """What can be asked of the routes that ICAROUS plans."""
+        """Send the route requests that ICAROUS can take now."""
         return [] if self._routes is None else self._routes.step(self._seats.vehicles)
 
     def _publish(self, answers: list[Out]) -> None:
@@ -210,7 +211,7 @@ class IcarousCommunicationService:
             self._stepped(lambda state: (state, answers))
 
     def awaits(self, now_s: float) -> bool:
-        """True while instances are missing before the start; NobodyCame when its time is over."""
+        """Whether instances are still missing before the start. NobodyCame when the wait is over."""
         if self._started or self._seats.come >= self._settings.instances:
             self._started = True
             return False
@@ -227,7 +228,7 @@ class IcarousCommunicationService:
     def _came(self, came: Came, now_s: float) -> None:
         key = came.key
         if key in self._refused and not isinstance(came.what, LinkEvent):
-            return  # it came together with what it is refused for
+            return  # sent together with what it was refused for
         match came.what:
             case Opened():
                 self._redial.opened(key, now_s)
@@ -252,13 +253,13 @@ class IcarousCommunicationService:
                 self._tally.refuse("not known", f"{self.port.name(key)}: {skipped.text}")
 
     def _forged(self, key: int, what: str) -> None:
-        """Somebody without the key has put a mode into the connection of a vehicle."""
+        """An unauthenticated mode was injected into a vehicle's connection."""
         vid, now_ms = self._seats.vehicle(key), self._bus.now_ms
         if vid is None:
             return
         self._forgeries[vid] += 1
         count = self._forgeries[vid]
-        if not often(count):  # so the log does not grow with what a stranger sends
+        if not often(count):  # limits the growth of the log under attack
             return
         why = what if count == 1 else f"{what} ({count} so far)"
 
@@ -283,7 +284,7 @@ class IcarousCommunicationService:
             early.append(line)
 
     def _heard_line(self, state: State, vid: int, line: Message, now_ms: int) -> Step:
-        """A line of the instance of a vehicle; a way that it asks UxAS for, or onto which it hands back."""
+        """Process a line of a vehicle's instance, including route requests and handbacks on a proposal."""
         if self._proposals is not None and isinstance(line, SetMode):
             places, away = self._proposals.chosen(vid, line), state.craft(vid).away is not None
             if away and line.request is not None and not places:
@@ -312,7 +313,7 @@ class IcarousCommunicationService:
         self._refused.discard(key)
 
     def _seated(self, key: int, vid: int) -> None:
-        """A connection speaks for a vehicle from now on."""
+        """Assign a connection to a vehicle."""
         now_ms = self._bus.now_ms
         self._report("INFO", f"{self.name}: {self.port.name(key)} is the ICAROUS of vehicle {vid}")
         self._stepped(lambda state: self._step.connected(state, vid, now_ms))
@@ -325,14 +326,15 @@ class IcarousCommunicationService:
             return
         name = self.port.name(key)
         self.port.refuse(key, refusal.why, refusal.detail)
-        self._seats.gone(key)  # it keeps no place while it is told why
+        self._seats.gone(key)  # it occupies no seat while the refusal is sent
         self._early.pop(key, None)
         self._refused.add(key)
         self._say_refused(refusal.why, f"{name}: {refusal.detail}")
 
     def _say_refused(self, why: str, text: str) -> None:
-        """That a peer is refused, on the bus: it stands in the report. Not each time, where strangers come again and again.
-        why: counted by it, so it holds nothing that the peer can choose."""
+        """Publish a refusal on the bus for the report, at decreasing frequency for repeated ones. why: key by
+        which they are counted, never chosen by the peer.
+        """
         self._refusals[why] += 1
         count = self._refusals[why]
         if often(count):
@@ -340,7 +342,7 @@ class IcarousCommunicationService:
             self._publish([Say(status(0, "Warning", [("reason", said)]), self.name)])
 
     def _stepped(self, step: Callable[[State], Step]) -> None:
-        """A step that a connection has caused; the bus keeps the state."""
+        """Execute a step caused by a connection; the bus keeps the state."""
 
         def call(state: State) -> tuple[State, list[Any]]:
             after, answers = step(state)
@@ -349,7 +351,7 @@ class IcarousCommunicationService:
         self._bus.call(self.name, call)
 
     def _deliver(self, answers: Iterable[Out]) -> list[Any]:
-        """Lines to the wire, sentences to the log; what is left is for the bus."""
+        """Send lines and log sentences; returns the bodies for the bus."""
         bodies = []
         for answer in answers:
             match answer:
@@ -368,7 +370,7 @@ class IcarousCommunicationService:
 
 
 def _too_many(state: State, topic: str, body: Any) -> Refuse | None:
-    """Why there is no room for a vehicle or zone that has not been told of before."""
+    """Why there is no room for a vehicle or zone not known before; None if there is."""
     if topic in (KEEP_IN, KEEP_OUT):
         if len(state.zones) >= MOST_ZONES and body.ZoneID not in state.zones:
             return Refuse("more zones than are kept", f"zone {body.ZoneID} is not avoided")

@@ -1,4 +1,4 @@
-"""What a configuration says of IcarousCommunicationService: the original's attributes, and ours."""
+"""Configuration of IcarousCommunicationService: the original's attributes, and ours."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ATTRIBUTES: Mapping[str, Attr] = {
     "RoutePlannerUsed": whole(-1, -1, 3),
     "DeviationAllowed": whole(None, 0),
     "DeviationOrigin": choice("line", "line", "path"),
-    # ours: where it listens, or to whom it connects, for whom, for how long it waits, and whom it waits for
+    # ours: addresses, vehicles, time limits and dialects
     "Address": Attr(),
     "Connect": Attr(),
     "VehicleIDs": Attr(),
@@ -33,21 +33,22 @@ ATTRIBUTES: Mapping[str, Attr] = {
     "UseUxasRoutePlanner": flag(False),
 }
 DEVIATION_M = 500.0
-"""How far from its leg a vehicle that avoids may be before its tasks are paused [m]."""
+"""Deviation from its leg at which a vehicle's tasks are paused during avoidance [m]."""
 FROM_LINE_M = 200.0
-"""Less by this [m] where a configuration counts it from the line that is searched, as the original does."""
+"""Subtracted where the configuration counts the deviation from the searched line, as the original does [m]."""
 
 
 LISTENS_AT = "tcp://127.0.0.1:5557"
-"""Where it listens if nothing else is said."""
+"""Default address for listening."""
 
 
 class Settings(NamedTuple):
-    """instances: how many to wait for; deviation_m: see DEVIATION_M; where: it listens; to: the addresses
-    to connect to instead of that, one of each instance; keys: of the vehicles, then the dialect is v2; ids: of the
-    vehicles, none for the lowest known; wait_s: for the instances; dialect: of the peers, that of the lines inside v2's packets too;
-    planner: RoutePlannerUsed, -1 for UxAS's own; answer_s: how long to wait for a route; live: ICAROUS may ask
-    UxAS's planner for a way back in a takeover; others: where those come in that speak other dialects."""
+    """instances: number to wait for; deviation_m: see DEVIATION_M; where: address to listen at; to: addresses
+    to connect to instead, one per instance; keys: of the vehicles, set for v2; ids: vehicles, () for the
+    lowest known; wait_s: for the instances [s]; dialect: of the peers, also of the lines inside v2's
+    packets; planner: RoutePlannerUsed, -1 for UxAS's own; answer_s: limit for a route [s]; live: ICAROUS
+    may request a way back from UxAS during a takeover; others: addresses for other dialects.
+    """
 
     instances: int
     deviation_m: float = DEVIATION_M
@@ -64,7 +65,7 @@ class Settings(NamedTuple):
 
     @property
     def doors(self) -> tuple[Door, ...]:
-        """Where instances come in, those of the usual dialect first."""
+        """Addresses at which instances connect, that of the usual dialect first."""
         elsewhere = {vid for door in self.others for vid in door.ids}
         own = tuple(vid for vid in self.ids if vid not in elsewhere)
         return (Door(self.where, self.dialect, own, self.keys), *self.others)
@@ -76,7 +77,7 @@ class Settings(NamedTuple):
 
 
 def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
-    """The settings of an entry; BadInput for what cannot be honoured."""
+    """The settings of an entry; BadInput for values that cannot be honoured."""
     where = address(
         v["Address"] or LISTENS_AT,
         ("tcp",),
@@ -122,7 +123,7 @@ _OTHER = re.compile(rf"(\d{{1,18}})=({'|'.join(FORMS)})@(tcp://\S+)")
 def _others(
     entry: Entry, v: Mapping[str, Any], ids: tuple[int, ...], usual: Address
 ) -> tuple[Door, ...]:
-    """Where the vehicles of OtherDialects come in: one door for each address."""
+    """The doors for OtherDialects, one per address."""
     text, item = v["OtherDialects"], "OtherDialects"
     found: dict[str, tuple[str, Address, list[int]]] = {}
     known = {(usual.host, usual.port)}
@@ -163,7 +164,7 @@ def _door(entry: Entry, v: Mapping[str, Any], form: str, where: Address, ids: li
 def _keys(
     entry: Entry, v: Mapping[str, Any], ids: tuple[int, ...], ends: tuple[Address, ...]
 ) -> Keys | None:
-    """The keys of v2; a dialect without authentication stays on this machine unless it is asked for."""
+    """The keys of v2; a dialect without authentication is restricted to loopback unless configured otherwise."""
     if v["Dialect"] == "v2":
         if ids:
             return keys_of(ids, Path(v["Keys"]) if v["Keys"] else None)

@@ -1,4 +1,4 @@
-"""What UxAS's end of the bridge remembers of vehicles and zones, and what it answers besides lines and messages."""
+"""State of the UxAS end of the bridge about vehicles and zones, and helpers to derive its messages."""
 
 from __future__ import annotations
 
@@ -36,31 +36,33 @@ from cratous.services.uxas.daidalus.zones import surroundings
 from cratous.spec.mission import Frame, Position, Zone
 
 TRAFFIC_KEPT_MS = 5000
-"""An aircraft whose state is of a time farther than this [ms] from another's is not told to that one."""
+"""Aircraft whose states differ in time by more than this are not reported to each other [ms]."""
 SPARE_WAYPOINTS = 10
-"""The original's client is told the next part of a plan when it has no more than these ahead."""
+"""The original's client is sent the next part of a plan when at most this many waypoints are ahead."""
 SETTLES_MS = 2000
-"""After this a vehicle that does not show the first waypoint of a new plan is on a later one [ms]."""
+"""After this long, a vehicle is assumed to fly a new plan even if it has not reported its first waypoint
+[ms].
+"""
 COMMANDS_FROM = 2**40
-"""Ids of the commands of this service, apart from those of others."""
+"""Ids of this service's commands start here, apart from those of other senders."""
 MOST_BANK_RAD = math.radians(80.0)
 DEFAULT_BANK_RAD = math.radians(30.0)
-"""How far a vehicle banks of which no configuration is known, or one that says nothing of it."""
+"""Bank limit used, and the one assumed without a configured value [rad]."""
 
 
 MISSION_OVER = StopMission(), ForgetWaypoints()
-"""What an instance is told when the mission of its vehicle is over."""
+"""Lines sent to an instance when its vehicle's mission is over."""
 
 
 class Refuse(NamedTuple):
-    """To the log: what is not acted upon. why: counted by it; detail: this time."""
+    """To the log: input was ignored. why: reason, by which it is counted; detail: of this case."""
 
     why: str
     detail: str
 
 
 class Note(NamedTuple):
-    """To the log. severity: as a logger's."""
+    """To the log. severity: logging level."""
 
     severity: str
     text: str
@@ -71,9 +73,12 @@ Out = Say | Down | Refuse | Note
 
 @dataclass(frozen=True)
 class Craft:
-    """What is known of one vehicle: its configuration; its newest state and where that is in the plane; its plan; that
-    ICAROUS has it; that it was told to hold, because its ICAROUS is not heard; that it was handed back
-    just now, so that the last steering of ICAROUS may still come; waiting: the mission that came meanwhile."""
+    """What is known of one vehicle.
+
+    configuration: AirVehicleConfiguration; body, air: newest AirVehicleState and its motion in the plane;
+    plan: in force; away: set while ICAROUS has it; holds: commanded to hold because its ICAROUS is not heard;
+    handed: just handed back, so late steering of ICAROUS is expected; waiting: mission received meanwhile.
+    """
 
     configuration: Any = None
     body: Any = None
@@ -86,15 +91,16 @@ class Craft:
 
     @property
     def listed(self) -> tuple[int, ...]:
-        """The tasks of its newest state."""
+        """The tasks in its newest state."""
         return () if self.body is None else tuple(self.body.AssociatedTasks)
 
 
 @dataclass(frozen=True)
 class State:
-    """link: what the end remembers; frame: the plane, None before anything has a place; zones and crafts
-    by id; commands: given so far; fresh: vehicles whose instance has not yet said which epoch it is in; stale: who is not told as traffic;
-    client_zones: which of the zones that are told, counted from 1, the original's clients are told."""
+    """link: state of the end; frame: the plane, None before the first position; zones, crafts: by id;
+    commands: number issued; fresh: vehicles whose instance has not yet stated its epoch; stale: vehicles
+    not reported as traffic; client_zones: numbers, from 1, of the zones sent to the original's clients.
+    """
 
     link: link_end.State = field(default_factory=link_end.State)
     frame: Frame | None = None
@@ -107,7 +113,7 @@ class State:
 
     @property
     def plane(self) -> Projection:
-        """The projection of the frame, some other as long as there is none."""
+        """The projection of the frame; an arbitrary one without a frame."""
         return plane(self.frame or Frame(0.0, 0.0))
 
     def craft(self, vehicle_id: int) -> Craft:
@@ -115,19 +121,20 @@ class State:
         return self.crafts.get(vehicle_id, Craft())
 
     def put(self, vehicle_id: int, craft: Craft) -> State:
-        """The same with this of a vehicle."""
+        """The state with this record of a vehicle."""
         return replace(self, crafts={**self.crafts, vehicle_id: craft})
 
 
 @lru_cache(maxsize=16)
 def plane(frame: Frame) -> Projection:
-    """The projection of a frame, made once."""
+    """The cached projection of a frame."""
     return Projection(frame)
 
 
 def air_state(body: Any, projection: Projection) -> AirState:
-    """Where an aircraft is and how it moves, from an AirVehicleState: body axes (u forward, v right,
-    w down), or ground speed and course where it says no body axes."""
+    """Motion from an AirVehicleState: from body axes (u forward, v right, w down), or from ground speed and
+    course if u and v are 0.
+    """
     heading = math.radians(body.Heading)
     u, v, course = body.u, body.v, math.radians(body.Course)
     north = u * math.cos(heading) - v * math.sin(heading)
@@ -141,14 +148,15 @@ def air_state(body: Any, projection: Projection) -> AirState:
 
 
 def tellable(frame: Frame, bodies: Iterable[Any]) -> tuple[tuple[Zone, ...], list[Note]]:
-    """The zones that are sent to peers, and for each other zone why it is not."""
+    """The zones that are sent to peers, and a note for each that is not."""
     around = surroundings(frame, bodies, "MSL")
     return around.zones, [Note("WARN", text) for text in around.missing]
 
 
 def held_by_client(zones: tuple[Zone, ...]) -> tuple[tuple[Zone, ...], list[Note]]:
-    """Those of them that the original's client is told, and about the others why not: it publishes a fence for each
-    GEOFN_SEND, with whatever it holds of it, and counts them itself."""
+    """The zones that the original's client is sent, and why not the others: it publishes a fence for each
+    GEOFN_SEND, with whatever it has received, and counts zones itself.
+    """
     most, corners = ORIGINAL_LIMITS.zones, ORIGINAL_LIMITS.vertices
     fit = tuple(zone for zone in zones if len(zone.vertices) in range(corners + 1))
     alone = "the original's client is not told of it"
@@ -160,7 +168,7 @@ def held_by_client(zones: tuple[Zone, ...]) -> tuple[tuple[Zone, ...], list[Note
 def known_zones(
     state: State, frame: Frame, dialects: Dialects
 ) -> tuple[State, tuple[Zone, ...], list[Note]]:
-    """The zones that peers are told, with those of the original's clients remembered, and about the others why not."""
+    """The zones to send to peers, with the original's clients' subset stored, and notes on the others."""
     zones, notes = tellable(frame, state.zones.values())
     if Dialect.ORIGINAL in dialects.all:
         held, more = held_by_client(zones)
@@ -171,8 +179,11 @@ def known_zones(
 
 
 def ended(state: State, vid: int, dialect: Dialect) -> tuple[State, list[Out]]:
-    """A MissionCommand without waypoints: the mission of a vehicle that UxAS flies is over, and its instance is told.
-    dialect: of that one."""
+    """A MissionCommand without waypoints: the mission of a vehicle under UxAS is over, and its instance is
+    told.
+
+    dialect: of that instance.
+    """
     craft, peer = state.craft(vid), state.link.peer(vid)
     if craft.plan is None or craft.away is not None:
         return state, [Refuse("mission without waypoints", f"vehicle {vid}")]
@@ -188,7 +199,7 @@ def ended(state: State, vid: int, dialect: Dialect) -> tuple[State, list[Out]]:
 
 
 def over_meanwhile(state: State, vid: int, dialect: Dialect) -> list[Out]:
-    """To an instance that comes again and may still have the plan of a mission that ended while it was away."""
+    """Lines for a reconnected instance that may still have the plan of a mission that ended meanwhile."""
     craft = state.craft(vid)
     if craft.plan is not None or craft.away is not None:
         return []
@@ -196,7 +207,7 @@ def over_meanwhile(state: State, vid: int, dialect: Dialect) -> list[Out]:
 
 
 def free(state: State, vid: int) -> State:
-    """The ICAROUS of a vehicle is heard: what made the vehicle hold is over."""
+    """A vehicle's ICAROUS is heard again: it no longer has to hold."""
     craft = state.craft(vid)
     return state.put(vid, replace(craft, holds=False)) if craft.holds else state
 
@@ -212,7 +223,9 @@ def turn_radius_of(craft: Craft, air: AirState) -> float:
 def at_the_time_of(
     body: Any, crafts: Mapping[int, Craft]
 ) -> tuple[tuple[tuple[int, AirState], ...], frozenset[int]]:
-    """Everybody flown on to the time of a state, by id; and who is not, because his own is too far from it."""
+    """All aircraft extrapolated to the time of a state, by id; and those whose state is too far from it in
+    time.
+    """
     aircraft, stale = [], set[int]()
     for other, craft in sorted(crafts.items()):
         if craft.air is None:
@@ -232,7 +245,7 @@ def left_out(ids: Iterable[int]) -> list[Out]:
 
 
 def moved(air: AirState, late_s: float) -> AirState:
-    """The same aircraft some seconds later, straight on."""
+    """The aircraft after late_s [s] of straight flight."""
     p, v = air.position, air.velocity
     place = Position(
         p.north_m + v.north_m_s * late_s,
@@ -245,11 +258,12 @@ def moved(air: AirState, late_s: float) -> AirState:
 def placed(
     state: State, vid: int, lines: tuple[Message, ...], dialect: Dialect
 ) -> tuple[Message, ...]:
-    """As a peer of another dialect than ours reads them: RESET_SFT with where the vehicle is, and for the original's
-    client WAYPT with a running count, and the zones that it holds alone."""
+    """Lines adapted to the dialect of a peer: RESET_SFT with the vehicle's position, and for the original's
+    client WAYPT with a running count and only the zones that it can hold.
+    """
     if dialect.ours:
         return lines
-    # it has no words to forget the one alone: it forgets all, and is told the other anew
+    # it can only forget everything: the part that stays is sent again
     if lines == (ForgetFences(),):
         peer = state.link.peer(vid)
         assert peer is not None
@@ -268,7 +282,7 @@ def _held(line: Message, state: State) -> bool:
 
 
 def _numbered(line: Message, told: tuple[int, ...]) -> Message:
-    """The client keeps its zones by their numbers, which have to be 1 to n."""
+    """The client indexes its zones by number, from 1 to n."""
     if isinstance(line, FenceVertex | FenceDone) and line.zone is not None:
         return replace(line, zone=told.index(line.zone) + 1)
     return line
@@ -281,14 +295,15 @@ def _placed(state: State, vid: int, line: Message, dialect: Dialect) -> Message:
         return line
     air = state.craft(vid).air
     if air is None or state.frame is None:
-        return SoftReset(0.0, 0.0, 0.0)  # as the original's service has it before a mission
+        return SoftReset(0.0, 0.0, 0.0)  # as the original's service does before a mission
     lat, long = plane(state.frame).to_geodetic(air.position.north_m, air.position.east_m)
     return SoftReset(lat, long, air.position.alt_m)
 
 
 def goes_on(state: State, vid: int, line: Message) -> State:
-    """The same with the waypoint with which the ICAROUS of a vehicle that it has goes on: GOTOWP says it, and steering
-    that comes later says that it does not."""
+    """Record the waypoint at which the ICAROUS that has a vehicle continues: set by GOTOWP, cleared by later
+    steering.
+    """
     craft = state.craft(vid)
     if craft.away is None:
         return state
@@ -297,8 +312,7 @@ def goes_on(state: State, vid: int, line: Message) -> State:
 
 
 def led_back(state: State, vid: int, places: Iterable[tuple[float, float, float]]) -> State:
-    """The same with the way (latitude, longitude [deg], altitude [m]) onto which a vehicle that ICAROUS has is handed
-    back."""
+    """Record the route (latitude, longitude [deg], altitude [m]) on which ICAROUS hands a vehicle back."""
     craft = state.craft(vid)
     if craft.away is None or state.frame is None:
         return state

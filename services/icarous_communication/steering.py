@@ -1,4 +1,4 @@
-"""What ICAROUS steers, as commands for the autopilot: SETVEL, SETPOS, GOTOWP; and the hold when it is lost."""
+"""ICAROUS's steering as commands for the autopilot: SETVEL, SETPOS, GOTOWP; and the hold when it is lost."""
 
 from __future__ import annotations
 
@@ -19,15 +19,18 @@ from cratous.services.mission.frames import Projection, compass
 from cratous.spec.errors import BadInput
 
 AHEAD_S = 10.0
-"""A SETVEL names the altitude that its climb reaches after this [s]; the next SETVEL comes much sooner."""
+"""A SETVEL commands the altitude that its climb rate reaches after this [s]; the next SETVEL follows much
+sooner.
+"""
 COMMANDS = ("MissionCommand", "VehicleActionCommand")
 HOLD_BANK_RAD = math.radians(20.0)
-"""The turns of a hold are no tighter than with this bank."""
+"""Bank angle of the turns in a hold [rad]."""
 
 
 def action_of(line: Message, air: AirState, plan: Plan | None, projection: Projection) -> Any:
-    """The VehicleAction that a steering line means for an aircraft that is there now; None for a line that
-    steers nothing. BadInput for a waypoint that the plan does not have."""
+    """The VehicleAction for a steering line, from an aircraft's present motion; None for a line that does not
+    steer. BadInput for a waypoint that the plan does not have.
+    """
     match line:
         case SetVelocity(north, east, down):
             altitude = air.position.alt_m - down * AHEAD_S
@@ -65,7 +68,7 @@ def action_of(line: Message, air: AirState, plan: Plan | None, projection: Proje
 
 
 def hold(air: AirState, projection: Projection, altitude_m: float | None = None) -> Any:
-    """Loiter where the aircraft is, at its altitude or another one [m MSL]."""
+    """Loiter at the aircraft's position, at its altitude or another one [m MSL]."""
     place = air.position
     lat, long = projection.to_geodetic(place.north_m, place.east_m)
     return _loiter(lat, long, place.alt_m if altitude_m is None else altitude_m, air)
@@ -82,12 +85,12 @@ def command_of(vehicle_id: int, command_id: int, action: Any) -> Any:
 
 
 def circle_m(speed_m_s: float) -> float:
-    """The radius of the circle of a hold [m]."""
+    """Radius of a hold's circle [m]."""
     return speed_m_s**2 / (GRAVITY_M_S2 * math.tan(HOLD_BANK_RAD))
 
 
 def flies(line: Message, air: AirState | None, projection: Projection) -> Message:
-    """A steering line as the velocity that it leads to: SETPOS that of the straight way to its place, at the present speed."""
+    """A steering line as a velocity: SETPOS becomes straight flight to its place at the present speed."""
     if not isinstance(line, SetPosition) or air is None:
         return line
     north, east = projection.to_local(line.lat_deg, line.long_deg)
@@ -110,20 +113,21 @@ def _loiter(lat_deg: float, long_deg: float, alt_m: float, air: AirState) -> Any
 
 
 def at_gate(name: str, vehicle_id: int, gate: Gate, sender: int, command: Any) -> Say:
-    """A `GatedCommand` for the bus: a command reached a vehicle's gate, and from which sender."""
+    """A `GatedCommand` for the bus: a command from a sender has reached a vehicle's gate."""
     return Say(gated(vehicle_id, gate.epoch, sender, command), name)
 
 
 def in_flight(name: str, vehicle_id: int, gate: Gate, plan: Plan | None) -> list[Say]:
-    """The command that a vehicle already flies, for its gate when that is set up; none without a plan."""
+    """The command that a vehicle already flies, for its newly set up gate; none without a plan."""
     return [] if plan is None else [at_gate(name, vehicle_id, gate, UXAS, plan.command)]
 
 
 def taken_back(
     name: str, vehicle_id: int, now_ms: int, gate: Gate, onward: Iterable[object]
 ) -> list[Say]:
-    """How the gate stood until now, where ICAROUS offers control, and the first command that takes it: gate
-    is that of before, onward what the vehicle is sent on with."""
+    """The gate's state before UxAS takes an offer, and the first command that takes it. gate: before; onward:
+    what the vehicle is sent.
+    """
     found = [Say(gate_state(vehicle_id, now_ms, gate), name)] if gate.offered else []
     said = (one.body for one in onward if isinstance(one, Say))
     command = next((body for body in said if type(body).__name__ in COMMANDS), None)
@@ -133,6 +137,6 @@ def taken_back(
 
 
 def told(name: str, vehicle_id: int, now_ms: int, gate: Gate) -> list[Say]:
-    """How a gate stands and who commands from now on, for whoever listens on the bus; name: who says it."""
+    """A gate's state and who commands from now on, for the bus. name: the sender."""
     change = authority_change(vehicle_id, now_ms, gate, "SETMOD", 0)
     return [Say(gate_state(vehicle_id, now_ms, gate), name), Say(change, name)]

@@ -1,9 +1,9 @@
-"""UxAS's end of the bridge as `cratous uxas` has it: `handle(state, message) -> (state, messages)`.
+"""The UxAS end of the bridge in `cratous uxas`: `handle(state, message) -> (state, messages)`.
 
-It is the end that `cratous run` flies (`flight.link_end`), with two things around it. The messages of UxAS become what that end
-is told: MissionCommands ways, states own positions and traffic, zones fences. And the gate of each vehicle stands here, since ICAROUS
-steers through UxAS: a SETMOD moves it, what ICAROUS sends is passed on while it owns the vehicle, and its offer is taken at once.
-"""
+It wraps the end that `cratous run` flies (`flight.link_end`). UxAS's messages are translated for that end:
+MissionCommands into routes, states into own positions and traffic, zones into fences. The gate of each vehicle stands
+here, since ICAROUS steers through UxAS: a SETMOD moves it, ICAROUS's steering is passed on while it owns the vehicle,
+and its offer is taken at once."""
 
 from __future__ import annotations
 
@@ -94,8 +94,8 @@ Step = tuple[State, list[Out]]
 
 @dataclass(frozen=True)
 class Communication:
-    """The step; what does not change. allowed_m: how far from its leg a vehicle may be before its tasks
-    are paused; dialects: of the peers; of those of another one than ours no heartbeat is to be expected."""
+    """The step and its fixed configuration. allowed_m: deviation from its leg at which a vehicle's tasks pause [m];
+    dialects: of the peers; other dialects than ours have no heartbeat."""
 
     name: str
     allowed_m: float
@@ -104,8 +104,8 @@ class Communication:
     # what comes over the wire ---------------------------------------------------------------------
 
     def connected(self, state: State, vehicle_id: int, now_ms: int) -> Step:
-        """An instance speaks for a vehicle, for the first time or again: it is told everything, and its
-        next SETMOD says who commands, and in which epoch."""
+        """An instance is assigned to a vehicle: it is sent everything; its next SETMOD states who commands, in which
+        epoch."""
         known = state.link.peer(vehicle_id) is not None
         state, out = self._end(state, Connected(now_ms, (vehicle_id,)))
         peer = state.link.peer(vehicle_id)
@@ -115,7 +115,7 @@ class Communication:
         if not known:
             state, more = self._route(state, vehicle_id)
             out += more
-            if not self.dialects.ours(vehicle_id):  # which says no epoch
+            if not self.dialects.ours(vehicle_id):  # which states no epoch
                 out += in_flight(self.name, vehicle_id, peer.gate, state.craft(vehicle_id).plan)
         else:
             out += over_meanwhile(state, vehicle_id, self.dialects.of(vehicle_id))
@@ -125,12 +125,12 @@ class Communication:
         return state, [*out, *more]
 
     def lost(self, state: State, message: Lost) -> Step:
-        """The connection of an instance has ended."""
+        """An instance's connection has closed."""
         state, out = self._end(state, message)
         return self._held(state, message.vehicle_id, out)
 
     def heard(self, state: State, vehicle_id: int, line: Message, now_ms: int) -> Step:
-        """A line has come from an instance."""
+        """Process a line from an instance."""
         if isinstance(line, SetMode):
             return self._mode(state, vehicle_id, line, now_ms)
         flown = flies(line, state.craft(vehicle_id).air, state.plane)
@@ -159,7 +159,7 @@ class Communication:
         return state, [*out, come, command]
 
     def watch(self, state: State, now_ms: int) -> Step:
-        """At now_ms [ms]: detect the instances that have fallen silent."""
+        """Detect the instances that have become silent at now_ms [ms]."""
         peers = [one.vehicle_id for one in state.link.peers]
         state, out = self._end(state, Watch(now_ms, frozenset(filter(self.dialects.ours, peers))))
         for vid in peers:
@@ -167,8 +167,8 @@ class Communication:
         return state, out
 
     def _mode(self, state: State, vehicle_id: int, line: SetMode, now_ms: int) -> Step:
-        """A SETMOD: the gate is moved as the line says, if it is the next step of this gate; the kernels
-        of the link end decide whether that is true, and what follows."""
+        """Process a SETMOD: it moves the gate if it is the gate's next transition; the kernels of the link end decide
+        whether it is accepted, and what follows."""
         if (peer := state.link.peer(vehicle_id)) is None:
             return state, []
         fresh = vehicle_id in state.fresh
@@ -191,7 +191,7 @@ class Communication:
         return state.put(body.ID, replace(state.craft(body.ID), configuration=body)), []
 
     def mission(self, state: State, command: Any, now_ms: int) -> Step:
-        """A MissionCommand of somebody else's; while ICAROUS has the vehicle it waits for the handback."""
+        """Process another sender's MissionCommand; while ICAROUS has the vehicle it waits for the handback."""
         vid, craft = int(command.VehicleID), state.craft(command.VehicleID)
         if not command.WaypointList:
             return ended(state, vid, self.dialects.of(vid))
@@ -203,20 +203,20 @@ class Communication:
         return state, [*self._by_uxas(state, vid, command), *out]
 
     def _in_force(self, state: State, vid: int, command: Any, now_ms: int) -> Step:
-        """A MissionCommand that the vehicle flies from now on."""
+        """Put a MissionCommand into force."""
         state, out = self._framed(state, command.WaypointList[0])
         assert state.frame is not None
         craft = state.craft(vid)
         here = craft.air.position if craft.air else None
         begun = being_done(craft.plan, craft.listed)
         plan = begun_with(plan_of(command, plane(state.frame), now_ms, here), begun)
-        if begins_as(plan, craft.plan):  # what a waypoint manager hands on is told already
+        if begins_as(plan, craft.plan):  # a waypoint manager repeats what was sent already
             return state, out
         state, more = self._route(state.put(vid, replace(craft, plan=plan)), vid)
         return state, [*out, *more]
 
     def zone(self, state: State, body: Any) -> Step:
-        """A KeepInZone or KeepOutZone."""
+        """Process a KeepInZone or KeepOutZone."""
         return self._fenced(replace(state, zones={**state.zones, body.ZoneID: body}))
 
     def zones_removed(self, state: State, ids: list[int]) -> Step:
@@ -247,7 +247,7 @@ class Communication:
         return state, [*out, *more]
 
     def _reached(self, state: State, vid: int, plan: Plan) -> Step:
-        """The waypoints that are behind, and, to a peer that holds a part alone, the next part."""
+        """Report the waypoints passed, and send the next part to a peer that holds only a part."""
         out: list[Out] = []
         if (most := self.dialects.of(vid).part_waypoints) is not None:
             onward = next_part(plan, most, SPARE_WAYPOINTS)
@@ -261,7 +261,7 @@ class Communication:
         return state, [*out, *more]
 
     def _seen(self, state: State, vid: int, body: Any, now_ms: int) -> Step:
-        """Everybody at the time of this vehicle's state, to its instance; who cannot be, is said once."""
+        """Send an instance all aircraft at its vehicle's time; those that are too old are reported once."""
         aircraft, stale = at_the_time_of(body, state.crafts)
         angles = math.radians(body.Roll), math.radians(body.Pitch)
         seen = Seen(vid, now_ms, int(body.Time), aircraft, *angles)
@@ -270,8 +270,8 @@ class Communication:
         return state, [*notes, *out]
 
     def _deviation(self, state: State, vid: int, away: Away, craft: Craft, air: AirState) -> Step:
-        """Its tasks, if any, pause when the vehicle is farther from its leg than is allowed, once a takeover. The
-        original's client is not told the place: at a RESET_SFT it has its ICAROUS forget what it avoids."""
+        """Pause a vehicle's tasks when it is farther from its leg than allowed, once per takeover. The original's
+        client is not sent the resume point: a RESET_SFT makes its ICAROUS forget what it avoids."""
         plan = craft.plan
         if away.paused or not away.tasks or plan is None:
             return state, []
@@ -287,7 +287,7 @@ class Communication:
     # what the end answers ------------------------------------------------------------------------
 
     def _end(self, state: State, message: ToLinkEnd) -> Step:
-        """Tell the end, and do what it answers."""
+        """Pass a message to the end, and carry out its answers."""
         link, answers = UxasEnd(state.plane).handle(state.link, message)
         state, out = replace(state, link=link), list[Out]()
         for answer in answers:
@@ -307,15 +307,15 @@ class Communication:
     def _suspend(self, state: State, vid: int, now_ms: int) -> Step:
         craft, peer = state.craft(vid), state.link.peer(vid)
         assert peer is not None
-        tasks = being_done(craft.plan, craft.listed)  # one that it is on its way to needs no pause
+        tasks = being_done(craft.plan, craft.listed)  # tasks not yet reached need no pause
         left = Position(0.0, 0.0, 0.0) if craft.air is None else craft.air.position
-        # an instance that comes again has had the vehicle all the time
+        # a reconnected instance has had the vehicle all the time
         state = state.put(vid, replace(craft, away=craft.away or Away(left, tasks)))
         text = f"vehicle {vid}: ICAROUS has it, in epoch {peer.gate.epoch}"
         return state, [Note("WARN", text), *told(self.name, vid, now_ms, peer.gate)]
 
     def _take_back(self, state: State, vid: int, epoch: int, now_ms: int) -> Step:
-        """Tasks resume, the mission goes on, ICAROUS is told the way; without a mission it holds."""
+        """UxAS takes back: tasks and mission resume, ICAROUS is sent the route; without a mission it holds."""
         away, peer = state.craft(vid).away, state.link.peer(vid)
         assert peer is not None
         gate = gate_after(peer.gate, UXAS, epoch)
@@ -329,7 +329,7 @@ class Communication:
         return state, [*out, *onward]
 
     def _onward(self, state: State, vid: int, now_ms: int) -> Step:
-        """What sends a vehicle on that has been handed back."""
+        """What a vehicle is sent after a handback."""
         craft = state.craft(vid)
         away, plan, air = craft.away, craft.plan, craft.air
         state = state.put(vid, replace(craft, away=None, holds=False, handed=True, waiting=None))
@@ -358,7 +358,7 @@ class Communication:
         return self._end(state, Route(vid, points, plan.speed_m_s, plan.track.s_m[plan.told]))
 
     def _held(self, state: State, vid: int, out: list[Out]) -> Step:
-        """A vehicle that ICAROUS has and whose ICAROUS is not heard holds where it is."""
+        """Let a vehicle hold where it is while ICAROUS has it but is not heard."""
         peer, craft = state.link.peer(vid), state.craft(vid)
         if peer is None or peer.end.alive or craft.away is None or craft.holds:
             return state, out
@@ -374,7 +374,7 @@ class Communication:
         return state.put(vid, replace(craft, holds=True)), out
 
     def _by_uxas(self, state: State, vid: int, command: Any) -> list[Out]:
-        """What UxAS commands a vehicle that has a gate here."""
+        """UxAS's command at the gate of a vehicle, if the vehicle has one here."""
         peer, fresh = state.link.peer(vid), self.dialects.ours(vid) and vid in state.fresh
         if peer is None or modes.unknown(peer, fresh):
             return []
@@ -385,13 +385,13 @@ class Communication:
         return state, Say(command_of(vid, COMMANDS_FROM + state.commands, action), self.name)
 
     def _framed(self, state: State, place: Any) -> Step:
-        """The plane is that of the first place that is told; zones told before are in it from then on."""
+        """The first position received defines the plane; zones received before are then converted."""
         if state.frame is not None:
             return state, []
         return self._fenced(replace(state, frame=frame_at(place)))
 
     def _fenced(self, state: State) -> Step:
-        """All zones to all instances."""
+        """Send all zones to all instances."""
         if state.frame is None:
             return state, []
         state, zones, notes = known_zones(state, state.frame, self.dialects)

@@ -1,1 +1,1 @@
-"""ICAROUS of one vehicle as a program of its own, at its end of the CRATOUS bridge."""
+"""One vehicle's ICAROUS as a separate program, at its end of the CRATOUS bridge."""

@@ -1,7 +1,7 @@
-"""The autopilot of a vehicle, which its ICAROUS reaches itself: its state while UxAS does not tell it, and steering.
+"""A direct connection from a vehicle's ICAROUS to its autopilot: state and steering while UxAS is not heard.
 
-It speaks LMCP over TCP as AMASE's port of a vehicle does (`cratous sim --vehicle ID=HOST:PORT`): AirVehicleState
-comes, VehicleActionCommand goes.
+It speaks LMCP over TCP like AMASE's port of a vehicle (`cratous sim --vehicle ID=HOST:PORT`): AirVehicleState
+in, VehicleActionCommand out.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from cratous.services.mission.frames import Projection
 from cratous.spec.errors import BadInput
 
 COMMANDS_FROM = 2**41
-"""Ids of the commands from here, apart from those of others."""
+"""Ids of the commands start here, apart from those of other senders."""
 
 
 class Reported(NamedTuple):
-    """A state of the vehicle; passed: how often the autopilot has gone on to another waypoint so far."""
+    """A state of the vehicle; passed: how often the autopilot has moved on to another waypoint so far."""
 
     line: OwnPosition
     passed: int
 
 
 class Autopilot:
-    """The connection to it, which is made again whenever it ends."""
+    """The connection to the autopilot, re-established whenever it ends."""
 
     def __init__(
         self, vehicle_id: int, where: Address, projection: Projection, report: Report
@@ -52,7 +52,7 @@ class Autopilot:
         return self._port.handles()
 
     def step(self, now_s: float) -> list[Reported]:
-        """The states of the vehicle that have come."""
+        """The vehicle's states received since the last call."""
         found = list[Reported]()
         for incoming in self._port.step(now_s):
             try:
@@ -61,7 +61,7 @@ class Autopilot:
             except BadInput as error:
                 self._tally.refuse("message that cannot be read", str(error))
                 continue
-            # a scenario's own states bear no time
+            # states from the scenario file have no time
             if (
                 type(body).__name__ == "AirVehicleState"
                 and self._vehicle_id == body.ID
@@ -74,7 +74,9 @@ class Autopilot:
         return found
 
     def _state(self, body: Any) -> Reported:
-        """BadInput for one that POSTN could not say: of no number, no place or no time."""
+        """A state as POSTN. BadInput for one that POSTN cannot carry: a non-finite value, no position, or no
+        time.
+        """
         air = air_state(body, self._projection)
         alt_m, v = air.position.alt_m, air.velocity
         line = OwnPosition(
@@ -95,7 +97,9 @@ class Autopilot:
         return Reported(line, self._passed)
 
     def steer(self, line: Message) -> bool:
-        """Whether a line steers the vehicle, and has gone to it."""
+        """Send a steering line to the autopilot. Returns False for other lines, or while no state or
+        connection exists.
+        """
         if self._air is None or not self.there:
             return False
         action = action_of(line, self._air, None, self._projection)
@@ -107,5 +111,5 @@ class Autopilot:
         return True
 
     def close(self) -> None:
-        """Let go of the connection."""
+        """Close the connection."""
         self._port.close()

@@ -1,5 +1,6 @@
-"""The direct link of a vehicle's ICAROUS to those of the other vehicles: each tells its own state, as sealed datagrams to a
-group, and hears theirs. Nothing goes over UxAS, so it stands when UxAS is gone."""
+"""Direct link between the ICAROUS instances of several vehicles: each sends its own state, as authenticated
+datagrams to a multicast group, and receives the others'. It does not depend on UxAS.
+"""
 
 from __future__ import annotations
 
@@ -18,14 +19,14 @@ NO_STATE = "direct line that is no state"
 
 
 class State(NamedTuple):
-    """What a vehicle says of itself."""
+    """A vehicle's own state, as received."""
 
     vehicle_id: int
     line: OwnPosition
 
 
 class DirectLink:
-    """One end; see the module."""
+    """One end of the direct link."""
 
     def __init__(self, vehicle_id: int, keys: Keys, where: Address, report: Report) -> None:
         """keys: the direct keys of this vehicle and of the others. BadInput for too many, or no group."""
@@ -45,12 +46,14 @@ class DirectLink:
         return self._port.fileno()
 
     def say(self, line: OwnPosition) -> None:
-        """Tell the own state to the others."""
+        """Send the own state to the others."""
         data = self._datagrams.wrap(encode(line), round(1000 * line.time_s))
         self._port.send(data)
 
     def step(self) -> list[State]:
-        """What the others have said; what is not believed is dropped and counted."""
+        """The states received from the others; unauthenticated or malformed datagrams are dropped and
+        counted.
+        """
         found = list[State]()
         for data in self._port.step():
             said = self._datagrams.open(data)
@@ -68,5 +71,5 @@ class DirectLink:
             self._port.refuse(NO_STATE, f"vehicle {vehicle_id}: {str(line)[:80]}")
 
     def close(self) -> None:
-        """Leave the group."""
+        """Leave the multicast group."""
         self._port.close()

@@ -1,4 +1,4 @@
-"""The gate of a vehicle in a small file, so that its epoch does not go back when its ICAROUS is started anew."""
+"""A vehicle's gate in a small file, so that its epoch does not go back when its ICAROUS is restarted."""
 
 from __future__ import annotations
 
@@ -18,14 +18,16 @@ _LINE = re.compile(rb"vehicle ([0-9]{1,18}) epoch ([0-9]{1,15}) (UxAS|ICAROUS)( 
 
 
 class EpochFile:
-    """File that keeps one vehicle's latest gate; a new gate is written before any peer is told of it."""
+    """File with one vehicle's latest gate; a new gate is written before any peer is told of it."""
 
     def __init__(self, path: Path, vehicle_id: int) -> None:
         self._path, self._vehicle_id = path, vehicle_id
 
     def resumed(self) -> Gate:
-        """The gate to begin with; BadInput if the file is none, or of another vehicle."""
-        with suppress(OSError):  # what cannot be looked at cannot be read either
+        """The gate to start with; BadInput if the file is malformed or of another vehicle. Without a file,
+        epoch 0 of UxAS.
+        """
+        with suppress(OSError):  # an inaccessible file fails below, when it is read
             if not self._path.exists():
                 return Gate(UXAS, 0, False)
         expected = f"`vehicle {self._vehicle_id} epoch N UxAS` or `... ICAROUS`, or no file"
@@ -47,7 +49,7 @@ class EpochFile:
         return resumed(Gate(owner, int(found[2]), found[4] is not None))
 
     def keep(self, gate: Gate) -> None:
-        """BadInput if it cannot be written."""
+        """Write the gate. BadInput if that fails."""
         offered = " offered" if gate.offered else ""
         text = f"vehicle {self._vehicle_id} epoch {gate.epoch} {_WORDS[gate.owner]}{offered}\n"
         write_atomically(self._path, text, "the epoch")

@@ -1,5 +1,6 @@
-"""How ICAROUS says where it makes for: SETPOS while it flies straight to a waypoint, as the original's ICAROUS does where the
-direct path is free, and as it hands back GOTOWP, with which waypoint it goes on, before SETMOD PASSIVE."""
+"""Reports of ICAROUS's goal to UxAS, as the original's ICAROUS sends them: SETPOS while it flies straight to
+a waypoint, and at a handback GOTOWP, the waypoint at which the plan continues, before SETMOD PASSIVE.
+"""
 
 from __future__ import annotations
 
@@ -19,18 +20,23 @@ from cratous.spec.authority.cycle import OFFER
 STRAIGHT_RAD = math.radians(0.5)
 LEVEL_M = 1.0
 SPEED_M_S = 0.5
-"""A manoeuvre is the straight way to a place if it is off it by no more than this: heading, altitude, and the present speed."""
+"""A manoeuvre counts as straight flight to a place within these deviations of heading [rad], altitude [m] and
+speed [m/s].
+"""
 CIRCLES = 4.0
-"""A place is flown straight to until it is so many radii of the autopilot's circle away; nearer than two it circles."""
+"""SETPOS is used until the place is within this many radii of the autopilot's circle; within two, it would
+circle.
+"""
 
 
 def onward(
     said: tuple[FromInstance, ...], state: State, sensed: Sensed, dialect: Dialect
 ) -> tuple[GoToWaypoint, ...]:
-    """The waypoint at which the way back that was found free begins, if control is offered now and it is one of the plan's.
+    """GOTOWP of the waypoint at which the free way back begins, if control is offered now and that is one of
+    the plan's.
 
-    None where UxAS has told a place between two waypoints to resume at, and to the original's UxAS, which reads the
-    number as noise.
+    None if UxAS has set a resume point between two waypoints, nor to the original's UxAS, which misreads the
+    number.
     """
     offers = any(isinstance(one, Wish) and one.act == OFFER for one in said)
     told = state.told
@@ -42,8 +48,10 @@ def onward(
 
 
 def steering(line: Message, state: State, sensed: Sensed, projection: Projection) -> Message:
-    """A line to UxAS as it is said: SETPOS of the waypoint in place of SETVEL, where what is flown is the straight, level way
-    to it, free of conflict over the look-ahead, and the waypoint is not so near that the vehicle would circle there."""
+    """The line to send to UxAS: SETPOS of the waypoint instead of SETVEL, where straight, level flight to it
+    is free of conflict over the look-ahead and the vehicle would not circle there yet; otherwise the line
+    itself.
+    """
     choice, told, motion = state.held, state.told, sensed.motion
     if (
         not isinstance(line, SetVelocity)

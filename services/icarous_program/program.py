@@ -1,11 +1,12 @@
 """The loop of `cratous icarous`: one connection to UxAS, its lines to the step, the answers back.
 
-Either the program connects, or it waits for UxAS to connect to it, one UxAS at a time. The connection that ends comes again, and UxAS tells everything anew on it; epochs go on. Time is that of
-POSTN, so nothing that is decided depends on the machine's clock.
+The program either connects or waits for UxAS to connect, one UxAS at a time. A closed connection is
+re-established, and UxAS then sends everything again; epochs continue. Time is that of POSTN, so no decision
+depends on the machine's clock.
 
-With an autopilot that it reaches itself the program goes on when POSTN does not come any more: the vehicle's state and
-time are then the autopilot's, and what it steers goes there, until POSTN comes again. With a direct link it tells the
-others its own state at each that it believes, and they it theirs.
+With a direct connection to the autopilot, the program continues when POSTN stops: state and time then come
+from the autopilot, and steering goes there, until POSTN resumes. With a direct link, it sends the other
+vehicles each accepted own state, and receives theirs.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ from cratous.services.icarous_program.step import (
 )
 from cratous.spec.errors import BadInput, CratousError
 
-_LONGEST_POLL_MS = 200  # so that a signal is seen
+_LONGEST_POLL_MS = 200  # bounded so that a signal is noticed
 
 
 class UxasGone(CratousError):
@@ -58,15 +59,16 @@ class UxasGone(CratousError):
 
 
 class Patience(NamedTuple):
-    """wait_s: how long to wait for UxAS, at the start and each time that it is gone; once: the end of
-    the first connection is the end."""
+    """wait_s: how long to wait for UxAS, at the start and after each loss [s]; once: end after the first
+    connection.
+    """
 
     wait_s: float = 60.0
     once: bool = False
 
 
 class Besides(NamedTuple):
-    """What a program has besides UxAS: its direct link to the other vehicles, its autopilot; None without."""
+    """Optional connections besides UxAS: the direct link to the other vehicles, and the autopilot."""
 
     direct: DirectLink | None = None
     autopilot: Autopilot | None = None
@@ -77,14 +79,14 @@ class Besides(NamedTuple):
         return found if self.direct is None else [*found, (self.direct.fileno(), zmq.POLLIN)]
 
     def close(self) -> None:
-        """Let go of both."""
+        """Close both."""
         for one in self:
             if one is not None:
                 one.close()
 
 
 class Program:
-    """One vehicle's ICAROUS; `run` until `stopping` is set, or UxAS is gone for good."""
+    """One vehicle's ICAROUS. `run` returns when `stopping` is set, and raises UxasGone if UxAS stays away."""
 
     def __init__(
         self,
@@ -96,7 +98,7 @@ class Program:
         epochs: EpochFile | None = None,
         besides: Besides = Besides(),
     ) -> None:
-        """epochs: keeps the gate over a restart; BadInput if it is none."""
+        """epochs: keeps the gate over a restart; BadInput if the file is invalid."""
         self._end, self._port, self._report = end, port, report
         self._patience, self._clock = patience, clock
         self.state, self.stopping, self._epochs = State(), False, epochs
@@ -112,7 +114,7 @@ class Program:
         self._told_ms = self._passed = self._waypoints = 0
 
     def run(self) -> None:
-        """UxasGone if UxAS cannot be had."""
+        """Run until `stopping`. UxasGone if UxAS cannot be reached or stays away."""
         try:
             while not self.stopping:
                 self.turn()
@@ -126,7 +128,7 @@ class Program:
             self._report("INFO", f"ended; {self._port.counts.line()}; not acted upon: {lines}")
 
     def turn(self) -> None:
-        """Wait for the next thing, and do all that is there to do."""
+        """Wait for input and process all that is available."""
         self._redial.step(self._clock())
         self._wait()
         now_s = self._clock()
@@ -139,7 +141,7 @@ class Program:
         for reported in () if autopilot is None else autopilot.step(now_s):
             self._flown(reported)
         if autopilot is not None and autopilot.there:
-            return  # the vehicle is not left alone
+            return  # the vehicle is still under control
         if not self._open and is_due(self._until_s, now_s):
             where = self._port.where.text
             raise UxasGone(f"{where}: no UxAS for {self._patience.wait_s:g} s ({self._why})")
@@ -192,7 +194,7 @@ class Program:
         if was_open:
             if self._patience.once:
                 raise UxasGone(f"{self._port.where.text}: {why}")
-            if event.kind != REFUSED:  # an end of another dialect is none to go on waiting for
+            if event.kind != REFUSED:  # a peer of another dialect does not extend the wait
                 self._until_s = now_s + self._patience.wait_s
 
     def _line(self, line: Message) -> None:
@@ -206,7 +208,9 @@ class Program:
             self._say_directly(line)
 
     def _flown(self, reported: Reported) -> None:
-        """A state of the autopilot's, which counts once POSTN has not come for a while after a plan has."""
+        """Handle a state from the autopilot; it is used once a plan is in force and POSTN has been missing
+        for a while.
+        """
         line, self._passed = reported
         now_ms, told = round(1000 * line.time_s), self.state.instance.told
         if not told.started or not lasted(self._told_ms, now_ms, LINK_LOST_MS):
@@ -225,7 +229,7 @@ class Program:
             self._besides.direct.say(replace(line, vehicle_id=self._end.craft.config.vehicle_id))
 
     def _made(self, line: Message, made: Callable[[], Step]) -> None:
-        """A step; one line at which it fails must not end the avoidance of the next ones."""
+        """Execute a step; an exception at one line must not end the avoidance."""
         try:
             step = made()
         except Exception as error:
@@ -239,7 +243,7 @@ class Program:
         self._answer(answers)
 
     def _keep(self, state: State, before: State) -> None:
-        """The state from now on; a gate that is another one is kept before anybody hears of it."""
+        """Store the state; a changed gate is written to the file before it is told to anyone."""
         if self._epochs is not None and state.gate != before.gate:
             try:
                 self._epochs.keep(state.gate)

@@ -1,8 +1,8 @@
-"""Lines of a plan or zone that got lost on the way: held back until UxAS has sent the missing ones again.
+"""Plans and zones with lost lines: held back until UxAS has sent the missing lines again.
 
-A plan or zone that is not whole is not in force. What came of it is kept here, UxAS is asked for the rest,
-a bounded number of times, and once all is there the lines go to the instance as if they had come at once.
-A line that does not fit what is kept begins something new.
+An incomplete plan or zone is not in force. The received lines are kept here, and UxAS is asked for the rest a
+bounded number of times; once complete, the lines go to the instance as if received at once. A line that
+contradicts those kept starts a new plan or zone.
 """
 
 from __future__ import annotations
@@ -25,15 +25,16 @@ from cratous.bridge.text_protocol import (
 from cratous.services.flight.link_lines import MOST_AGAIN
 
 ASK_AGAIN_MS = 1000
-"""An answer that has not come for this long [ms] is asked for again."""
+"""A request that is not answered is repeated after this long [ms]."""
 PLAN, ZONE = "WAYPT", "GEOFN"
 Key = tuple[str, int]
-"""What it is, and the zone's number, 0 for the plan."""
+"""The kind, and the zone's number, 0 for the plan."""
 
 
 class Part(NamedTuple):
-    """What is there of a plan or zone. total: its lines, 0 if not known; lines: by index; asked: how
-    often UxAS was asked for the rest, at_ms: when last [ms]."""
+    """The received part of a plan or zone. total: number of its lines, 0 if unknown; lines: by index; asked:
+    how often UxAS was asked for the rest, at_ms: when last [ms].
+    """
 
     key: Key
     total: int
@@ -43,13 +44,13 @@ class Part(NamedTuple):
 
     @property
     def missing(self) -> list[int]:
-        """The indices of the lines that are not there."""
+        """The indices of the missing lines."""
         low = _lowest(self.key)
         return [k for k in range(low, low + self.total) if k not in self.lines]
 
     @property
     def whole(self) -> bool:
-        """True if nothing is missing."""
+        """Whether no line is missing."""
         return bool(self.total) and not self.missing
 
     def __str__(self) -> str:
@@ -62,8 +63,9 @@ Parts = Mapping[Key, Part]
 
 
 class Taken(NamedTuple):
-    """After a line. lost: what is still not whole; told: what the instance hears now, in order; ask: what
-    to ask for again, as its last line has come."""
+    """Result of a line. lost: the plan and zones still incomplete; told: lines for the instance now, in
+    order; ask: the one to ask for, as its final line has arrived.
+    """
 
     lost: Parts
     told: tuple[Message, ...]
@@ -71,14 +73,14 @@ class Taken(NamedTuple):
 
 
 def of_plan(gathered: Iterable[Waypoint]) -> Part:
-    """A plan, of which at least one line has come, that is not whole."""
+    """An incomplete plan. Requires at least one line."""
     lines = {w.index: w for w in gathered}
     last = list(lines.values())[-1]
     return _part((PLAN, 0), last.total, lines, len({w.total for w in lines.values()}) == 1)
 
 
 def of_zone(number: int, vertices: Iterable[FenceVertex]) -> Part:
-    """A zone that is not whole."""
+    """An incomplete zone."""
     mine = {v.vertex: v for v in vertices if v.zone == number}
     kinds = {(v.fence, v.total, v.floor_m, v.ceiling_m) for v in mine.values()}
     total = next((v.total for v in mine.values()), 0)
@@ -86,14 +88,14 @@ def of_zone(number: int, vertices: Iterable[FenceVertex]) -> Part:
 
 
 def _part(key: Key, total: int, lines: Mapping[int, Message], alike: bool) -> Part:
-    """Lines that contradict each other say nothing: then all are missing."""
+    """A part with its lines; if they contradict each other, all count as missing."""
     part = Part(key, total, lines)
     sound = alike and part.missing and len(part.missing) + len(lines) == total
     return part if sound else Part(key, total, {})
 
 
 def take(lost: Parts, line: Message) -> Taken:
-    """A line has come from UxAS."""
+    """Process a line from UxAS."""
     match line:
         case HardReset():
             return Taken({}, (line,))
@@ -113,9 +115,9 @@ def take(lost: Parts, line: Message) -> Taken:
 
 
 def asked(part: Part, now_ms: int) -> tuple[Part, LinesMissing] | None:
-    """The same after asking once more, and the line to UxAS; None if it was asked often enough.
+    """The part after asking once more, and the line to UxAS; None if the limit is reached.
 
-    UxAS answers MOST_AGAIN times; by the one after that it knows that the plan or zone is not in force.
+    UxAS answers MOST_AGAIN times; by the request after that it knows that the plan or zone is not in force.
     """
     if part.asked not in range(MOST_AGAIN + 1):
         return None
@@ -127,7 +129,7 @@ def asked(part: Part, now_ms: int) -> tuple[Part, LinesMissing] | None:
 
 
 def _lowest(key: Key) -> int:
-    """Waypoints are counted from 0, vertices from 1."""
+    """Lowest index: waypoints count from 0, vertices from 1."""
     return 0 if key[0] == PLAN else 1
 
 

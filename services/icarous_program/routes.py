@@ -1,10 +1,11 @@
-"""Routes that UxAS asks an instance for: WPREQ, answered by RPRSP with the corners of a way around the zones.
+"""Routes that UxAS requests from an instance: WPREQ, answered by RPRSP with the corners of a route around the
+zones.
 
-All planners search the shortest flyable chain of via points whose every leg the proved kernels let pass
-(`core.routing`); they differ in the via points. ASTAR has the corners of rings around the zones, GRID the points of
-a grid over the places and zones, RRT samples of that area drawn at random (the same ones each time), and SPLINE is ASTAR
-answered by points of the curve instead of its corners. UxAS trusts none of them: it holds the answer
-against its own zones.
+All planners search for the shortest flyable chain of via points whose legs the proved kernels all permit
+(`core.routing`); they differ in the via points. ASTAR uses the corners of rings around the zones, GRID a grid
+over the places and zones, RRT pseudo-random samples of that area (always the same), and SPLINE is ASTAR
+answered by points of the curve instead of its corners. UxAS trusts none of them: it checks the answer against
+its own zones.
 """
 
 from __future__ import annotations
@@ -32,24 +33,26 @@ from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.plan import Pose
 
 SIDE = 8
-"""Points on each side of the grid."""
+"""Number of points along each side of the grid."""
 SAMPLES = SIDE * SIDE
 AROUND = 4.0
-"""Grid and samples reach beyond places and zones by this many turn radii."""
+"""Grid and samples extend beyond places and zones by this many turn radii."""
 MOST_POINTS = 256
-"""UxAS takes no longer answer."""
+"""Longest answer that UxAS accepts."""
 CLIMBS_MOST_M = 200_000.0
-"""A way that has to be longer than this [m] to reach its altitude is none: it would be all turns."""
+"""A route that would have to be longer than this to reach its altitude is rejected [m]: it would be all
+turns.
+"""
 
 
 class Planner(NamedTuple):
-    """Route planner of one vehicle: the local plane, and the performance of its airframe."""
+    """Route planner of one vehicle: projection of the local plane, and airframe limits."""
 
     projection: Projection
     limits: Limits
 
     def answer(self, asked: RouteRequest, zones: tuple[Zone, ...]) -> tuple[list[Message], str]:
-        """The lines that answer a route request; and, if it has no points, the reason."""
+        """The lines that answer a route request, and the reason if the answer has no points."""
         try:
             points, why = self._plan(asked, zones)
         except BadInput as error:
@@ -87,7 +90,9 @@ class Planner(NamedTuple):
 def _searched(
     kind: str, start: Pose, end: Pose, radius_m: float, slope: float, roadmap: Roadmap
 ) -> tuple[Sequence[Position], str]:
-    """Corners of the way (SPLINE: points of it) with both ends, or none and why."""
+    """Corners of the route (SPLINE: points of it) including both ends; none, with the reason, if there is no
+    route.
+    """
     if kind == "SPLINE":
         found = route(start, end, radius_m, roadmap, slope)
         off_m = TOLERANCE * radius_m
@@ -107,7 +112,7 @@ def _searched(
 
 
 def _vias(kind: str, roadmap: Roadmap, ends: tuple[Pose, Pose], around_m: float) -> Roadmap:
-    """The same zones with the via points of a planner."""
+    """The roadmap's zones with the via points of a planner."""
     if kind not in ("GRID", "RRT"):
         return roadmap
     places = [(p.north_m, p.east_m) for p in ends]
@@ -124,5 +129,5 @@ def _grid(low: list[float], high: list[float]) -> Iterator[tuple[float, float]]:
 
 
 def _samples(low: list[float], high: list[float]) -> Iterator[tuple[float, float]]:
-    draw = random.Random(SAMPLES)  # the same answer to the same question
+    draw = random.Random(SAMPLES)  # fixed seed: the same answer to the same request
     return ((draw.uniform(low[0], high[0]), draw.uniform(low[1], high[1])) for _ in range(SAMPLES))

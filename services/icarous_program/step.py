@@ -1,12 +1,10 @@
-"""ICAROUS behind the bridge: `handle(state, line) -> (state, answers)`, lines of the text protocol alone.
+"""ICAROUS behind the bridge: `handle(state, line) -> (state, answers)`, on lines of the text protocol only.
 
-Here the instance that `cratous run` flies knows nothing but what comes over the wire: its own state from
-POSTN, traffic from OBJCT, the mission from WAYPT, GEOFN, WPRCH and COMND. What they say is believed, so
-their contents decide. Each POSTN that is a heartbeat later than the last is one heartbeat of the instance.
-The gate of the vehicle stands here: an offer is taken when UxAS tells the way on (START_MISSION after
-a whole plan, or a RESET_SFT with a position). A WPREQ is answered at once (`routes`). A peer of another dialect than ours takes it without a
-word.
-"""
+The instance is that of `cratous run`, but all input comes over the wire: own state from POSTN, traffic from OBJCT,
+the mission from WAYPT, GEOFN, WPRCH and COMND. Each POSTN at least a heartbeat later than the last is one heartbeat
+of the instance. The vehicle's gate stands here: an offer is taken when UxAS sends the way on (START_MISSION after a
+complete plan, or a RESET_SFT with a position). A WPREQ is answered at once (`routes`). For a peer of another dialect
+than ours an offer counts as taken at once."""
 
 from __future__ import annotations
 
@@ -64,29 +62,28 @@ from cratous.services.icarous_program.traffic import (
 from cratous.spec.authority.cycle import OFFER, TAKE_OVER, WITHDRAW
 
 SPEEDS = (0.5, 2.0)
-"""A speed below this part of the airframe's least, or above this multiple of its greatest, is no state
-of this airframe."""
+"""A POSTN with a speed below this factor of the airframe's lowest, or above this factor of its highest, is rejected."""
 UNTOUCHED = gates.Gate(gates.UXAS, 0, False)
-"""UxAS commands, and has always done so."""
+"""UxAS commands, and always has."""
 OWNERS = {"UXAS": gates.UXAS, "ICAROUS": gates.ICAROUS}
 ACTS = {OFFER: "offers control back", WITHDRAW: "withdraws its offer", TAKE_OVER: "takes over"}
 
 
 class Tell(NamedTuple):
-    """To UxAS: a line."""
+    """To UxAS: send a line."""
 
     line: Message
 
 
 class Note(NamedTuple):
-    """To the log. severity: as a logger's."""
+    """To the log. severity: logging level."""
 
     severity: str
     text: str
 
 
 class Refuse(NamedTuple):
-    """To the log: a line is not acted upon. why: counted by it; detail: this time."""
+    """To the log: a line was ignored. why: reason, by which they are counted; detail: of this line."""
 
     why: str
     detail: str
@@ -97,9 +94,9 @@ Answer = Tell | Note | Refuse
 
 @dataclass(frozen=True)
 class Craft:
-    """What does not change. limits: of the airframe; floor_m: no manoeuvre goes below it [m MSL];
-    cooperating: who else is flown by such an instance; dialect: of UxAS's end; step_s: for how long at most
-    the autopilot holds one heading in a turn [s]."""
+    """Fixed configuration. limits: of the airframe; floor_m: lowest altitude of a manoeuvre [m MSL]; cooperating:
+    other vehicles with such an instance; dialect: of the UxAS end; step_s: longest time for which the autopilot
+    holds one heading in a turn [s]."""
 
     config: icarous.Config
     limits: Limits
@@ -111,10 +108,9 @@ class Craft:
 
 @dataclass(frozen=True)
 class State:
-    """instance: what it remembers; gate: of its vehicle; seen: traffic by id; now_ms: time of the last
-    POSTN, None before the first on this connection; beat_ms: of the last heartbeat; lost: plan and zones
-    of which lines are asked for again; direct: other vehicles as they tell themselves, selves: those of
-    whom that counts."""
+    """instance: its state; gate: of its vehicle; seen: traffic by id; now_ms: time of the last POSTN, None before the
+    first on this connection; beat_ms: time of the last heartbeat; lost: incomplete plan and zones; direct: other
+    vehicles' own reports, selves: those for which these are used."""
 
     instance: icarous.State = field(default_factory=icarous.State)
     gate: gates.Gate = UNTOUCHED
@@ -130,13 +126,13 @@ Step = tuple[State, tuple[Answer, ...]]
 
 
 def resumed(gate: gates.Gate) -> gates.Gate:
-    """The gate with which an instance that was started anew goes on, of the last one of the former: nobody steers for
-    ICAROUS now, so what it had is offered back in a new epoch."""
+    """The gate of a restarted instance after the stored one: ICAROUS no longer steers, so its authority is offered
+    back in a new epoch."""
     return gates.gate_offer(gate)
 
 
 def mode_of(gate: gates.Gate) -> SetMode:
-    """What UxAS hears of a gate on a new connection."""
+    """The mode that UxAS is told about a gate on a new connection."""
     active = not gates.gate_accepts(gate, gates.UXAS, gate.epoch)
     return SetMode("ACTIVE" if active else "PASSIVE", gate.epoch)
 
@@ -149,19 +145,18 @@ class IcarousEnd:
         self._planner = Planner(craft.config.projection, craft.limits)
 
     def connected(self, state: State) -> Step:
-        """A connection is open: what was seen and answered on another one is forgotten, UxAS hears who commands.
+        """A connection has opened: traffic and pending requests are reset, and UxAS is told who commands.
 
-        The waypoints and zones told before stay until UxAS tells them again, as it does on each
-        connection; epochs go on where they stand. Ways of others do not stay: it tells only those that it knows.
-        """
+        Waypoints and zones stay until UxAS sends them again, as it does on each connection; epochs continue. Routes
+        of other vehicles are dropped: UxAS sends only those it knows."""
         former = state.instance
-        asking = Asking(number=former.asking.number)  # UxAS says again whether it plans live
+        asking = Asking(number=former.asking.number)  # UxAS announces again whether it plans live
         instance = replace(former, told=former.told.alone(), asking=asking)
         state = replace(state, seen={}, now_ms=None, lost={}, instance=instance)
         return state, (Tell(mode_of(state.gate)),)
 
     def handle(self, state: State, line: Message) -> Step:
-        """One line from UxAS."""
+        """Process one line from UxAS."""
         match line:
             case OwnPosition():
                 return self._position(state, line)
@@ -186,8 +181,8 @@ class IcarousEnd:
         return state, tuple(answers)
 
     def _synchronised(self, state: State, line: EpochTold) -> Step:
-        """UxAS knows a greater epoch: this instance was started anew. It goes on from there, and what ICAROUS
-        had is offered back."""
+        """UxAS knows a later epoch, since this instance was restarted: continue from there, and offer ICAROUS's
+        authority back."""
         if gates.epoch_given(state.gate, line.epoch):
             return state, ()
         if not gates.epoch_given(MOST_TOLD, line.epoch):
@@ -199,14 +194,14 @@ class IcarousEnd:
         return state, (Note("WARN", text), Tell(mode_of(state.gate)))
 
     def _route(self, state: State, line: RouteRequest) -> tuple[Answer, ...]:
-        """The answer to a WPREQ: a way among the zones in force, or one without points."""
+        """The answer to a WPREQ: a route around the zones in force, or one without points."""
         lines, why = self._planner.answer(line, state.instance.told.zones)
         text = why or f"a way of {len(lines) - 2} points"
         note = Note("WARN" if why else "INFO", f"UxAS asks for a route ({line.planner}): {text}")
         return note, *map(Tell, lines)
 
     def _ask(self, state: State, part: Part) -> Step:
-        """Ask for the missing lines of a plan or zone, or say that it was done often enough."""
+        """Ask for the missing lines of a plan or zone, or report that the limit is reached."""
         after = asked(part, state.now_ms or 0)
         if after is None:
             lost = {key: one for key, one in state.lost.items() if key != part.key}
@@ -217,7 +212,7 @@ class IcarousEnd:
         return state, (Note("WARN", f"{part}; asked again, {part.asked}"), Tell(line))
 
     def _lacking(self, state: State, *parts: Part) -> Step:
-        """Plan or zones have come with gaps: the rest is asked for, if the peer knows AGAIN."""
+        """A plan or zones are incomplete: ask for the rest, if the peer knows AGAIN."""
         answers: list[Answer] = []
         for part in parts if self.craft.dialect.ours else ():
             state, more = self._ask(state, part)
@@ -225,7 +220,7 @@ class IcarousEnd:
         return state, tuple(answers)
 
     def _told(self, state: State, line: Message) -> Step:
-        """One line of mission and zones."""
+        """Process one line about mission or zones."""
         before = state.instance.told
         heard = Line(0 if state.now_ms is None else state.now_ms, line)
         instance, _ = self._instance.handle(state.instance, heard)
@@ -239,7 +234,7 @@ class IcarousEnd:
                 state, more = self._lacking(state, of_plan(before.gathering))
                 answers += more
             else:
-                takes = True  # a plan that is refused takes nothing: there is no way on to fly
+                takes = True  # a rejected plan does not take control: there is no route to fly
                 count = len(instance.told.waypoints)
                 answers.append(Note("INFO", f"plan of {count} waypoints in force"))
         if isinstance(line, FenceDone):
@@ -258,7 +253,7 @@ class IcarousEnd:
                 answers.append(Note("INFO", f"{len(instance.told.zones)} zones in force"))
         if isinstance(line, FenceVertex):
             others = {v.zone for v in before.vertices} - {line.zone}
-            if others and not instance.told.vertices[1:]:  # a zone whose GEOFN_SEND got lost
+            if others and not instance.told.vertices[1:]:  # a zone whose GEOFN_SEND was lost
                 parts = [of_zone(number, before.vertices) for number in sorted(others)]
                 state, more = self._lacking(state, *parts)
                 answers += more
@@ -268,7 +263,7 @@ class IcarousEnd:
         return state, tuple(answers)
 
     def _taken(self, state: State) -> Step:
-        """UxAS commands the vehicle again, if it may."""
+        """UxAS takes command again, if the gate permits it."""
         after = gates.gate_after(state.gate, gates.UXAS, state.gate.epoch)
         if after == state.gate:
             return state, ()
@@ -280,23 +275,23 @@ class IcarousEnd:
             why = "OBJCT of the vehicle itself" if own else "more traffic than is kept"
             return state, (Refuse(why, f"index {line.index}"),)
         if state.now_ms is None:
-            return state, ()  # of an instant that is not known; the next one comes in a heartbeat
+            return state, ()  # its time is unknown; the next one follows within a heartbeat
         one = seen_at(line, state.now_ms, self.craft.config.projection)
         seen = {**state.seen, line.index: one}
         return replace(state, seen=seen), ()
 
     def _position(self, state: State, line: OwnPosition) -> Step:
-        """The own state; a heartbeat, if one is due."""
+        """Process the own state, and run a heartbeat if one is due."""
         refused = self._wrong(state, line)
         if refused is not None:
             return state, (refused,)
-        # as of which instant the instance hears what comes next
+        # time at which the instance receives what follows
         told = replace(state.instance.told, heard_ms=round(1000 * line.time_s))
         return self._due(replace(state, instance=replace(state.instance, told=told)), line)
 
     def alone(self, state: State, line: OwnPosition, reached: int) -> Step:
-        """The own state as the autopilot has it, while UxAS is not heard; a heartbeat, if one is due. reached: so many
-        waypoints more are behind."""
+        """Process the own state from the autopilot while UxAS is not heard, and run a heartbeat if one is due.
+        reached: number of further waypoints passed."""
         refused = self._wrong(state, line)
         if refused is not None:
             return state, (refused,)
@@ -306,7 +301,7 @@ class IcarousEnd:
         return self._due(replace(state, instance=replace(state.instance, told=told)), line)
 
     def peer(self, state: State, vehicle_id: int, line: OwnPosition) -> Step:
-        """Another vehicle's own state, over the direct link."""
+        """Process another vehicle's own state, received over the direct link."""
         if line.vehicle_id != vehicle_id or vehicle_id == self.craft.config.vehicle_id:
             return state, (Refuse("direct state of another vehicle than the sender", str(line)),)
         if state.now_ms is None:
@@ -316,7 +311,7 @@ class IcarousEnd:
             detail = f"vehicle {vehicle_id}: {one.at_ms} ms at {state.now_ms} ms"
             return state, (Refuse("direct state of another time", detail),)
         if vehicle_id in before and not lasted(before[vehicle_id].at_ms, one.at_ms, 0):
-            return state, ()  # a newer one has overtaken it
+            return state, ()  # overtaken by a newer one
         return replace(state, direct={**before, vehicle_id: one}), ()
 
     def _due(self, state: State, line: OwnPosition) -> Step:
@@ -327,7 +322,7 @@ class IcarousEnd:
         return self._beat(replace(state, beat_ms=now_ms), line, now_ms)
 
     def _wrong(self, state: State, line: OwnPosition) -> Refuse | None:
-        """Why a POSTN cannot be a state of this vehicle now."""
+        """Why a POSTN cannot be a state of this vehicle now; None if it can."""
         vid, limits = self.craft.config.vehicle_id, self.craft.limits
         if line.vehicle_id not in (0, vid):
             return Refuse("POSTN of another vehicle", f"expected {vid}, got {line.vehicle_id}")
@@ -342,7 +337,7 @@ class IcarousEnd:
         return None
 
     def _beat(self, state: State, line: OwnPosition, now_ms: int) -> Step:
-        """One heartbeat of the instance, and its request to the gate."""
+        """Run one heartbeat of the instance, and apply its request to the gate."""
         seen, direct = kept(state.seen, now_ms), kept(state.direct, now_ms)
         selves = by_themselves(seen, direct, now_ms)
         gone = (state.seen.keys() | state.selves) - seen.keys() - direct.keys()
@@ -381,7 +376,7 @@ class IcarousEnd:
         return state, tuple(answers)
 
     def _overdue(self, state: State, now_ms: int) -> Step:
-        """Ask for what is open at a heartbeat: UxAS ends each plan and zone before it says POSTN."""
+        """At a heartbeat, ask for everything incomplete: UxAS finishes each plan and zone before it sends POSTN."""
         told, answers = state.instance.told, list[Answer]()
         late = [p for p in state.lost.values() if lasted(p.at_ms, now_ms, ASK_AGAIN_MS)]
         for part in late:

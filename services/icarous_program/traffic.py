@@ -1,9 +1,9 @@
-"""Who flies how, as an ICAROUS of its own knows it: the own vehicle from POSTN, the others from OBJCT, and from vehicles that tell
-their own state directly.
+"""Positions and motion for a standalone ICAROUS: the own vehicle from POSTN, others from OBJCT and from
+vehicles that report their own state directly.
 
-What a vehicle says of itself counts where OBJCT of it has not come for 2 s, for as long as it is not older than what
-is kept at all; and it counts with what its age leaves open: from the instant of which it tells, it may have turned and
-changed its speed and climb as hard as the own airframe can.
+A vehicle's own report is used where its OBJCT has been missing for 2 s, as long as the report is not too old
+to be kept, and with an uncertainty for its age: since then, the vehicle may have turned, accelerated and
+climbed as hard as the own airframe can.
 """
 
 from __future__ import annotations
@@ -22,16 +22,17 @@ from cratous.services.mission.frames import Projection
 from cratous.spec.mission import Position, Velocity
 
 TRAFFIC_KEPT_MS = 5000
-"""An aircraft of which nothing was heard for this long [ms] is no longer flown on in straight line."""
+"""An aircraft not heard of for this long is no longer extrapolated [ms]."""
 MOST_TRAFFIC = 500
-"""So many other aircraft are kept at once."""
+"""Most other aircraft that are kept."""
 EARLY_MS = 2000
-"""A vehicle's own time is not farther ahead of this one's than so much [ms]: UxAS may be late."""
+"""Most that a vehicle's own time may be ahead of this one's [ms]: UxAS may be late."""
 
 
 class Seen(NamedTuple):
-    """Another aircraft as OBJCT has told it last, at the time of the last POSTN [ms]; or as it has told itself, at its
-    own time."""
+    """Another aircraft, as last described by OBJCT at the time of the last POSTN [ms], or as reported by
+    itself at its own time.
+    """
 
     position: Position
     velocity: Velocity
@@ -48,14 +49,14 @@ def seen_at(line: Traffic, now_ms: int, projection: Projection) -> Seen:
 
 
 def told_by_itself(line: OwnPosition, projection: Projection) -> Seen:
-    """What a vehicle says of itself."""
+    """A vehicle's own report."""
     place = Position(*projection.to_local(line.lat_deg, line.long_deg), line.alt_abs_m)
     velocity = Velocity(line.north_mps, line.east_mps, line.down_mps)
     return Seen(place, velocity, round(1000 * line.time_s))
 
 
 def another_time(seen: Seen, now_ms: int) -> bool:
-    """Whether what a vehicle says of itself is of no time near the own one."""
+    """Whether a vehicle's own report is too early or too old relative to now_ms [ms]."""
     early = lasted(now_ms, seen.at_ms, EARLY_MS + 1)
     return early or lasted(seen.at_ms, now_ms, TRAFFIC_KEPT_MS)
 
@@ -77,7 +78,7 @@ def by_themselves(objects: SeenBy, direct: SeenBy, now_ms: int) -> frozenset[int
 def intruders(
     objects: SeenBy, direct: SeenBy, now_ms: int, ability: Ability, cooperating: Iterable[int]
 ) -> tuple[Intruder, ...]:
-    """Everybody else, flown on in a straight line to this instant."""
+    """All other aircraft, extrapolated in straight flight to now_ms [ms]."""
     selves = by_themselves(objects, direct, now_ms)
     used = {**objects, **{vid: direct[vid] for vid in selves}}
     found, ours = [], frozenset(cooperating)
@@ -94,7 +95,9 @@ def intruders(
 
 
 def spread_of(age_s: float, v: Velocity, ability: Ability) -> Spread:
-    """How far from straight flight an aircraft may be after so long [s], if it flies as hard as the own airframe can."""
+    """Largest deviation from straight flight after age_s [s], if an aircraft manoeuvres as hard as the own
+    airframe can.
+    """
     speed = max(math.hypot(v.north_m_s, v.east_m_s), ability.min_speed_m_s)
     across = speed * ability.turn_rate_rad_s
     wide_m = math.hypot(across, ability.acceleration_m_s2) * age_s**2 / 2
@@ -104,8 +107,11 @@ def spread_of(age_s: float, v: Velocity, ability: Ability) -> Spread:
 def changes(
     gone: Iterable[int], before: frozenset[int], now: frozenset[int], told: Iterable[int]
 ) -> list[tuple[str, str]]:
-    """Severity and text of what is different since the last heartbeat: who is gone, and by whose word the others are
-    known. before, now: who are known by their own word; told: whom UxAS tells."""
+    """Log entries (severity, text) for changes since the last heartbeat: aircraft lost, and changes of
+    source.
+
+    before, now: aircraft known by their own reports; told: aircraft that UxAS reports.
+    """
     why = f"not heard of for {TRAFFIC_KEPT_MS} ms, no longer avoided"
     found = [("WARN", f"vehicle {vid}: {why}") for vid in sorted(gone)]
     word = "UxAS does not tell it; avoided by its own word"
@@ -117,7 +123,7 @@ def changes(
 def flying(
     line: OwnPosition, projection: Projection, limits: Limits, floor_m: float, step_s: float
 ) -> tuple[Motion, Ability]:
-    """The own state, and what the airframe can do at its present speed. floor_m, step_s: as of `Ability`."""
+    """The own motion, and the airframe's ability at its speed. floor_m, step_s: as in `Ability`."""
     north, east = projection.to_local(line.lat_deg, line.long_deg)
     speed = math.hypot(line.north_mps, line.east_mps)
     course = math.atan2(line.east_mps, line.north_mps)

@@ -1,1 +1,1 @@
-"""Missions from the files of others: flight plans, fences, traffic, maps and parameters of ICAROUS."""
+"""Missions from other tools' files: flight plans, fences, traffic, maps and parameters of ICAROUS."""

@@ -1,4 +1,4 @@
-"""A mission file from the parts: a vehicle for each way, its waypoints as tasks in their order, zones, traffic."""
+"""Composes a mission file: a vehicle for each route, its waypoints as tasks in sequence, zones, traffic."""
 
 from __future__ import annotations
 
@@ -15,15 +15,16 @@ from cratous.spec.errors import BadInput
 from cratous.spec.mission import Daa, Frame
 
 TASKS_MOST, FIRST = 64, 100
-"""Tasks of a mission; the tasks of vehicle k count from FIRST * k + 1."""
+"""Maximum number of tasks of a mission; the tasks of vehicle k are numbered from FIRST * k + 1."""
 VOLUME = ("dthr_m", "zthr_m", "tthr_s", "tcoa_s")
 LOWEST_M, HIGHEST_M = -1000.0, 100_000.0
-"""Of a zone that says no altitudes."""
+"""Altitudes of a zone without any [m]."""
 
 
 class Asked(NamedTuple):
-    """What the user says beside the files. name: of the mission; speed_m_s: of ways that say none; terrain_m: of the
-    ground at home [m MSL]."""
+    """The user's options. name: of the mission; speed_m_s: of routes without speed; terrain_m:
+    ground at home [m MSL].
+    """
 
     name: str
     speed_m_s: float | None = None
@@ -31,15 +32,16 @@ class Asked(NamedTuple):
 
 
 class Composed(NamedTuple):
-    """data: of a mission file; notes: what was decided or left, in words."""
+    """data: of a mission file; notes: decisions made and contents omitted, in words."""
 
     data: dict[str, Any]
     notes: tuple[str, ...]
 
 
 def composed(parts: Parts, asked: Asked) -> Composed:
-    """The mission of all parts. Home is where the first way starts. Raises BadInput where the parts lack something
-    that a mission needs; whether it can be flown is the reader's of mission files to say."""
+    """The mission of all parts. Home is the start of the first route. Raises BadInput if something
+    is missing that a mission needs; the reader of mission files checks whether it can be flown.
+    """
     notes = list(parts.notes)
     ways = [_without_repeats(way, notes) for way in parts.ways]
     for way in ways if not asked.terrain_m else ():
@@ -86,7 +88,7 @@ def composed(parts: Parts, asked: Asked) -> Composed:
 
 
 def _free(count: int, intruders: Sequence[Intruder]) -> list[int]:
-    """The first numbers that no intruder has: those keep theirs."""
+    """The first ids not used by an intruder, since intruders keep theirs."""
     taken = {one.id for one in intruders}
     return [k for k in range(1, count + len(taken) + 1) if k not in taken][:count]
 
@@ -117,7 +119,7 @@ def _speed_of(way: Way, asked: Asked, settings: dict[str, Setting]) -> float:
 def _vehicle(
     k: int, way: Way, plane: Projection, asked: Asked, flying: tuple[float, dict[str, Setting]]
 ) -> dict[str, Any]:
-    """flying: the cruise speed, and the settings at it."""
+    """The vehicle of a route. flying: its cruise speed, and the parameter settings at that speed."""
     speed, settings = flying
     start, then = (plane.to_local(p.latitude_deg, p.longitude_deg) for p in way.places[:2])
     heading = degrees(atan2(then[1] - start[1], then[0] - start[0])) % 360
@@ -228,7 +230,7 @@ def _traffic(
 
 
 def _rest(settings: dict[str, Setting], parts: Parts, notes: list[str]) -> dict[str, Any]:
-    """What parameters say of the whole mission."""
+    """The parameters that apply to the whole mission."""
     found: dict[str, Any] = {}
     thresholds = {
         name: settings[f"daa.well_clear.{name}"].value

@@ -1,4 +1,4 @@
-"""Geofences of ICAROUS: XML (`<Geofence><fence id><type>KEEPIN...`), and the same as YAML."""
+"""Geofences of ICAROUS: XML (`<Geofence><fence id><type>KEEPIN...`), and the same in YAML."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ TYPES = {
     "KEEP_OUT": True,
     "1": True,
 }
-"""Words, and the numbers of older files: whether it is to be kept out of."""
+"""Words, and numbers in older files; the value tells whether it is a keep-out."""
 MOST = 1000
-"""Corners of a fence."""
+"""Maximum number of corners of a fence."""
 HIGH_M = 200_000.0
-"""Floors and roofs that stand for none; what a zone may have, the mission says."""
+"""Floors and roofs beyond this mean none [m]; the mission schema limits those of a zone."""
 
 
 def read_fence_xml(text: bytes, file: str) -> Parts:
-    """The fences of a file in its order. Raises BadInput with line and item."""
+    """The fences of a file, in order. Raises BadInput with line and item."""
     root = parse(text, file)
     if root.tag != ROOT:
         raise BadInput(

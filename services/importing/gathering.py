@@ -1,4 +1,4 @@
-"""The parts of all files together."""
+"""Reads the parts of all files."""
 
 from __future__ import annotations
 
@@ -10,13 +10,14 @@ from cratous.services.importing.parts import Parts, Reading
 from cratous.spec.errors import BadInput
 
 MOST = 200
-"""Files of a folder."""
+"""Maximum number of files in a folder."""
 
 
 def gathered(paths: Sequence[Path], how: Reading) -> Parts:
-    """Of files, or of the files of folders (not of folders in them) in the order of their names.
+    """The parts of files, or of the files in folders (not subfolders) sorted by name.
 
-    A file that is named has to be of a kind that is read; one in a folder is left otherwise, and noted. Raises BadInput.
+    A file given by name must be of a supported kind; others in a folder are skipped and noted.
+    Raises BadInput.
     """
     found = [parts for path in paths for parts in _of(path, how)]
     settings = [parts.parameters for parts in found if parts.parameters is not None]

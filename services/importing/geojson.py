@@ -1,7 +1,9 @@
-"""Zones and ways of GeoJSON (RFC 7946): polygons are zones, lines are ways; all else is named and left.
+"""Zones and routes of GeoJSON (RFC 7946): polygons are zones, lines are routes; anything else is
+named and skipped.
 
-A polygon's kind is its property `kind` (or `type`): keep_in or keep_out, as `cratous export` writes them. A line is a
-way unless its `kind` is that of a task. A zone in another geometry is refused: without it the mission would be another.
+A polygon's kind is its property `kind` (or `type`): keep_in or keep_out, as `cratous export` writes
+them. A line is a route unless its `kind` is that of a task. A zone with an unsupported geometry is
+refused, since omitting it would change the mission.
 """
 
 from __future__ import annotations
@@ -17,14 +19,15 @@ KINDS = {
 }  # fmt: skip
 WAYS = ("", "route", "way")
 SEVERAL = ("MultiPolygon", "GeometryCollection")
-"""Geometries that may hold areas."""
+"""Geometries that may contain areas."""
 MOST = 2000
-"""Places of a shape, and shapes of a file."""
+"""Maximum number of positions of a shape, and of shapes in a file."""
 
 
 def kind_of(told: object, how: parts.Reading, where: str, item: str) -> bool:
-    """Whether an area is to be kept out of, from the word for its kind, or from what the user says of areas that
-    have none. Raises BadInput."""
+    """Whether an area is a keep-out zone, from its kind, or from the user's option for areas
+    without one. Raises BadInput.
+    """
     kind = KINDS.get(_word(told or how.areas))
     if kind is None:
         raise BadInput(
@@ -37,13 +40,13 @@ def kind_of(told: object, how: parts.Reading, where: str, item: str) -> bool:
 
 
 def no_ring(count: int, where: str, item: str) -> BadInput:
-    """The error for an area of more or fewer outlines than one."""
+    """The error for an area without exactly one outline."""
     what = "an area with holes, or of no outline"
     return BadInput(what, where=where, item=item, expected="one ring", got=f"{count} rings")
 
 
 def open_ring(where: str, item: str) -> BadInput:
-    """The error for an outline that does not end where it begins."""
+    """The error for an outline that is not closed."""
     what = "a ring that is not closed"
     return BadInput(what, where=where, item=item, expected="the first place again, last")
 
@@ -53,7 +56,7 @@ def _word(told: object) -> str:
 
 
 def read_geojson(text: str, file: str, how: parts.Reading) -> parts.Parts:
-    """The zones and ways of a text. Raises BadInput with the feature."""
+    """The zones and routes in a text. Raises BadInput with the feature."""
     data = json_of(text, file)
     kind = data.get("type") if isinstance(data, dict) else None
     features = data.get("features") if kind == "FeatureCollection" else [data]
@@ -82,12 +85,14 @@ def read_geojson(text: str, file: str, how: parts.Reading) -> parts.Parts:
 
 
 def _is_zone(told: object) -> bool:
-    """Tasks are areas too: they have kinds of their own."""
+    """Whether an area is a zone: tasks can be areas too, with kinds of their own."""
     return "search" not in str(told)
 
 
 def no_zone(told: object, form: str, place: tuple[str, str], several: bool) -> None:
-    """Raises BadInput for what would be a zone if its geometry was read; several: whether that may hold areas."""
+    """Raises BadInput for a zone whose geometry is not supported; several: whether the geometry may
+    contain areas.
+    """
     word = _word(told)
     if word in KINDS or (several and (not word or _is_zone(told))):
         where, item = place

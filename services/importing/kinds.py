@@ -1,4 +1,4 @@
-"""Which of the formats a file has, by its content, and its parts."""
+"""Detects the format of a file by its content, and reads its parts."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ KNOWN = (
 
 
 class NoKind(BadInput):
-    """A file that is none of those that are read; in a folder it is left."""
+    """A file in no supported format; skipped if it is in a folder."""
 
 
 def read_part(path: Path, how: Reading) -> Parts:

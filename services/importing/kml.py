@@ -1,8 +1,10 @@
-"""Zones and ways of KML 2.2: polygons are zones, line strings are ways; all else is named and left.
+"""Zones and routes of KML 2.2: polygons are zones, line strings are routes; anything else is named
+and skipped.
 
-A polygon's kind is its datum `kind` (`<ExtendedData>`), as `cratous export` writes it. `altitudeMode` of a way:
-absolute, or relativeToGround; one on the ground has no altitude that could be flown. A zone in another geometry is
-refused: without it the mission would be another.
+A polygon's kind is its datum `kind` (`<ExtendedData>`), as `cratous export` writes it.
+`altitudeMode` of a route: absolute, or relativeToGround; a route clamped to the ground has no
+usable altitude. A zone with an unsupported geometry is refused, since omitting it would change the
+mission.
 """
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ ABSOLUTE, RELATIVE = "absolute", "relativeToGround"
 
 
 def read_kml(text: bytes, file: str, how: parts.Reading) -> parts.Parts:
-    """The zones and ways of all placemarks. Raises BadInput with line and name."""
+    """The zones and routes of all placemarks. Raises BadInput with line and name."""
     root = parse(text, file)
     if _tag(root) != "kml":
         raise BadInput(
@@ -48,7 +50,7 @@ def read_kml(text: bytes, file: str, how: parts.Reading) -> parts.Parts:
 
 
 def _tag(element: Any) -> str:
-    """Without namespace."""
+    """An element's tag without namespace."""
     return str(element.tag).rpartition("}")[2]
 
 

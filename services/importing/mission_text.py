@@ -1,4 +1,4 @@
-"""The text of a mission file that was made of the files of others, and that it can be read."""
+"""Writes the text of an imported mission file, and checks that it can be read."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cratous.spec.files.printable import printable
 
 
 def mission_text(made: Composed, names: Sequence[str]) -> str:
-    """YAML, with what was decided or left as comments on top."""
+    """YAML, with decisions and omissions as comments at the top."""
     import yaml
 
     head = [f"Made by `cratous import` of {', '.join(names)}.", *made.notes]

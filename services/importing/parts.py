@@ -1,4 +1,6 @@
-"""What files of others say, before it is a mission: ways, fences, intruders. Degrees in WGS-84, SI."""
+"""Content of other tools' files before it becomes a mission: routes, fences, intruders. WGS-84
+degrees, SI units.
+"""
 
 from __future__ import annotations
 
@@ -12,11 +14,11 @@ from cratous.spec.errors import BadInput
 
 _PLAIN = re.compile(r"[-+]?[0-9]*\.?[0-9]*([eE][-+]?[0-9]+)?")
 ALT_M, LEAST_ALT_M = 30_000.0, -500.0
-"""Altitudes that a mission file may have."""
+"""Limits of altitudes in a mission file [m]."""
 
 
 class Place(NamedTuple):
-    """A point of a way; alt_m: above the ground at home if above_ground, else above mean sea level."""
+    """A point of a route; alt_m: above the ground at home if above_ground, otherwise above mean sea level."""
 
     latitude_deg: float
     longitude_deg: float
@@ -25,7 +27,7 @@ class Place(NamedTuple):
 
 
 class Way(NamedTuple):
-    """A flight plan: its places in order, the first is where it starts; speed_m_s: None if it says none."""
+    """A flight plan: its points in order from the start; speed_m_s: None if it has none."""
 
     label: str
     places: tuple[Place, ...]
@@ -34,7 +36,7 @@ class Way(NamedTuple):
 
 
 class Fence(NamedTuple):
-    """A zone: corners are (latitude, longitude); floor and ceiling [m], None: as low and as high as can be."""
+    """A zone: corners are (latitude, longitude); floor and ceiling [m], None: unlimited."""
 
     label: str
     keep_out: bool
@@ -46,7 +48,7 @@ class Fence(NamedTuple):
 
 
 class Intruder(NamedTuple):
-    """An aircraft that flies straight on. place: None if it is told by its offset from home: north_m, east_m."""
+    """An aircraft in straight flight. place: None if given by its offset from home: north_m, east_m."""
 
     id: int
     place: Place | None
@@ -60,8 +62,7 @@ class Intruder(NamedTuple):
 
 
 class Parts(NamedTuple):
-    """What was read from one file or several. parameters: of a parameter file; notes: what was not imported, in
-    words."""
+    """Content of one or several files. parameters: of a parameter file; notes: what was not imported, in words."""
 
     ways: tuple[Way, ...] = ()
     fences: tuple[Fence, ...] = ()
@@ -71,8 +72,9 @@ class Parts(NamedTuple):
 
 
 class Reading(NamedTuple):
-    """What a user says beside the files. areas: the kind of areas that say none ("keep_in", "keep_out", ""); alt_m: of ways
-    that say no altitude; origin: latitude and longitude of tables in metres."""
+    """The user's options. areas: kind of areas without one ("keep_in", "keep_out", ""); alt_m: of
+    routes without altitude; origin: latitude and longitude for tables in metres.
+    """
 
     areas: str = ""
     alt_m: float | None = None
@@ -81,7 +83,7 @@ class Reading(NamedTuple):
 
 def number(text: object, where: str, item: str, low: float, high: float) -> float:
     """A finite number in a range. Raises BadInput."""
-    # Python also takes 1_0, and digits of other scripts
+    # Python also accepts 1_0, and digits of other scripts
     odd = isinstance(text, bool) or (isinstance(text, str) and not _PLAIN.fullmatch(text.strip()))
     try:
         value = math.nan if odd else float(text)  # type: ignore[arg-type]
@@ -95,7 +97,7 @@ def number(text: object, where: str, item: str, low: float, high: float) -> floa
 
 
 def whole(text: object, where: str, item: str, high: int) -> int:
-    """A whole number from 0. Raises BadInput."""
+    """An integer from 0 to high. Raises BadInput."""
     value = number(text, where, item, 0, high)
     if value != int(value):
         raise BadInput("not a whole number", where=where, item=item, got=str(text)[:60])

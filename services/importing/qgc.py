@@ -1,8 +1,9 @@
-"""Flight plans in the text form of ground stations: `QGC WPL 110`.
+"""Flight plans in the text format of ground stations: `QGC WPL 110`.
 
-A line is index, current, frame, command, four parameters, latitude, longitude, altitude, autocontinue, divided by
-blanks or tabs. Read as ICAROUS reads them: the first waypoint is home, where the vehicle starts. What is
-beyond waypoints and speeds is not flown, and is said.
+A line has index, current, frame, command, four parameters, latitude, longitude, altitude,
+autocontinue, separated by blanks or tabs. They are read as ICAROUS reads them: the first waypoint
+is home, where the vehicle starts. Items other than waypoints and speeds are not flown, and are
+noted.
 """
 
 from __future__ import annotations
@@ -26,10 +27,10 @@ HEAD = "QGC WPL"
 VERSION = "110"
 FIELDS = 12
 MOST = 2000
-"""Waypoints of a plan."""
+"""Maximum number of waypoints of a plan."""
 MSL, RELATIVE, TERRAIN = 0, 3, 10
 FRAMES = {MSL: False, 5: False, RELATIVE: True, 6: True, TERRAIN: True, 11: True}
-"""MAV_FRAME: whether an altitude is above ground; 5, 6 and 11 are the same with whole numbers on the wire."""
+"""MAV_FRAME: whether an altitude is above ground; 5, 6 and 11 are the same with integers on the wire."""
 WAYPOINT, RETURN, LAND, TAKEOFF, SPEED = 16, 20, 21, 22, 178
 COMMANDS = {
     WAYPOINT: "waypoint", RETURN: "return to launch", LAND: "land", TAKEOFF: "take-off", SPEED: "speed",
@@ -46,7 +47,7 @@ class _Line(NamedTuple):
 
 
 def read_qgc(text: str, file: str, label: str) -> Parts:
-    """The way of a plan. Raises BadInput with line and item."""
+    """The route of a plan. Raises BadInput with line and item."""
     lines = text.splitlines()
     head = lines[0].split() if lines else []
     if head[:2] != HEAD.split() or head[2:] != [VERSION]:

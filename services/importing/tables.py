@@ -1,7 +1,8 @@
-"""Plans in tables: `.eutl` (points in time, as NASA's plan files have them) and `.daa` (encounters).
+"""Plans in tables: `.eutl` (points in time, as in NASA's plan files) and `.daa` (encounters).
 
-An `.eutl` has columns by name (id, lat lon alt or sx sy sz, time), a line of units, a row a point; rows of one id make one
-plan. Of a `.daa` the ownship flies from its first place to its last, as in ICAROUS; the others are traffic.
+An `.eutl` has named columns (id, lat lon alt or sx sy sz, time), a line of units, and a row per
+point; rows with the same id form one plan. In a `.daa` the ownship flies from its first position to
+its last, as in ICAROUS; the other aircraft are traffic.
 """
 
 from __future__ import annotations
@@ -26,10 +27,10 @@ COLUMNS = {
 }  # fmt: skip
 USUAL = {"lat": "deg", "lon": "deg", "x": "nmi", "y": "nmi", "alt": "ft", "time": "s"}
 TURNS = ("tcp_trk", "tcp_gs", "tcp_vs")
-"""Columns that say how a plan turns, and changes speed and climb, at its points."""
+"""Columns that tell how a plan turns, and changes speed and climb rate, at its points."""
 NONE = {"", "-", "none", "unitless"}
 MOST = 2000
-"""Points of a file."""
+"""Maximum number of points in a file."""
 
 
 class _Point(NamedTuple):
@@ -40,7 +41,7 @@ class _Point(NamedTuple):
 
 
 def read_eutl(text: str, file: str, how: parts.Reading) -> parts.Parts:
-    """The ways of all plans in a file, in the order in which they begin. Raises BadInput with line and column."""
+    """The routes of all plans in a file, in order of first occurrence. Raises BadInput with line and column."""
     points, curved = list[_Point](), False
     for point, turns in _points(text, file, how):
         points.append(point)
@@ -173,7 +174,9 @@ def _length_m(places: Sequence[parts.Place]) -> float:
 
 
 def read_daa(text: str, file: str, how: parts.Reading) -> parts.Parts:
-    """The ownship's way from its first place to its last, and everybody else from where each is seen first."""
+    """The ownship's route from its first position to its last, and all other aircraft from their
+    first positions.
+    """
     found = parse(text, file)
     first, last = dict[str, Row](), dict[str, Row]()
     for _, rows in found.steps:

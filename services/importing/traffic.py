@@ -1,5 +1,7 @@
-"""Traffic files of ICAROUS: a YAML list of `[id, range m, bearing deg, altitude m, speed m/s, heading deg, climb m/s,
-delay s, transmitter, 6 + 6 covariances]`; what stands after the climb may be left out. Bearings are from home."""
+"""Traffic files of ICAROUS: a YAML list of `[id, range m, bearing deg, altitude m, speed m/s,
+heading deg, climb m/s, delay s, transmitter, 6 + 6 covariances]`; everything after the climb rate
+is optional. Bearings are from home.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Missions from files: our own YAML, or a UxAS folder, configuration or AMASE scenario as it is."""
+"""Loads missions from files: the CRATOUS YAML format, or an unmodified UxAS folder, configuration
+or AMASE scenario.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +11,12 @@ from cratous.spec.mission import Mission
 
 
 def load(path: str | Path, seed: int = 0, request: int = 1) -> Mission:
-    """The mission at a path: a YAML file, a UxAS cfg XML, a folder with either, or an AMASE scenario XML.
+    """The mission at a path: a YAML file, a UxAS cfg XML, a folder with either, or an AMASE
+    scenario XML.
 
-    seed: 0 is the mission as written, N > 0 its N-th variant (YAML missions only); request: which
-    of the AutomationRequests of a UxAS configuration or scenario, in the order in which they are sent.
-    Raises BadInput with file, item, expected and got.
+    seed: 0 is the mission as written, N > 0 its N-th variant (YAML missions only); request: number
+    of the AutomationRequest of a UxAS configuration or scenario, in sending order. Raises BadInput
+    with file, item, expected and got.
     """
     path = Path(path)
     if not path.exists():

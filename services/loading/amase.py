@@ -1,7 +1,7 @@
-"""An AMASE scenario, as it is, as a `Mission`.
+"""An unmodified AMASE scenario as a `Mission`.
 
-A scenario says who flies, and may hold tasks and zones. Without an automation request among its events it
-asks for all its tasks, in any order, by all its vehicles, and all its zones bind.
+A scenario lists the aircraft, and may contain tasks and zones. Without an automation request among
+its events it asks for all its tasks, in any order, by all its vehicles, and all its zones apply.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from cratous.spec.mission import Mission, Traffic, Velocity
 from cratous.spec.schedule import TIME_LIMIT_MS
 
 TRAFFIC = ("CratousRole", "traffic")
-"""Key and value in the Info of an aircraft that nobody commands: AMASE itself makes no difference."""
+"""Key and value in the Info of an aircraft that is traffic: AMASE itself makes no distinction."""
 
 
 def is_scenario(path: Path) -> bool:
-    """Whether a file is an AMASE scenario; BadInput if it is no XML."""
+    """Whether a file is an AMASE scenario; BadInput if it is not XML."""
     from cratous.bridge.lmcp import xml
     from cratous.spec.files.text_file import bytes_of
 
@@ -43,9 +43,9 @@ def count_scenario_requests(path: Path) -> int:
 
 
 def load_amase(path: Path, number: int = 1) -> Mission:
-    """The mission of a scenario file, of the automation request with a number if it has some.
+    """The mission of a scenario file, for the automation request with this number if it has any.
 
-    Raises BadInput for what is wrong, missing, or not covered (named).
+    Raises BadInput for errors, missing data, and unsupported content (named).
     """
     scenario, cfg, apart = _read(path)
     mission = mission_of(request_of(cfg, number, str(path))[0], str(path))
@@ -69,7 +69,7 @@ def load_amase(path: Path, number: int = 1) -> Mission:
 
 
 def _read(path: Path) -> tuple[Any, Configuration, list[Sent]]:
-    """The scenario, its events as messages with a request, and those of aircraft that nobody commands."""
+    """The scenario; its events as messages with a request; and the events of traffic aircraft."""
     from cratous.services.simulator.scenario import read
 
     scenario = read(path)
@@ -95,7 +95,7 @@ def _is_traffic(body: Any) -> bool:
 
 
 def _about(body: Any) -> set[int]:
-    """The aircraft that a message is about, if it is about aircraft alone."""
+    """The aircraft that a message concerns; empty if it concerns anything else too."""
     kind = type(body).__name__
     if kind in ("AirVehicleConfiguration", "AirVehicleState"):
         return {body.ID}
@@ -103,7 +103,7 @@ def _about(body: Any) -> set[int]:
 
 
 def _request(messages: list[Sent], path: Path) -> list[Sent]:
-    """A region of all zones, and the request for all tasks by all vehicles."""
+    """A region of all zones, and a request for all tasks by all vehicles."""
     ids: dict[str, dict[int, None]] = {}
     for body in (m.body for m in messages):
         kind = type(body).__name__
@@ -130,8 +130,9 @@ def _request(messages: list[Sent], path: Path) -> list[Sent]:
 
 
 def _traffic(apart: list[Sent], places: Places) -> tuple[Traffic, ...]:
-    """Each aircraft that nobody commands, from its only state until it is removed; BadInput if it has no
-    state, or a second one."""
+    """Each traffic aircraft, from its only state until it is removed; BadInput if it has no state,
+    or more than one.
+    """
     found: dict[int, Traffic] = {}
     for sent in sorted(apart, key=lambda one: one.time_ms):
         body, kind = sent.body, type(sent.body).__name__

@@ -4,11 +4,11 @@
 |---|---|---|
 | CostFunction | MINMAX | MINMAX, or CUMULATIVE |
 | NumberNodesMaximum | none | nodes of the search; 0: the first leaf; negative: no limit |
-| Deadline_ms | none | the same as a count of nodes, at `NODES_PER_MS` |
-| Semantics | time | `time`, or `order` as UxAS |
+| Deadline_ms | none | converted to a number of nodes by `NODES_PER_MS` |
+| Semantics | time | `time`, or `order` as in UxAS |
 
-A plan and its log may not depend on how fast a machine is, so a deadline is turned into a number of
-nodes. What UxAS reads as 0 by default (stop at the first leaf) is done here only if it is asked for.
+A plan and its log must not depend on the speed of a machine, so a deadline is converted to a number
+of nodes. Stopping at the first leaf, the default in UxAS (0), is done here only if requested.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import integer_of
 
 NODES_PER_MS = 100
-"""Nodes that the search of missions makes in a millisecond, on a slow core."""
+"""Nodes per millisecond in searches for missions, on a slow core."""
 NO_LIMIT = 100_000_000
 KNOWN = ("CostFunction", "NumberNodesMaximum", "Deadline_ms", "Semantics")
 
 
 @dataclass(frozen=True)
 class Settings:
-    """What the attributes say; None where they say nothing."""
+    """The values of the attributes; None where not given."""
 
     cost: str | None = None
     nodes: int | None = None
@@ -35,7 +35,7 @@ class Settings:
 
 
 def settings_of(attributes: Mapping[str, str], where: str = "") -> Settings:
-    """The settings; BadInput for a value that is none. Other attributes are left to the caller."""
+    """The settings; BadInput for an invalid value. Other attributes are left to the caller."""
     written = attributes.get("CostFunction")
     cost = None if written is None else written.upper()
     if cost not in (None, "MINMAX", "CUMULATIVE"):
@@ -71,6 +71,8 @@ def _bad(name: str, expected: str, got: str | None, where: str) -> BadInput:
 
 
 def plans_live(communication: tuple[Mapping[str, str], str] | None) -> bool:
-    """Whether ICAROUS may ask UxAS's planner for ways back, by the attributes of IcarousCommunicationService, if any."""
+    """Whether ICAROUS may ask UxAS's planner for return paths, by the attributes of
+    IcarousCommunicationService, if present.
+    """
     text = "" if communication is None else communication[0].get("UseUxasRoutePlanner", "")
     return text.strip().lower() in ("true", "1")

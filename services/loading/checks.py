@@ -1,8 +1,8 @@
-"""What a schema cannot say of a mission: names that exist, shapes that are shapes, fair starts.
+"""Checks of a mission beyond its schema: references that exist, valid shapes, permitted starts.
 
-Each check gives its findings in the user's terms; `where(item)` says in which file
-(and line) an item like `zones[0].vertices` stands. Geometry is decided by the kernels on exact
-rationals, so a zone that merely touches itself is found too.
+Each check reports findings in the user's terms; `where(item)` gives the file (and line) of an item such as
+`zones[0].vertices`. Kernels decide on geometry with exact rationals, so a zone that merely touches itself is found
+too.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ ONE_POINT = (
 
 
 class Finding(NamedTuple):
-    """What is wrong with an item; at: the item that stands in the file, where it is another."""
+    """A fault of an item; at: the item that appears in the file, if different."""
 
     item: str
     what: str
@@ -45,7 +45,7 @@ class Finding(NamedTuple):
 def as_errors(
     check: Callable[[Mission], Iterator[Finding]],
 ) -> Callable[[Mission, Where], Iterator[BadInput]]:
-    """The check, with what it finds as errors that say where."""
+    """The check with its findings as errors that include their position."""
 
     @wraps(check)
     def problems(mission: Mission, where: Where) -> Iterator[BadInput]:
@@ -56,7 +56,7 @@ def as_errors(
 
 
 def mission_problems(mission: Mission, where: Where) -> list[BadInput]:
-    """Everything wrong with the mission before its zones are padded."""
+    """All faults of the mission that can be found before its zones are padded."""
     found: list[BadInput] = []
     for check in (_ids, _vehicles, _powers, _tasks, _zones, _places, _numbers, _instances):
         found.extend(as_errors(check)(mission, where))
@@ -86,7 +86,7 @@ def _vehicles(mission: Mission) -> Iterator[Finding]:
         item = f"vehicles[{k}].speed_m_s"
         if low <= vehicle.speed_m_s <= high:
             continue
-        # a speed that is not given is the cruise speed: only what was written is named
+        # a missing speed defaults to the cruise speed: report only what was written
         if low > high and vehicle.speed_m_s not in (low, high):
             item = f"vehicles[{k}].max_speed_m_s"
             what = f"vehicle {vehicle.id} has a max_speed_m_s below its min_speed_m_s"
@@ -269,7 +269,7 @@ def too_many_instances(wanted: int, vehicles: int, where: str, item: str) -> Bad
 
 
 def relation_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
-    """What is wrong with the process algebra, with a caret under the place."""
+    """Faults of the process algebra, with a caret below the position."""
     if not mission.relations.strip():
         return
     from cratous.spec.algebra import atoms, parse
@@ -295,7 +295,7 @@ def relation_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
 
 @as_errors
 def change_problems(mission: Mission) -> Iterator[Finding]:
-    """Changes in flight of vehicles or tasks that do not exist, or too low, and a mission that begins empty."""
+    """In-flight changes of unknown vehicles or tasks, or at too low altitudes, and missions that begin empty."""
     vehicles, tasks = {v.id for v in mission.vehicles}, {t.id for t in mission.tasks}
     floor_m = floor_of(mission)
     for k, change in enumerate(mission.changes):
@@ -329,7 +329,7 @@ def change_problems(mission: Mission) -> Iterator[Finding]:
 
 @as_errors
 def zone_end_problems(mission: Mission) -> Iterator[Finding]:
-    """Ends in flight of zones that do not exist, have ended before, or bind no leg until then."""
+    """In-flight ends of zones that do not exist, have ended before, or apply to no leg until then."""
     step_ms = mission.simulation.step_ms
     known = {zone.id: 0 for zone in mission.zones}
     known |= {c.zone.id: c.at_ms for c in mission.changes if c.zone is not None}

@@ -1,6 +1,7 @@
-"""What a request or a service's attribute changes in the configurations of vehicles before it is planned.
+"""Changes that a request or a service attribute makes to vehicle configurations before planning.
 
-OverridePlanningConditions: speed and altitude, for one request. TurnRadiusOffset_m: wider turns, for all.
+OverridePlanningConditions: speed and altitude, for one request. TurnRadiusOffset_m: wider turns,
+for all.
 """
 
 from __future__ import annotations
@@ -21,10 +22,11 @@ ITEM = "OverridePlanningConditions"
 def kept(
     configurations: Mapping[int, Sent], pairs: Iterable[Any], tasks: Collection[int], where: str
 ) -> dict[int, Sent]:
-    """Configurations by id with nominal speed and altitude as SpeedAltPairs say; 0 and AGL says no altitude.
+    """Configurations by id with nominal speed and altitude set by SpeedAltPairs; 0 with AGL sets no
+    altitude.
 
-    tasks: of the request; BadInput for a pair of some of them alone, a vehicle that is unknown or a speed that it
-    does not fly. where: the request.
+    tasks: of the request; BadInput for a pair for only some of them, an unknown vehicle, or a speed
+    outside its range. where: the request.
     """
     wanted: dict[int, dict[int, Any]] = {}
     for pair in pairs:
@@ -79,7 +81,7 @@ def _with(body: Any, speed: float, altitude: float, kind: Any, where: str) -> An
 
 
 def wider(cfg: Configuration, offset_m: float) -> Configuration:
-    """A configuration whose aircraft turn by offset_m [m] wider than at their nominal speed and bank."""
+    """A configuration with turn radii larger by offset_m [m] than at its nominal speed and bank."""
     messages = (
         replace(m, body=_wider(m.body, offset_m)) if type(m.body).__name__ == AIR else m
         for m in cfg.messages
@@ -91,7 +93,7 @@ def _wider(body: Any, offset_m: float) -> Any:
     profile = body.NominalFlightProfile
     speed = body.NominalSpeed
     if profile is None or not 1 <= profile.MaxBankAngle <= 80 or not speed > 0:
-        return body  # which is refused for what it is
+        return body  # refused later for this error
     bank = radians(profile.MaxBankAngle)
     radius = turn_radius_m(speed, bank)
     bank = atan(tan(bank) * radius / (radius + offset_m))

@@ -1,7 +1,7 @@
-"""A YAML file as plain data, with the line of each value; nothing is read in two ways.
+"""A YAML file as plain data, with the line of each value; ambiguous YAML is refused.
 
-YAML 1.1 has readings that surprise (`010` is 8, `1:30` is 90, a key given twice, aliases that
-grow without bound). A mission file must mean one thing, so these are refused.
+YAML 1.1 has surprising readings (`010` is 8, `1:30` is 90, duplicate keys, unbounded aliases). A
+mission file must have one meaning, so these are refused.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from cratous.spec.files.limits import DIGITS, MISSION_BYTES, MISSION_DEPTH, MISS
 from cratous.spec.files.text_file import text_of
 
 INTEGER_MAX = 2**53
-"""Every whole number up to this is a double, so that none is changed where it becomes one."""
+"""Integers up to this value are exact as doubles."""
 _SURPRISING = re.compile(r"^[-+]?(0[0-9_]+|[0-9][0-9_]*(:[0-5]?[0-9])+(\.[0-9_]*)?)$")
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff]")
 _FLOAT = re.compile(r"^[-+]?[0-9]+(\.[0-9]*)?[eE][-+]?[0-9]+$")
@@ -26,14 +26,14 @@ Key = tuple[str | int, ...]
 
 @dataclass(frozen=True)
 class Document:
-    """Plain data and the line (from 1) on which each value stands."""
+    """Plain data and the line (from 1) of each value."""
 
     path: str
     data: Any
     lines: dict[Key, int]
 
     def where(self, key: Key) -> str:
-        """`file:line` of a value, or of the nearest thing that contains it."""
+        """`file:line` of a value, or of the nearest enclosing one."""
         while key and key not in self.lines:
             key = key[:-1]
         return f"{self.path}:{self.lines.get(key, 1)}"
@@ -59,7 +59,7 @@ def read_document(path: Path) -> Document:
 
 
 def parse_document(text: str, where: str) -> Document:
-    """The same, from text."""
+    """The same, from a text."""
     import yaml
 
     try:
@@ -79,14 +79,14 @@ def parse_document(text: str, where: str) -> Document:
 
 
 def loader() -> Any:
-    """What reads YAML here."""
+    """The YAML loader class."""
     import yaml
 
     return getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the first is libyaml: ten times faster
 
 
 def _refuse_costly(text: str, where: str) -> None:
-    """Refuse aliases, depth and size while events are read, before anything is built of them."""
+    """Refuse aliases, excessive depth and size from the event stream, before any object is built."""
     import yaml
 
     depth = 0

@@ -1,7 +1,8 @@
-"""Parameters that can be read and do not fit the vehicles: each is accepted with a warning, which stays in the report.
+"""Warns of valid parameters that do not suit the vehicles; the warnings are kept in the report.
 
-A number does not fit if what ICAROUS derives from vehicle and mission (`services.icarous.derived`) asks for another.
-Nothing is judged by it: a flight with such a number is monitored as any other.
+A number is unsuitable if the values that ICAROUS derives from vehicle and mission
+(`services.icarous.derived`) require another. No verdict depends on it: the flight is monitored as
+usual.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ STEPS = "nothing happens between two steps of the simulation, so heartbeats woul
 
 
 class Need(NamedTuple):
-    """What a parameter should be: item, what it is, the least and the most that would do, unit, and why."""
+    """A requirement on a parameter: item, value, minimum, maximum, unit, and reason."""
 
     item: str
     got: float
@@ -34,12 +35,12 @@ class Need(NamedTuple):
 
     @property
     def met(self) -> bool:
-        """Whether it is so."""
+        """Whether the value is within its limits."""
         return self.least <= self.got <= self.most
 
     @property
     def text(self) -> str:
-        """In words, for notes, of one that is not met."""
+        """The unmet requirement as text for notes."""
         high = self.got > self.most
         bound, wanted = "at most" if high else "at least", self.most if high else self.least
         wanted = wanted if high else _rounded_up(wanted)
@@ -48,7 +49,7 @@ class Need(NamedTuple):
 
 
 def warnings_of(mission: Mission) -> tuple[str, ...]:
-    """What does not fit, for the vehicles with an ICAROUS instance; one line for each parameter."""
+    """Unsuitable parameters for the vehicles with an ICAROUS instance; one line per parameter."""
     worst = dict[str, Need]()
     for need in _needs(mission):
         before = worst.get(need.item)
@@ -66,7 +67,7 @@ def _needs(mission: Mission) -> Iterator[Need]:
 
 
 def _of_vehicle(mission: Mission, vehicle: Vehicle) -> Iterator[Need]:
-    # imported here: a mission that nobody guards needs none of it
+    # imported here: not needed for missions without ICAROUS
     from cratous.services.icarous.derived import derived
     from cratous.services.icarous.traffic_monitor import PERSIST_MS
 
@@ -108,7 +109,7 @@ def _of_mission(mission: Mission) -> Iterator[Need]:
 
 
 def _rounded_up(value: float) -> float:
-    """To three digits, so that what is asked for is enough."""
+    """Rounded up to three significant digits, so that the requested value suffices."""
     if value <= 0:
         return value
     scale = 10.0 ** (2 - math.floor(math.log10(value)))

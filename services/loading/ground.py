@@ -1,6 +1,6 @@
-"""Vehicles that drive: GroundVehicleConfiguration and GroundVehicleState as a vehicle of a mission.
+"""Ground vehicles: GroundVehicleConfiguration and GroundVehicleState as a vehicle of a mission.
 
-`cratous uxas` alone plans them, along roads. Everything that flies leaves them out.
+Only `cratous uxas` plans them, along roads. Everything that concerns aircraft ignores them.
 """
 
 from __future__ import annotations
@@ -15,20 +15,20 @@ from cratous.spec.mission import Vehicle
 
 CONFIGURATION, STATE = "GroundVehicleConfiguration", "GroundVehicleState"
 TURNS_RAD = radians(80.0)
-"""It turns where it stands, nearly: as narrow as what banks by so much."""
+"""Equivalent bank angle [rad] that gives a ground vehicle a nearly zero turn radius."""
 
 
 class GroundVehicle(Vehicle):
-    """A vehicle that drives on roads, at the altitude of the terrain."""
+    """A ground vehicle on roads, at the altitude of the terrain."""
 
 
 def drives(one: Vehicle) -> bool:
-    """Whether a vehicle is one that drives."""
+    """Whether a vehicle is a ground vehicle."""
     return isinstance(one, GroundVehicle)
 
 
 def vehicle_of(configuration: Sent, state: Sent, places: Places, notes: list[str]) -> Vehicle:
-    """The vehicle of a configuration and a state of one kind, that flies or drives; BadInput for what is none."""
+    """The aircraft or ground vehicle of a matching configuration and state; BadInput if they are invalid."""
     ground = type(configuration.body).__name__ == CONFIGURATION
     if (type(state.body).__name__ == STATE) != ground:
         raise BadInput(

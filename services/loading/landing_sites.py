@@ -1,4 +1,4 @@
-"""The section `landing_sites` of a mission file, and what is wrong with it; the schema has its bounds."""
+"""The section `landing_sites` of a mission file, and checks beyond the schema's bounds."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SECTION = "landing_sites"
 
 
 def landing_sites(document: Document, places: Places) -> tuple[LandingSite, ...]:
-    """The sites, in the order of the file. Left out, the altitude of a place is that of the terrain."""
+    """The sites, in file order. The altitude of a site defaults to that of the terrain."""
     found = []
     for one in document.data.get(SECTION, []):
         place = places.position(one["position"])
@@ -73,8 +73,9 @@ def site_problems(document: Document, sites: tuple[LandingSite, ...]) -> Iterato
 
 @as_errors
 def ground_problems(mission: Mission) -> Iterator[Finding]:
-    """Sites that zones forbid at the start, those that are too small for a vehicle to roll to a stand, those that have
-    ground in common, and ground that is as high as the mission flies."""
+    """Sites that zones forbid at the start, that are too small for a vehicle's landing roll, or
+    that overlap; and ground as high as the mission's flight altitudes.
+    """
     yield from _heights(mission)
     yield from _overlaps(mission)
     beat_s = mission.simulation.heartbeat_ms / 1000
@@ -105,7 +106,7 @@ def ground_problems(mission: Mission) -> Iterator[Finding]:
 
 
 def _heights(mission: Mission) -> Iterator[Finding]:
-    """Ground of a site, or terrain beside all of them, that a vehicle starts or flies its tasks at, or below."""
+    """Ground of a site, or terrain outside all sites, at or above which a vehicle has to start or fly its tasks."""
     sites = sites_of(mission)
     grounds = [
         (f"{SECTION}[{k}].position", f"the ground of {site.name}", site.ground_m)
@@ -116,7 +117,7 @@ def _heights(mission: Mission) -> Iterator[Finding]:
     for item, ground, ground_m in grounds:
         for vehicle in mission.vehicles:
             flown_m = min(vehicle.position.alt_m, vehicle.cruise_alt_m)
-            # strictly above it, as above the floor of a keep-in
+            # strictly above, as with the floor of a keep-in zone
             if not keep_in_leg_ok(1, False, flown_m, flown_m, ground_m, math.inf):
                 yield Finding(
                     item,
@@ -128,7 +129,7 @@ def _heights(mission: Mission) -> Iterator[Finding]:
 
 
 def _overlaps(mission: Mission) -> Iterator[Finding]:
-    """Pairs of sites whose discs share a place: each has room for one vehicle."""
+    """Pairs of sites with overlapping discs: each has room for one vehicle."""
     for (_, one), (k, two) in combinations(enumerate(sites_of(mission)), 2):
         north_m, east_m = two.north_m - one.north_m, two.east_m - one.east_m
         both_m = one.radius_m + two.radius_m

@@ -1,4 +1,4 @@
-"""From places as users write them (degrees or metres) to the mission frame."""
+"""Converts positions as users write them (degrees or metres) to the mission frame."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from cratous.spec.mission import Frame, Position
 
 
 class Places:
-    """Reads places for one frame; the projection is made when the first one needs it."""
+    """Converts positions for one frame; the projection is created when first needed."""
 
     def __init__(self, frame: Frame) -> None:
         self._frame = frame
@@ -17,7 +17,7 @@ class Places:
         self.terrain_m = frame.terrain_m
 
     def local(self, latitude_deg: float, longitude_deg: float) -> tuple[float, float]:
-        """North and east [m] of a place in WGS-84 degrees."""
+        """North and east [m] of a position in WGS-84 degrees."""
         if self._projection is None:
             from cratous.services.mission.frames import Projection
 

@@ -1,7 +1,7 @@
-"""Polygons of zones: is it one, what does its padding make of it, and circles as polygons.
+"""Polygons of zones: validity, padding, and circles as polygons.
 
-Whether they are one is decided by the proved kernels (`core.geofence.validity`). The padded outline
-itself is computed (with mitred corners, by shapely) and then held against the rules like any other.
+The proved kernels (`core.geofence.validity`) decide on validity. The padded outline is computed by
+shapely (mitred corners) and then checked like any other.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ MITRE_LIMIT = 5.0
 
 
 def polygon_problem(vertices: Sequence[Corner]) -> str:
-    """Why these corners are no simple polygon, in words; empty if they are."""
+    """Why these corners are no simple polygon, in words; empty if they are one."""
     fault = fault_of(vertices)
     return "" if fault is None else fault.text
 
 
 def padded(zone: Zone, where: str, item: str) -> Zone:
-    """The zone as it binds: a keep-out widened, a keep-in narrowed, by its padding.
+    """The effective zone: a keep-out enlarged, a keep-in reduced by its padding.
 
-    The result has no padding left to apply. BadInput if nothing remains, or if it falls apart.
+    The result has padding 0. BadInput if nothing remains, or if it splits into several parts.
     """
     if zone.padding_m == 0:
         return zone
@@ -50,7 +50,7 @@ def padded(zone: Zone, where: str, item: str) -> Zone:
             expected="one region",
             got=f"{zone.padding_m:g} m",
         )
-    # a hole in a widened keep-out is closed: the shape then forbids more, never less
+    # a hole in an enlarged keep-out is filled: this forbids more, never less
     corners = tuple((float(x), float(y)) for x, y in outline.exterior.coords[:-1])
     problem = polygon_problem(corners)
     if problem:
@@ -65,12 +65,12 @@ def padded(zone: Zone, where: str, item: str) -> Zone:
 
 
 def hard_zones(zones: Sequence[Zone]) -> tuple[Zone, ...]:
-    """The zones with their padding turned into vertices. BadInput if a zone falls apart."""
+    """The zones with padding applied. BadInput if a zone splits into several parts."""
     return tuple(padded(zone, "", f"zone {zone.id}") for zone in zones)
 
 
 def one_region(zones: Sequence[Zone], where: str, item: str) -> Zone:
-    """Overlapping keep-in zones as the one region that they make: inside of any of them is inside.
+    """The union of overlapping keep-in zones as one region.
 
     Their paddings are applied. BadInput if they do not join, leave a hole, or differ in altitude.
     """
@@ -95,7 +95,7 @@ def one_region(zones: Sequence[Zone], where: str, item: str) -> Zone:
 
 
 def rectangle(centre: Corner, width_m: float, height_m: float, rotation_rad: float) -> list[Corner]:
-    """Corners (north, east); width is east-west before the rotation from north towards east."""
+    """Corners (north, east); width is east-west before a rotation from north towards east."""
     turn_cos, turn_sin = cos(rotation_rad), sin(rotation_rad)
     corners = []
     for n_sign, e_sign in ((1, 1), (-1, 1), (-1, -1), (1, -1)):

@@ -1,4 +1,4 @@
-"""Several problems found in one reading, so that a user mends them in one go."""
+"""Collects several faults of an input, so that a user can correct them together."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ MOST = 10
 
 
 class BadMission(BadInput):
-    """The first problem of a mission, with all that were found (at most ten) in `problems`."""
+    """The first fault of a mission, with all that were found (at most ten) in `problems`."""
 
     def __init__(self, problems: list[BadInput]) -> None:
         self.problems = tuple(problems[:MOST])
@@ -24,12 +24,12 @@ class BadMission(BadInput):
         )
 
     def data(self) -> dict[str, Any]:
-        """The first problem as a dictionary, and the others under `more`."""
+        """The first fault as a dictionary, with the others under `more`."""
         return {**super().data(), "more": [problem.data() for problem in self.problems[1:]]}
 
 
 def refuse(problems: list[BadInput]) -> None:
-    """Raise if there is any problem; a single one as it is."""
+    """Raise if there is any fault; a single one is raised unchanged."""
     if len(problems) == 1:
         raise problems[0]
     if problems:

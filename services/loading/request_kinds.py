@@ -7,7 +7,7 @@ WRAPPED = {
     "TaskAutomationRequest": "OriginalRequest",
     "ImpactAutomationRequest": "TrialRequest",
 }
-"""Messages around an automation request, and where they have it."""
+"""Messages that wrap an automation request, and the field that contains it."""
 
 
 def is_request(kind: str) -> bool:

@@ -1,4 +1,4 @@
-"""A document against its JSON Schema, the mission's or a campaign's, in words that a user can act on."""
+"""Validates a document against the JSON Schema of missions or campaigns, with errors for users."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ def mission_schema() -> dict[str, Any]:
 
 @cache
 def _fits_mission() -> Check:
-    """Made once: it takes longer than to check a small mission by it."""
+    """The mission validator, created once: this takes longer than checking a small mission."""
     return fits(mission_schema())
 
 
 def schema_problems(document: Document, schema: dict[str, Any] | None = None) -> list[BadInput]:
-    """All departures from a schema (the mission's unless another is given), in the order of the file."""
+    """All violations of a schema (the mission's unless another is given), in file order."""
     asked = schema or mission_schema()
     check = fits(asked) if schema else _fits_mission()
     if check(document.data):
@@ -71,7 +71,7 @@ def _problems(document: Document, error: Any) -> list[tuple[Key, BadInput]]:
 
 
 def _words(error: Any) -> tuple[str, str]:
-    """What is wrong, and what was expected."""
+    """The fault, and what was expected."""
     meaning = error.schema.get("description", "") if isinstance(error.schema, dict) else ""
     limit = error.validator_value
     bounds = {

@@ -1,4 +1,4 @@
-"""Vehicles that start inside each other's well-clear volume: nothing can keep them clear of each other then."""
+"""Vehicles that start without being well clear of each other: nothing can prevent this loss."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Where = Callable[[str], str]
 
 
 def close_starts(mission: Mission, where: Where) -> Iterator[BadInput]:
-    """A problem for each two vehicles, one of them protected, that begin without being well clear."""
+    """A fault for each pair of vehicles, one of them protected, that starts without being well clear."""
     if mission.daa.close_starts:
         return
     for (_, a), (k, b) in combinations(enumerate(mission.vehicles), 2):
@@ -37,7 +37,7 @@ def close_starts(mission: Mission, where: Where) -> Iterator[BadInput]:
 
 
 def lost_at_start(mission: Mission, a: Vehicle, b: Vehicle) -> bool:
-    """Whether well clear of two vehicles is lost at the start; exact, by the kernel `violation_within`."""
+    """Whether two vehicles are not well clear at the start; exact, by the kernel `violation_within`."""
     from cratous.core.well_clear import StandardThresholds, violation_within
 
     exact: Any = Fraction

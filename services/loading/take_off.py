@@ -1,4 +1,4 @@
-"""Vehicles that start on the ground: how high that is under each, and what is wrong with one."""
+"""Vehicles that start on the ground: ground height below each, and checks."""
 
 from __future__ import annotations
 
@@ -22,7 +22,9 @@ from cratous.spec.mission.link_loss import LandingSite
 
 
 def on_their_ground(mission: Mission) -> Mission:
-    """The mission with the height of the ground under each vehicle that starts there: of the site, or the terrain."""
+    """The mission with the ground height below each vehicle that starts on the ground: of the site
+    or the terrain.
+    """
     sites, terrain_m = sites_of(mission), mission.frame.terrain_m
     if not grounded(mission):
         return mission
@@ -37,8 +39,9 @@ def on_their_ground(mission: Mission) -> Mission:
 
 @as_errors
 def take_off_problems(mission: Mission) -> Iterator[Finding]:
-    """Vehicles on the ground that nobody takes off, that are there already, that would roll beyond level ground or that
-    climb for too long; and those of missions with sensors."""
+    """Vehicles on the ground without an ICAROUS instance, with a position not above the ground, a
+    roll beyond level ground or too long a climb; and those in missions with sensors.
+    """
     for vehicle in grounded(mission):
         item = f"vehicles[{mission.vehicles.index(vehicle)}].start"
         speed, alt_m = vehicle.min_speed_m_s, vehicle.position.alt_m
@@ -68,7 +71,7 @@ def take_off_problems(mission: Mission) -> Iterator[Finding]:
 
 
 def _is_level(vehicle: GroundedVehicle, site: LandingSite, roll: float, terrain_m: float) -> bool:
-    """Whether a site is as high as the terrain, or a roll from where the vehicle stands crosses no rim of it."""
+    """Whether a site is as high as the terrain, or a roll from the vehicle's position does not cross its rim."""
     place, high_m = vehicle.position, site.ground_m - terrain_m
     north, east = place.north_m - site.north_m, place.east_m - site.east_m
     inside = on_ground(north, east, max(site.radius_m - roll, 0.0), 0.0, 0.0)
@@ -78,6 +81,6 @@ def _is_level(vehicle: GroundedVehicle, site: LandingSite, roll: float, terrain_
 
 
 def words(mission: Mission) -> str:
-    """Which vehicles start on the ground, in words, for reports."""
+    """Which vehicles start on the ground, as text for reports."""
     names = ", ".join(str(one.id) for one in grounded(mission))
     return f"on the ground at the start, and taken off by ICAROUS: {names}"

@@ -1,8 +1,8 @@
-"""A UxAS folder or configuration, as it is, as a `Mission`.
+"""An unmodified UxAS folder or configuration as a `Mission`.
 
-The configuration and state of each entity, the tasks and zones, as they are when an automation
-request is sent, and that request make the mission: only what the request names takes part, and only the
-zones of its operating region bind. Whatever has no counterpart here is refused or noted, never dropped.
+A mission consists of an automation request and of each entity's configuration and state, the tasks and the zones at
+the time it is sent: only what the request names takes part, and only the zones of its operating region apply. What
+has no counterpart here is refused or noted, never dropped.
 """
 
 from __future__ import annotations
@@ -43,14 +43,13 @@ from cratous.spec.mission import (
 )
 
 LIMIT_MS = 86_400_000
-"""UxAS knows no end of the simulation: a day."""
+"""UxAS has no end of the simulation: one day [ms]."""
 
 
 def load_uxas(path: Path, number: int = 1) -> Mission:
-    """The mission of a request of a UxAS folder (its only cfg*.xml) or cfg XML file: the first one, or
-    the one with a number.
+    """The mission of a request of a UxAS folder (its only cfg*.xml) or cfg XML file, by number from 1.
 
-    Raises BadInput for what is wrong, missing, or not covered yet (named).
+    Raises BadInput for errors, missing data, and unsupported content (named).
     """
     asked, count = request_of(read_all(Path(path)), number, str(path))
     mission = mission_of(asked, str(path))
@@ -68,11 +67,11 @@ def mission_of(
     spoken_for: Collection[int] | None = None,
     earlier: Frame | None = None,
 ) -> Mission:
-    """The mission that a configuration and its messages make, from a file or as they came in.
+    """The mission given by a configuration and its messages, from a file or as received.
 
-    spoken_for: tasks that may be of a kind that is not covered, as their own services say how they are flown;
-    None: nobody plans but the mission, so that no vehicle may drive.
-    earlier: the frame of an earlier mission, which is kept where it still lies well enough.
+    spoken_for: tasks that may be of an unsupported kind, since their own services tell how they are flown; None: the
+    mission alone is planned, so that ground vehicles are refused. earlier: frame of an earlier mission, kept if it is
+    still suitable.
     """
     cast = _Cast(cfg, spoken_for or (), spoken_for is not None)
     request = cast.request()
@@ -147,10 +146,10 @@ def surroundings_of(cfg: Configuration, source: str) -> Mission:
 
 
 class _Cast:
-    """The messages sorted by what they are; later ones replace earlier ones of the same id."""
+    """The messages by kind; later ones replace earlier ones with the same id."""
 
     def __init__(self, cfg: Configuration, spoken_for: Collection[int], may_drive: bool) -> None:
-        """may_drive: vehicles that drive count as vehicles."""
+        """may_drive: ground vehicles count as vehicles."""
         self.cfg, self.spoken_for = cfg, spoken_for
         self.notes: list[str] = []
         self.configurations: dict[int, Sent] = {}
@@ -161,7 +160,7 @@ class _Cast:
         self.requests: list[Sent] = []
         self._conditions: list[list[Any]] = []  # SpeedAltPairs of each request
         self.interests = Interests()
-        self.driving: list[int] = []  # that nobody plans for here
+        self.driving: list[int] = []  # not planned here
         other: list[str] = []
         for sent in cfg.messages:
             body, kind = sent.body, type(sent.body).__name__
@@ -189,7 +188,7 @@ class _Cast:
             self.notes.append(f"messages not used: {', '.join(sorted(set(other)))}")
 
     def _add_request(self, sent: Sent, kind: str) -> None:
-        """A request; one in a wrapper is planned as it is: all vehicles are planned in one place."""
+        """Add a request; a wrapped one is planned unchanged, since all vehicles are planned together."""
         self._conditions.append(getattr(sent.body, "OverridePlanningConditions", []))
         if kind in WRAPPED:
             self.notes.append(f"{kind} is planned like an AutomationRequest")
@@ -218,7 +217,7 @@ class _Cast:
         return self.requests[0]
 
     def keep_conditions(self, request: Sent) -> None:
-        """Fly as fast and as high as the request says; BadInput if that cannot be."""
+        """Apply the request's speeds and altitudes; BadInput if they are infeasible."""
         pairs, tasks = self._conditions[0], request.body.TaskList
         if pairs:
             self.configurations = kept(self.configurations, pairs, tasks, request.where)
@@ -276,7 +275,7 @@ def _tasks(
 def _eligible(
     task: Task, cast: _Cast, vehicles: tuple[Vehicle, ...], item: str, notes: list[str]
 ) -> Task:
-    """Eligible vehicles that are not in the request do not take part; at least one has to."""
+    """Drop eligible vehicles that are not in the request; at least one has to remain."""
     ids = [vehicle.id for vehicle in vehicles]
     kept = tuple(n for n in task.eligible if n in ids or n not in cast.configurations)
     strangers = [n for n in kept if n not in ids]
@@ -296,7 +295,7 @@ def _eligible(
 
 
 def _named_only(tasks: list[Task], request: Sent, notes: list[str]) -> list[Task]:
-    """With relations only the tasks named in them are done, as in UxAS; the rest is noted."""
+    """If there are relations only the tasks named in them are done, as in UxAS; the others are noted."""
     text = request.body.TaskRelationships.strip()
     if not text:
         return tasks
@@ -316,7 +315,7 @@ def _unknown(what: str, where: str, item: str, known: Iterable[int], got: int) -
 
 
 def _zones(cast: _Cast, request: Sent, notes: list[str]) -> list[Sent]:
-    """The zones of the request's operating region, of region 0 if it names none; the others do not bind."""
+    """The zones of the request's operating region, of region 0 if it names none; the others do not apply."""
     number = request.body.OperatingRegion
     named: list[int] = []
     if number or number in cast.regions:
@@ -325,7 +324,7 @@ def _zones(cast: _Cast, request: Sent, notes: list[str]) -> list[Sent]:
             raise _unknown(what, request.where, "OperatingRegion", cast.regions, number)
         region = cast.regions[number]
         named = [*region.body.KeepInAreas, *region.body.KeepOutAreas]
-        if not number:  # of all zones that are there, and one may just have been removed
+        if not number:  # region 0 has all existing zones; one may just have been removed
             named = [zone for zone in named if zone in cast.zones]
         for zone in named:
             if zone not in cast.zones:
@@ -346,7 +345,7 @@ def _bound(
     sources: dict[str, str],
     notes: list[str],
 ) -> list[Zone]:
-    """The zones that bind; several keep-in zones of the region are one region together."""
+    """The zones that apply; several keep-in zones of the region are merged into one."""
     found = [
         (parts.zone(sent, places, frame.terrain_m, notes), sent.where)
         for sent in _zones(cast, request, notes)
@@ -390,7 +389,7 @@ def _compatible(cfg: Configuration) -> bool:
 
 
 def _settings(cfg: Configuration, notes: list[str]) -> Settings:
-    """What the assignment service is told; BadInput for an attribute that is none."""
+    """The settings of the assignment service; BadInput for an invalid attribute."""
     found = cfg.service("AssignmentTreeBranchBoundService")
     settings = Settings() if found is None else settings_of(*found)
     if settings.nodes == 0 and not _compatible(cfg):

@@ -1,7 +1,7 @@
 """A UxAS configuration (cfg XML) and the messages that it sends.
 
-Message files lie under `PathToMessageFiles` (relative to a run folder beside the configuration)
-or in a folder `inputs` beside it; both are searched, and a note says which was used.
+Message files are in `PathToMessageFiles` (relative to a run folder beside the configuration) or in
+a folder `inputs` beside it; both are searched, and a note says which was used.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ PIPELINE = (
     "AssignmentTreeBranchBoundService",
     "PlanBuilderService",
 )
-"""Services that make a plan of a request."""
+"""Services that plan a request."""
 PLAYED = frozenset(
     {
         *PIPELINE,
@@ -36,7 +36,7 @@ PLAYED = frozenset(
         "MessageLoggerDataService",
     }
 )
-"""Services of UxAS whose part is played by ours."""
+"""Services of UxAS whose role is taken by CRATOUS services."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Sent:
 
 @dataclass(frozen=True)
 class Configuration:
-    """What a cfg XML says: attributes of the root, services in order, messages by send time."""
+    """Content of a cfg XML: root attributes, services in order, messages by send time."""
 
     path: Path
     root: dict[str, str]
@@ -59,7 +59,7 @@ class Configuration:
     notes: tuple[str, ...]
 
     def service(self, name: str) -> tuple[dict[str, str], str] | None:
-        """Attributes and place (file:line) of the first service of a type, or None."""
+        """Attributes and position (file:line) of the first service of a type, or None."""
         for kind, attributes, line in self.services:
             if kind == name:
                 return attributes, f"{self.path}:{line}"
@@ -67,7 +67,7 @@ class Configuration:
 
 
 def find_cfgs(path: Path) -> tuple[Path, ...]:
-    """The configurations of a folder: its files cfg*.xml, or else its XML files of a <UxAS>."""
+    """The configurations of a folder: its files cfg*.xml, otherwise its XML files with root <UxAS>."""
     if not path.is_dir():
         return (path,)
     found = sorted(path.glob("cfg*.xml"))
@@ -84,17 +84,17 @@ def find_cfgs(path: Path) -> tuple[Path, ...]:
 
 
 def read_all(path: Path) -> Configuration:
-    """The configuration of a file or folder; several of a folder are processes of one system.
+    """The configuration of a file or folder; several in a folder are processes of one system.
 
-    They are read as one where what they say of a service and what they request agrees; otherwise
-    BadInput asks which of them is meant.
+    They are merged if they agree on services and requests; otherwise BadInput asks which one is
+    meant.
     """
     paths = find_cfgs(path)
     found = [read_cfg(one) for one in paths]
     first = found[0]
     if len(found) == 1:
         return first
-    # what each asks for, once: the same request from two processes is one request
+    # the same request from two processes counts once
     requests = {
         sent.where for one in found for sent in one.messages if is_request(type(sent.body).__name__)
     }
@@ -127,7 +127,7 @@ def read_all(path: Path) -> Configuration:
 
 
 def _nth(messages: tuple[Sent, ...], k: int) -> str:
-    """Which object of its file a message is, so that files with several count each of them once."""
+    """Index of a message's object in its file, so that each object of a file counts once."""
     return str([m.where for m in messages[: k + 1]].count(messages[k].where))
 
 
@@ -141,7 +141,7 @@ def _is_uxas(path: Path) -> bool:
 
 
 def read_cfg(path: Path) -> Configuration:
-    """Read a configuration and all messages that it sends, in the order of sending."""
+    """Read a configuration and all messages that it sends, in sending order."""
     from cratous.bridge.lmcp import xml
 
     notes: list[str] = []
@@ -174,7 +174,7 @@ def read_cfg(path: Path) -> Configuration:
 
 
 def _short(note: str) -> str:
-    """A note without the list of everything that would have been understood."""
+    """A note without its list of alternatives."""
     return re.sub(r"; expected .*?; got .*?;", ";", note)
 
 
@@ -219,7 +219,7 @@ def _messages(cfg: Path, service: Any, notes: list[str]) -> list[Sent]:
 def scenario_states(cfg: Configuration) -> tuple[list[Sent], list[str]]:
     """The AirVehicleStates of the AMASE scenarios beside a configuration, and notes.
 
-    Some examples of OpenUxAS leave it to the simulator to say where the vehicles are.
+    Some examples of OpenUxAS leave it to the simulator to give the vehicles' positions.
     """
     from cratous.bridge.lmcp import xml
 
@@ -239,7 +239,7 @@ def scenario_states(cfg: Configuration) -> tuple[list[Sent], list[str]]:
 
 
 def _join(base: Path, name: str) -> Path:
-    # the run folder of UxAS need not exist, so ".." is resolved in the text
+    # UxAS's run folder may not exist, so ".." is resolved textually
     import os.path
 
     return Path(os.path.normpath(base / name))

@@ -1,4 +1,4 @@
-"""Single CMASI objects (vehicle, zone, place, shape) as parts of a `Mission`."""
+"""Converts single CMASI objects (vehicle, zone, position, shape) to parts of a `Mission`."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from cratous.spec.mission import Camera, Position, Vehicle, View, Zone, ZoneKind
 DEFAULT_CLIMB_M_S = 5.0
 UNBOUNDED_M = (-1000.0, 100_000.0)
 AHEAD = View(0.0, radians(-60.0), False)
-"""How a line is looked at from before it, as UxAS does: the path ends as much earlier."""
+"""View of a line from before it, as in UxAS: the path ends earlier by that distance."""
 STRAIGHT_DOWN_RAD = radians(-85.0)
 
 
 def safe_name(text: str) -> str:
-    """A folder's name as the name of a mission: letters, digits, '_' and '-'."""
+    """A valid mission name from a folder's name: letters, digits, '_' and '-'."""
     return re.sub(r"[^A-Za-z0-9_-]+", "-", text).strip("-_") or "mission"
 
 
 def locations(body: Any) -> Iterator[tuple[float, float]]:
-    """Latitude and longitude [degrees] of every place inside an object."""
+    """Latitude and longitude [degrees] of every position inside an object."""
     if isinstance(body, (list, tuple)):
         for part in body:
             yield from locations(part)
@@ -58,12 +58,12 @@ def point(location: Any, places: Places, sent: Sent, item: str) -> Position:
 
 
 def is_place(latitude_deg: float, longitude_deg: float) -> bool:
-    """Whether a frame can have a place there; not a number is none."""
+    """Whether a frame can represent the position; NaN is invalid."""
     return abs(latitude_deg) <= 89 and abs(longitude_deg) <= 180
 
 
 def heading(degrees: float, where: str, item: str) -> float:
-    """A heading [deg] in radians; BadInput if it is no number."""
+    """A heading [deg] in radians; BadInput if it is not finite."""
     if not isfinite(degrees):
         raise BadInput(
             "not a heading", where=where, item=item, expected="a finite number", got=f"{degrees:g}"
@@ -125,7 +125,7 @@ def vehicle(configuration: Sent, state: Sent, places: Places, notes: list[str]) 
 
 
 def _cameras(configuration: Any, state: Any) -> tuple[Camera, ...]:
-    """Each camera on a gimbal, with the widest field of view that it can be told, or its present one."""
+    """Each camera on a gimbal, with the widest selectable field of view, or its present one."""
     payloads = list(configuration.PayloadConfigurationList)
     views = {
         part.PayloadID: part.HorizontalFieldOfView
@@ -145,7 +145,7 @@ def _cameras(configuration: Any, state: Any) -> tuple[Camera, ...]:
             widest = max(discrete) if stepped else camera.MaxHorizontalFieldOfView
             present = views.get(camera.PayloadID, 0)
             view = max(widest, present)
-            # the present one counts as one to choose, so that a camera that has it is told another
+            # the present one counts as selectable, so that it can be changed
             fields = {camera.MinHorizontalFieldOfView, present, *discrete}
             narrower = tuple(sorted(radians(field) for field in fields if 0 < field < view))
             found.append(
@@ -168,7 +168,7 @@ def _cameras(configuration: Any, state: Any) -> tuple[Camera, ...]:
 
 
 def zone(sent: Sent, places: Places, terrain_m: float, notes: list[str]) -> Zone:
-    """A keep-in or keep-out zone; a circle becomes a polygon that forbids no less."""
+    """A keep-in or keep-out zone; a circle becomes a polygon that forbids at least as much."""
     body = sent.body
     kind = ZoneKind.KEEP_IN if type(body).__name__ == "KeepInZone" else ZoneKind.KEEP_OUT
     floor = msl(body.MinAltitude, body.MinAltitudeType.name, terrain_m, sent.where, "MinAltitude")
@@ -177,7 +177,7 @@ def zone(sent: Sent, places: Places, terrain_m: float, notes: list[str]) -> Zone
         floor, top = UNBOUNDED_M
         notes.append(f"zone {body.ZoneID} states no altitudes: it binds at every altitude")
     elif body.MinAltitude == 0 and body.MinAltitudeType.name == "AGL":
-        # from the ground up: nobody flies below it, and the ground itself is not a ceiling
+        # from the ground: no aircraft flies below it, and the ground is no ceiling
         floor = UNBOUNDED_M[0]
     if body.StartTime or body.EndTime:
         notes.append(f"zone {body.ZoneID} has times: it binds at all times")
@@ -204,7 +204,7 @@ def _vertices(
 def corners_of(
     shape: Any, sent: Sent, item: str, name: str, places: Places, notes: list[str], *, outside: bool
 ) -> tuple[tuple[float, float], ...]:
-    """Corners of a Polygon, Rectangle or Circle; a circle's polygon lies around it if `outside`."""
+    """Corners of a Polygon, Rectangle or Circle; a circle's polygon encloses it if `outside`."""
     kind = type(shape).__name__
     if kind == "Polygon":
         corners = [
@@ -242,7 +242,7 @@ def corners_of(
 
 
 def looks_ahead(vehicles: Iterable[Vehicle]) -> bool:
-    """Whether a look ahead along a line will do besides one straight down: each vehicle has cameras that can be tilted to both."""
+    """Whether lines may be viewed ahead as well as straight down: every vehicle has cameras that tilt to both."""
     return all(
         vehicle.cameras
         and all(c.min_elevation_rad <= STRAIGHT_DOWN_RAD for c in vehicle.cameras)

@@ -1,4 +1,4 @@
-"""The automation requests of a UxAS configuration: each with the messages as they are when it is sent."""
+"""The automation requests of a UxAS configuration, each with the messages valid when it is sent."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from cratous.spec.errors import BadInput
 
 
 def requests_of(cfg: Configuration) -> tuple[Configuration, ...]:
-    """The configuration for each automation request, in the order in which they are sent.
+    """The configuration for each automation request, in sending order.
 
-    Of what is told several times a request means what was told last before it; where nothing was, what
-    is told first after it, as a request waits for what it names. That holds for an only request, too.
+    Of repeated messages a request uses the last one before it; if there is none, the first one
+    after it, since a request waits for what it names. This also applies to a single request.
     """
     places = [k for k, sent in enumerate(cfg.messages) if is_request(type(sent.body).__name__)]
-    if not places:  # whoever needs one says that there is none
+    if not places:  # a caller that needs one reports that there is none
         return (cfg,)
     found = []
     for place in places:
@@ -28,8 +28,9 @@ def requests_of(cfg: Configuration) -> tuple[Configuration, ...]:
 
 
 def request_of(cfg: Configuration, number: int, where: str) -> tuple[Configuration, int]:
-    """The configuration for the request with a number, counted from 1, and how many there are; BadInput if
-    there is no such one; where: what was read."""
+    """The configuration for the request with a number, counted from 1, and the number of requests;
+    BadInput if there is no such request; where: the input, for messages.
+    """
     asked = requests_of(cfg)
     if number not in range(1, len(asked) + 1):
         raise BadInput(

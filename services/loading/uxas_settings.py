@@ -1,11 +1,11 @@
-"""A UxAS configuration as typed data: every attribute checked, every refusal with file and line.
+"""A UxAS configuration as typed data: every attribute checked, every error with file and line.
 
     <UxAS FormatVersion="1.0" EntityID="100" EntityType="Aircraft" RunDuration_s="60">
         <Service Type="..." .../>
         <Bridge Type="..." ...><SubscribeToMessage MessageType="afrl.cmasi"/></Bridge>
     </UxAS>
 
-A name that nobody reads is a mistake, not a remark: it is refused, with the nearest known name.
+An unknown name is an error, not a remark: it is refused, with the nearest known name.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def flag(default: bool) -> Attr:
 
 
 def whole(default: int | None, low: int = 0, high: int | None = None) -> Attr:
-    """An attribute that is a whole number within bounds."""
+    """An attribute that is an integer within bounds."""
     return Attr("int", default, low, high)
 
 
@@ -54,7 +54,7 @@ def number(default: float | None, low: float | None = 0.0, high: float | None = 
 
 
 def choice(default: str, *choices: str) -> Attr:
-    """An attribute that takes one of several words, regardless of case."""
+    """An attribute that takes one of several words, ignoring case."""
     return Attr("choice", default, choices=choices)
 
 
@@ -68,7 +68,7 @@ ROOT: Mapping[str, Attr] = {
     "RunDuration_s": number(None),
     "isLoggingThreadId": flag(False),
     "isDataTimestamp": flag(False),
-    # ours: how missions are understood, and the bus over several processes
+    # extensions: how missions are interpreted, and the bus over several processes
     "Compatibility": choice("", "uxas", "cratous"),
     "FirstServiceID": whole(None, 1, 2**31),
     "HubPUB": Attr(),
@@ -104,9 +104,9 @@ class Entry:
 
 @dataclass(frozen=True)
 class Configuration:
-    """What a file says: the root's attributes as values, then services and bridges in order.
+    """Content of a file: the root's attributes as values, then services and bridges in order.
 
-    notes: what was read leniently; strict: nothing is to be.
+    notes: what was read leniently; strict: nothing may be.
     """
 
     path: Path
@@ -118,9 +118,9 @@ class Configuration:
 
 
 def read(path: Path, *, strict: bool = False) -> Configuration:
-    """Read a configuration; BadInput (with all problems that were found) if it is none.
+    """Read a configuration; BadInput (with all errors found) if it is invalid.
 
-    strict: what is read leniently otherwise, and noted, is refused.
+    strict: refuse what is otherwise read leniently and noted.
     """
     from cratous.bridge.lmcp import xml
 
@@ -168,7 +168,7 @@ def entry(element: Any, where: str) -> Entry:
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """The known names that look like a name, or all of them."""
+    """The known names similar to a name, or all of them."""
     by_lower = {k.lower(): k for k in known}
     near = [by_lower[n] for n in get_close_matches(name.lower(), by_lower, 3)]
     return " or ".join(near) if near else ", ".join(by_lower.values()) or "none"
@@ -181,7 +181,7 @@ def values_of(
     owner: str,
     problems: list[BadInput],
 ) -> dict[str, Any]:
-    """Attributes as values, with defaults; what is wrong is added to `problems`."""
+    """Attributes as values, with defaults; errors are added to `problems`."""
     values = {name: attr.default for name, attr in known.items()}
     for key, text in given.items():
         name = str(key)

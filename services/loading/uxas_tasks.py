@@ -1,4 +1,4 @@
-"""CMASI and IMPACT tasks as tasks of a `Mission`."""
+"""Converts CMASI and IMPACT tasks to tasks of a `Mission`."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ PATTERNS = {"Spiral": Pattern.SPIRAL, "Sector": Pattern.SECTOR, "Sweep": Pattern
 
 @dataclass(frozen=True)
 class Interests:
-    """Points, lines and areas of interest by id, which IMPACT tasks name."""
+    """Points, lines and areas of interest by id, to which IMPACT tasks refer."""
 
     points: dict[int, Sent] = field(default_factory=dict)
     lines: dict[int, Sent] = field(default_factory=dict)
@@ -37,7 +37,7 @@ class Interests:
     entities: dict[int, Sent] = field(default_factory=dict)
 
     def add(self, sent: Sent) -> bool:
-        """Keep the message if it is one of them."""
+        """Keep the message if it is one of them; returns whether it is."""
         kind = type(sent.body).__name__
         if kind == "PointOfInterest":
             self.points[sent.body.PointID] = sent
@@ -54,7 +54,7 @@ class Interests:
 
 @dataclass(frozen=True)
 class _Reading:
-    """One task message with everything that its reading needs."""
+    """A task message with everything needed to read it."""
 
     sent: Sent
     places: Places
@@ -89,7 +89,7 @@ class _Reading:
 
 
 def other(sent: Sent, interests: Interests) -> Task | None:
-    """A task of a kind that is not covered, for which a service of its own speaks; None for one that is."""
+    """A task of an unsupported kind, for which its own service tells how it is flown; None for a supported one."""
     body = sent.body
     if type(body).__name__ in READERS and not _watches_what_moves(body, interests):
         return None
@@ -104,13 +104,13 @@ def other(sent: Sent, interests: Interests) -> Task | None:
 
 
 def _watches_what_moves(body: Any, interests: Interests) -> bool:
-    """Whether it is a watch of what moves, which its service follows."""
+    """Whether the task is a watch of a moving entity, which its own service follows."""
     sent = interests.entities.get(getattr(body, "WatchedEntityID", 0))
     return sent is not None and type(body).__name__ == "WatchTask" and _speed(sent.body) != 0
 
 
 def _speed(state: Any) -> float:
-    """How fast an entity is, by whatever its state says of that [m/s]."""
+    """Speed of an entity, from whatever its state contains [m/s]."""
     return float(max(abs(state.Groundspeed), abs(state.u), abs(state.v), abs(state.w)))
 
 
@@ -121,7 +121,7 @@ def task(
     notes: list[str],
     interests: Interests,
 ) -> Task:
-    """A task; BadInput that names the type if it is not covered."""
+    """A task; BadInput with the type if it is not supported."""
     body, kind = sent.body, type(sent.body).__name__
     if kind not in READERS:
         raise BadInput(
@@ -154,7 +154,7 @@ def _not_below_0(reading: _Reading, field: str, what: str, unit: str) -> float:
 
 
 def _search(reading: _Reading, kind: TaskKind) -> dict[str, Any]:
-    """What all search tasks say: dwell, wavelength, ground sample distance."""
+    """Common fields of all search tasks: dwell time, wavelength, ground sample distance."""
     body, notes = reading.body, reading.notes
     bands = [band.name for band in body.DesiredWavelengthBands]
     if len(bands) > 1:
@@ -170,7 +170,7 @@ def _search(reading: _Reading, kind: TaskKind) -> dict[str, Any]:
 
 
 def _views(reading: _Reading, inertial: bool) -> dict[str, Any]:
-    """The wedges, any of which will do, by their centrelines; none means any direction."""
+    """The permitted view wedges, by their centrelines; none means any direction."""
     wedges = reading.body.ViewAngleList
     if any(wedge.VerticalCenterline == 0 for wedge in wedges):
         reading.notes.append(
@@ -204,7 +204,7 @@ def _line(reading: _Reading) -> dict[str, Any]:
 
 
 def _place(reading: _Reading) -> Position:
-    """The point of interest that an IMPACT task names, else the coordinates that it gives."""
+    """The point of interest that an IMPACT task names, otherwise its own coordinates."""
     body, number = reading.body, reading.body.SearchLocationID
     if number and (number in reading.interests.points or body.SearchLocation is None):
         known = reading.interests.points
@@ -236,7 +236,7 @@ def _point(reading: _Reading) -> dict[str, Any]:
 
 
 def _action(reading: _Reading) -> tuple[Loiter, int]:
-    """The loiter that a task desires, and for how long [ms]."""
+    """The loiter that a task requests, and its duration [ms]."""
     action = reading.body.DesiredAction
     item = "DesiredAction"
     if action is None:
@@ -338,7 +338,7 @@ def _pattern(reading: _Reading) -> dict[str, Any]:
 
 
 def _watch(reading: _Reading) -> dict[str, Any]:
-    """An entity that stands still is watched where it stands; one that moves its service follows."""
+    """A stationary entity is watched at its position; a moving one is followed by its service."""
     number = reading.body.WatchedEntityID
     state = reading.named(reading.interests.entities, number, "WatchedEntityID", "entity")
     speed = _speed(state)

@@ -1,8 +1,8 @@
-"""Seeded variants of a mission: other geometry, same story.
+"""Seeded variants of a mission: different geometry, same scenario.
 
-A *crossing* has two vehicles that reach one point at one time and height. A variant draws the
-angle between their courses, the course of the first, both speeds and the time to the crossing;
-each vehicle starts that far before the point, and its own tasks turn with it about the point.
+A *crossing* has two vehicles that reach one point at the same time and altitude. A variant draws
+the angle between their courses, the course of the first, both speeds and the time to the crossing;
+each vehicle starts that far before the point, and its own tasks rotate with it about the point.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from cratous.spec.mission import Mission, Position, Task, Vehicle
 
 
 def vary(mission: Mission, document: Document, seed: int) -> Mission:
-    """Variant `seed` (> 0) of a mission, drawn as its `variation` section says; BadInput if it has none."""
+    """Variant `seed` (> 0) of a mission, drawn as specified by its `variation` section; BadInput if it has none."""
     data = document.data.get("variation")
     key = ("variation",)
     if data is None:
@@ -88,7 +88,7 @@ def _moved(
 
 
 def _turned_task(task: Task, at: tuple[float, float], turns: dict[int, float]) -> Task:
-    """The task turned about the point like the one vehicle that may do it; others stay."""
+    """The task rotated about the point with the only vehicle that may do it; other tasks stay."""
     if len(task.eligible) != 1 or task.eligible[0] not in turns:
         return task
     turn = turns[task.eligible[0]]

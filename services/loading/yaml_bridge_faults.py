@@ -1,4 +1,4 @@
-"""The section `simulation.bridge_faults` of a mission file as `BridgeFaults`; the schema has its bounds."""
+"""The section `simulation.bridge_faults` of a mission file as `BridgeFaults`; its schema sets the bounds."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ AFTER = (
     ("reads_again_s", ("stops_reading_s",)),
     ("speaks_again_s", ("silent_s",)),
 )
-"""An instant, and those of which one has to be before it."""
+"""For each instant, those of which one has to precede it."""
 
 
 def yaml_bridge_faults(document: Document) -> BridgeFaults:
-    """The faults; BadMission if what is opened or read again was never broken before."""
+    """The faults; BadMission if something is reopened or resumed that was not closed or stopped before."""
     data = document.data["simulation"]["bridge_faults"]
     refuse(_problems(document, data))
     found: dict[str, Any] = {}

@@ -1,4 +1,4 @@
-"""The sections `link_loss` and `landing_sites` of a mission file as `LinkLoss`; the schema has their bounds."""
+"""The sections `link_loss` and `landing_sites` of a mission file as `LinkLoss`; the schema sets the bounds."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from cratous.spec.mission.link_loss import WithoutLink
 from cratous.spec.mission.link_loss import words as choice_words
 
 FEWEST_BEATS = 2
-"""A silence that is shorter than so many heartbeats says nothing."""
+"""Minimum length of a silence, in heartbeats, that indicates a lost link."""
 Found = tuple[tuple[str, ...], str, str, str]
 
 
 def yaml_link_loss(
     document: Document, places: Places, simulation: Simulation, instances: int
 ) -> LinkLoss | None:
-    """What the mission wants without the link; BadMission where it does not make sense.
+    """The mission's lost-link procedure; BadMission if it is inconsistent.
 
-    instances: how many vehicles it is about.
+    instances: number of vehicles that it applies to.
     """
     data, sites = document.data.get("link_loss"), landing_sites(document, places)
     refuse([*site_problems(document, sites)])
@@ -54,7 +54,7 @@ def words(loss: LinkLoss) -> str:
 
 
 def place_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
-    """What is wrong with the place to return to: nobody may circle there, since of a zone of the start or of the ground."""
+    """Faults of the place to return to: a zone present at the start, or the ground, prevents loitering there."""
     to = None if mission.link_loss is None else mission.link_loss.to
     if to is None:
         return
@@ -77,7 +77,7 @@ def _found(loss: LinkLoss, simulation: Simulation, instances: int, sensed: bool)
     if not instances:
         yield (), "nobody would act by it", "a vehicle with an ICAROUS instance", "none"
     if sensed:
-        # what is flown without the link is permitted against straight tracks of no width
+        # lost-link flight is permitted against straight tracks without position error
         what = "what is flown without the link is not permitted against sensed tracks"
         yield (), what, "no section sensing beside it", "both"
     if loss.to is not None and loss.choice is not WithoutLink.RETURN:

@@ -1,8 +1,8 @@
 """A mission file (YAML, schema `spec/mission/mission.schema.json`) as a `Mission`.
 
-Order: the text must mean one thing, then it must fit the schema, then the checks of `checks.py`
-on what it says, then zones are padded and starts are held against them. Each stage reports all
-that it finds, at most ten problems, each with file, line and item.
+Stages: the text must be unambiguous, then it must satisfy the schema, then the checks of
+`checks.py`, then zones are padded and starts are checked against them. Each stage reports all its
+faults, at most ten, each with file, line and item.
 """
 
 from __future__ import annotations
@@ -81,19 +81,19 @@ from cratous.spec.mission.sensing import words as sensing_words
 
 DEFAULT_WELL_CLEAR = WellClear(dthr_m=150.0, zthr_m=30.0, tthr_s=15.0, tcoa_s=0.0)
 MAX_BANK_DEG, MAX_CLIMB_M_S = 30.0, 5.0
-"""Of a vehicle that does not say them."""
+"""Defaults of a vehicle."""
 
 
 def load(path: Path, seed: int = 0) -> Mission:
     """The mission in a YAML file; seed > 0 gives that variant of its `variation` section.
 
-    Raises BadMission (a BadInput) with everything found wrong.
+    Raises BadMission (a BadInput) with all faults found.
     """
     return loaded(read_document(path), seed)
 
 
 def loaded(document: Document, seed: int = 0) -> Mission:
-    """The same, of a file that was read. Raises BadMission (a BadInput) likewise."""
+    """The same, from a parsed file. Raises BadMission (a BadInput) likewise."""
     mission = drawn(document, seed)
 
     def where(item: str) -> str:
@@ -109,16 +109,16 @@ def loaded(document: Document, seed: int = 0) -> Mission:
 
 
 def drawn(document: Document, seed: int = 0) -> Mission:
-    """What a document that fits the schema says; whether it makes sense is not checked.
+    """The mission in a document, checked against the schema only, not for consistency.
 
-    Raises BadMission (a BadInput) where it does not fit.
+    Raises BadMission (a BadInput) where it violates the schema.
     """
     refuse(schema_problems(document))
     return _mission(document, seed)
 
 
 def finish(mission: Mission, where: Any) -> Mission:
-    """Check a mission, pad its zones and hold the starts against them."""
+    """Check a mission, pad its zones and check the starts against them."""
     mission = on_their_ground(mission)
     later = tuple(c.zone for c in mission.changes if c.zone is not None)
     refuse(mission_problems(replace(mission, zones=(*mission.zones, *later)), where))
@@ -211,7 +211,7 @@ def _mission(document: Document, seed: int) -> Mission:
 
 
 def _nodes(search: dict[str, Any]) -> int | None:
-    """The nodes of the assignment search; a deadline is a number of them."""
+    """Node limit of the assignment search; a deadline is converted to nodes."""
     nodes = search.get("nodes")
     if "deadline_ms" in search:
         patience = int(search["deadline_ms"]) * NODES_PER_MS
@@ -327,7 +327,7 @@ def _daa(
         return LinkLossDaa(volume_kept, **kept, resolution=first, link_loss=link_loss)
     if merging is not None:
         return MergingDaa(volume_kept, **kept, resolution=first, merging=merging)
-    if first is Resolution.HEADING:  # the usual: what is flown so is named as it always was
+    if first is Resolution.HEADING:  # the default: keeps the established name
         return (
             Daa(volume_kept, **kept)
             if sensing is None

@@ -1,4 +1,4 @@
-"""The section `sensing` of a mission file as `Sensing`; the schema has its bounds."""
+"""The section `sensing` of a mission file as `Sensing`; the schema sets the bounds."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from cratous.spec.mission import Simulation
 from cratous.spec.mission.sensing import Sensing, Sensor, SensorKind
 
 Found = tuple[tuple[str | int, ...], str, str, str]
-"""Where in the section, what is wrong, what was expected, what was found."""
+"""Key in the section, fault, expected and actual value."""
 
 
 def yaml_sensing(document: Document, simulation: Simulation, instances: int) -> Sensing | None:
-    """The sensors of a mission that has some; BadMission where they do not make sense together.
+    """The sensors of a mission, None if it has none; BadMission if they are inconsistent.
 
-    instances: how many vehicles carry them.
+    instances: number of vehicles that carry them.
     """
     if "sensing" not in document.data:
         return None
@@ -31,9 +31,10 @@ def yaml_sensing(document: Document, simulation: Simulation, instances: int) -> 
 
 
 def sensing_of_file(path: Path, least_period_ms: int) -> Sensing:
-    """The section `sensing` of a file, which may be a mission file, alone; BadInput where it has none, or one that is wrong.
+    """The section `sensing` of a file, for example a mission file, on its own; BadInput if missing
+    or invalid.
 
-    least_period_ms: no sensor measures more often.
+    least_period_ms: minimum measurement period of any sensor.
     """
     from cratous.services.loading.document import read_document
     from cratous.services.loading.schema import mission_schema, schema_problems
@@ -49,7 +50,7 @@ def sensing_of_file(path: Path, least_period_ms: int) -> Sensing:
 
 
 def read(document: Document) -> Sensing:
-    """The section of a document that fits the schema; whether it makes sense is not checked."""
+    """The section in a document that satisfies the schema, without consistency checks."""
     data = document.data["sensing"]
     rest = {name: value for name, value in data.items() if name not in ("sensors", "coast_s")}
     real = ("sigmas", "manoeuvre_m_s2")

@@ -27,13 +27,13 @@ FITS = {
     "wavelength": SEARCHES,
     "ground_sample_distance_m": SEARCHES,
 }
-"""Entries that mean something for these kinds only; elsewhere they are refused, not ignored."""
+"""Entries that apply to these task kinds only; for other kinds they are refused, not ignored."""
 
 WhereKey = Callable[[tuple[str | int, ...]], str]
 
 
 def yaml_task(data: dict[str, Any], places: Places, where: WhereKey, number: int) -> Task:
-    """The task; BadInput for an entry that its kind has no use for."""
+    """The task; BadInput for an entry that does not apply to its kind."""
     kind = TaskKind(data["kind"])
     shapes = [name for name in ("points", "rectangle", "circle") if name in data]
 
@@ -87,7 +87,7 @@ def yaml_task(data: dict[str, Any], places: Places, where: WhereKey, number: int
 
 
 def _points(data: dict[str, Any], places: Places) -> tuple[Position, ...]:
-    """The points themselves, or the corners of a rectangle or of a polygon around a circle."""
+    """The points, or the corners of a rectangle or of a polygon around a circle."""
     if "points" in data:
         return tuple(places.position(point) for point in data["points"])
     if "rectangle" in data:

@@ -1,8 +1,8 @@
 """One logged message, and its body as object, JSON text or LMCP bytes.
 
-A body is kept in the form in which it was logged: canonical JSON text (a flight's log) or the
-bytes of the LMCP message (the message logger, lossless for series that nobody has a model of).
-What cannot be decoded is carried along as `{"$lmcp": base64}` and never left out.
+A body is kept in the form in which it was logged: canonical JSON text (a flight's log) or the bytes
+of the LMCP message (the message logger, lossless for series without a model). What cannot be
+decoded is kept as `{"$lmcp": base64}` and never omitted.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ RAW = "$lmcp"
 
 
 class Entry(NamedTuple):
-    """A message in a log; the last five are what UxAS's envelope says, where there was one.
+    """A message in a log; the last five fields are those of UxAS's envelope, if there was one.
 
-    seq: number in the log, from 0, without holes unless messages were lost; time_ms: time of the
+    seq: number in the log, from 0, consecutive unless messages were lost; time_ms: time of the
     log's clock [ms]; source: the sender's name; topic: full type name; body: JSON text or LMCP
-    bytes; address: where it was sent, None for its topic; ids are texts as on the wire; content_type:
-    None for `lmcp`.
+    bytes; address: where it was sent, None for its topic; ids are strings as on the wire;
+    content_type: None for `lmcp`.
     """
 
     seq: int
@@ -39,7 +39,7 @@ class Entry(NamedTuple):
 
     @property
     def place(self) -> str:
-        """How an error names this message."""
+        """How an error message names this message."""
         return f"message {self.seq} ({self.topic})"
 
 
@@ -56,7 +56,7 @@ def to_object(entry: Entry) -> Any:
 
 
 def to_bytes(entry: Entry) -> bytes:
-    """The bytes of the LMCP message, as they were logged or packed anew."""
+    """The bytes of the LMCP message, as logged or packed again."""
     from cratous.bridge import lmcp
 
     if isinstance(entry.body, bytes):
@@ -73,7 +73,7 @@ def to_text(entry: Entry) -> str:
 
 
 def to_data(entry: Entry) -> Any:
-    """The JSON form as plain data; BadInput for what cannot be decoded or is no JSON."""
+    """The JSON form as plain data; BadInput if it cannot be decoded or is not JSON."""
     if isinstance(entry.body, bytes):
         from cratous.bridge import lmcp
 
@@ -82,7 +82,7 @@ def to_data(entry: Entry) -> Any:
 
 
 def to_raw_data(body: bytes) -> dict[str, str]:
-    """JSON form of bytes that cannot be decoded."""
+    """The JSON form of bytes that cannot be decoded."""
     return {RAW: base64.b64encode(body).decode("ascii")}
 
 
@@ -112,9 +112,9 @@ def from_raw_data(data: Any, where: str) -> bytes:
 
 
 def topic_of(body: bytes) -> str:
-    """Full type name in the head of an LMCP message, `unknown.SERIES.type` without a model.
+    """Full type name in the header of an LMCP message, `unknown.SERIES.type` without a model.
 
-    BadInput if the bytes are too short to say.
+    BadInput if the bytes are too short to contain it.
     """
     if len(body) < 23 or body[:4] != b"LMCP" or body[8] != 1:
         raise BadInput("not an LMCP message", got=repr(body[:12]))

@@ -1,7 +1,7 @@
-"""Writes the selected messages of a log in another format; whole or not at all.
+"""Writes the selected messages of a log in another format; the file is complete or absent.
 
-What a format cannot hold (bytes that nobody can decode, text that XML forbids) is counted and
-named, never left out silently.
+What a format cannot represent (undecodable bytes, text that XML forbids) is counted and named,
+never omitted silently.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _HEAD = ("seq", "time_ms", "source", "topic")
 
 @dataclass
 class Exported:
-    """How many messages were written, and which were not, or only as bytes, with the reason."""
+    """Number of messages written, and those omitted or written only as bytes, with the reason."""
 
     count: int = 0
     left_out: list[str] = field(default_factory=list)
@@ -46,10 +46,10 @@ def export(
     with_bytes: bool = False,
     salvage: bool = False,
 ) -> Exported:
-    """Write `target`; it appears when it is whole.
+    """Write `target`, which appears only when complete.
 
-    with_bytes: MCAP gets the LMCP bytes as well. salvage: what can be read of a damaged log is
-    written, and the damage stands in the result; without it damage is BadInput and no file.
+    with_bytes: MCAP also gets the LMCP bytes. salvage: write what can be read of a damaged log and
+    state the damage in the result; without it damage raises BadInput and writes no file.
     """
     if target.exists() and target.resolve() == source.path.resolve():
         raise BadInput("the log would replace itself", where=str(target))
@@ -95,7 +95,7 @@ class _Job:
         self.done.left_out.append(f"{entry.place}: {error}")
 
     def meta(self) -> dict[str, Any]:
-        with suppress(BadInput):  # meta data of a damaged log; the messages say that it is
+        with suppress(BadInput):  # damaged meta data: reading the messages reports the damage
             meta = self.source.meta()
             return {**meta, "selected": True} if self.selection else meta
         return {}
@@ -177,7 +177,7 @@ def _uxas(job: _Job) -> None:
 
 
 def _csv(job: _Job) -> None:
-    # once for the columns, in the order in which they first appear, and once for the rows
+    # first pass: columns in order of first appearance; second pass: rows
     columns: dict[str, None] = dict.fromkeys(_HEAD)
     for entry in job.entries():
         columns.update(dict.fromkeys(flat(any_data(entry)[0])))
@@ -192,7 +192,7 @@ def _csv(job: _Job) -> None:
 
 
 def flat(data: Any, prefix: str = "") -> dict[str, Any]:
-    """Fields by dotted path; arrays stand as JSON text in one cell, null as an empty one."""
+    """Fields by dotted path; arrays become JSON text in one cell, null an empty cell."""
     cells: dict[str, Any] = {}
     for key, value in data.items():
         if key == "$type":

@@ -1,8 +1,8 @@
-"""Logs as files of text or frames: JSON lines, XML of AMASE, sentinel frames; reading and writing.
+"""Logs as text or frame files: JSON lines, XML of AMASE, sentinel frames; reading and writing.
 
-JSON lines and MCAP hold all of an entry. The XML is an AMASE scenario (`Time` in seconds), so that
-AMASE plays it; the envelope stands in further attributes. Frames and bare LMCP messages hold no
-times: what is read from them has time 0.
+JSON lines and MCAP preserve all of an entry. The XML is an AMASE scenario (`Time` in seconds), so
+that AMASE can play it; the envelope is in additional attributes. Frames and bare LMCP messages have
+no times: entries read from them have time 0.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def json_line(entry: Entry) -> tuple[str, BadInput | None]:
 
 
 def read_json_lines(path: Path) -> Iterator[Entry]:
-    """The messages of JSON lines; BadInput with the line for what is no entry."""
+    """The messages of a JSON-lines file; BadInput with the line number for an invalid entry."""
     for number, line in lines_of(path):
         if line.strip():
             yield _from_line(line, f"{path}:{number}")
@@ -105,7 +105,7 @@ def xml_event(entry: Entry) -> str:
     for name, value in zip(_XML_NAMES, entry[5:], strict=True):
         if value is not None:
             about += f" {name}={quoteattr(value)}"
-    end = text.index(">")  # of the root's tag, which has no such sign in its attributes
+    end = text.index(">")  # of the root's tag, whose attributes contain no such character
     return text[:end] + about + text[end:]
 
 
@@ -140,7 +140,7 @@ def _number(text: str, where: str) -> float:
 
 
 def addressed(entry: Entry) -> envelope.AddressedMessage:
-    """The message in the envelope in which it came, or in one made of its type."""
+    """The message in its original envelope, or in one made from its type."""
     return envelope.AddressedMessage(
         entry.address or entry.topic,
         entry.content_type or envelope.LMCP,
@@ -158,7 +158,7 @@ def framed(entry: Entry) -> bytes:
 
 
 def entry_of(seq: int, time_ms: int, message: envelope.AddressedMessage) -> Entry:
-    """What is logged of a message in an envelope; its parts stand there as they came."""
+    """The log entry of a message in an envelope, whose parts are kept as received."""
     topic = message.descriptor or message.address
     return Entry(
         seq,
@@ -191,7 +191,7 @@ def read_frames(path: Path) -> Iterator[Entry]:
 
 
 def read_lmcp(path: Path) -> Iterator[Entry]:
-    """The messages of bare LMCP messages, one after the other."""
+    """The messages of a file of concatenated bare LMCP messages."""
     at = seq = 0
     with path.open("rb") as source:
         while head := source.read(8):
@@ -210,7 +210,7 @@ def read_lmcp(path: Path) -> Iterator[Entry]:
 
 
 def text_form(entry: Entry) -> str:
-    """One line for people: number, time, sender, type, body without what is usual."""
+    """One line of text: number, time [s], sender, address if any, type, body as JSON."""
     data, error = any_data(entry)
     body = canonical(data) if error is None else f"({error})"
     to = f" to {entry.address}" if entry.address else ""

@@ -23,11 +23,11 @@ def follow_log(
     deadline: float | None = None,
     poll_s: float = POLL_S,
 ) -> Iterator[Entry | None]:
-    """The messages as they are committed; None, and the end, when the writer has closed the log.
+    """The messages as they are committed; None at the end, when the writer has closed the log.
 
-    new: only messages written from now on. deadline: end without None at this monotonic time [s];
-    BadInput if there is still no file then. The log is opened anew each time, so that the writer
-    is never held up at its end.
+    new: only messages written from now on. deadline: monotonic time [s] at which to end without
+    None; BadInput if there is no file by then. The log is reopened at each poll, so that the writer
+    is never blocked when it closes.
     """
     last = -1
     seen = False

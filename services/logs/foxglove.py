@@ -1,9 +1,9 @@
 """JSON Schemas of LMCP types, in the form that Foxglove reads.
 
-Foxglove wants `"type": "object"` at the top and one plain type for each property, so nested types
-stand inline, an enum is a string, and a field that may be null is left out of the message when it
-is null (reading it back gives null again). Where a type holds itself, it is any object. NaN and
-the infinities have no number in JSON: they stand as text.
+Foxglove needs `"type": "object"` at the top and one plain type for each property, so nested types
+are inlined, an enum is a string, and a field that may be null is omitted from the message when it
+is null (reading it back gives null again). A recursive type is any object. NaN and the infinities
+have no JSON number: they are written as text.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from cratous.bridge import lmcp
 
 @cache
 def schema_of(topic: str) -> dict[str, Any]:
-    """The JSON Schema of a type, by its full name; BadInput for a name that is no type."""
+    """The JSON Schema of a type, by its full name; BadInput for an unknown type."""
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         **_struct(lmcp.types[topic], ()),
@@ -50,7 +50,7 @@ def _one(field: Any, above: tuple[Any, ...]) -> dict[str, Any]:
 
 
 def without_null(data: Any) -> Any:
-    """The JSON form with fields that are null left out; elements of arrays stay."""
+    """The JSON form without fields that are null; elements of arrays are kept."""
     if isinstance(data, dict):
         return {key: without_null(value) for key, value in data.items() if value is not None}
     return [without_null(value) for value in data] if isinstance(data, list) else data

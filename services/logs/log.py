@@ -1,10 +1,10 @@
-"""The message log: SQLite, complete or absent, with a digest that names its content.
+"""The message log: SQLite, complete or absent, with a digest that identifies its content.
 
 `messages` holds every message of the bus in total order; `meta` holds what is needed to judge it
 again (mission, plan, version, seed); the schema is that of all logs (`services.logs.schema`). The
-digest covers sequence, virtual time, source, topic and canonical body: no ports, no wall times, no
-order of insertion. The file is written beside its final name and renamed when it is whole. The
-readers here take logs of the message logger as well.
+digest covers sequence, virtual time, source, topic and canonical body, but no ports, wall times or
+insertion order. The file is written under a temporary name beside its final one and renamed when
+complete. The readers here accept logs of the message logger as well.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from cratous.services.logs.records import canonical
 from cratous.services.logs.schema import INSERT, TABLES, Digest
 from cratous.services.logs.sqlite_log import SqliteLog
 from cratous.services.logs.store import cannot_write
+from cratous.spec.errors import BadInput
 
 BATCH = 500
 
@@ -40,7 +41,7 @@ class LogWriter:
     """Writes one log; use as a context manager. An exception inside leaves no file."""
 
     def __init__(self, path: Path, encode: Callable[[Any], str] | None = None, **meta: Any) -> None:
-        """encode(body) gives canonical JSON text; the default is that of LMCP objects."""
+        """encode(body) returns canonical JSON text; the default is that of LMCP objects."""
         if encode is None:
             from cratous.bridge.lmcp import jsonform
 
@@ -65,7 +66,7 @@ class LogWriter:
         self._execute("INSERT OR REPLACE INTO meta VALUES(?, ?)", (key, canonical(value)))
 
     def tap(self, envelope: Envelope) -> None:
-        """Log one message; made for `Bus.tap`."""
+        """Log one message; intended for `Bus.tap`."""
         entry = Entry(
             envelope.seq,
             envelope.time_ms,
@@ -97,7 +98,7 @@ class LogWriter:
         self._rows.clear()
 
     def close(self) -> None:
-        """Write the rest and give the file its name."""
+        """Write the remaining messages and give the file its final name."""
         try:
             self._flush()
             self._execute("INSERT INTO closing VALUES(?, ?)", (self.count, self.digest()))
@@ -112,7 +113,7 @@ class LogWriter:
             raise
 
     def discard(self) -> None:
-        """Give up: leave no file."""
+        """Abort: leave no file."""
         with suppress(sqlite3.Error):
             self._db.close()
         with suppress(OSError):
@@ -132,11 +133,66 @@ class LogWriter:
 def read_log(path: Path) -> Iterator[Row]:
     """The messages in order; BadInput if the file is not a message log.
 
-    A body that was logged as LMCP bytes is given as JSON text.
+    A body logged as LMCP bytes is returned as JSON text.
     """
     with SqliteLog(path) as log:
         for entry in log.entries():
             yield Row(*entry[:4], to_text(entry))
+
+
+class Heard(NamedTuple):
+    """A message of a log with its decoded body, without the rest of its envelope."""
+
+    time_ms: int
+    source: str
+    topic: str
+    body: Any
+
+
+class Reading:
+    """One pass over all messages of a log, bodies as JSON text; `digest` is set at its end, "" before."""
+
+    def __init__(self, path: Path) -> None:
+        self.path, self.digest = path, ""
+
+    def __iter__(self) -> Iterator[Entry]:
+        digest = Digest()
+        with SqliteLog(self.path) as log:
+            for entry in log.entries():
+                digest.feed(entry)
+                if type(entry.body) is str:
+                    yield entry
+                else:
+                    yield entry._replace(body=to_text(entry))
+        self.digest = digest.hex()
+
+
+def read_heard(path: Path) -> Iterator[Heard]:
+    """The messages of a log with decoded bodies; BadInput for a body that is invalid or not of its message's type."""
+    for row in read_log(path):
+        yield Heard(row.time_ms, row.source, row.topic, body_of(row))
+
+
+def body_of(row: Row | Entry) -> Any:
+    """The object of a JSON body; BadInput if it is invalid or not of the type that the message states."""
+    from cratous.bridge.lmcp.jsonform import from_json
+
+    try:
+        body = from_json(str(row.body))
+    except BadInput as error:
+        raise BadInput(
+            error.what, where=_place(row), item=error.item, expected=error.expected, got=error.got
+        ) from None
+    names = body.all_names
+    if row.topic not in names:
+        raise BadInput(
+            "a body of another type", where=_place(row), expected=row.topic, got=names[0]
+        )
+    return body
+
+
+def _place(row: Row | Entry) -> str:
+    return f"message {row.seq} ({row.topic})"
 
 
 def read_meta(path: Path) -> dict[str, Any]:
@@ -152,10 +208,12 @@ def read_digest(path: Path) -> str:
 
 
 def read_envelopes(path: Path, decode: Callable[[str], Any] | None = None) -> Iterator[Envelope]:
-    """The messages as the bus delivered them; decode(text) gives the body back."""
-    if decode is None:
-        from cratous.bridge.lmcp import jsonform
-
-        decode = jsonform.from_json
+    """The messages as the bus delivered them; decode(text) restores the body."""
     for row in read_log(path):
-        yield Envelope(row.seq, row.time_ms, row.source, row.topic, decode(row.body))
+        yield Envelope(
+            row.seq,
+            row.time_ms,
+            row.source,
+            row.topic,
+            body_of(row) if decode is None else decode(row.body),
+        )

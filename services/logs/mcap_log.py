@@ -1,10 +1,10 @@
-"""MCAP: export that Foxglove opens, and import of what was exported.
+"""MCAP: export that Foxglove opens, and import of our own exports.
 
-A channel for each type and envelope, JSON with the type's JSON Schema; `channel.metadata` bears
-role, sender and envelope, so that nothing of an entry is lost. Roles: `message`; `bytes`, the
-LMCP message as it was logged (encoding `lmcp`, on request, and for what cannot be decoded);
-`view`, what Foxglove's map and 3D panels draw (`views`). Time 0 is that of the log's clock. Meta data,
-gaps and the number of messages stand in metadata records: a file without them is truncated.
+One channel per type and envelope, JSON with the type's JSON Schema; `channel.metadata` holds role,
+sender and envelope, so that nothing of an entry is lost. Roles: `message`; `bytes`, the LMCP
+message as logged (encoding `lmcp`, on request, and for what cannot be decoded); `view`, what
+Foxglove's map and 3D panels draw (`views`). Time 0 is that of the log's clock. Meta data, gaps and
+the number of messages are in metadata records: a file without them is truncated.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ PROFILE = "cratous"
 MAGIC = b"\x89MCAP0\r\n"
 _ENVELOPE = ("address", "group", "entity_id", "service_id", "content_type")
 _GAP = [int, int, int, int, str]
-_CHUNK = 1 << 18  # bytes; what a truncated file loses at most
+_CHUNK = 1 << 18  # bytes; the most that a truncated file loses
 _NS = 1_000_000  # nanoseconds in a millisecond
 
 
 class McapWriter:
-    """Writes entries to a binary stream; `close` makes the file whole."""
+    """Writes entries to a binary stream; `close` completes the file."""
 
     def __init__(self, stream: IO[bytes], *, with_bytes: bool = False, views: bool = True) -> None:
-        """with_bytes: also a channel with the LMCP bytes; views: what Foxglove draws."""
+        """with_bytes: also a channel with the LMCP bytes; views: also what Foxglove draws."""
         from mcap.writer import CompressionType, Writer
 
         from cratous import __version__
@@ -50,7 +50,7 @@ class McapWriter:
         self.count = 0
 
     def write(self, entry: Entry) -> BadInput | None:
-        """Add one message; gives the error if it can only stand there as bytes."""
+        """Add one message; returns the error if it can only be written as bytes."""
         time_ns = entry.time_ms * _NS
         if not 0 <= time_ns < 2**63 or not 0 <= entry.seq < 2**32:
             raise BadInput(
@@ -143,7 +143,7 @@ def _names(topic: str) -> tuple[str, ...]:
 
 
 def is_mcap(head: bytes) -> bool:
-    """Whether a file with this beginning is MCAP."""
+    """Whether a file with these first bytes is MCAP."""
     return head.startswith(MAGIC)
 
 
@@ -169,7 +169,7 @@ def read_meta(path: Path) -> tuple[dict[str, Any], list[list[Any]]]:
 
 
 def _records(path: Path) -> Iterator[Any]:
-    """The records of the file, with those in chunks; BadInput where it is damaged."""
+    """The records of the file, including those in chunks; BadInput where it is damaged."""
     from mcap.stream_reader import StreamReader
 
     with path.open("rb") as stream:
@@ -182,14 +182,14 @@ def _records(path: Path) -> Iterator[Any]:
                 record = next(records)
             except StopIteration:
                 return
-            except Exception as error:  # the parser and both decompressors have errors of all kinds
+            except Exception as error:  # parser and decompressors raise errors of all kinds
                 raise _damaged(path, read, error) from None
             read += 1
             yield record
 
 
 def _unpacked(records: Iterable[Any]) -> Iterator[Any]:
-    """The records, with those of chunks, which are inflated within their bound and their word."""
+    """The records, including those of chunks, which are inflated up to their limit and declared size."""
     for record in records:
         if type(record).__name__ != "Chunk":
             yield record
@@ -250,7 +250,7 @@ def _damaged(path: Path, read: int, error: Exception) -> BadInput:
 
 
 def read_mcap(path: Path) -> Iterator[Entry]:
-    """The messages of an export of ours, in order; BadInput for damage and for other files."""
+    """The messages of one of our exports, in order; BadInput for damage and for other files."""
     channels: dict[int, Any] = {}
     done: int | None = None
     count: int | None = None
@@ -274,7 +274,7 @@ def read_mcap(path: Path) -> Iterator[Entry]:
                 entry = _entry(record, channels.get(record.channel_id), path)
             except (KeyError, UnicodeDecodeError) as error:
                 raise _damaged(path, read, error) from None
-            # bytes come before the JSON of the same message and count for it
+            # bytes precede the JSON of the same message and take precedence
             if entry is None or entry.seq == done:
                 continue
             done = entry.seq

@@ -1,18 +1,19 @@
 """The message logger: a service that writes every message it is configured for to a log.
 
-UxAS mounts it as MessageLoggerDataService: `LogMessage MessageType` is a prefix of addresses ("afrl"
-takes all of CMASI), `LogFileName` the begin of the files' names, `LogFileMessageCountLimit` turns text files on beside the database, with so
-many messages in a file, `FilesPerSubDirectory` puts so many of them in a folder.
-`NumberMessagesToSkip` logs one message of a type, then skips so many of it, and so on.
+UxAS mounts it as MessageLoggerDataService: `LogMessage MessageType` is a prefix of addresses
+("afrl" selects all of CMASI), `LogFileName` the prefix of file names, `LogFileMessageCountLimit`
+enables text files beside the database, with that many messages each, `FilesPerSubDirectory` sets
+the number of files per folder. `NumberMessagesToSkip` is the number of messages of a type to skip
+after each one that is logged.
 
     logger = MessageLogger.from_element(element, folder, "cfg.xml")
     bus.add(logger)            # where the bus knows `prefixes`; else: bus.tap(logger.tap)
     logger.close()
 
-What it decides is a pure step (`choose`); the log that it hands messages to is the shell. The
-body is logged as its LMCP bytes: those that came in from outside if there are any, so that types
-nobody has a model of are logged too. It goes on when the log cannot be written, says so on the bus
-(ServiceStatus, once when it begins and once when it ends), and counts what is lost.
+Its decision is a pure step (`choose`); the log that receives the messages is the shell. The body is
+logged as its LMCP bytes, as received from outside if available, so that types without a model are
+logged too. If the log cannot be written it continues, reports it on the bus (ServiceStatus, once at
+the start and once at the end of the failure), and counts what is lost.
 """
 
 from __future__ import annotations
@@ -52,7 +53,7 @@ class LoggerState(NamedTuple):
 
 
 class MessageLogger:
-    """A service with one log; see the module."""
+    """A service that writes one log; see the module."""
 
     subscribes: tuple[str, ...] = ()
 
@@ -68,10 +69,11 @@ class MessageLogger:
         path: Path | None = None,
         **store: Any,
     ) -> None:
-        """A new log `<stem>_<n>.sqlite` in the folder (or at `path`); BadInput if it cannot be.
+        """A new log `<stem>_<n>.sqlite` in the folder (or at `path`); BadInput if it cannot be
+        created.
 
-        text_limit: messages in each text file, 0 for no such files; store: of `LogStore`, and meta
-        data of the log.
+        text_limit: messages per text file, 0 for no text files; store: arguments of `LogStore`, and
+        meta data of the log.
         """
         self.name = name
         self.rules = tuple(rules)
@@ -87,7 +89,7 @@ class MessageLogger:
 
     @classmethod
     def from_element(cls, element: Any, folder: Path, where: str, **store: Any) -> MessageLogger:
-        """The logger of an element `Service` of a configuration; BadInput with file and line."""
+        """The logger configured by an element `Service` of a configuration; BadInput with file and line."""
         place = f"{where}:{element.sourceline}"
         return cls.from_parts(element.attrib, tuple(element), folder, place, **store)
 
@@ -100,7 +102,7 @@ class MessageLogger:
         where: str,
         **store: Any,
     ) -> MessageLogger:
-        """The same of an element's attributes and children; where: its `file:line`."""
+        """The same from an element's attributes and children; where: its `file:line`."""
         file, rules = where.rpartition(":")[0], []
         for child in children:
             place = f"{file}:{child.sourceline}"
@@ -122,11 +124,11 @@ class MessageLogger:
         )
 
     def start(self) -> LoggerState:
-        """Nothing is skipped yet."""
+        """The initial state: nothing is skipped yet."""
         return LoggerState()
 
     def choose(self, state: LoggerState, envelope: Envelope) -> tuple[LoggerState, bool]:
-        """The pure step: whether this message is logged."""
+        """The pure step: the next state, and whether this message is logged."""
         address = getattr(envelope, "address", "") or envelope.topic
         if not address.startswith(self.prefixes):
             return state, False
@@ -140,7 +142,7 @@ class MessageLogger:
     def handle(
         self, state: LoggerState, envelope: Envelope, now_ms: int
     ) -> tuple[LoggerState, Iterable[Any]]:
-        """Log one message if it is chosen; says on the bus when the log fails and when it is back."""
+        """Log one message if it is chosen; publishes a status when the log fails and when it recovers."""
         state, chosen = self.choose(state, envelope)
         if not chosen:
             return state, ()
@@ -161,7 +163,7 @@ class MessageLogger:
         return _status("Warning", f"{self.log.path}: written again; {self.log.lost} messages lost")
 
     def tap(self, envelope: Envelope) -> None:
-        """The same for `Bus.tap`: every message, in order; trouble shows in `log.trouble`."""
+        """The same for `Bus.tap`: every message, in order; errors are shown in `log.trouble`."""
         self._tap_state, _ = self.handle(self._tap_state, envelope, envelope.time_ms)
 
     def stop(self, state: LoggerState) -> None:
@@ -169,7 +171,7 @@ class MessageLogger:
         self.close()
 
     def close(self) -> None:
-        """Write the rest and close the log; BadInput if something is not on disk."""
+        """Write the remaining messages and close the log; BadInput if something is not on disk."""
         if self._texts is not None:
             self._texts.close()
         self.log.close()
@@ -181,7 +183,7 @@ class MessageLogger:
 
 
 def entry_of(envelope: Envelope) -> tuple[Entry, BadInput | None]:
-    """What is logged of a message, and the error if its body has no LMCP form (then as text)."""
+    """The log entry of a message, and the error if its body has no LMCP form (then logged as text)."""
     problem: BadInput | None = None
     body: str | bytes | None = getattr(envelope, "raw", None)
     if body is None:
@@ -212,7 +214,7 @@ def _xml(entry: Entry) -> str:
 
 
 def _status(kind: str, text: str) -> Any:
-    # of no request: an error without one ends the request that is planned
+    # RequestID 0: an error without one ends the request that is being planned
     pairs = ((SERVICE_TYPE, text[:1000]), ("RequestID", "0"))
     info = [lmcp.new("KeyValuePair", Key=key, Value=value) for key, value in pairs]
     return lmcp.new("ServiceStatus", StatusType=kind, Info=info)
@@ -232,7 +234,7 @@ def _stem(attributes: Mapping[str, str], where: str) -> str:
 
 
 def _free(folder: Path, stem: str) -> tuple[Path, int]:
-    """The first log name that is free in the folder, and its number."""
+    """The first unused log name in the folder, and its number."""
     number = 0
     try:
         while (path := folder / f"{stem}_{number}.sqlite").exists():

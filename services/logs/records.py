@@ -1,7 +1,8 @@
 """Frozen records (dataclasses, named tuples, enums) to plain JSON data and back.
 
-The type hints are the schema: nothing is registered, and what a hint does not allow is refused.
-Named tuples become objects with their field names, so that a log can be read without this code.
+The type hints are the schema: no registration is needed, and data that a hint does not allow is
+refused. Named tuples become objects with their field names, so that a log can be read without this
+code.
 """
 
 from __future__ import annotations
@@ -39,12 +40,12 @@ def to_data(value: Any) -> Any:
 
 
 def from_data(cls: type[T], data: Any, item: str = "") -> T:
-    """A record of type `cls` from what `to_data` wrote; BadInput if it does not fit."""
+    """A record of type `cls` from the output of `to_data`; BadInput if it does not fit."""
     return cast(T, _read(cls, data, item or cls.__name__))
 
 
 def canonical(data: Any) -> str:
-    """One text per value: sorted keys, no spaces, shortest floats; no NaN or infinity."""
+    """The unique text of a value: sorted keys, no spaces, shortest floats; no NaN or infinity."""
     return json.dumps(
         data, sort_keys=True, separators=(",", ":"), allow_nan=False, ensure_ascii=False
     )
@@ -109,7 +110,7 @@ def _read_tuple(hints: tuple[Any, ...], data: Any, item: str) -> tuple[Any, ...]
 def _read_record(cls: Any, data: Any, item: str) -> Any:
     if not isinstance(data, dict):
         raise _misfit(item, f"an object with {', '.join(_names(cls))}", data)
-    # a record of a subclass is known by its fields; one that adds none to those there are is read as what it is of
+    # a subclass record is recognised by its fields; one that adds none is read as its base class
     if not _names(cls) or set(data) != set(_names(cls)):
         cls = next((c for c in _below(cls) if set(data) == set(_names(c))), cls)
     hints, names = _hints(cls), _names(cls)
@@ -129,7 +130,7 @@ def _read_record(cls: Any, data: Any, item: str) -> Any:
 
 
 def _below(cls: Any) -> Iterator[Any]:
-    """The subclasses of a record, and theirs."""
+    """All direct and indirect subclasses of a record."""
     for one in cls.__subclasses__():
         yield one
         yield from _below(one)
@@ -146,7 +147,7 @@ def _misfit(item: str, expected: str, got: Any) -> BadInput:
 
 
 def _as_json(got: Any) -> str:
-    """A value as its writer knows it: `null`, not `None`."""
+    """A value as written in JSON: `null`, not `None`."""
     try:
         return json.dumps(got, ensure_ascii=False)
     except (TypeError, ValueError):

@@ -1,9 +1,9 @@
 """Sends the messages of a log again, at any rate, to a stream or to a TCP peer.
 
-Times keep their distances divided by the rate; each message has a due time of its own, so that
-delays do not add up. What the peer sends is read and dropped, since a simulator that cannot send
-stands still. A peer that does not read for `STALL_S`, or goes away, is a typed error with the
-number of messages that were sent.
+Time intervals are divided by the rate; each message has its own due time, so that delays do not
+accumulate. What the peer sends is read and dropped, since a simulator that cannot send blocks. A
+peer that does not read for `STALL_S`, or disconnects, is a typed error with the number of messages
+sent.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ _BLOCK = 1 << 16
 
 
 class Out(Protocol):
-    """Where a replay goes."""
+    """Destination of a replay."""
 
     def send(self, data: bytes) -> None:
-        """Hand over the bytes of one message."""
+        """Send the bytes of one message."""
 
     def wait(self, seconds: float) -> None:
         """Wait for `seconds` [s]."""
@@ -51,7 +51,7 @@ class TcpOut:
 
     def __init__(self, peer: socket.socket, stall_s: float = STALL_S) -> None:
         self._peer, self._stall_s = peer, stall_s
-        self.received = 0  # bytes that the peer sent, which are dropped
+        self.received = 0  # bytes received from the peer, which are dropped
         peer.setblocking(False)
 
     def send(self, data: bytes) -> None:
@@ -109,7 +109,7 @@ def connect(address: str, timeout_s: float = 10.0) -> socket.socket:
 
 
 def accept(address: str, tell: Callable[[str], None]) -> socket.socket:
-    """Wait for the first client at an address; tell(address) says which, for port 0."""
+    """Wait for the first client at an address; tell(address) reports the address in use, for port 0."""
     try:
         with socket.create_server(parse_address(address)) as server:
             host, port = server.getsockname()[:2]
@@ -127,9 +127,10 @@ def replay(
     on_skip: Callable[[Entry, BadInput], None],
     clock: Callable[[], float] = time.monotonic,
 ) -> int:
-    """Send the messages; returns how many. rate: 2 is twice as fast, 0 as fast as it goes.
+    """Send the messages; returns how many. rate: 2 is twice as fast, 0 as fast as possible.
 
-    on_skip gets what cannot be sent in this form; clock: seconds, which `out.wait` lets pass.
+    on_skip is called for messages that cannot be sent in this form; clock: seconds, which
+    `out.wait` lets pass.
     """
     if not 0 <= rate < float("inf"):
         raise BadInput("wrong rate", item="rate", expected="a number from 0", got=f"{rate}")

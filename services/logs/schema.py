@@ -1,9 +1,9 @@
-"""The SQLite schema of every log of ours, and how a body enters the digest.
+"""The SQLite schema of all our logs, and how a body enters the digest.
 
-`messages` holds the messages in total order, `meta` what is needed to judge them again, `gaps`
-what is known to be missing, `closing` one row if the writer came to its end: the number of
-messages and the digest. A body is JSON text or a blob of LMCP bytes. Version 1 (before the last
-two tables and the columns of the envelope) is read as well.
+`messages` holds the messages in total order, `meta` what is needed to judge them again, `gaps` what
+is known to be missing, `closing` one row if the writer finished: the number of messages and the
+digest. A body is JSON text or a blob of LMCP bytes. Version 1 (before the last two tables and the
+columns of the envelope) is read as well.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any
 from cratous.services.logs.entry import Entry
 from cratous.services.logs.records import canonical
 
-APPLICATION_ID = 0x43524154  # "CRAT", so that `file` can name a log
+APPLICATION_ID = 0x43524154  # "CRAT", so that `file` can identify a log
 VERSION = 2
 TABLES = f"""
 PRAGMA application_id = {APPLICATION_ID};
@@ -42,15 +42,15 @@ def _quoted(text: str) -> str:
 
 
 class Digest:
-    """SHA-256 over messages: no ports, no wall times, no order of insertion, no meta data."""
+    """SHA-256 over messages, without ports, wall times, insertion order and meta data."""
 
     def __init__(self) -> None:
         self._sum: Any = hashlib.sha256()
 
     def feed(self, entry: Entry) -> None:
-        """Add one message; a head without an envelope has four parts only."""
+        """Add one message; a header without an envelope has only four parts."""
         outside = entry[5:]
-        if outside == NO_ENVELOPE:  # nearly all: what `canonical` gives, without its long way
+        if outside == NO_ENVELOPE:  # the usual case: the result of `canonical`, computed faster
             head = f"[{entry.seq},{entry.time_ms},{_quoted(entry.source)},{_quoted(entry.topic)}]"
         else:
             head = canonical([*entry[:4], *outside])

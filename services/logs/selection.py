@@ -1,7 +1,7 @@
-"""Which messages of a log: by type (with what inherits from it), time, entity and text.
+"""Selects messages of a log by type (including subtypes), time, entity and text.
 
-An entity is named by any field of a message that holds ids of entities (`EntityID`, `VehicleID`,
-`EntityList`, ...), and by `ID` in the states and configurations of entities.
+An entity is named by any field of a message that holds entity ids (`EntityID`, `VehicleID`,
+`EntityList`, ...), and by `ID` in entity states and configurations.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ _ENTITIES = ("afrl.cmasi.EntityState", "afrl.cmasi.EntityConfiguration")
 
 @dataclass
 class Selection:
-    """What to keep; everything by default.
+    """Which messages to keep; all by default.
 
-    types: full, series or short names, each with its descendants; `*` and `?` match topics as in
-    file names. from_ms, to_ms: times, both kept [ms]. entities: ids, one of which must be named.
-    text: stands somewhere in the JSON form, whatever the case. sources: names of senders.
+    types: full, series or short names, each with its subtypes; `*` and `?` match topics as in file
+    names. from_ms, to_ms: first and last time, both included [ms]. entities: ids, one of which must
+    be named. text: contained in the JSON form, ignoring case. sources: names of senders.
     """
 
     types: tuple[str, ...] = ()
@@ -83,7 +83,7 @@ class Selection:
         return not (early or late)
 
     def sql(self) -> tuple[str, tuple[Any, ...]]:
-        """A condition in SQL that keeps at least these messages."""
+        """An SQL condition that keeps at least these messages, with its parameters."""
         parts: list[str] = []
         values: list[Any] = []
         for text, limit in (("time_ms >= ?", self.from_ms), ("time_ms <= ?", self.to_ms)):
@@ -109,7 +109,7 @@ class Selection:
 
 
 def _nearest(name: str, topics: list[str]) -> str:
-    """Types that look like a name, those of the log first."""
+    """Types with similar names, those of the log first."""
     from cratous.bridge import lmcp
 
     short = [full.rpartition(".")[2] for full in (*topics, *lmcp.types)]
@@ -134,7 +134,7 @@ def _topic_test(name: str) -> Callable[[str], bool]:
 
 
 def names_of(topic: str) -> tuple[str, ...]:
-    """The full names of a message type and of its bases; none for a type without a model."""
+    """The full names of a message type and of its base types; empty for a type without a model."""
     from cratous.bridge import lmcp
 
     return lmcp.types[topic].all_names if topic in lmcp.types else ()

@@ -1,6 +1,8 @@
-"""Opens a log of any format that we read, by its content: the readers of all `cratous log` commands.
+"""Opens a log of any supported format, detected by content: the readers of all `cratous log`
+commands.
 
-SQLite of ours or of UxAS, MCAP of ours, JSON lines, XML (AMASE), sentinel frames, LMCP messages.
+SQLite of CRATOUS or of UxAS, MCAP of CRATOUS, JSON lines, XML (AMASE), sentinel frames, LMCP
+messages.
 """
 
 from __future__ import annotations
@@ -18,19 +20,19 @@ from cratous.spec.errors import BadInput
 
 
 class Source:
-    """A log open for reading: what all formats can tell."""
+    """A log open for reading: the interface common to all formats."""
 
     def __init__(self, path: Path, kind: str, read: Callable[[Path], Iterator[Entry]]) -> None:
         self.path, self.kind, self._read = path, kind, read
 
     def entries(self, selection: Selection | None = None, after: int = -1) -> Iterator[Entry]:
-        """The messages that are selected, in order; BadInput where the log is damaged."""
+        """The selected messages, in order; BadInput where the log is damaged."""
         for entry in self._read(self.path):
             if entry.seq > after and (selection is None or selection.keeps(entry)):
                 yield entry
 
     def topics(self) -> list[TopicCount]:
-        """The types with counts and times."""
+        """The message types with counts and times."""
         found: dict[str, TopicCount] = {}
         for entry in self.entries():
             known = found.get(entry.topic) or TopicCount(entry.topic, 0, 2**62, -(2**62))
@@ -52,7 +54,7 @@ class Source:
         return [Gap(*gap) for gap in read_meta(self.path)[1]] if self.kind == "mcap" else []
 
     def closing(self) -> Closing | None:
-        """What the writer said at its end; None if the format or the writer does not say."""
+        """What the writer recorded when it closed the log; None if the format or the writer has no such record."""
         return None
 
     def end(self) -> str:
@@ -60,7 +62,7 @@ class Source:
         return ""
 
     def holes(self) -> int:
-        """Numbers that are missing between the first and the last."""
+        """How many numbers are missing between the first and the last."""
         return 0
 
     def verify(self) -> None:
@@ -69,14 +71,15 @@ class Source:
             pass
 
     def verified_entries(self) -> Iterator[Entry]:
-        """All messages; BadInput, at the latest after the last, if they are not what was logged.
+        """All messages; BadInput, at the latest after the last, if they differ from what was
+        logged.
 
-        What is made of them counts only once this has ended without it.
+        Results derived from them are valid only once this has ended without an error.
         """
         return self.entries()
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Close the file."""
 
     def __enter__(self) -> Source:
         return self
@@ -128,7 +131,7 @@ class DatabaseSource(Source):
 
 
 def open_log(path: Path) -> Source:
-    """The log in a file (or `log.sqlite` in a folder); BadInput if it is none that we know."""
+    """The log in a file (or `log.sqlite` in a folder); BadInput if its format is unknown."""
     path = path / LOG_NAME if path.is_dir() else path
     if not path.is_file():
         raise BadInput("there is no such file", where=str(path), expected="a message log")
@@ -173,19 +176,27 @@ DOUBTS = {
     "lost": "messages of the log are missing",
     "selected": "messages of the log were selected, and the others are not here",
     "cut off": "the flight was cut off: the log stops before its mission ends",
+    "unended": "the log has no end of its mission: the flight was cut off, or that message is not here",
 }
-"""What keeps a log from being whole, or a flight from being seen to its end, in words."""
+"""Reasons why a log is incomplete, or a flight was not observed to its end, in words."""
 BEGINS, ENDS = "cratous.PlanAccepted", "cratous.MissionEnd"
+NO_END = frozenset(("cut off", "unended"))
+"""The keys of DOUBTS that concern only how far a flight was observed."""
 
 
 def doubts(path: Path) -> list[str]:
-    """What keeps a log from being whole, of DOUBTS; BadInput where it is not what its writer left."""
+    """Why a log is incomplete, as keys of DOUBTS; BadInput if it was altered after writing."""
     with open_log(path) as source:
         topics = {entry.topic for entry in source.verified_entries()}
         is_open = bool(source.end()) and source.closing() is None
         is_lost = bool(source.holes() + sum(gap.missing for gap in source.gaps()))
         meta = source.meta()
-        is_flight = BEGINS in topics or ("mission" in meta and "selected" not in meta)
-    is_cut = is_flight and ENDS not in topics and not is_open
-    so = {"open": is_open, "lost": is_lost, "selected": "selected" in meta, "cut off": is_cut}
+    is_selected, is_whose = "selected" in meta, "mission" in meta
+    is_flight = BEGINS in topics or is_whose
+    has_no_end = is_flight and ENDS not in topics and not is_open and not is_selected
+    # only the flight itself writes the mission: other writers may start late, stop early or omit
+    # messages
+    is_cut = has_no_end and is_whose and not is_lost
+    so = {"open": is_open, "lost": is_lost, "selected": is_selected, "cut off": is_cut}
+    so["unended"] = has_no_end and not is_cut
     return [kind for kind, is_so in so.items() if is_so]

@@ -17,19 +17,19 @@ from cratous.services.logs.store import Gap
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import CELL_BYTES, json_of
 
-# the second is what the library raises where a damaged name stands in its message
+# the library raises the second where an error message contains a damaged name
 ERRORS = (sqlite3.DatabaseError, UnicodeDecodeError)
 TABLE_NAMES = "SELECT name FROM sqlite_master WHERE type = 'table'"
-"""Names of tables alone: the rows of a view have no end that could be foreseen."""
+"""Names of tables only: the rows of a view may be unbounded."""
 UNDECODED, NO_TEXT = "Could not decode to UTF-8", "text that is not UTF-8"
 OPTIONAL_KINDS = frozenset((str, type(None)))
 _OF_MESSAGE = (int, int, str, str, str)
-PLAIN_KINDS = frozenset((_OF_MESSAGE, (*_OF_MESSAGE, *[type(None)] * 5)))
-"""Of the rows of a flight; all others that are right take longer to tell."""
+_WITHOUT_ENVELOPE = (*_OF_MESSAGE, *[type(None)] * 5)
+"""Value types of rows written by a flight; other valid rows take the slower check."""
 
 
 class Closing(NamedTuple):
-    """What the writer said at its end."""
+    """What the writer recorded when it closed the log."""
 
     messages: int
     digest: str
@@ -47,13 +47,13 @@ class TopicCount(NamedTuple):
 def damaged(path: Path, error: Exception, read: int | None = None) -> BadInput:
     """The error for a log that cannot be read to its end."""
     how_far = "" if read is None else f" after {read} messages"
-    # the library's own sentence goes on with the text itself, however long it is
+    # the library's message contains the text itself, of any length
     what = NO_TEXT if str(error).startswith(UNDECODED) else str(error)
     return BadInput(f"the log is damaged{how_far} ({what})", where=str(path))
 
 
 class SqliteLog:
-    """A CRATOUS log, open for reading; a context manager."""
+    """A CRATOUS log open for reading; a context manager."""
 
     kind = "sqlite"
 
@@ -86,7 +86,7 @@ class SqliteLog:
     def entries(
         self, after: int = -1, where: str = "", values: tuple[Any, ...] = ()
     ) -> Iterator[Entry]:
-        """The messages after a number, in order; `where` is a further condition in SQL."""
+        """The messages after number `after`, in order; `where` is a further condition in SQL."""
         query = f"SELECT {self._names} FROM messages WHERE seq > ?"
         query += f" AND ({where})" if where else ""
         read = 0
@@ -112,7 +112,7 @@ class SqliteLog:
         return [TopicCount(*self._typed(row, (str, int, int, int))) for row in found]
 
     def gaps(self) -> list[Gap]:
-        """What the writer had to give up."""
+        """The gaps where the writer had to discard messages."""
         if "gaps" not in self._tables:
             return []
         found = self._rows("SELECT * FROM gaps ORDER BY before_seq")
@@ -120,11 +120,11 @@ class SqliteLog:
 
     @property
     def old(self) -> bool:
-        """Whether it is of the first version, which says nothing about its end."""
+        """Whether it is of version 1, which does not record its end."""
         return "closing" not in self._tables
 
     def closing(self) -> Closing | None:
-        """What the writer said at its end; None if it has not ended, was killed, or is of version 1."""
+        """What the writer recorded at its end; None if it is still running, was killed, or is of version 1."""
         if "closing" not in self._tables:
             return None
         rows = self._rows("SELECT messages, digest FROM closing")
@@ -153,14 +153,14 @@ class SqliteLog:
         return digest.hex()
 
     def verify(self) -> None:
-        """BadInput if the database or its messages are not what the writer left."""
+        """BadInput if the database or its messages were altered after writing."""
         for _ in self.verified_entries():
             pass
 
     def verified_entries(self) -> Iterator[Entry]:
-        """All messages; BadInput, after the last of them, if they are not what the writer left.
+        """All messages; BadInput, after the last of them, if they were altered after writing.
 
-        What is made of them counts only once this has ended without it.
+        Results derived from them are valid only once this has ended without an error.
         """
         found = self._column("PRAGMA integrity_check(1)")
         if found != ["ok"]:
@@ -179,7 +179,7 @@ class SqliteLog:
             )
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Close the file."""
         self._db.close()
 
     def __enter__(self) -> SqliteLog:
@@ -190,9 +190,12 @@ class SqliteLog:
 
 
 def entry_of(row: tuple[Any, ...]) -> Entry:
-    """The entry of a row; sqlite3.DatabaseError if a value is not of its kind."""
+    """The entry of a row; sqlite3.DatabaseError if a value has the wrong type."""
+    kinds = tuple(map(type, row))
+    if kinds == _WITHOUT_ENVELOPE:
+        return tuple.__new__(Entry, row)  # as Entry(*row), in a third of the time
     entry = Entry(*row)
-    if tuple(map(type, row)) in PLAIN_KINDS:
+    if kinds == _OF_MESSAGE:
         return entry
     right = type(entry.seq) is type(entry.time_ms) is int
     right = right and type(entry.source) is type(entry.topic) is str
@@ -203,14 +206,14 @@ def entry_of(row: tuple[Any, ...]) -> Entry:
 
 
 def connect(path: Path) -> sqlite3.Connection:
-    """The database, for reading only; BadInput if it is none."""
+    """The database, read-only; BadInput if the file is none."""
     if not path.is_file():
         raise BadInput("there is no such file", where=str(path), expected="a message log (SQLite)")
     try:
         try:
             return _connect(path, "ro")
         except sqlite3.OperationalError:
-            # a writer that was killed at its very end leaves a journal that must be rolled back
+            # a writer killed at its very end leaves a journal that must be rolled back
             return _connect(path, "rw")
     except sqlite3.OperationalError as error:
         raise BadInput(

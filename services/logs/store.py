@@ -1,10 +1,11 @@
-"""Writes a log while it happens: SQLite in WAL mode, batched commits, readable at any moment.
+"""Writes a log while messages arrive: SQLite in WAL mode, batched commits, readable at any moment.
 
-The file gets its name when its tables are whole, so that a log is either absent or readable, also
-after `kill -9`. At most `batch` messages or those of the last `every_s` seconds are not yet
-committed; `synchronous=NORMAL` keeps what is committed when the process dies, and the database
-whole when the power fails. If the disk is full, messages are held (up to `hold`) and written when
-there is room again; what has to be given up is counted, keeps its numbers and stands in `gaps`.
+The file gets its name when its tables are complete, so that a log is either absent or readable,
+also after `kill -9`. Not yet committed are at most `batch` messages or those of the last `every_s`
+seconds; `synchronous=NORMAL` keeps committed data when the process dies, and the database
+consistent when the power fails. If the disk is full, messages are held (up to `hold`) and written
+when there is room again; discarded messages are counted, keep their numbers and are recorded in
+`gaps`.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ def cannot_write(path: Path, error: Exception) -> BadInput:
 
 
 class LogStore:
-    """One log that grows; a context manager. Any thread may write."""
+    """A growing log; a context manager. Any thread may write."""
 
     def __init__(
         self,
@@ -55,15 +56,15 @@ class LogStore:
         hold: int = HOLD,
         **meta: Any,
     ) -> None:
-        """A new log; BadInput if the file exists or cannot be made.
+        """A new log; BadInput if the file exists or cannot be created.
 
         every_s: greatest age of an uncommitted message [s]; None commits by number alone.
         """
         self.path, self._batch, self._hold, self._every_s = path, batch, hold, every_s
-        self.count = 0  # messages accepted: written, held or given up
+        self.count = 0  # messages accepted: written, held or discarded
         self.committed = 0  # messages on disk
-        self.lost = 0  # messages given up
-        self.trouble = ""  # why the last commit failed, empty if it did not
+        self.lost = 0  # messages discarded
+        self.trouble = ""  # why the last commit failed, empty if it succeeded
         self._pending: list[Entry] = []
         self._gap: Gap | None = None
         self._last_try = float("-inf")
@@ -78,7 +79,7 @@ class LogStore:
             self._clerk.start()
 
     def write(self, entry: Entry) -> bool:
-        """Take one message; it gets the next number. False while the log cannot be written."""
+        """Log one message under the next number. False while the log cannot be written."""
         with self._lock:
             if self._over.is_set():
                 raise BadInput("the log is closed", where=str(self.path))
@@ -92,7 +93,7 @@ class LogStore:
             return not self.trouble
 
     def keep(self, entry: Entry) -> None:
-        """Take one message with the number that it has (a copy of a log); BadInput on trouble."""
+        """Log one message under its own number (copy of a log); BadInput if it cannot be written."""
         with self._lock:
             if entry.seq <= self._last_kept:
                 raise BadInput(
@@ -107,7 +108,7 @@ class LogStore:
                 raise cannot_write(self.path, sqlite3.Error(self.trouble))
 
     def keep_gap(self, gap: Gap) -> None:
-        """Take over what is known to be missing in the log of which this is a copy."""
+        """Record a gap of the log of which this is a copy."""
         with self._lock:
             try:
                 self._db.execute("INSERT INTO gaps VALUES(?, ?, ?, ?, ?)", gap)
@@ -125,16 +126,16 @@ class LogStore:
                 raise cannot_write(self.path, error) from None
 
     def flush(self) -> bool:
-        """Commit what is held; False if that failed."""
+        """Commit the held messages; False if that failed."""
         with self._lock:
             return self._commit()
 
     def digest(self) -> str:
-        """The digest of what is committed."""
+        """The digest of the committed messages."""
         return self._digest.hex()
 
     def close(self) -> None:
-        """Commit the rest and say that this is the end; BadInput if the rest is not on disk."""
+        """Commit the remaining messages and record the end; BadInput if they are not on disk."""
         if self._over.is_set():
             return
         self._over.set()
@@ -168,7 +169,7 @@ class LogStore:
                     self._commit()
 
     def _may_try(self) -> bool:
-        # a disk that is full is asked again only now and then
+        # a full disk is retried only occasionally
         pause = self._every_s or EVERY_S
         return not self.trouble or time.monotonic() - self._last_try >= pause
 
@@ -204,13 +205,13 @@ class LogStore:
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         if kind is None:
             self.close()
-        else:  # the error under way says more
+        else:  # the pending error is more informative
             with suppress(BadInput):
                 self.close()
 
 
 def _make_plain(database: sqlite3.Connection) -> None:
-    """Without a -wal file, so that it can be read on a read-only disk; fails if someone reads."""
+    """Remove the -wal file, so that the log can be read on a read-only disk; fails if someone reads."""
     with suppress(sqlite3.OperationalError):
         database.execute("PRAGMA wal_checkpoint(TRUNCATE)")
     for _ in range(20):
@@ -232,7 +233,7 @@ def _create(path: Path, meta: dict[str, Any]) -> sqlite3.Connection:
         rows = [(key, canonical(value)) for key, value in sorted(meta.items())]
         new.executemany("INSERT INTO meta VALUES(?, ?)", rows)
         new.commit()
-        # before it has its name: the change itself is not safe against a kill for readers
+        # before it has its name: the mode change is unsafe for readers if killed
         new.execute("PRAGMA journal_mode = WAL")
         new.close()
         _give_name(part, path)
@@ -254,7 +255,7 @@ def _give_name(part: Path, path: Path) -> None:
         raise BadInput(
             "the log exists already", where=str(path), expected="a new file", got="a file"
         ) from None
-    except OSError:  # a file system without links
+    except OSError:  # a file system without hard links
         if path.exists():
             raise
         os.replace(part, path)

@@ -1,9 +1,9 @@
-"""Messages as text files, as UxAS's file logger has them: for people, and for tools that read text.
+"""Messages as text files in the format of UxAS's file logger, for people and for text tools.
 
 Each message is a line `time_ms address$attributes` and its XML. A file holds `limit` messages, a
-folder `per_folder` files: `messageLog_0.txt`, or `0/messageLog_0.txt` where there is a limit of
-files. Each message is handed to the system when it is written, so that a killed process loses
-none; the database is the log of record.
+folder `per_folder` files: `messageLog_0.txt`, or `messageLog_0/messageLog_0.txt` if the number of files is
+limited. Each message is flushed to the operating system when written, so that a killed process
+loses none; the database is the log of record.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class TextFiles:
         self.trouble = ""
 
     def path_of(self, number: int) -> Path:
-        """Where message `number`, counted from 0, is written."""
+        """The file of message `number`, counted from 0."""
         file = number // self._limit
         folder = self._folder
         if self._per_folder:
@@ -37,7 +37,7 @@ class TextFiles:
         return folder / f"{self._stem}_{file}.txt"
 
     def write(self, entry: Entry, xml: str) -> bool:
-        """Write one message; False, and it is counted as lost, if that fails."""
+        """Write one message; False if that fails, and it is counted as lost."""
         number, self._count = self._count, self._count + 1
         try:
             if self._file is None or number % self._limit == 0:
@@ -60,7 +60,7 @@ class TextFiles:
         self._file = path.open("a", encoding="utf-8")
 
     def close(self) -> None:
-        """Let go of the present file."""
+        """Close the current file."""
         if self._file is not None:
             with suppress(OSError):
                 self._file.close()

@@ -48,7 +48,7 @@ def read_uxas(path: Path) -> Iterator[Entry]:
 
 
 class UxasWriter:
-    """Writes a database that tools made for UxAS's log read; committed as a whole."""
+    """Writes a database for tools that read UxAS's log; committed as a whole."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -59,7 +59,7 @@ class UxasWriter:
             raise cannot_write(path, error) from None
 
     def write(self, entry: Entry) -> BadInput | None:
-        """Add one message; gives the error, and adds nothing, if it has no XML form."""
+        """Add one message; if it has no XML form, adds nothing and returns the error."""
         from cratous.bridge import lmcp
 
         try:

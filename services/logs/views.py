@@ -1,11 +1,10 @@
-"""What Foxglove's panels draw, made from messages: positions, routes and zones on the map, vehicles
-in the 3D view.
+"""Foxglove views of messages: positions, routes and zones on the map, vehicles in the 3D view.
 
 A state gives a `foxglove.LocationFix` (`/vehicles/<id>/fix`) and the vehicle's arrow and number in
-a `foxglove.SceneUpdate` (`/vehicles/scene`, frame `map`: east, north, up [m] from the first position
-that any vehicle has). A mission command, alone or in a response, gives its way, a zone its boundary as `foxglove.GeoJSON`
-(`/vehicles/<id>/route`, `/zones/<id>`). Field names and units are Foxglove's; a message whose
-numbers are not finite, or whose zone has no shape, gives nothing.
+a `foxglove.SceneUpdate` (`/vehicles/scene`, frame `map`: east, north, up [m] from the first
+position of any vehicle). A mission command, alone or in a response, gives its route, a zone its
+boundary as `foxglove.GeoJSON` (`/vehicles/<id>/route`, `/zones/<id>`). Field names and units are
+Foxglove's; a message with non-finite numbers, or a zone without a shape, gives nothing.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ _PARTS = ("arrows", "cubes", "spheres", "cylinders", "lines", "triangles", "text
 
 
 class View(NamedTuple):
-    """A message for Foxglove: topic, schema's name, content."""
+    """A message for Foxglove: topic, name of the schema, content."""
 
     topic: str
     schema: str
@@ -98,13 +97,13 @@ SCHEMAS: dict[str, dict[str, Any]] = {
 
 
 class Views:
-    """Makes views of the messages of one log, in their order."""
+    """Creates the views of the messages of one log, in order."""
 
     def __init__(self) -> None:
         self._frame: tuple[Projection, float] | None = None
 
     def of(self, data: Any, names: tuple[str, ...], time_ns: int) -> Iterator[View]:
-        """The views of a message in its JSON form; names: its full type name and its bases'."""
+        """The views of a message in its JSON form; names: its full type name and those of its base types."""
         if not isinstance(data, dict) or RAW in data:
             return
         if STATE in names:
@@ -147,7 +146,7 @@ def _scene(
     number: int, stamp: dict[str, int], at: tuple[float, float, float], heading_deg: float
 ) -> dict[str, Any]:
     """The arrow and the number of a vehicle at (east, north, up) [m]."""
-    half = math.radians(90.0 - heading_deg) / 2  # Foxglove turns from east, anticlockwise
+    half = math.radians(90.0 - heading_deg) / 2  # Foxglove measures from east, anticlockwise
     turned = {"x": 0.0, "y": 0.0, "z": math.sin(half), "w": math.cos(half)}
     level = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
     arrow = {
@@ -208,7 +207,7 @@ def _drawn(topic: str, shape: dict[str, Any], name: str, color: str) -> View:
 
 
 def corners_of(shape: Any) -> list[tuple[float, float]]:
-    """(latitude, longitude) [deg] of the corners of a Polygon, Rectangle or Circle, else none."""
+    """(latitude, longitude) [deg] of the corners of a Polygon, Rectangle or Circle; empty for other shapes."""
     if not isinstance(shape, dict):
         return []
     places = [place_of(point) for point in shape.get("BoundaryPoints", ())]
@@ -220,7 +219,7 @@ def corners_of(shape: Any) -> list[tuple[float, float]]:
     turn = shape.get("Rotation", 0.0)
     if centre is None or not _finite(*sizes, turn) or min(sizes) <= 0:
         return []
-    from cratous.services.loading.polygons import circle, rectangle  # it compiles kernels
+    from cratous.services.loading.polygons import circle, rectangle  # importing it compiles kernels
 
     if len(sizes) == 1:
         local = circle((0.0, 0.0), sizes[0], outside=False)
@@ -231,11 +230,11 @@ def corners_of(shape: Any) -> list[tuple[float, float]]:
 
 
 def place_of(data: Any) -> tuple[float, float, float] | None:
-    """Latitude, longitude [deg] and altitude [m], if they are numbers."""
+    """Latitude, longitude [deg] and altitude [m]; None unless all are numbers."""
     if not isinstance(data, dict):
         return None
     found = tuple(data.get(name, 0.0) for name in ("Latitude", "Longitude", "Altitude"))
-    # what is no number stands as text in the JSON form
+    # a non-number is text in the JSON form
     return (found[0], found[1], found[2]) if _finite(*found) else None
 
 

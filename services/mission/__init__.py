@@ -1,1 +1,1 @@
-"""What planning, flight and monitor share of a mission: frames, zones, wind, times, cameras."""
+"""Mission data shared by planning, flight and monitor: frames, zones, wind, times, cameras."""

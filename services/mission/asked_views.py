@@ -1,8 +1,8 @@
-"""Which looks of a camera count for a search: none near the horizon, and none far from the view that is asked for.
+"""Which camera views count for a search: none near the horizon, and none far from the required view.
 
-A look is counted by where its image lies on the ground, as seen from the place below the aircraft: the middle of the
-image in a ring, each corner within a reach. A ring is an interval of elevations, since tan(elevation) is height
-over distance. Neither depends on what the camera says of itself.
+A view is judged by where its image lies on the ground, as seen from the point below the aircraft: the centre
+of the image within a ring, each corner within a reach. A ring is an interval of elevations, since
+tan(elevation) is height over distance. Neither depends on what the camera reports.
 """
 
 from __future__ import annotations
@@ -17,27 +17,27 @@ if TYPE_CHECKING:
     import numpy as np
 
 FLATTEST_RAD = math.radians(5)
-"""What is looked at more flatly than this is near the horizon, and not seen."""
+"""Smallest depression angle that counts as seen; flatter views are near the horizon [rad]."""
 OFF_VIEW_RAD = math.radians(30)
-"""The middle of an image is at most this much higher or lower than the view that is asked for."""
+"""Largest difference in elevation between the image centre and the required view [rad]."""
 COARSER = 1.01
-"""A ground sample distance is kept up to this many times the one that is asked for."""
+"""A ground sample distance is met up to this factor of the required one."""
 
 
 class Ring(NamedTuple):
-    """Bounds of a distance on the ground [m]."""
+    """Bounds of a horizontal distance [m]."""
 
     least_m: float
     most_m: float
 
 
 def reach_m(height_m: float) -> float:
-    """How far from the place below it an aircraft at a height sees anything [m]."""
+    """Largest horizontal distance at which an aircraft at a height sees anything [m]."""
     return height_m / math.tan(FLATTEST_RAD)
 
 
 def rings(task: Task, height_m: float) -> tuple[Ring, ...]:
-    """Where the middle of an image has to lie, in one of these; height_m: above the ground, > 0."""
+    """Rings, in one of which the centre of an image must lie. height_m: above the ground, > 0."""
     if task.view is None:
         return (Ring(0.0, reach_m(height_m)),)
     views = (view for view in (task.view, *task.views) if view is not None)
@@ -52,7 +52,7 @@ def _ring(view: View, height_m: float) -> Ring:
 
 
 def near_asked(looks: np.ndarray, height_m: float, task: Task, camera: Camera) -> np.ndarray:
-    """Which of planned looks (n, 5), as `sensor.Look`, are near enough to a view that the task asks for, (n,) bool."""
+    """Which planned looks (n, 5), as `sensor.Look`, are close enough to a required view, (n,) bool."""
     import numpy as np
 
     if task.view is None:
@@ -64,9 +64,10 @@ def near_asked(looks: np.ndarray, height_m: float, task: Task, camera: Camera) -
 
 
 def sharp_within_m(task: Task, camera: Camera, hfov_rad: float, height_m: float) -> float:
-    """How far away on the ground the middle of an image is as sharp as the task asks [m]; negative: nowhere.
+    """Largest horizontal distance at which the image centre meets the required sample distance [m]; negative:
+    nowhere.
 
-    Infinite where no ground sample distance is asked for, or the camera's pixels are not known.
+    Infinite where no ground sample distance is required, or the camera's pixels are unknown.
     """
     if not max(task.gsd_m, 0.0) or camera.pixels == 0:
         return math.inf
@@ -76,10 +77,10 @@ def sharp_within_m(task: Task, camera: Camera, hfov_rad: float, height_m: float)
 
 
 def middle(corners: Sequence[tuple[float, float]]) -> tuple[float, float] | None:
-    """Where the middle of an image lies on flat ground, by its corners; None where these are in one line.
+    """The centre of an image on flat ground, from its corners; None if these are collinear.
 
-    Straight lines of the image are straight on the ground, so of four corners it is where the diagonals cross. With
-    another number of them it is their mean.
+    Straight lines of the image are straight on the ground, so for four corners it is the intersection of the
+    diagonals; for another number of corners, their mean.
     """
     if len(corners) != 4:
         north, east = (sum(c[k] for c in corners) / len(corners) for k in (0, 1))

@@ -1,4 +1,4 @@
-"""Which vehicles take no part in a mission at an instant, and why: lost, not there yet, too much wind."""
+"""Vehicles that take no part in a mission at an instant, and why: lost, not joined yet, too much wind."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cratous.spec.mission.changes import VEHICLE_JOINS, VEHICLE_LOST, split, wit
 from cratous.spec.records import replace
 
 JOINS_LATER = "joins only at"
-"""Said of a vehicle that is not there yet."""
+"""Text for a vehicle that has not joined yet."""
 
 
 def absent(mission: Mission, now_ms: int) -> dict[int, str]:
@@ -37,7 +37,7 @@ def without(known: Mission, landed: Container[int]) -> Mission:
 
 
 def _lost_ms(mission: Mission, vehicle_id: int, now_ms: int) -> int:
-    """Since when a vehicle that was lost is: who is lost is not lost again."""
+    """When a lost vehicle was lost [ms]: a lost vehicle is not lost again."""
     happened, _ = split((c for c in mission.changes if c.vehicle == vehicle_id), now_ms)
     before: list[int] = []
     for change in happened:

@@ -1,9 +1,10 @@
-"""Ways that a vehicle can fly at once where a zone has appeared before it: a turn as tight as it can, then straight on.
+"""Immediate escape paths where a zone has appeared ahead of a vehicle: the tightest turn, then straight on.
 
-Points and turns are those of the aircraft in flight, one for each step of it, so that what is found is flown as it
-is: the fastest level turn at its greatest bank in each step, at the speed that it has or slowing down. To
-either side, by all angles up to a whole turn, and of these straight on by some lengths. Which of the legs break a
-zone the proved kernels answer; whether an aircraft has no way at all, no number of ways tried can say.
+Points and turns are those of the aircraft in flight, one per step, so that a path is flown exactly as found:
+the fastest level turn at the greatest bank in each step, at the present speed or slowing down; to either
+side, by all angles up to a full turn, each followed by straight segments of several lengths. Proved kernels
+decide which legs violate a zone; that an aircraft has no path at all cannot be shown by any number of
+attempts.
 """
 
 from __future__ import annotations
@@ -19,17 +20,18 @@ from cratous.spec.mission import Position, Vehicle, Zone
 from cratous.spec.mission.plan import Pose
 
 PIECES = 32
-"""Straight on it is looked at so many pieces,"""
+"""Number of straight pieces examined,"""
 PIECE = 0.25
-"""each so many turn radii long;"""
+"""length of each in turn radii,"""
 ENDS = frozenset((0, 1, 2, 4, 8, 16, 32))
-"""and behind so many of them a way may end."""
+"""and numbers of pieces after which a path may end."""
 
 
 class Escape(NamedTuple):
-    """points: from where the vehicle is, one for each step in the turn; end: the pose there; turn_rad: to the right,
-    below 0 to the left; speed_m_s: that is commanded from the start and reached by the end of the turn; broken_m:
-    length of the legs that break a zone; length_m: of all."""
+    """points: from the vehicle's position on, one per step in the turn; end: final pose; turn_rad: positive
+    to the right; speed_m_s: commanded from the start and reached by the end of the turn; broken_m: length
+    of the legs that violate a zone; length_m: total length.
+    """
 
     points: tuple[Position, ...]
     end: Pose
@@ -40,7 +42,7 @@ class Escape(NamedTuple):
 
     @property
     def words(self) -> str:
-        """What is flown, in words."""
+        """The path in words."""
         if not self.turn_rad:
             return "straight on"
         side = {1.0: "right", -1.0: "left"}[math.copysign(1.0, self.turn_rad)]
@@ -48,7 +50,7 @@ class Escape(NamedTuple):
 
 
 class _Flown(NamedTuple):
-    """So far: the pose, its speed [m/s], the points, and how much was flown and is broken [m]."""
+    """A path so far: pose, speed [m/s], points, length flown and length in violation [m]."""
 
     at: Pose
     speed_m_s: float
@@ -67,8 +69,10 @@ class _Flown(NamedTuple):
 def escapes(
     start: Pose, speed_m_s: float, vehicle: Vehicle, zones: Sequence[Zone], dt_s: float
 ) -> Iterator[Escape]:
-    """All ways tried from a pose at a speed over the ground. vehicle: as it is able in the wind; zones: to keep, without
-    padding; dt_s: a step of the flight [s]. One that stands has none."""
+    """All paths tried from a pose at a ground speed. None for a vehicle at rest.
+
+    vehicle: with its limits in the wind; zones: to keep, without padding; dt_s: step of the flight [s].
+    """
     if not speed_m_s:
         return
     here = _Flown(start, speed_m_s, (Position(start.north_m, start.east_m, start.alt_m),))
@@ -88,7 +92,7 @@ def _turning(
     zones: Sequence[Zone],
     dt_s: float,
 ) -> Iterator[tuple[float, _Flown]]:
-    """After each step of a turn, how far it has turned; at first not at all."""
+    """The angle turned after each step of a turn, beginning with 0, and the path so far."""
     turned, at, speed = 0.0, flown.at, flown.speed_m_s
     while turned < 2 * math.pi:
         yield turned, flown
@@ -101,7 +105,7 @@ def _turning(
 def _ending(
     flown: _Flown, turn_rad: float, vehicle: Vehicle, zones: Sequence[Zone]
 ) -> Iterator[Escape]:
-    """Ways that go straight on behind a turn."""
+    """Paths that continue straight after a turn."""
     piece_m = PIECE * turn_radius_m(flown.speed_m_s, vehicle.max_bank_rad)
     for k in range(PIECES + 1):
         if k in ENDS:
@@ -113,7 +117,7 @@ def _ending(
 
 
 def _on(at: Pose, way_m: float) -> Pose:
-    """A pose so far straight on."""
+    """The pose way_m [m] straight ahead."""
     return at._replace(
         north_m=at.north_m + way_m * math.cos(at.heading_rad),
         east_m=at.east_m + way_m * math.sin(at.heading_rad),

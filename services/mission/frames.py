@@ -1,8 +1,8 @@
 """The mission frame and WGS-84: an azimuthal equidistant projection centred on the frame.
 
-Distances and bearings from the origin are exact; a distance between two other points at most d
-from the origin is off by a factor of at most 1 + (d / R)^2 / 6 + ..., with R the least radius of
-curvature of the ellipsoid. `scale_error` bounds it, so that margins can carry it.
+Distances and bearings from the origin are exact; a distance between two other points at most d from the
+origin is wrong by a factor of at most 1 + (d / R)^2 / 6 + ..., with R the smallest radius of curvature of the
+ellipsoid. `scale_error` bounds it, so that margins can account for it.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ if TYPE_CHECKING:
     import numpy as np
 
 LEAST_RADIUS_M = 6_335_439.0
-"""Least radius of curvature of WGS-84: along the meridian, at the equator."""
+"""Smallest radius of curvature of WGS-84: along the meridian, at the equator."""
 
 RESOLUTION_M = 3e-4
-"""PROJ takes coordinates that differ by less than about 1e-9 degrees for equal."""
+"""PROJ treats coordinates that differ by less than about 1e-9 degrees as equal; this is that distance [m]."""
 
 
 def scale_error(distance_m: float) -> float:
     """Bound on the relative error of local distances within distance_m of the origin.
 
-    The tangential scale of the projection at distance d on a sphere is (d/R) / sin(d/R), which
-    stays below 1 + (d/R)^2 / 5 for d <= R; the first term, (d/R)^2 / 6, is what matters.
+    The tangential scale of the projection at distance d on a sphere is (d/R) / sin(d/R), which stays below 1
+    + (d/R)^2 / 5 for d <= R; the first term, (d/R)^2 / 6, dominates.
     """
     x = distance_m / LEAST_RADIUS_M
     return x * x / 6 if x < 0.01 else x * x / 5
@@ -38,7 +38,7 @@ class Projection:
     """Conversion between the mission frame and WGS-84 degrees, there and back within 0.1 mm."""
 
     def __init__(self, frame: Frame, sphere_m: float | None = None) -> None:
-        """sphere_m: the radius [m] of a sphere that takes the place of the ellipsoid."""
+        """sphere_m: the radius [m] of a sphere that replaces the ellipsoid."""
         self.frame, self._sphere_m = frame, sphere_m
 
     @cached_property
@@ -91,7 +91,7 @@ class Projection:
 
 
 def place_and_velocity(p: Position, v: Velocity) -> dict[str, float]:
-    """The fields of a message that say where an aircraft is [m] and how it moves [m/s]."""
+    """The message fields for an aircraft's position [m] and velocity [m/s]."""
     return {
         "North": p.north_m, "East": p.east_m, "Altitude": p.alt_m,
         "VelocityNorth": v.north_m_s, "VelocityEast": v.east_m_s, "VelocityDown": v.down_m_s,

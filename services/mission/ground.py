@@ -1,11 +1,11 @@
-"""How near to the ground ICAROUS flies."""
+"""The lowest altitude at which ICAROUS manoeuvres."""
 
 from __future__ import annotations
 
 from cratous.spec.mission import Mission
 
 GROUND_MARGIN = 2.0
-"""No manoeuvre goes nearer to the ground than this many vertical thresholds."""
+"""Margin of manoeuvres above the ground, in vertical thresholds."""
 
 
 def floor_of(mission: Mission) -> float:

@@ -1,4 +1,4 @@
-"""Which zones bind when: those of the mission, and those that appear or end in flight."""
+"""When zones are in force: those of the mission, and those that appear or end in flight."""
 
 from __future__ import annotations
 
@@ -10,23 +10,25 @@ from cratous.spec.mission.changes import ZoneEnd
 
 
 class Bound(NamedTuple):
-    """A zone, and since when and until when it binds [ms]; None: to the end."""
+    """A zone, and the times from and until which it is in force [ms]; None: to the end."""
 
     zone: Zone
     since_ms: int
     until_ms: int | None = None
 
     def binds(self, begin_ms: int) -> bool:
-        """Whether a leg that begins at this instant is held to the zone: as a whole, if the zone ends in it."""
+        """Whether a leg that begins at this instant must keep the zone: as a whole, even if the zone ends
+        during it.
+        """
         over = self.until_ms is not None and runs_forward(self.until_ms, begin_ms)
         return runs_forward(self.since_ms, begin_ms) and not over
 
 
 def zones_of(mission: Mission, end_ms: int) -> list[Bound]:
-    """The zones that are known before an instant, those too that have ended, each with its time.
+    """The zones known before an instant, including those that have ended, each with its times.
 
-    What becomes known between two instants of the simulation is known at the later one: a zone that appears
-    binds from then on, one that ends binds until then.
+    A change between two simulation instants takes effect at the later one: a zone that appears is in force
+    from then on, one that ends until then.
     """
     step_ms = mission.simulation.step_ms
     times = [(c, -(-c.at_ms // step_ms) * step_ms) for c in mission.changes]

@@ -1,4 +1,4 @@
-"""What of landing sites the mission, its loader, the simulator and the monitor share."""
+"""Landing site data shared by mission, loader, simulator and monitor."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from cratous.spec.mission import LandingLoss, Mission, Position
 from cratous.spec.mission.link_loss import LandingSite
 
 BRAKING_M_S2 = 2.0
-"""On the ground a vehicle slows down so much."""
+"""Deceleration of a vehicle on the ground [m/s2]."""
 MAX_ACCELERATION_M_S2 = 1.0
-"""On the ground and in the air it becomes faster, and in the air slower, by so much at most."""
+"""Greatest acceleration on the ground and in the air, and deceleration in the air [m/s2]."""
 SLACK_M = 0.01
-"""So near to the ground a vehicle is on it [m]."""
+"""Within this height a vehicle is on the ground [m]."""
 TOUCHES_OFF_BEATS = 1.0
-"""A vehicle touches down at most so many heartbeats of flight too early or too late."""
+"""Largest deviation of the touchdown point, in heartbeats of flight."""
 
 
 def sites_of(mission: Mission) -> tuple[LandingSite, ...]:
-    """Where the vehicles of a mission may land."""
+    """The landing sites of a mission."""
     loss = mission.link_loss
     return loss.sites if isinstance(loss, LandingLoss) else ()
 
@@ -34,12 +34,12 @@ def site_under(place: Position, sites: Iterable[LandingSite]) -> LandingSite | N
 
 
 def is_down(height_m: float) -> bool:
-    """Whether a vehicle so high above the ground [m] is on it."""
+    """Whether a vehicle at this height above the ground [m] is on it."""
     return on_ground(0.0, 0.0, 0.0, height_m, SLACK_M)
 
 
 def ground_m(place: Position, sites: Iterable[LandingSite], terrain_m: float) -> float:
-    """The height of the ground below a place [m MSL]: of the site there, else of the terrain."""
+    """Altitude of the ground below a place [m MSL]: of a landing site there, else of the terrain."""
     for site in sites:
         north, east = place.north_m - site.north_m, place.east_m - site.east_m
         if on_ground(north, east, site.radius_m, 0.0, 0.0):

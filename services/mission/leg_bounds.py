@@ -1,6 +1,6 @@
-"""How often and how long ICAROUS may fly on one leg before its item is given up."""
+"""Bounds of ICAROUS's takeovers and flight time on one leg, after which its item is given up."""
 
 MOST_TAKEOVERS = 12
-"""On one leg ICAROUS may take over this often: it is given up at the takeover after that."""
+"""Most takeovers on one leg: it is given up at the next one."""
 LONGEST_LOOKAHEADS = 5
-"""On one leg it flies for at most this many times its look-ahead."""
+"""Longest flight under ICAROUS on one leg, in look-ahead times."""

@@ -1,8 +1,8 @@
-"""What a camera sees on flat ground: footprints, and how much of a line a flight covers.
+"""Camera coverage of flat ground: footprints, and how much of a line a flight covers.
 
-A gimbal points the boresight at a target as far as its limits let it; the footprint is the
-quadrilateral in which the image's four corner rays meet the ground. Whether a point lies in a
-footprint is decided by the kernel `locate`; numpy only finds the footprint to ask about.
+A gimbal points the boresight at a target as far as its limits allow; the footprint is the quadrilateral in
+which the image's four corner rays meet the ground. The kernel `locate` decides whether a point lies in a
+footprint; numpy only computes the candidate footprints.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
     import numpy as np
 
 SAMPLE_M = 10.0
-"""Distance of the points of a line whose coverage is asked [m]."""
+"""Spacing of the points at which a line's coverage is checked [m]."""
 
 Quad = tuple[tuple[float, float], ...]
 
 
 class Look(NamedTuple):
-    """From where, with which heading [rad], at which ground point (north, east) [m]."""
+    """Camera position, aircraft heading [rad] and ground target (north, east) [m]."""
 
     north_m: float
     east_m: float
@@ -48,9 +48,9 @@ def footprints(
 ) -> np.ndarray:
     """Footprint corners of many looks, shape (n, 4, 2) as north, east; NaN where there is none.
 
-    height_m: above ground, > 0; shrink: factor on the tangents of the half field of view, below 1
-    to keep a margin. There is no footprint if a corner ray does not meet the ground, or meets it more
-    flatly than `flattest_rad`.
+    height_m: above ground, > 0; shrink: factor on the tangents of the half field of view, below 1 to keep a
+    margin. There is no footprint if a corner ray does not meet the ground, or at an angle flatter than
+    `flattest_rad`.
     """
     import numpy as np
 
@@ -97,7 +97,7 @@ def footprint(
 
 
 def sees(quad: Quad, point: tuple[float, float]) -> bool:
-    """True iff the ground point lies in the footprint or on its edge (kernel `locate`)."""
+    """Whether the ground point lies in the footprint or on its edge (kernel `locate`)."""
     return bool(locate(edges_of(quad), Vec2(*point)) >= 0)
 
 
@@ -139,10 +139,10 @@ def covered(
 def looks_of(
     places: np.ndarray, line: np.ndarray, view: View | None, height_m: float
 ) -> np.ndarray:
-    """Where the gimbal aims from each of the places (north, east) along a flight.
+    """The gimbal's targets from each place (north, east) along a flight.
 
-    At the point of the line that is nearest to where the wanted view looks; without a wanted
-    view, nearest to the place itself.
+    The point of the line nearest to where the required view looks; without a required view, nearest to the
+    place itself.
     """
     import numpy as np
 
@@ -167,7 +167,7 @@ def look_on_line(
     view: View | None,
     height_m: float,
 ) -> tuple[float, float]:
-    """Where the gimbal aims from one place (north, east): as `looks_of` for a whole flight."""
+    """The gimbal's target from one place (north, east): as `looks_of` for a whole flight."""
     import numpy as np
 
     wanted = aim(*here, heading_rad, view, max(height_m, 0.0))
@@ -182,7 +182,7 @@ def _sampled(points: tuple[Position, ...]) -> Any:
 
 
 def looks_over(places: np.ndarray, view: View | None, height_m: float) -> np.ndarray:
-    """Where the gimbal aims over an area: straight down, or where the wanted view looks.
+    """The gimbal's targets over an area: straight down, or as the required view looks.
 
     places: north, east along a flight, two or more; one look each.
     """
@@ -195,7 +195,7 @@ def looks_over(places: np.ndarray, view: View | None, height_m: float) -> np.nda
 
 
 def aim(north_m: Any, east_m: Any, heading_rad: Any, view: View | None, height_m: float) -> Any:
-    """The ground point (north, east) that a view looks at from a place; below it without one."""
+    """The ground point (north, east) that a view looks at from a place; the place itself without a view."""
     import numpy as np
 
     if view is None:
@@ -206,21 +206,21 @@ def aim(north_m: Any, east_m: Any, heading_rad: Any, view: View | None, height_m
 
 
 def elevation_rad(camera: Camera, view: View | None) -> float:
-    """Where the camera is tilted to for a view; straight down without one, as far as it goes."""
+    """Camera elevation for a view; without one, as close to straight down as the gimbal allows [rad]."""
     wanted = view.elevation_rad if view is not None else -math.pi / 2
     return max(camera.min_elevation_rad, min(camera.max_elevation_rad, wanted))
 
 
 def sample_distance_m(camera: Camera, view: View | None, height_m: float) -> float:
-    """Ground sample distance across the middle of the image [m a pixel]; pixels must be known."""
+    """Ground sample distance across the centre of the image [m/pixel]; pixels must be known."""
     slant = height_m / math.sin(-elevation_rad(camera, view))
     return 2 * slant * math.tan(camera.hfov_rad / 2) / camera.pixels
 
 
 def zoomed(camera: Camera, task: Task, height_m: float) -> Camera:
-    """The camera zoomed in as little as the task's ground sample distance asks for.
+    """The camera zoomed in just enough for the task's ground sample distance.
 
-    As it is where that is fine enough, cannot be reached or is not known.
+    Unchanged where that is met already, cannot be reached, or is unknown.
     """
     if task.gsd_m <= 0 or camera.pixels == 0 or not camera.zoom_rad or height_m <= 0:
         return camera
@@ -250,9 +250,8 @@ def covered_by(
     shrink: float = 1.0,
     every: int = 1,
 ) -> np.ndarray:
-    """Which points of the task's line (or its one point) a flight along the path sees.
-
-    every: only one point in so many is asked about.
+    """Which points of the task's line (or its one point) a flight along the path sees. every: check only
+    every n-th point.
     """
     import numpy as np
 
@@ -265,9 +264,9 @@ def covered_by(
 
 
 def coverage(path: Sequence[Position], task: Task, camera: Camera, terrain_m: float = 0.0) -> float:
-    """Fraction of the task's line (sampled every 10 m) that a flight along `path` sees as it is asked to.
+    """Fraction of the task's line (sampled every 10 m) that a flight along `path` sees as required.
 
-    path: in the order of flight, two or more points. The gimbal aims as `looks_of` says.
+    path: in the order of flight, two or more points. The gimbal aims as in `looks_of`.
     """
     return float(covered_by(path, task, camera, terrain_m).mean())
 
@@ -275,7 +274,7 @@ def coverage(path: Sequence[Position], task: Task, camera: Camera, terrain_m: fl
 def share_seen(
     path: Sequence[Position], task: Task, camera: Camera, terrain_m: float = 0.0
 ) -> float:
-    """Fraction of the places of a path from which the task's one point is seen."""
+    """Fraction of a path's sample points from which the task's single point is seen."""
     import numpy as np
 
     point = (task.points[0].north_m, task.points[0].east_m)

@@ -1,4 +1,4 @@
-"""What of a take-off the mission, its loader, the executive and the monitor share."""
+"""Take-off data shared by mission, loader, executive and monitor."""
 
 from __future__ import annotations
 
@@ -8,21 +8,23 @@ from typing import NamedTuple
 from cratous.spec.mission import GroundedVehicle, Mission, Vehicle
 
 USED = 0.8
-"""A way up uses at most this share of the climb rate."""
+"""Largest share of the climb rate used in a climb-out."""
 LONGEST_MS = 1_800_000
 """A vehicle whose take-off would take longer does not take off [ms]."""
 BEATS = 4
-"""A take-off takes at most so many heartbeats more than its way."""
+"""Heartbeats allowed for a take-off in addition to its flight time."""
 
 
 SILENCE_MS = 2000
-"""For so long UxAS may be silent while a vehicle takes off, where the mission does not say [ms]: four heartbeats
-of the length that they have if the mission does not say that either."""
+"""Tolerated silence of UxAS during take-off if the mission sets none [ms]: four heartbeats of the default
+length.
+"""
 
 
 class TakeOff(NamedTuple):
-    """alt_m: to which altitude [m MSL]; silence_ms: for how long UxAS may be silent while the vehicle is not up [ms];
-    turn, many: of so many heartbeats it may begin to roll at this one."""
+    """alt_m: target altitude [m MSL]; silence_ms: tolerated silence of UxAS before completion [ms]; turn,
+    many: it may begin to roll at heartbeat number `turn` of every `many`.
+    """
 
     alt_m: float
     silence_ms: int
@@ -37,17 +39,17 @@ def grounded(mission: Mission) -> list[GroundedVehicle]:
 
 
 def silence_ms(mission: Mission) -> int:
-    """For how long UxAS may be silent while a vehicle takes off [ms]."""
+    """Tolerated silence of UxAS during take-off [ms]."""
     return SILENCE_MS if mission.link_loss is None else mission.link_loss.after_ms
 
 
 def roll_m(from_m_s: float, to_m_s: float, acceleration_m_s2: float) -> float:
-    """How long the roll from one speed to a higher one is [m]; 0 from a speed that is as high."""
+    """Length of the roll from one speed to a higher one [m]; 0 if it is not higher."""
     return max(to_m_s * to_m_s - from_m_s * from_m_s, 0.0) / (2 * acceleration_m_s2)
 
 
 def take_off_ms(vehicle: Vehicle, acceleration_m_s2: float, heartbeat_ms: int) -> int:
-    """How long a take-off takes that is permitted at once [ms]; 0 of a vehicle that starts in the air."""
+    """Duration of a take-off that is permitted at once [ms]; 0 for a vehicle that starts in the air."""
     if not isinstance(vehicle, GroundedVehicle):
         return 0
     roll_s = vehicle.min_speed_m_s / acceleration_m_s2

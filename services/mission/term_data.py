@@ -1,7 +1,7 @@
-"""A mission's relations as data for the kernels, read back: what is printed from the data is the text.
+"""A mission's relations as data for the kernels, checked by printing them back to the text.
 
-So neither the parser nor the way from its tree to the data has to be believed: data that do not print
-to the text of the mission, blanks and leading zeros apart, are refused.
+So neither the parser nor the conversion of its tree has to be trusted: data that do not print to the
+mission's text, apart from blanks and leading zeros, are rejected.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def _timing(suffix: Suffix | None) -> tuple[int, int, int]:
 
 
 def text_of(nodes: Sequence[Node]) -> str:
-    """The text that nodes stand for, without blanks."""
+    """The text of the nodes, without blanks."""
     done: list[str] = []
     for node in nodes:
         if node.op:
@@ -59,12 +59,12 @@ def text_of(nodes: Sequence[Node]) -> str:
 
 
 def plain(text: str) -> str:
-    """A text of the process algebra without blanks and leading zeros, which say nothing."""
+    """A text of the process algebra without blanks and leading zeros, which have no meaning."""
     return re.sub(r"(?<!\d)0+(?=\d)", "", re.sub(r"\s+", "", text))
 
 
 def checked_nodes(term: Term, text: str) -> tuple[Node, ...]:
-    """The nodes of the term that a text says. Raises BadInput unless they print to that text."""
+    """The nodes of a text's term. Raises BadInput unless they print to that text."""
     nodes = nodes_of(term)
     said, wanted = text_of(nodes), plain(text)
     if said != wanted:
@@ -78,7 +78,7 @@ def checked_nodes(term: Term, text: str) -> tuple[Node, ...]:
 
 
 def mission_nodes(mission: Mission) -> tuple[Node, ...]:
-    """The relations of a mission as data, read back; all its tasks in any order if it has none.
+    """The relations of a mission as checked data; all its tasks in any order if it has none.
 
     No nodes for a mission without tasks.
     """

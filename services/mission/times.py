@@ -1,7 +1,7 @@
-"""Times of tasks held against constraint rows, by the proved kernels. For plan and flight alike.
+"""Task times checked against constraint rows by the proved kernels, for plan and flight alike.
 
-`times` maps a task to (start, end) in ms. A row that names a task without times is not judged
-here: the caller says what that means.
+`times` maps a task to (start, end) [ms]. Rows that name a task without times are not judged here: the caller
+decides.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Times = Mapping[int, tuple[int, int]]
 
 
 def reference_ms(row: Row, times: Times) -> int:
-    """The instant that the row refers to: latest end or earliest start of its group, or 0."""
+    """The reference time of a row [ms]: latest end or earliest start of its group, or 0."""
     if not row.group:
         return 0
     if row.kind in (AFTER_END, WITHIN_END):
@@ -34,7 +34,7 @@ def reference_ms(row: Row, times: Times) -> int:
 
 
 def margin_ms(row: Row, times: Times) -> int:
-    """How far the row is from its bound [ms]; negative means violated. For display only."""
+    """Distance of a row from its bound [ms]; negative means violated. For display only."""
     start, end = times[row.i]
     ref = reference_ms(row, times)
     if row.kind in (AFTER_END, AFTER_START):

@@ -1,8 +1,8 @@
-"""Speeds over the ground in the wind that is known: what an aircraft can hold whichever way it flies.
+"""Ground speeds in the known wind that an aircraft can hold in every direction.
 
-Plans and flights speak of speeds over the ground. In wind a vehicle's limits, which are those of its
-airspeed, narrow to the ground speeds that `core.routing.wind.holds_in_wind` admits; it keeps its own speed if
-that is one of them, else the nearest. A vehicle that has none takes no part while it blows like that.
+Plans and flights use ground speeds. In wind a vehicle's limits, which are airspeeds, narrow to the ground
+speeds that `core.routing.wind.holds_in_wind` admits; it keeps its own speed if that is one of them, else the
+nearest. A vehicle without any takes no part during such wind.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ from cratous.spec.mission.changes import WindChange
 Wind = tuple[float, float]
 CALM = (0.0, 0.0)
 NUDGE = 1e-9
-"""Limits are narrowed by this share more, since the wind's strength is rounded."""
+"""Limits are narrowed by this additional share, since the wind's strength is rounded."""
 
 
 def wind_at(mission: Mission, now_ms: int) -> Wind:
-    """The wind that is known at an instant: north, east [m/s]."""
+    """The wind known at an instant: north, east [m/s]."""
     happened, _ = changes.split(mission.changes, now_ms)
     blown = [(c.north_m_s, c.east_m_s) for c in happened if isinstance(c, WindChange)]
     return blown[-1] if blown else CALM
 
 
 def in_wind(vehicle: Vehicle, wind: Wind) -> Vehicle | None:
-    """The vehicle with the limits of its ground speed, None if it can hold none."""
+    """The vehicle with its ground speed limits; None if it can hold no speed."""
     if wind == CALM:
         return vehicle
     least, most = vehicle.min_speed_m_s, vehicle.max_speed_m_s
@@ -43,7 +43,7 @@ def in_wind(vehicle: Vehicle, wind: Wind) -> Vehicle | None:
 
 
 def all_in_wind(mission: Mission, wind: Wind) -> Mission:
-    """The mission with all its vehicles; those that can hold no speed are as they were."""
+    """The mission with all vehicles in the wind; those that can hold no speed are unchanged."""
     vehicles = tuple(in_wind(v, wind) or v for v in mission.vehicles)
     return mission if wind == CALM else replace(mission, vehicles=vehicles)
 
@@ -58,7 +58,7 @@ def known_at(mission: Mission, now_ms: int, done: Iterable[int] = ()) -> Mission
 
 
 def told(mission: Mission, before: Wind, now: Wind) -> str:
-    """What another wind changes for the vehicles, empty if nothing."""
+    """What a change of wind means for the vehicles, in words; "" if nothing."""
     parts = []
     for vehicle in mission.vehicles:
         old, new = in_wind(vehicle, before), in_wind(vehicle, now)

@@ -1,4 +1,4 @@
-"""When each task of a plan may be done, by the timing that its relations ask for: for display, judged by nobody."""
+"""Time windows of a plan's tasks, from the timing of its relations: for display only."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ EARLIEST = (AFTER_END, AFTER_START, NOT_BEFORE)
 
 
 class Window(NamedTuple):
-    """A task that has to start at from_ms or later and end at to_ms or earlier, both after mission start.
+    """A task must start at from_ms or later and end at to_ms or earlier, both after mission start.
 
-    Bounds that refer to other tasks are those of the plan's times. texts: where they come from, in the user's words.
+    Bounds relative to other tasks use the plan's times. texts: their origin, in the user's words.
     """
 
     task: int
@@ -35,7 +35,7 @@ class Window(NamedTuple):
 
 
 def windows(plan: Plan) -> tuple[Window, ...]:
-    """The windows of the planned tasks whose end is bounded, in the order of their ids."""
+    """The windows of the planned tasks whose end is bounded, by id."""
     times = {item.task_id: (item.start_ms, item.end_ms) for item in plan.items}
     of: dict[int, list[Row]] = {task: [] for task in sorted(times)}
     for row in plan.rows:

@@ -1,7 +1,7 @@
-"""Flown or planned legs held against zones, exactly: the proved kernels on rational numbers.
+"""Flown or planned legs checked against zones, exactly: the proved kernels on rational numbers.
 
-Every double is a rational, so the verdict of `leg_ok` on rationals is exact for the doubles that
-are given. Margins are distances in floating point, for display only.
+Every double is a rational, so the verdict of `leg_ok` on rationals is exact for the given doubles. Margins
+are floating-point distances, for display only.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from cratous.core.kernel import qualified
 from cratous.spec.mission import Position, Zone, ZoneKind
 
 PARTS = 1 << 60
-"""Of a metre, in which nearly all doubles are whole that are no less than 0.01."""
+"""Parts per metre in which nearly all doubles of at least 0.01 are whole numbers."""
 
 
 @lru_cache(maxsize=512)
@@ -38,7 +38,7 @@ def _whole(zone: Zone, parts: int) -> Zone:
 
 @lru_cache(maxsize=512)
 def _parts_of(zone: Zone) -> int:
-    """Parts of a metre in which all numbers of a zone are whole."""
+    """Parts per metre in which all numbers of a zone are whole."""
     numbers = (zone.floor_m, zone.ceiling_m, *(x for vertex in zone.vertices for x in vertex))
     return lcm(PARTS, *(Fraction(x).denominator for x in numbers))
 
@@ -49,10 +49,10 @@ def _in_parts(value: float, parts: Any) -> Any:
 
 
 def exact_leg_ok(p: Position, q: Position, zone: Zone) -> bool:
-    """True iff the leg from p to q obeys the zone; exact. The zone's vertices are effective.
+    """Whether the leg from p to q keeps the zone; exact. The zone's vertices are effective.
 
-    It is asked in a unit of length in which all numbers are whole: `leg_ok` adds, multiplies and compares, so the
-    answer is that in metres, and comes in a fraction of the time that rationals take.
+    It is computed in a unit of length in which all numbers are whole: `leg_ok` adds, multiplies and compares,
+    so the answer is the same as in metres, in a fraction of the time that rationals take.
     """
     parts = lcm(_parts_of(zone), *(x.as_integer_ratio()[1] for point in (p, q) for x in point))
     one, other = (Position(*(_in_parts(x, parts) for x in point)) for point in (p, q))
@@ -60,8 +60,9 @@ def exact_leg_ok(p: Position, q: Position, zone: Zone) -> bool:
 
 
 def exact_leg_keeps(p: Position, q: Position, zone: Zone, margin_m: float) -> bool:
-    """True iff every flight that is no farther from the leg than a margin [m, >= 0], to the side, above and below, obeys
-    the zone, as `leg_keeps` decides it; exact, as `exact_leg_ok` is."""
+    """Whether every flight within a margin [m, >= 0] of the leg, to the side, above and below, keeps the
+    zone, as `leg_keeps` decides; exact like `exact_leg_ok`.
+    """
     numbers = [x.as_integer_ratio()[1] for x in (margin_m, *p, *q)]
     parts = lcm(_parts_of(zone), *numbers)
     one, other = (Position(*(_in_parts(x, parts) for x in point)) for point in (p, q))
@@ -70,18 +71,18 @@ def exact_leg_keeps(p: Position, q: Position, zone: Zone, margin_m: float) -> bo
 
 
 def deciding(zone: Zone) -> tuple[str, str]:
-    """The driver and the kernel that decide `exact_leg_ok` of a zone."""
+    """The driver and the kernel that decide `exact_leg_ok` for a zone."""
     ends = keep_out_leg_ok if zone.kind is ZoneKind.KEEP_OUT else keep_in_leg_ok
     return qualified(leg_ok), qualified(ends)
 
 
 def margin_m(distance: float, broken: bool) -> float:
-    """The margin of a zone [m], negative where it is broken; on the boundary 0, never -0."""
+    """The margin to a zone [m], negative if violated; 0 on the boundary, never -0."""
     return 0.0 - distance if broken else distance
 
 
 def distance_m(path: Sequence[Position], zone: Zone) -> float:
-    """Least horizontal distance from a path to the zone's boundary [m]; for display only."""
+    """Smallest horizontal distance from a path to the zone's boundary [m]; for display only."""
     from shapely import LineString, Point, Polygon
 
     ring = Polygon(zone.vertices).exterior

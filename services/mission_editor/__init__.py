@@ -1,1 +1,1 @@
-"""A mission file being edited: changes of its text, what it says, and a plan of it."""
+"""Editor of a mission file: changes of its text, its content, and a plan for it."""

@@ -1,4 +1,4 @@
-"""What a thing that is drawn on the map needs besides its places: an id, and what the first vehicle has."""
+"""Completes an item drawn on the map: an id, and missing values taken from the first vehicle."""
 
 from __future__ import annotations
 
@@ -9,18 +9,19 @@ from cratous.services.mission_editor.text_edits import PLACE, MissionText
 from cratous.spec.mission import TaskKind
 
 VEHICLES, TASKS, ZONES = LISTS = ("vehicles", "tasks", "zones")
-"""To which items are added on the map."""
+"""Lists to which items can be added on the map."""
 ABOVE_TERRAIN_M, SPEED_M_S, HEADING_DEG = 300, 20, 0
-"""Of a vehicle of a mission that has none to go by."""
+"""Defaults for the first vehicle of a mission."""
 AT_AN_ALTITUDE = (TaskKind.MUST_FLY, TaskKind.LOITER)
-"""Kinds whose point is where the aircraft flies."""
+"""Task kinds whose point is at flight altitude."""
 
 
 def completed(mission: MissionText, name: str, item: dict[str, Any]) -> dict[str, Any]:
-    """The item as it is added to a list: with the next free id.
+    """The item as added to a list, with the next unused id.
 
-    A vehicle that comes as `position` {north_m, east_m} gets all else of the first vehicle, but for its label.
-    A point to fly through or to circle, without `alt_m`, gets the altitude at which the first vehicle does its tasks.
+    A vehicle given as `position` {north_m, east_m} gets all other values of the first vehicle,
+    except its label. A point to fly through or to loiter at, without `alt_m`, gets the altitude at
+    which the first vehicle performs its tasks.
     """
     number = _next_id(mission, name)
     if name == VEHICLES:
@@ -40,7 +41,7 @@ def _at(point: Any, alt_m: Any) -> Any:
 
 
 def _first(mission: MissionText) -> dict[str, Any]:
-    """The first vehicle that says where it is and how high, or what stands for it."""
+    """The first vehicle with position and altitude, or a default."""
     for one in _items(mission, VEHICLES):
         place = one.get("position")
         if isinstance(place, dict) and type(place.get("alt_m")) in (int, float):
@@ -53,13 +54,13 @@ def _first(mission: MissionText) -> dict[str, Any]:
 
 
 def _items(mission: MissionText, name: str) -> list[dict[str, Any]]:
-    """What is a mapping in a list of the file."""
+    """The mappings in a list of the file."""
     found = mission.data.get(name)
     return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
 
 
 def _next_id(mission: MissionText, name: str) -> int:
-    """One that no item of the list has, nor a zone that comes later, nor other traffic."""
+    """An id not used by an item of the list, nor by a later zone, nor by other traffic."""
     items = _items(mission, name)
     if name == ZONES:
         later = [change.get("zone") for change in _items(mission, "changes")]

@@ -1,4 +1,4 @@
-"""One mission file open in the browser: what the page asks for, and what it gets."""
+"""A mission file open in the browser: the requests of the page, and their answers."""
 
 from __future__ import annotations
 
@@ -28,20 +28,20 @@ from cratous.spec.files.text_file import text_of
 from cratous.spec.mission.plan import Plan
 
 LONGEST = 2 * MISSION_BYTES
-"""Of what a page sends [bytes]: the text, as JSON."""
+"""Maximum size of a request with the text as JSON [bytes]."""
 FARTHEST_M = 1e7
-"""Farther from the origin of the frame nothing is put."""
+"""Maximum distance of an object from the frame's origin [m]."""
 Order = Callable[[str, str, Any], dict[str, Any]]
 
 
 class Editor:
-    """Keeps the file as it was read or written last, and the process that plans.
+    """Holds the file as last read or written, and the planning process.
 
     token: whoever has it may edit. Raises BadInput if the file cannot be read.
     """
 
     def __init__(self, path: Path, module: str, allow_unproved: bool) -> None:
-        """module: what plans, as `python -m` takes it; allow_unproved: also by kernels without proof."""
+        """module: argument of `python -m` for the planner; allow_unproved: permit unproved kernels."""
         self._path, self._module, self._allow_unproved = path, module, allow_unproved
         self.token = secrets.token_urlsafe(24)
         self._plan: PlanProcess | None = None
@@ -69,7 +69,7 @@ class Editor:
         return text_of(self._path, MISSION_BYTES, "a mission file")
 
     def opened(self) -> dict[str, Any]:
-        """The file as it is now, for a page that opens."""
+        """The current file, for a page that opens."""
         text = self._read()
         return {
             "file": str(self._path),
@@ -79,7 +79,7 @@ class Editor:
         }
 
     def planned(self) -> dict[str, Any]:
-        """How planning is, and what came of it; plan_number: which plan this is."""
+        """Status and result of planning; plan_number: identifies the plan."""
         with self._lock:
             return {"state": "none"} if self._plan is None else self._plan.told()
 
@@ -120,7 +120,7 @@ class Editor:
         raise NotObeyed(400, "expected do: add, move, number, put or remove")
 
     def _start(self, asked: dict[str, Any]) -> dict[str, Any]:
-        """Plan a text; a plan that is being made, of whatever page, is given up. plan_number: of this plan."""
+        """Plan a text; a plan in progress, of any page, is cancelled. plan_number: of this plan."""
         told = {
             "text": _text(asked), "where": str(self._path), "allow_unproved": self._allow_unproved,
         }  # fmt: skip
@@ -133,7 +133,7 @@ class Editor:
         return {"plan_number": number}
 
     def _of(self, asked: dict[str, Any]) -> PlanProcess:
-        """The plan with the number that is asked for, if it is the newest one."""
+        """The plan with the requested number, if it is the newest one."""
         number = asked.get("plan_number")
         if type(number) is not int:
             raise NotObeyed(400, "expected plan_number: that of a plan")
@@ -158,7 +158,7 @@ class Editor:
         return {"done": True}
 
     def _save(self, asked: dict[str, Any]) -> dict[str, Any]:
-        """Write the file, unless it is not what the page began with; digest: of that."""
+        """Write the file, unless it has changed since the page read it; digest: of the version read."""
         text = _text(asked)
         with self._lock:
             if _digest(self._read()) != asked.get("digest"):
@@ -167,8 +167,9 @@ class Editor:
         return {"digest": _digest(text)}
 
     def _export(self, asked: dict[str, Any]) -> dict[str, Any]:
-        """A text in another format: files by name, and what they do not say of it; plan_number: whose routes
-        it gets, if any; vehicle: of a flight plan."""
+        """A text in another format: files by name, and what they do not represent; plan_number:
+        plan whose routes it gets, if any; vehicle: of a flight plan.
+        """
         form, vehicle, text = asked.get("format"), asked.get("vehicle"), _text(asked)
         if form not in ALL:
             raise NotObeyed(400, f"expected format: one of {', '.join(ALL)}")
@@ -179,7 +180,7 @@ class Editor:
         return {"files": made.files, "unsaid": [*made.unsaid, *beside_document(document)]}
 
     def _routes(self, asked: dict[str, Any], form: str, text: str) -> Plan | None:
-        """The plan that is asked for, which is of this text."""
+        """The requested plan, which must be of this text."""
         if "plan_number" not in asked:
             return None
         if form not in ROUTED:

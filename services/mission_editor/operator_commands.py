@@ -1,10 +1,10 @@
-"""What an operator commands in flight, as changes of the mission's text: known from the next step on.
+"""Operator commands in flight, as changes of the mission's text that become known at the next step.
 
-What asks for other tasks or zones is for the whole mission; what is direct is for one vehicle, and changes
-nothing of what is asked for.
+Requests for other tasks or zones concern the whole mission; direct commands concern one vehicle,
+and change nothing that is requested.
 
-So a flight with commands is the flight of that text: flown again, it gives the same log. What is asked
-for is planned like any other change, and checked when the text is read.
+So a flight with commands is the flight of that text: flown again, it gives the same log. Requests
+are planned like any other change, and checked when the text is read.
 """
 
 from __future__ import annotations
@@ -24,18 +24,20 @@ KEEP_OUT, GO_TO, LOITER, DROP, END_ZONE = KINDS = (
     "keep_out", "go_to", "loiter", "drop_task", "end_zone",
 )  # fmt: skip
 HOLD_AT, HOLD_HERE, RESUME = DIRECT = ("hold_at", "hold_here", "resume")
-"""Obeyed by a flight as it is, without flying it anew."""
+"""Executed by the running flight, without flying it again."""
 LABEL = "by the operator"
 MOST_CORNERS, FARTHEST_M, LONGEST_S = 38, 1e7, 86_400.0
-"""So many corners, the farthest ones too, fit into what a page may send."""
+"""Limits of a command: corners (as many as fit into a request, however far away), distance [m], and
+duration [s].
+"""
 LOWEST_M, HIGHEST_M = -1000.0, 100_000.0
-"""Altitudes of a mission file [m]."""
+"""Limits of altitudes in a mission file [m]."""
 NO_VEHICLE = "expected vehicle: the id of one of the mission"
 HEAD = "# Commanded by the operator in flight; this file flown again gives the same log.\n"
 
 
 class Commanded(NamedTuple):
-    """text: of the mission with the command; at_ms: when it is known; what: it is, in words."""
+    """text: of the mission with the command; at_ms: time at which it becomes known; what: the command in words."""
 
     text: str
     at_ms: int
@@ -43,10 +45,11 @@ class Commanded(NamedTuple):
 
 
 def commanded(text: str, where: str, seed: int, now_ms: int, asked: Any) -> Commanded:
-    """The mission with one more command, which is known a step after an instant.
+    """The mission with one more command, which becomes known one step after now_ms.
 
-    asked: `what` it is, and by that `places` ([north, east] [m]), `vehicle`, `alt_m` (above mean sea level, may be left
-    out), `duration_s` or `id`. Raises NotObeyed for what is no command, and BadInput where the mission cannot have it.
+    asked: `what`, and depending on it `places` ([north, east] [m]), `vehicle`, `alt_m` (above mean
+    sea level, optional), `duration_s` or `id`. Raises NotObeyed for an invalid command, and
+    BadInput if the mission cannot have it.
     """
     if not isinstance(asked, dict) or asked.get("what") not in KINDS:
         raise NotObeyed(400, f"expected what: one of {', '.join(KINDS)}")
@@ -73,9 +76,10 @@ def commanded(text: str, where: str, seed: int, now_ms: int, asked: Any) -> Comm
 
 
 def directed(text: str, where: str, seed: int, at_ms: int, asked: Any) -> Directed:
-    """The mission with one more direct command, which is known at an instant, a step of the flight.
+    """The mission with one more direct command, which becomes known at at_ms, a step of the flight.
 
-    asked: `what` it is, `vehicle`, of HOLD_AT one of `places`, and of both holds an `alt_m` or none. Raises NotObeyed and BadInput as `commanded`.
+    asked: `what`, `vehicle`, for HOLD_AT one of `places`, and for both holds an optional `alt_m`.
+    Raises NotObeyed and BadInput as `commanded`.
     """
     what = asked.get("what") if isinstance(asked, dict) else None
     if what not in DIRECT:
@@ -98,7 +102,7 @@ def _headed(text: str) -> str:
 
 
 def _refuse_moved(mission: Mission, found: dict[str, Any], asked: dict[str, Any]) -> None:
-    """Raises BadInput where the variant of the mission has what is commanded at another place."""
+    """Raises BadInput if the seeded variant moves the commanded object to another place."""
     places: Any = ()
     if "task_added" in found:
         places = next(task.points for task in mission.tasks if task.id == found["task_added"])
@@ -116,7 +120,9 @@ def _refuse_moved(mission: Mission, found: dict[str, Any], asked: dict[str, Any]
 
 
 def _with_task(mission: MissionText, what: str, asked: dict[str, Any]) -> tuple[MissionText, int]:
-    """The text with a task of one vehicle at a place, at the altitude asked for or at which it starts; and its number."""
+    """The text with a task for one vehicle at a place, at the requested altitude or that at its
+    start; and its id.
+    """
     vehicle = asked.get("vehicle")
     start = next((v for v in mission.data["vehicles"] if v["id"] == vehicle), None)
     if type(vehicle) is not int or start is None:
@@ -151,7 +157,7 @@ def _seconds(asked: dict[str, Any]) -> float:
 
 
 def _altitude(asked: dict[str, Any]) -> dict[str, float]:
-    """The altitude asked for [m above mean sea level], to a decimetre; empty without one."""
+    """The requested altitude [m above mean sea level], to a decimetre; empty if none."""
     if "alt_m" not in asked:
         return {}
     value: Any = asked["alt_m"]
@@ -161,7 +167,7 @@ def _altitude(asked: dict[str, Any]) -> dict[str, float]:
 
 
 def _places(asked: dict[str, Any], least: int, most: int) -> list[list[float]]:
-    """Places in metres, to a decimetre."""
+    """Positions [m], to a decimetre."""
     places: Any = asked.get("places")
     if not isinstance(places, list) or not least <= len(places) <= most:
         raise NotObeyed(400, f"expected places: {least} to {most} of [north, east]")

@@ -1,4 +1,4 @@
-"""A process that plans a text of a mission, as the page has it: how far it is, the plan, and why it is so."""
+"""A process that plans the mission text of the page: its progress, the plan, and reasons for assignments."""
 
 from __future__ import annotations
 
@@ -11,11 +11,12 @@ ENDING_S = 5.0
 
 
 class PlanProcess:
-    """Starts at once; `told` says what has come of it."""
+    """Starts immediately; `told` returns the current result."""
 
     def __init__(self, module: str, number: int, asked: dict[str, Any]) -> None:
-        """module: what plans, as `python -m` takes it; number: of the plan; asked: what it is told first, the
-        text that it plans among it."""
+        """module: argument of `python -m` for the planner; number: of the plan; asked: its first
+        request, including the text to plan.
+        """
         self.text: str = asked["text"]
         self._told: dict[str, Any] = {
             "plan_number": number, "state": "planning", "text": "starting", "why": {},
@@ -39,18 +40,19 @@ class PlanProcess:
             self._over = True
             if self._told["state"] == "planning":
                 self._told = {**self._told, "state": "failed", "text": text}
-            # who waits for an answer is told that none comes
+            # waiting requests are answered that no answer will come
             why = {**self._told["why"], **{task: [text] for task in self._waiting}}
             self._told = {**self._told, "why": why}
 
     def told(self) -> dict[str, Any]:
-        """plan_number; state: planning, planned, failed or stopped; text; the plan, once there is one; why,
-        by task."""
+        """plan_number; state: planning, planned, failed or stopped; text; the plan, once there is
+        one; why: reasons by task.
+        """
         with self._lock:
             return dict(self._told)
 
     def why(self, task: int) -> bool:
-        """Ask why a task is given to its vehicle; False where there is no plan to ask about."""
+        """Request why a task is assigned to its vehicle; False if there is no plan."""
         with self._lock:
             if self._told["state"] != "planned" or self._over:
                 return False
@@ -59,7 +61,7 @@ class PlanProcess:
         return True
 
     def end(self) -> None:
-        """End it, whatever it does; a plan that was told is kept."""
+        """End the process, whatever its state; a finished plan is kept."""
         with self._lock:
             if self._told["state"] == "planning":
                 self._told = {**self._told, "state": "stopped", "text": "Planning was stopped."}

@@ -1,4 +1,4 @@
-"""A text of the process algebra as it is typed: its tree, or what is wrong and where."""
+"""Parses process-algebra text while it is typed: its tree, or the error with its position."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ MOST_ROWS, MOST_BRANCHES = 40, 2
 
 
 def relations(text: str, tasks: Collection[int]) -> dict[str, Any]:
-    """tree, canonical text and constraints of the first branches; or error, with its offset in the text.
+    """tree, canonical text and constraints of the first branches; or error, with its offset in the
+    text.
 
-    tasks: the ids that exist. An empty text means all tasks, in any order.
+    tasks: the existing ids. An empty text means all tasks, in any order.
     """
     try:
         term = pa.parse(text, frozenset(tasks)) if text.strip() else pa.parallel_of(tasks)

@@ -1,4 +1,4 @@
-"""What the text of a mission says: what is drawn of it, what may be moved, and what is wrong with it."""
+"""Content of a mission text for the page: what is drawn, what can be moved, and what is wrong."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from cratous.spec.mission import Mission
 
 _LINE = re.compile(r":(\d+)(?::\d+)?$")
 NO_PLACES = ("frame", "variation", "expect")
-"""Parts whose places are not those of a thing on the map."""
+"""Sections whose positions do not belong to map objects."""
 
 LISTED = ("places", "numbers", "problems", "notes", "tasks")
 
 
 def sketch(text: str, where: str) -> dict[str, Any]:
-    """drawn: for the map, None if the text cannot be read; places: what may be moved, with its key; numbers: headings
-    [deg] and radii [m] that are seen on the map, each with its key and that of its place (of);
-    problems: what is wrong, with the line; notes: what the mission says beside; tasks: their ids;
-    relations: the text of the process algebra.
+    """drawn: for the map, None if the text cannot be read; places: movable positions with their
+    keys; numbers: headings [deg] and radii [m] shown on the map, each with its key and that of its
+    position (of); problems: faults with their lines; notes: the mission's notes; tasks: their ids;
+    relations: the process-algebra text.
     """
     found: dict[str, Any] = {"drawn": None, **{name: [] for name in LISTED}}
     try:
         document = parse_document(text, where)
         mission = drawn(document)
-        # what is wrong is drawn too, so that it can be mended on the map
+        # invalid objects are drawn too, so that they can be corrected on the map
         found |= _shown(document, mission)
         found["notes"] = list(loaded(document).notes)
     except BadInput as error:
@@ -75,7 +75,7 @@ def _shown(document: Document, mission: Mission) -> dict[str, Any]:
 
 
 def _places(data: Any, key: Key, places: Places) -> Iterator[tuple[Key, tuple[float, float]]]:
-    """Every place that is written in a mission, and where it stands there."""
+    """Every position in a mission, with its key."""
     if isinstance(data, dict):
         if set(PLACE) <= set(data) or set(DEGREES) <= set(data):
             yield key, places.horizontal(data)
@@ -93,7 +93,7 @@ def _places(data: Any, key: Key, places: Places) -> Iterator[tuple[Key, tuple[fl
 
 
 def _numbers(data: Any) -> Iterator[tuple[Key, Key, float]]:
-    """Each heading and radius that is written about a place: its key, that of the place, and the number."""
+    """Each heading and radius that belongs to a position: its key, that of the position, and the number."""
     for k, vehicle in enumerate(data.get("vehicles", ())):
         key: Key = ("vehicles", k)
         yield (*key, HEADING), (*key, "position"), float(vehicle[HEADING]) % 360

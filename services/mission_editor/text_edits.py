@@ -1,7 +1,8 @@
-"""Changes of a mission's text that leave all the rest of it as it stands: comments, order, spelling.
+"""Edits of a mission's text that leave everything else unchanged: comments, order, spelling.
 
-A change is made where the value stands, and the new text is read: it must say what the old one said
-with just this change, or the change is refused. So nothing is lost by editing on a map.
+An edit is made at the position of the value, and the new text is read again: it must have the
+content of the old one with only this change, or the edit is refused. So nothing is lost by editing
+on a map.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from cratous.spec.mission import Frame
 PLACE, DEGREES = ("north_m", "east_m"), ("latitude_deg", "longitude_deg")
 HEADING, RADIUS = "heading_deg", "radius_m"
 _PLAIN = re.compile(r"(?!(true|false|null|yes|no|on|off|y|n)$)[a-z]+(_[a-z]+)*")
-"""Texts that YAML reads as nothing else."""
+"""Strings that YAML cannot read as another type."""
 
 
 class MissionText:
@@ -36,9 +37,9 @@ class MissionText:
             self._refuse("this is no mission", (), "a mapping, such as name: crossing")
 
     def moved(self, key: Key, north_m: float, east_m: float) -> str:
-        """The text with a place (a mapping or a corner) elsewhere, to a decimetre.
+        """The text with a position (a mapping or a corner) changed, to a decimetre.
 
-        One that is written in degrees stays in degrees.
+        A position in degrees stays in degrees.
         """
         place = self._value(key)
         if isinstance(place, list) and len(place) == 2:
@@ -55,15 +56,16 @@ class MissionText:
         self._refuse("this is no place", key, "north_m and east_m, degrees, or a corner")
 
     def with_number(self, key: Key, value: float) -> str:
-        """The text with another heading [deg] or radius [m] in place of the one that stands there, to a tenth."""
-        if not key or key[-1] not in (HEADING, RADIUS) or self._node(key) is None:
+        """The text with a heading [deg] or radius [m] replaced, to a tenth."""
+        node = self._node(key)
+        if not key or key[-1] not in (HEADING, RADIUS) or node is None or node.id != "scalar":
             self._refuse(
                 "this is no heading or radius", key, f"a {HEADING} or {RADIUS} of the file"
             )
         return self._with({key: _tenths(value)})
 
     def put(self, key: Key, value: str) -> str:
-        """The text with another text in place of the one that stands there, or at the end if none does."""
+        """The text with a string replaced, or appended if missing."""
         node = self._node(key)
         if node is not None:
             if node.id != "scalar":
@@ -74,7 +76,7 @@ class MissionText:
         return self._at_end(f"{key[0]}: {json.dumps(value, ensure_ascii=False)}\n", key, value)
 
     def added(self, name: str, item: Mapping[str, Any]) -> str:
-        """The text with one more item at the end of a list of the file, such as its zones."""
+        """The text with one more item appended to a list of the file, such as its zones."""
         node, value = self._node((name,)), copy.deepcopy(dict(item))
         wanted = copy.deepcopy(self.data)
         if node is None:
@@ -93,7 +95,7 @@ class MissionText:
         return self._held(new, wanted, (name,))
 
     def removed(self, key: Key) -> str:
-        """The text without an item of a list; without the list where it was the only one."""
+        """The text without an item of a list; without the list if it was the only one."""
         if self._node(key) is None or not key or not isinstance(key[-1], int):
             self._refuse("there is no such item", key, "an item of a list")
         listed: Any = self._node(key[:-1])
@@ -150,7 +152,7 @@ class MissionText:
         return value
 
     def _with(self, said: Mapping[Key, str], value: str | None = None) -> str:
-        """With other scalars; value: what the only one of them means, if it is no number."""
+        """The text with scalars replaced; value: the meaning of a single one that is not a number."""
         wanted, new = copy.deepcopy(self.data), self.text
         for key, text in said.items():
             holder = wanted
@@ -169,14 +171,14 @@ class MissionText:
         return self._held(f"{self.text.rstrip()}\n\n{block}", wanted, key)
 
     def _end(self, node: Any) -> int:
-        """Behind the last character of a value; what YAML counts to it and is blank is left out."""
+        """Position after a value's last character, without trailing blanks that YAML includes."""
         last = node
         while not isinstance(last.value, str) and not last.flow_style and last.value:
             last = last.value[-1][1] if last.id == "mapping" else last.value[-1]
         return len(self.text[: last.end_mark.index].rstrip())
 
     def _line_end(self, node: Any) -> int:
-        """Of the line on which a value ends."""
+        """End of the line on which a value ends."""
         found = self.text.find("\n", self._end(node))
         return len(self.text) if found < 0 else found
 
@@ -184,7 +186,7 @@ class MissionText:
         return self.text.rfind("\n", 0, index) + 1
 
     def _held(self, new: str, wanted: Any, key: Key) -> str:
-        """The new text, if it says what is wanted."""
+        """The new text, if it has the wanted content."""
         try:
             said = parse_document(new, self.where).data
         except BadInput:
@@ -205,7 +207,7 @@ def _tenths(value: float) -> str:
 
 
 def _flow(value: Any) -> str:
-    """In one line."""
+    """The value in YAML flow style, on one line."""
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{name}: {_flow(one)}" for name, one in value.items()) + "}"
     if isinstance(value, list | tuple):
@@ -216,6 +218,6 @@ def _flow(value: Any) -> str:
 
 
 def _block(item: Mapping[str, Any], indent: str) -> str:
-    """As an item of a list, a line for each of its values."""
+    """The item of a list in YAML block style, a line for each value."""
     lines = [f"{name}: {_flow(value)}" for name, value in item.items()]
     return "".join(f"{indent}{'- ' if k == 0 else '  '}{line}\n" for k, line in enumerate(lines))

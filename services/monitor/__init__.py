@@ -1,9 +1,9 @@
-"""The runtime safety monitor: G1 to G5 from the messages alone, while they are published.
+"""The runtime safety monitor: checks G1 to G5 from the messages alone, as they are published.
 
 It imports no planner and no flight code (ASTM F3269: the monitor is independent of what it
-watches). Between two samples an aircraft is taken to fly straight, which is exactly what the
-simulator does; for another source that is an assumption, and the report says so. Every decision
-is that of a proved kernel, on rational numbers.
+monitors). An aircraft is assumed to fly straight between two samples, which is exactly what the
+simulator does; for any other source this is an assumption, and the report says so. Every decision
+is made by a proved kernel on rational numbers.
 """
 
 from __future__ import annotations
@@ -33,11 +33,13 @@ __all__ = ["Monitor"]
 
 
 class Monitor:
-    """Watches one mission. Feed it envelopes with `tap`, ask for `verdicts` and `assumptions` at the end.
+    """Monitors one mission: feed it envelopes with `tap`, ask for `verdicts` and `assumptions` at
+    the end.
 
-    on_violation is called once for each new violation, at the moment it is seen; on_broken likewise with the
-    row of each assumption of the theorems that breaks. says_beats: whether the protocol of ICAROUS has heartbeats;
-    on_board: whether each ICAROUS says if it hears UxAS, as in a flight in one process.
+    on_violation is called once for each new violation, when it is detected; on_broken likewise with
+    the row of each theorem assumption that breaks. says_beats: whether the ICAROUS protocol has
+    heartbeats; on_board: whether each ICAROUS reports if it hears UxAS, as in a flight in one
+    process.
     """
 
     def __init__(
@@ -69,7 +71,7 @@ class Monitor:
         self._told = [0, 0]
 
     def tap(self, envelope: Any) -> None:
-        """One message of the bus or of a log: anything with `topic`, `time_ms` and `body`."""
+        """Process one message of the bus or of a log: any object with `topic`, `time_ms` and `body`."""
         short = envelope.topic.rpartition(".")[2]
         body = envelope.body
         if not self._over:
@@ -121,7 +123,7 @@ class Monitor:
                 self._tell_broken(row)
 
     def _all_seen(self, number: int) -> bool:
-        """Whether an aircraft was seen from the begin to the mission's end."""
+        """Whether an aircraft was observed from the start to the end of the mission."""
         return not self.presence.unseen(number, (0, self._last_ms), Ending(self._last_ms, True))
 
     def _step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
@@ -135,7 +137,8 @@ class Monitor:
         self.completion.step(before, after)
 
     def assumptions(self) -> list[dict[str, Any]]:
-        """One row for each assumption of the system theorems: held, broken, or not observed and why.
+        """One row for each assumption of the system theorems: held, broken, or not observed with
+        the reason.
 
         The verdicts do not depend on them.
         """
@@ -143,15 +146,15 @@ class Monitor:
 
     @property
     def end_ms(self) -> int:
-        """When the messages end, or the mission [ms]."""
+        """Time of the mission end, or of the last message so far [ms]."""
         return self._last_ms
 
     def commands(self) -> dict[int, list[tuple[int, str]]]:
-        """For each protected vehicle the changes of command: since when [ms] who commands it, according to its gate."""
+        """Changes of commander of each protected vehicle, as its gate reports them: (time [ms], commander)."""
         return {number: list(seen.had) for number, seen in self.authority.vehicles.items()}
 
     def details(self) -> list[Verdict]:
-        """One verdict for each single constraint, pair, task, vehicle: every row that is promised."""
+        """One verdict for each constraint, pair, task and vehicle, including every promised row."""
         done, accepted = self.completion.done(), self.completion.accepted
         seen = watched(self.mission, self._last_ms, done, accepted)
         ending = Ending(self._last_ms, self._over)
@@ -178,11 +181,11 @@ class Monitor:
 
 
 def _whole(requirement: str, parts: list[Verdict]) -> Verdict:
-    """The verdict on a requirement from those on its parts: the worst one, the least margin."""
+    """Verdict on a requirement from the verdicts on its parts: the worst outcome and the least margin."""
     outcome = worst([v.outcome for v in parts])
     telling = [v for v in parts if v.outcome is outcome]
     measured = [v for v in telling if v.margin is not None]
-    # nothing is measured: what names a task says more than that the mission ended so
+    # without a margin, prefer a row that names a task to the row on the mission's end
     first = next((v for v in telling if v.item != END), telling[0] if telling else None)
     chosen = min(measured, key=lambda v: v.margin or 0.0, default=first)
     if chosen is None:

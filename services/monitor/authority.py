@@ -1,13 +1,13 @@
-"""G4: exactly one commander at any time; every takeover ends in a handback or declared failure.
+"""G4: exactly one commander at any time; every takeover ends in a handback or a declared failure.
 
 The monitor replays each vehicle's actuator gate with the proved gate kernels. Every command in the
 messages must have been accepted or dropped as `gate_accepts` says, and every state that the gate
-reports must be what `gate_after`, `gate_takeover` or `gate_offer` makes of the state before.
+reports must be what `gate_after`, `gate_takeover` or `gate_offer` makes of the previous state.
 
-A takeover that is open when the mission ends is violated, unless the link to the vehicle was said to be down and
-still was (BridgeStatus): that is a declared failure, but whether it is why nobody handed back is not in the
-messages, so it is unknown. It ends on the ground too, where the vehicle stands at a landing
-site of the mission.
+A takeover still open at the end of the mission is a violation. If the link to the vehicle was
+reported down and still is (BridgeStatus), that is a declared failure; the messages do not show
+whether it is the reason for the missing handback, so the verdict is unknown. A takeover also ends
+when the vehicle comes to rest on a landing site of the mission.
 """
 
 from __future__ import annotations
@@ -27,15 +27,19 @@ NAMES = {gates.UXAS: "UxAS", gates.ICAROUS: "ICAROUS"}
 ON_COMMAND = {qualified(gates.gate_accepts), qualified(gates.gate_after)}
 ON_STATE = {qualified(gates.gate_after)}
 ON_CHANGE = {qualified(gates.gate_takeover), qualified(gates.gate_offer)}
-"""What is asked about a command, a state of the gate, and one that no command led to."""
+"""Kernels that decide about a command, about a gate state, and about a state change without a command."""
 
 
 @dataclass
 class Command:
-    """What has been seen of the authority over one vehicle; `due`: what must be reported next; forged:
-    dropped commands of epochs that were never given; refused: modes that could not be true; down: since when and
-    why its link is down, as was said last, empty while it is not; landed: where its last takeover ended on the ground; unended: the takeover that a link that is
-    down has left open at the end, empty if there is none; had: since when [ms] who commands, from 0 on."""
+    """Observed authority over one vehicle.
+
+    due: what must be reported next; forged: dropped commands with epochs that were never issued;
+    refused: modes that were impossible; down: since when and why the link is down as last reported,
+    empty while it is up; landed: where the last takeover ended on the ground; unended: takeover
+    left open at the end with the link down, empty if none; had: (time [ms], commander), from time 0
+    on.
+    """
 
     gate: gates.Gate = field(default_factory=lambda: gates.Gate(gates.UXAS, 0, False))
     due: str = ""
@@ -56,14 +60,14 @@ class Command:
 
 
 class AuthorityWatch:
-    """Authority over every protected vehicle."""
+    """Watches the authority over every protected vehicle."""
 
     def __init__(self, mission: Mission) -> None:
         self.vehicles = {v.id: Command() for v in mission.vehicles if v.protected}
         self._ended = False
 
     def message(self, short: str, body: Any, time_ms: int) -> None:
-        """A state of the gate, a command, a dropped command, or a mode that UxAS has refused."""
+        """Process a gate state, a command, a dropped command, or a mode refused by UxAS."""
         seen = self.vehicles.get(body.VehicleID)
         if seen is None:
             return
@@ -85,7 +89,7 @@ class AuthorityWatch:
             self._state(seen, body, time_ms)
 
     def status(self, body: Any) -> None:
-        """The link to a vehicle was said to be alive or not."""
+        """Process a BridgeStatus: the link to a vehicle is reported up or down."""
         seen = self.vehicles.get(body.VehicleID)
         if seen is None or self._ended:
             return
@@ -103,7 +107,7 @@ class AuthorityWatch:
         seen.due = "state" if after != seen.gate else "" if accepted else "drop"
 
     def _missing(self, seen: Command, time_ms: int) -> None:
-        """What the last command must have led to, and what did not come."""
+        """Record a fault if the report that the last command requires has not come."""
         if seen.due == "drop":
             text = f"a command without authority in epoch {seen.gate.epoch} was not dropped"
             seen.faults.append((time_ms, text))
@@ -136,9 +140,11 @@ class AuthorityWatch:
             seen.open_ms = None
 
     def end(self, body: Any, down: Mapping[int, Down]) -> None:
-        """The mission ended: no takeover may be left open, unless the link is said to be down, or the vehicle has landed.
+        """Process the end of the mission: a takeover may be open only with the link reported down,
+        or landed.
 
-        down: who is on the ground."""
+        down: vehicles on the ground.
+        """
         self._ended = True
         for number, seen in self.vehicles.items():
             self._missing(seen, body.Time)
@@ -153,7 +159,7 @@ class AuthorityWatch:
                     seen.faults.append((body.Time, text))
 
     def verdicts(self) -> list[Verdict]:
-        """One verdict a protected vehicle."""
+        """One verdict per protected vehicle."""
         found = []
         for vehicle, seen in sorted(self.vehicles.items()):
             outcome = Outcome.HOLDS if self._ended else Outcome.UNKNOWN

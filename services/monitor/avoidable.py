@@ -1,7 +1,7 @@
-"""Beside a zone that appeared before a vehicle and was broken: whether a way from there was left that keeps all zones.
+"""For a violated zone that appeared in flight: whether an escape path from there kept all zones.
 
-A way that is found is checked exactly. That none of those tried keeps the zones is said with their number: it is no
-proof that there was none. The verdict is violated in either case.
+A path that is found is checked exactly. If none of the paths tried keeps the zones, their number is
+reported; that is no proof that none exists. The verdict is violated in either case.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ TRIED = (
     "and into a circle"
 )
 NEVER = 2.0
-"""So many times its fastest speed no vehicle flies: positions that say so are none to try ways from."""
+"""Speeds above this multiple of the maximum speed are implausible: no escape paths are tried from them."""
 
 
 class Appeared(NamedTuple):
-    """How a vehicle flew when a zone appeared: the instant [ms], its pose, and its speed over the ground [m/s]."""
+    """State of a vehicle when a zone appeared: time [ms], pose, and ground speed [m/s]."""
 
     at_ms: int
     pose: Pose
@@ -38,8 +38,11 @@ class Appeared(NamedTuple):
 def avoidable(
     seen: Appeared, vehicle: Vehicle, zone: Zone, zones: Sequence[Zone], dt_s: float
 ) -> tuple[str, dict[str, Any]]:
-    """In words and as data: what of the zones that bound then could be kept. vehicle: as it is able in the wind;
-    zone: that was broken, one of them; dt_s: a step of the flight [s]."""
+    """Whether an escape path kept the zones then active, in words and as data.
+
+    vehicle: with its performance in the wind; zone: the violated one, among zones; dt_s: time step
+    of the flight [s].
+    """
     here = Position(*seen.pose[:3])
     kept = [one for one in zones if exact_leg_ok(here, here, one)]
     away_m = distance_m((here,), zone)
@@ -63,7 +66,7 @@ def avoidable(
 
 
 def _keeps(way: Escape, vehicle: Vehicle, zones: Sequence[Zone]) -> bool:
-    """Whether a way with a circle to either side at its end keeps the zones, exactly."""
+    """Whether a path followed by a circle to either side at its end keeps the zones, checked exactly."""
     radius_m, end = turn_radius_m(way.speed_m_s, vehicle.max_bank_rad), way.end
     for side in (1, -1):
         centre = (

@@ -1,9 +1,9 @@
 """G5: heartbeats in both directions at their period, for every protected vehicle.
 
-That none was late is decided by the fold `beats_in_time`; the longest gap is kept for the note. One that came
-before, or after a later one, is no sign of life. That none came at all is a silence from the start to the end;
-of an ICAROUS whose protocol has none it is unknown what it would have said. What goes down is logged when UxAS
-sends it: of a bridge that was made to fail that it came is not known.
+The fold `beats_in_time` decides that none was late; the longest gap is kept for the note. A
+duplicate or out-of-order heartbeat is no sign of life. If none came at all, the silence lasts from
+start to end; for an ICAROUS whose protocol has no heartbeats the verdict is unknown. Downlink
+messages are logged when UxAS sends them: with injected bridge faults their arrival is not known.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 PERIODS = 2
 """A heartbeat is late when it has not come after this many periods."""
 ANY_LATER = 2**60
-"""Heartbeats that are lost leave their numbers out, however many."""
+"""Bound for `beats_in_time` on sequence numbers: any number of lost heartbeats may lie between two."""
 
 
 NONE: tuple[str, ...] = ()
@@ -39,14 +39,14 @@ class Beat:
     number: int = 0
 
     def come(self, time_ms: int, number: int) -> None:
-        """A heartbeat, by its number from 1."""
+        """Process a heartbeat with its sequence number (from 1)."""
         self.count += 1
         if packet_is_new(self.number, number, ANY_LATER):
             self.number = number
             self._add(time_ms)
 
     def end(self, time_ms: int) -> None:
-        """The mission's end: the time since the last heartbeat counts too."""
+        """Process the end of the mission: the time since the last heartbeat counts too."""
         self._add(time_ms)
 
     def _add(self, time_ms: int) -> None:
@@ -57,12 +57,14 @@ class Beat:
 
     @property
     def in_time(self) -> bool:
-        """True if no heartbeat was late so far."""
+        """True if no heartbeat has been late so far."""
         return bool(beats_result(self.beats))
 
 
 class BridgeWatch:
-    """Liveness of the bridge of every protected vehicle. says_beats: whether the protocol of ICAROUS has heartbeats."""
+    """Liveness of the bridge of every protected vehicle. says_beats: whether the ICAROUS protocol
+    has heartbeats.
+    """
 
     def __init__(self, mission: Mission, says_beats: bool = True) -> None:
         self._says_beats = says_beats
@@ -85,7 +87,7 @@ class BridgeWatch:
             beat.come(body.Time, body.Sequence)
 
     def status(self, body: Any) -> None:
-        """The bridge said that it is alive or not."""
+        """Process a BridgeStatus: the bridge reports whether it is alive."""
         if not body.Alive and body.VehicleID not in self._downs:
             self._downs[body.VehicleID] = f"down at {body.Time / 1000:.2f} s: {body.Note}"
 
@@ -96,7 +98,7 @@ class BridgeWatch:
             beat.end(body.Time)
 
     def verdicts(self) -> list[Verdict]:
-        """One verdict a protected vehicle and direction."""
+        """One verdict per protected vehicle and direction."""
         return [self._verdict(*key, beat) for key, beat in sorted(self._beats.items())]
 
     def _verdict(self, vehicle: int, way: str, beat: Beat) -> Verdict:
@@ -117,7 +119,7 @@ class BridgeWatch:
             note = "no heartbeat seen"
             if way == "Up" and not self._says_beats:
                 outcome, note = Outcome.UNKNOWN, f"{note}: its protocol has none"
-            elif outcome is Outcome.HOLDS:  # it ended before one could be late
+            elif outcome is Outcome.HOLDS:  # the mission ended before a heartbeat could be late
                 outcome = Outcome.UNKNOWN
             if outcome is Outcome.UNKNOWN:
                 margin, kernels = None, NONE

@@ -1,7 +1,7 @@
-"""G3: every task that is asked for was flown to its end and served; what search sensors really saw.
+"""G3: every requested task was flown to its end and served; coverage of searches by the sensors.
 
-A search is judged by the footprints that its vehicle's own states tell. Where true positions of whoever did it are
-missing nothing says that it was there, so it is not said to be served.
+A search is judged by the footprints in its vehicle's own states. Where true positions of the
+vehicle are missing, nothing shows that it was there, so the search is not reported as served.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission.plan import Plan
 
 SERVED = 0.99
-"""The fraction of a search from which the kernel `enough_seen` takes it to be served: the margin's zero."""
+"""Fraction of a search from which the kernel `enough_seen` counts it as served: zero of the margin."""
 OUTCOMES = (Outcome.VIOLATED, Outcome.HOLDS, Outcome.UNKNOWN)
-"""What the verdicts of `service_verdict` mean, by number."""
+"""Meaning of the verdict codes of `service_verdict`, by index."""
 BANK_RESERVE = 1.1
 """A loiter without a radius is flown this much wider than the vehicle's tightest turn."""
 CAPTURE_M = 50.0
@@ -44,8 +44,9 @@ CAPTURE_M = 50.0
 
 @dataclass
 class Doing:
-    """What has been seen of one task. flown_by: who has begun it, since began_ms; near_ms: time spent as
-    close to its point as it asks."""
+    """Observed progress of one task. flown_by: vehicle that began it, at began_ms; near_ms: time
+    spent within the required distance of its point.
+    """
 
     vehicle: int = 0
     flown_by: set[int] = field(default_factory=set)
@@ -60,8 +61,9 @@ class Doing:
 
 
 class CompletionWatch:
-    """Completion and service of every task that the mission asks for. `presence`: who was seen when; down: who is on
-    the ground."""
+    """Watches completion and service of every requested task. `presence`: observation spans of each
+    aircraft; down: vehicles on the ground.
+    """
 
     def __init__(
         self, mission: Mission, plan: Plan, presence: Presence, down: Mapping[int, Down]
@@ -79,15 +81,15 @@ class CompletionWatch:
         self._end_ms: int | None = None
 
     def accept(self, chosen: frozenset[int]) -> None:
-        """Another plan is flown from now on: these are its tasks and those already done."""
+        """Another plan is flown from now on: `chosen` are its tasks and those already done."""
         self.accepted = chosen
 
     def done(self) -> frozenset[int]:
-        """The tasks that were flown to their end."""
+        """Tasks that were flown to their end."""
         return frozenset(t for t, doing in self._tasks.items() if doing.complete_ms is not None)
 
     def progress(self, body: Any) -> None:
-        """A task changed its phase."""
+        """Process a change of a task's phase."""
         doing = self._tasks.get(body.TaskID)
         if doing is None:
             return
@@ -103,12 +105,12 @@ class CompletionWatch:
             doing.failed = body.Note or "failed"
 
     def state(self, body: Any) -> None:
-        """A vehicle's state: what its sensors see counts for the tasks that it is doing."""
+        """Process a vehicle state: its sensor footprints count for the tasks that it is performing."""
         active = [t for t, d in self._tasks.items() if d.active and d.vehicle == body.ID]
         self._coverage.state(body, active)
 
     def step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
-        """Was the point of a must-fly or loiter task near during this step?"""
+        """Accumulate the time near the point of each active must-fly or loiter task during this step."""
         for number, doing in self._tasks.items():
             task, who = self._kinds[number], doing.vehicle
             if not doing.active or who not in before or who not in after:
@@ -125,7 +127,7 @@ class CompletionWatch:
                     doing.near_ms += after[who].time_ms - before[who].time_ms
 
     def _size_m(self, task: Task, vehicle: int) -> float:
-        """How far from its centre a loiter reaches; 0 for the point of a must-fly."""
+        """How far a loiter reaches from its centre [m]; 0 for the point of a must-fly task."""
         if task.kind is not TaskKind.LOITER:
             return 0.0
         who = self._vehicles[vehicle]
@@ -140,7 +142,7 @@ class CompletionWatch:
         self._outcome, self._end_ms = body.Outcome, body.Time
 
     def verdicts(self, seen: Watched) -> list[Verdict]:
-        """One verdict for each task that is asked for, and one on the mission's end."""
+        """One verdict for each requested task, and one on the mission's end."""
         found = [self._task_verdict(task, seen) for task in sorted(seen.tasks)]
         return [*found, self._end_verdict()]
 
@@ -201,7 +203,7 @@ class CompletionWatch:
         )
 
     def _kernels(self, task: int) -> tuple[str, ...]:
-        """The kernels that were asked about a task."""
+        """The kernels that decided about a task."""
         doing, kind = self._tasks[task], self._kinds[task].kind
         asked: list[Callable[..., Any]] = [edge_against] if doing.judged_near else []
         if kind is TaskKind.LOITER and doing.touched and not doing.too_near:
@@ -214,7 +216,7 @@ class CompletionWatch:
         return (*([seen] if seen is not None else []), *map(qualified, [*asked, service_verdict]))
 
     def _unseen(self, number: int) -> str:
-        """What was not seen of the flight of a complete task; empty if nothing."""
+        """Observation gaps in the flight of a completed task, in words; empty if none."""
         doing = self._tasks[number]
         if doing.complete_ms is None:
             return ""
@@ -223,7 +225,7 @@ class CompletionWatch:
         return next(filter(None, gaps), "") or self._not_sharp(number)
 
     def _not_sharp(self, number: int) -> str:
-        """Why it is not known how finely a task was seen; empty where it is, or nothing is asked for."""
+        """Why the resolution at which a task was seen is unknown; empty if known or not required."""
         flyers = [self._vehicles[v] for v in self._tasks[number].flown_by if v in self._vehicles]
         known = all(camera.pixels for flyer in flyers for camera in flyer.cameras)
         if not max(self._kinds[number].gsd_m, 0.0) or known:
@@ -231,7 +233,7 @@ class CompletionWatch:
         return "how many pixels its camera has is not known"
 
     def _missed(self, number: int) -> str:
-        """What a must-fly or loiter task lacks to be served; empty if nothing."""
+        """Why a must-fly or loiter task is not served; empty if nothing is missing."""
         task, doing = self._kinds[number], self._tasks[number]
         if doing.too_near:
             return f"came within the standoff of {task.standoff_m:g} m"
@@ -253,7 +255,7 @@ def _method(task: Task) -> str:
 
 
 def centre_of(task: Task) -> Position:
-    """The point of a must-fly, or the centre of a loiter."""
+    """The point of a must-fly task, or the centre of a loiter."""
     return task.loiter.centre if task.loiter is not None else task.points[0]
 
 

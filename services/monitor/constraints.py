@@ -1,4 +1,4 @@
-"""G1: zones on every flown leg; order, timing and eligibility of what was really done when."""
+"""G1: zones on every flown leg; order, timing and eligibility of the tasks as flown."""
 
 from __future__ import annotations
 
@@ -33,15 +33,19 @@ from cratous.spec.mission.plan import Pose
 
 ACTIVE, COMPLETE, FAILED = "Active", "Complete", "Failed"
 WAITS = {AFTER_END: 1, AFTER_START: 2}
-"""Rows by which a task waits for others, and the code of the operator that asks for it."""
+"""Constraint rows by which a task waits for others, with the code of their operator."""
 
 
 @dataclass
 class Fence:
-    """What has been seen of one vehicle and one zone. first, last: the positions of the vehicle's track
-    between which it was held to the zone; over: the zone appeared where the vehicle had no right to be; left_ms:
-    since when the vehicle has kept it; again_ms: when it broke it again; appeared: how the vehicle flew when the zone
-    appeared, None of one that was there from the start, and where it was not seen then; could: what of it could have been kept, once it is asked."""
+    """Observed state of one vehicle and one zone.
+
+    first, last: positions of the vehicle's track between which the zone applied to it; over: the
+    zone appeared where the vehicle was not allowed to be; left_ms: time since which the vehicle
+    complies; again_ms: time of the next violation; appeared: state of the vehicle when the zone
+    appeared, None for a zone present from the start or if not observed; could: what could have been
+    kept, once asked.
+    """
 
     first: int
     last: int
@@ -54,7 +58,7 @@ class Fence:
     could: tuple[str, dict[str, Any]] | None = None
 
     def words(self, kind: ZoneKind, so_far: bool) -> str:
-        """How a zone of a kind was broken; so_far: as it happens, when what comes of it is not known."""
+        """How a zone was violated, in words; so_far: during the flight, when the outcome is not known yet."""
         at = f"{(self.broken_ms or 0) / 1000:.2f} s"
         out = kind is ZoneKind.KEEP_OUT
         if not self.over:
@@ -73,7 +77,7 @@ class Fence:
 
 
 class ConstraintWatch:
-    """Watch of zones, order, timing and eligibility. `presence`: which aircraft were observed when."""
+    """Watches zones, order, timing and eligibility. `presence`: observation spans of each aircraft."""
 
     def __init__(self, mission: Mission, presence: Presence) -> None:
         self._mission, self._presence = mission, presence
@@ -85,11 +89,11 @@ class ConstraintWatch:
         self._failed: set[int] = set()
         self._fences: dict[tuple[int, int], Fence] = {}
         self._tracks: dict[int, list[Position]] = {}
-        self._came: dict[int, tuple[Sample, Sample]] = {}  # the last leg that was seen of each
+        self._came: dict[int, tuple[Sample, Sample]] = {}  # last observed leg of each vehicle
         self.violations: list[Verdict] = []
 
     def progress(self, body: Any) -> None:
-        """A task began or ended."""
+        """Process the start or end of a task."""
         if body.Phase.name == ACTIVE:
             self._starts.setdefault(body.TaskID, body.Time)
             flown_by = self._who.setdefault(body.TaskID, [])
@@ -101,7 +105,7 @@ class ConstraintWatch:
             self._failed.add(body.TaskID)
 
     def step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
-        """Check the leg of every protected vehicle of ours against every zone that is known."""
+        """Check the leg of every protected vehicle against every known zone."""
         for vehicle in sorted(self._protected & before.keys() & after.keys()):
             here = before[vehicle], after[vehicle]
             p, q = here[0].position, here[1].position
@@ -122,7 +126,7 @@ class ConstraintWatch:
             self._came[vehicle] = here
 
     def _leg(self, vehicle: int, leg: tuple[Position, Position], bound: Bound, at_ms: int) -> None:
-        """One flown leg, begun at an instant, against a zone."""
+        """Check one flown leg that began at at_ms against a zone."""
         zone, fence = bound.zone, self._fences[vehicle, bound.zone.id]
         clear = exact_leg_ok(*leg, zone)
         if clear and fence.broken_ms is not None and fence.left_ms is None:
@@ -136,7 +140,7 @@ class ConstraintWatch:
             fence.again_ms = at_ms
 
     def _could_keep(self, number: int, zone: Zone, fence: Fence) -> tuple[str, dict[str, Any]]:
-        """What of a zone that appeared before a vehicle could have been kept."""
+        """What could have been kept of a zone that appeared in flight."""
         assert fence.appeared is not None
         if fence.could is None:
             at_ms = fence.appeared.at_ms
@@ -179,7 +183,7 @@ class ConstraintWatch:
         )
 
     def verdicts(self, seen: Watched, ending: Ending) -> list[Verdict]:
-        """One verdict for each fence, row and assignment that something was seen of."""
+        """One verdict for each observed zone, constraint row and task assignment."""
         zones, relations = self._zones(seen, ending), self._relations(seen, ending)
         return [
             *zones,
@@ -198,14 +202,14 @@ class ConstraintWatch:
                     yield self._fence_verdict(vehicle, zone, fence, unseen)
 
     def _relations(self, seen: Watched, ending: Ending) -> Iterator[Verdict]:
-        """That no task beside the branch was begun, and the branch's rows."""
+        """Verdicts that no task outside the chosen branch was begun, and on the branch's rows."""
         wanted = {task.id for task in seen.asked.tasks}
         beside = sorted(self._starts.keys() & wanted - set(seen.tasks))
         names = ", ".join(map(str, seen.tasks)) or "none"
         note = f"tasks {names} are asked for"
         if beside:
             note += f", and tasks {', '.join(map(str, beside))} were begun besides"
-        # each task at most once, and only if it is asked for
+        # each task at most once, and only if requested
         begun = [(0, int(t in seen.tasks), int(t in self._starts)) for t in sorted(wanted)]
         outcome = Outcome.HOLDS if ending.over else Outcome.UNKNOWN
         outcome = outcome if as_asked(begun) else Outcome.VIOLATED
@@ -228,7 +232,7 @@ class ConstraintWatch:
             yield self._unfinished(row, missing, ending)
 
     def _unfinished(self, row: Row, missing: list[int], ending: Ending) -> Verdict:
-        """A row of whose tasks some were not flown to their end: broken where nobody waited at all."""
+        """Verdict on a row with tasks not flown to their end: violated where a task did not wait at all."""
         item = f"flight: {row.text}"
         start = self._starts.get(row.i)
         if ending.over and start is not None and row.kind in WAITS:
@@ -248,7 +252,7 @@ class ConstraintWatch:
         return Verdict("G1", item, Outcome.UNKNOWN, Kind.OBSERVED, note)
 
     def _asked_late(self, row: Row) -> str:
-        """Of a row by which a task waits for others: which of these were asked for only after it began."""
+        """Which predecessors of a row were requested only after the waiting task had begun, in words."""
         start, said = self._starts.get(row.i), ""
         for task in row.group if row.kind in WAITS and start is not None else ():
             since = requested_ms(self._mission, task)
@@ -282,10 +286,10 @@ class ConstraintWatch:
             )
 
     def _never_begun(self, seen: Watched, ending: Ending) -> Iterator[Verdict]:
-        """Tasks that are said to have failed before anybody began them: nobody did them who may not."""
+        """Eligibility verdicts for tasks reported as failed before any vehicle began them."""
         for task in sorted(self._failed & set(seen.tasks)):
             flown = len(self._who.get(task, ())) + int(task in self._ends)
-            # that it was flown not once is what is asked of it here
+            # the question here is that it was flown zero times
             if ending.over and as_asked([(0, 0, flown)]):
                 yield Verdict(
                     "G1", eligible_item(task), Outcome.HOLDS, Kind.OBSERVED, "nobody began it",
@@ -294,7 +298,7 @@ class ConstraintWatch:
 
 
 def _appeared(leg: tuple[Sample, Sample], now: Sample) -> Appeared:
-    """How a vehicle flies where it is now. leg: on which it came there, or else goes on from there."""
+    """State of a vehicle at `now`. leg: the leg by which it arrived there, or else the one that follows."""
     a, b = (sample.position for sample in leg)
     north, east = b.north_m - a.north_m, b.east_m - a.east_m
     speed = hypot(north, east) / ((leg[1].time_ms - leg[0].time_ms) / 1000)

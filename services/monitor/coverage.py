@@ -1,10 +1,10 @@
 """How much of a search the sensors saw: from the footprints that the vehicles reported.
 
 A point of a line (sampled at most 10 m apart) or the one point of a point search is seen when it
-lies in a reported footprint or on its edge, by the kernel `locate`. An area is cut into squares;
-one is seen when all of it lies in one footprint, by the kernel `square_within`, and those that are
-not count in full against the search: the fraction given is a lower bound. Which footprints count
-for a task is said in `monitor.looks`.
+lies in a reported footprint or on its edge, by the kernel `locate`. An area is divided into
+squares; one is seen when it lies entirely in one footprint, by the kernel `square_within`, and
+squares not seen count in full against the search: the fraction given is a lower bound.
+`monitor.looks` states which footprints count for a task.
 """
 
 from __future__ import annotations
@@ -60,15 +60,15 @@ class _Area:
         self._seen = np.zeros(len(self._centres), np.bool_)
 
     def look(self, corners: list[tuple[float, float]]) -> None:
-        """A footprint (north, east) takes away the squares within it."""
+        """Remove the squares that lie within a footprint (north, east)."""
         look(self._centres, self._side_m, [corners], self._seen)
 
     def fraction(self) -> float:
-        """At least this much has been seen."""
+        """Lower bound of the fraction that has been seen."""
         return share_covered(self._unseen(), self._side_m, self._area_m2)
 
     def sizes(self) -> tuple[Fraction, Fraction]:
-        """(what has not been seen, at most; the whole), in square metres."""
+        """(upper bound of the unseen area, total area) [m2]."""
         side, whole = Fraction(self._side_m), Fraction(self._area_m2)
         return self._unseen() * side * side, whole
 
@@ -77,7 +77,7 @@ class _Area:
 
 
 class CoverageWatch:
-    """What has been seen of every search task."""
+    """Coverage of every search task."""
 
     def __init__(self, mission: Mission) -> None:
         self._projection = Projection(mission.frame)
@@ -87,13 +87,13 @@ class CoverageWatch:
         self._areas = {t.id: _Area(t) for t in searches if t.kind in AREAS}
         self._unseen = {t.id: sample(t) for t in searches if t.kind not in AREAS}
         self.looked: set[int] = set()
-        """The tasks for which it was asked whether a footprint counts."""
+        """Tasks for which some footprint has been checked."""
         self.kernels: dict[int, str] = {}
-        """Who decided what was seen of a task, for those of which anything may have been."""
+        """Kernel that decided the coverage of each task of which anything may have been seen."""
         self._total = {task: len(points) for task, points in self._unseen.items()}
 
     def state(self, body: Any, active: list[int]) -> None:
-        """A vehicle's state with its payloads, while it was doing the `active` tasks."""
+        """Process a vehicle state with its payloads while the vehicle performs the `active` tasks."""
         open_ = [t for t in active if t in self._areas or self._unseen.get(t)]
         if not open_:
             return

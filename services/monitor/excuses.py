@@ -1,4 +1,4 @@
-"""The evidence of an excuse, or of a way out, in words and as data for the report."""
+"""The evidence for an excused loss, or for an available way out, in words and as data for the report."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ COLUMNS = (
 
 
 def target(one: Tried) -> str:
-    """A manoeuvre in words."""
+    """The manoeuvre in words."""
     unit, size = SHOW[one.dimension]
     return f"{one.dimension} to {one.value * size:.1f} {unit}"
 
@@ -26,7 +26,7 @@ def _free(moment: Moment) -> Tried | None:
 
 
 def sentence(losses: list[Loss]) -> str:
-    """What the note of a verdict says of the losses of a pair."""
+    """Text on the losses of a pair for the note of a verdict."""
     for loss in losses:
         if loss.answer == WAY_OUT:
             moment = loss.moments[-1]
@@ -66,8 +66,8 @@ def _same(moment: Moment) -> dict[tuple[str, float], Tried]:
 
 
 def evidence(losses: list[Loss]) -> dict[str, Any]:
-    """The evidence as data: each loss with the instants it was looked at from, and, where it is
-    excused, every manoeuvre of the first instant with who refuses it, when, and how near.
+    """The evidence as data: each loss with the instants from which it was examined, and, where it
+    is excused, every manoeuvre at the first instant with who refuses it, when, and how near.
 
     instants: [time_ms, tried and refused by the bands, tried and refused by the check].
     """

@@ -1,4 +1,4 @@
-"""For how much of the time under ICAROUS a certificate was in hand, by what the vehicles say of it: no verdict."""
+"""Fraction of the time under ICAROUS with a valid certificate, as the vehicles report it; not a verdict."""
 
 from __future__ import annotations
 
@@ -11,14 +11,15 @@ from cratous.spec.mission.guarantees import Verdict
 from cratous.spec.records import replace
 
 FEW = 3
-"""So many surprises are named; there may be more."""
+"""Number of surprises that are listed; there may be more."""
 ABOUT = ("G1", "G2")
 
 
 @dataclass
 class Held:
-    """One vehicle: since_ms: up to when it is counted, None while UxAS has it; until_ms: when what is in hand expires
-    [ms]."""
+    """One vehicle. since_ms: time up to which it is counted, None while UxAS commands; until_ms:
+    expiry of its certificate [ms].
+    """
 
     since_ms: int | None = None
     until_ms: int = 0
@@ -26,8 +27,10 @@ class Held:
 
 @dataclass
 class HandWatch:
-    """under_ms: time under ICAROUS of all vehicles; certain_ms: of it with a certificate [ms]; said: what was not
-    allowed for, and where ICAROUS was silent, in words; changes: of a hand, that the messages tell."""
+    """Totals over all vehicles. under_ms: time under ICAROUS [ms]; certain_ms: the part of it with
+    a valid certificate [ms]; said: unexpected events and periods without a certificate, in words;
+    changes: number of certificate changes in the messages.
+    """
 
     under_ms: int = 0
     certain_ms: int = 0
@@ -37,11 +40,11 @@ class HandWatch:
 
     @classmethod
     def of(cls, mission: Mission) -> HandWatch:
-        """Before anything has come."""
+        """The initial state, before any message."""
         return cls(_held={vehicle.id: Held() for vehicle in mission.vehicles})
 
     def gate(self, body: Any, time_ms: int) -> None:
-        """A change of a gate, as a `GateState`."""
+        """Process a `GateState`: the commander may have changed."""
         held = self._held.get(body.VehicleID)
         if held is None:
             return
@@ -52,7 +55,7 @@ class HandWatch:
         held.since_ms = held.since_ms if theirs else None
 
     def hand(self, body: Any, time_ms: int) -> None:
-        """A change of what is in hand, as a `HandState`."""
+        """Process a `HandState`: the certificate of a vehicle has changed."""
         held = self._held.get(body.VehicleID)
         if held is None:
             return
@@ -81,7 +84,7 @@ class HandWatch:
         held.since_ms = max(now_ms, held.since_ms)
 
     def beside(self, verdict: Verdict) -> Verdict:
-        """A verdict on G1 or G2, with what there is to say beside it."""
+        """A verdict on G1 or G2 with the certificate statistics added to its note."""
         if verdict.requirement not in ABOUT or not self.changes:
             return verdict
         share = f"{self.certain_ms / 1000:.1f} of {self.under_ms / 1000:.1f} s under ICAROUS"

@@ -1,8 +1,9 @@
-"""Who is on the ground, by where the aircraft were: at a landing site, or beside all of them.
+"""Which vehicles are on the ground, from the aircraft's positions: on a landing site or outside all
+of them.
 
-Well clear is asked of aircraft in the air: a leg whose both ends are on the ground is none. Who has come to the ground
-has to stay, and to stand at the end, and to have the site for itself. Who starts on the ground is on it until it has
-left it. Decisions are those of the kernel `on_ground`.
+Well clear applies to aircraft in the air: a leg with both ends on the ground is not checked. A
+landed vehicle has to stay there, to be at rest at the end, and to be alone on its site. A vehicle
+that starts on the ground counts as on it until it has left. The kernel `on_ground` decides.
 """
 
 from __future__ import annotations
@@ -18,9 +19,11 @@ from cratous.spec.mission import Mission, Position
 
 @dataclass
 class Down:
-    """A vehicle on the ground. site: whose, "" beside all; since_ms: from when on; taken: who was there before it, as a
-    fault; wrong: what it did there that ends no flight; stands: it has not moved in its last step; began: it started
-    there, and has not left the ground."""
+    """A vehicle on the ground. site: owner in words, "" outside all sites; since_ms: time of
+    landing; taken: fault text if the site was occupied; wrong: faults after landing that do not end
+    the flight; stands: no motion in the last step; began: started there and has not left the
+    ground.
+    """
 
     site: str
     since_ms: int
@@ -35,7 +38,7 @@ class Down:
         return bool(self.site) and not self.wrong and self.stands
 
     def words(self) -> str:
-        """Where and since when."""
+        """Where and since when, in words."""
         if self.began:
             return "it stands on the ground, where it started"
         where = f"at {self.site}" if self.site else "beside every landing site"
@@ -43,8 +46,9 @@ class Down:
 
 
 class LandingWatch:
-    """The vehicles that have come to the ground, by number; nobody where there is no landing site. Those that start on it
-    are none of them."""
+    """The vehicles that have landed, by number; none if the mission has no landing site. Vehicles
+    that started on the ground are not included.
+    """
 
     def __init__(self, mission: Mission) -> None:
         self._sites, self._terrain_m = sites_of(mission), mission.frame.terrain_m
@@ -55,7 +59,7 @@ class LandingWatch:
     def step(
         self, before: dict[int, Sample], after: dict[int, Sample]
     ) -> tuple[dict[int, Sample], dict[int, Sample]]:
-        """Two successive instants; those of them that fly."""
+        """Process two successive instants; returns the samples of the aircraft in the air."""
         if not self._sites and not self._not_yet:
             return before, after
         still = {n for n in self._not_yet if n in before and n in after}
@@ -74,7 +78,7 @@ class LandingWatch:
         return next(flown), next(flown)
 
     def at_rest(self, seen: Callable[[int], bool]) -> dict[int, Down]:
-        """The vehicles on the ground, including those that have not taken off yet and were always observed."""
+        """Vehicles on the ground, including those that have not taken off yet and were observed throughout."""
         stood = {
             number: Down("its start", 0, stands=number in self._stood, began=True)
             for number in self._not_yet

@@ -1,11 +1,12 @@
-"""G5 where the mission says what is flown without the link: that it began in time, and that nothing else was flown.
+"""G5 with a lost-link procedure: that it began in time, and that nothing else was flown.
 
-By what each ICAROUS said of it (`LinkLossState`), held against the kernel `loss_step`: from the mode before the
-one that it told must follow, whatever was permitted or ended. It begins within a heartbeat after the silence has
-become too long; a connection that had ended for longer, and nothing said, is a violation. Where lines of a bridge were
-made to be lost or late, whether UxAS was heard in between is not logged, and so that enough was said is not known.
-Who says to have landed has to be on the ground of a landing site, to stay and to stand there, and who is there to say so;
-of who may land and was not seen throughout it is not known.
+What each ICAROUS reported (`LinkLossState`) is checked against the kernel `loss_step`: each mode
+must follow from the one before. A mode has to begin within a heartbeat after the silence exceeds
+its limit; a connection down for longer without a report is a violation. With injected faults that
+lose or delay lines of UxAS, the log does not show whether UxAS was heard in between, so whether
+enough was reported is unknown. A vehicle that reports a landing has to be on a landing site, to
+stay and be at rest there; a vehicle that is there has to report it. For a vehicle that may land and
+was not observed throughout this is unknown.
 """
 
 from __future__ import annotations
@@ -43,16 +44,17 @@ NUMBERS = {
     WithoutLink.LAND: LAND,
 }
 LATEST_BEATS = 2
-"""After so many heartbeats more the end of a connection has been noticed: one to notice it, one for the last line."""
+"""Heartbeats until a closed connection is noticed: one to notice it, one for the last line."""
 EITHER = (False, True)
 NO_LOSS = Loss(LINKED, 0)
 
 
 @dataclass
 class Told:
-    """One vehicle: loss: as it said last; said: what it flew since when, in words; wrong: what it should not have said
-    or done, with the time [ms]; down_ms: when its connection ended [ms], None while it stands; margin_ms: the least
-    that was left as a mode began [ms]."""
+    """State of one vehicle. loss: last reported; said: (what it flew, since when) in words; wrong:
+    faults with their times [ms]; down_ms: time at which its connection ended [ms], None while it is
+    up; margin_ms: least time margin when a mode began [ms].
+    """
 
     loss: Loss = NO_LOSS
     said: list[str] = field(default_factory=list)
@@ -63,7 +65,7 @@ class Told:
 
 
 def _may_not_come(simulation: Simulation) -> bool:
-    """Whether lines of UxAS may not come, or late, while a connection stands."""
+    """Whether injected faults may drop or delay lines of UxAS while a connection is up."""
     if not isinstance(simulation, FaultySimulation):
         return False
     faults = simulation.bridge_faults
@@ -72,10 +74,10 @@ def _may_not_come(simulation: Simulation) -> bool:
 
 
 class LinkLossWatch:
-    """What the vehicles with an ICAROUS instance flew without the link; nothing where the mission does not say."""
+    """What vehicles with an ICAROUS instance flew without the link; empty if the mission has no procedure."""
 
     def __init__(self, mission: Mission, down: Mapping[int, Down], presence: Presence) -> None:
-        """down: who is on the ground, as the aircraft were; presence: who was seen when."""
+        """down: vehicles on the ground, by their positions; presence: observation spans of each aircraft."""
         self._down, self._presence, self._lands = down, presence, bool(sites_of(mission))
         self._end_ms = 0
         self._asked, self._beat_ms = mission.link_loss, mission.simulation.heartbeat_ms
@@ -85,7 +87,7 @@ class LinkLossWatch:
         self._known_heard = not _may_not_come(mission.simulation)
 
     def state(self, body: Any) -> None:
-        """A vehicle says what it flies from now on."""
+        """Process a LinkLossState: what a vehicle flies from now on."""
         told = self._told.get(body.VehicleID)
         if told is None or self._asked is None:
             return
@@ -129,7 +131,7 @@ class LinkLossWatch:
                 told.wrong.append((body.Time, text))
 
     def _on_the_ground(self, vehicle: int, told: Told, now_ms: int) -> str:
-        """What is wrong with how a vehicle has landed, or has not; empty if nothing."""
+        """Fault of a vehicle's landing, or of a missing one; empty if none."""
         down, said = self._down.get(vehicle), told.loss.mode == LANDED
         said_ms = told.loss.since_ms
         if down is None:
@@ -143,32 +145,32 @@ class LinkLossWatch:
         if early and not self._unseen(vehicle, (said_ms, down.since_ms)):
             return f"it said that it had landed before it {down.words()}"
         if not down.stands:
-            # of one that was not seen to the end it is not known
+            # unknown for a vehicle that was not observed to the end
             if self._unseen(vehicle, (down.since_ms, now_ms)):
                 return ""
             return f"{down.words()}, and did not stand there at the end"
-        # it says so at the heartbeat after it has come down
+        # a landing is reported at the heartbeat after touchdown
         if not said and not in_time(down.since_ms, now_ms, LATEST_BEATS * self._beat_ms):
             return f"{down.words()}, and did not say so"
         return ""
 
     def _unseen(self, vehicle: int, span: Span) -> str:
-        """What was not seen of a vehicle that may land; empty if all was."""
+        """Observation gaps of a vehicle that may land, in words; empty if none."""
         return self._presence.unseen(vehicle, span, Ending(span[1], True)) if self._lands else ""
 
     def _missed(self, told: Told, now_ms: int) -> None:
-        """Whether a connection has been down for so long that something should have been said."""
+        """Record a fault if a connection has been down for so long that a report was due."""
         if told.down_ms is None or told.loss.mode != LINKED or self._asked is None:
             return
         bound_ms = self._asked.after_ms + LATEST_BEATS * self._beat_ms
         since = told.loss.since_ms
-        # what ended after the connection did was said meanwhile
+        # a mode that ended after the connection did has been reported
         if not in_time(max(told.down_ms, since), now_ms, bound_ms):
             text = f"the link was down since {told.down_ms / 1000:.2f} s, and it did nothing"
             told.wrong.append((now_ms, text))
 
     def verdicts(self) -> list[Verdict]:
-        """One verdict a vehicle."""
+        """One verdict per vehicle."""
         return [self._verdict(number, told) for number, told in sorted(self._told.items())]
 
     def _verdict(self, vehicle: int, told: Told) -> Verdict:

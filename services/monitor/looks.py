@@ -1,8 +1,8 @@
-"""Which footprints that a vehicle reports count for a search, whoever reports them.
+"""Which reported footprints count for a search, whichever vehicle reports them.
 
-Of a camera that sees the task's wavelength; no corner near the horizon; the middle of the image where a view that
-the task asks for looks, and as near as the ground sample distance asks for. All of it by the kernel `in_ring`, from
-where the vehicle says that it is and where the corners lie: what a gimbal says of its angles is not asked.
+The camera has to see the task's wavelength; no corner may lie near the horizon; the image centre
+has to satisfy the required view angle and ground sample distance. The kernel `in_ring` decides all
+of this from the vehicle's reported position and the corners: reported gimbal angles are not used.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from cratous.spec.mission import Camera, Task
 
 
 class Look(NamedTuple):
-    """A footprint (north, east) [m] of a camera from a place at a height above it; hfov_rad: as it was told."""
+    """A footprint (north, east) [m] of a camera at a position and height above it; hfov_rad: as reported."""
 
     camera: Camera
     here: Vec2
@@ -29,7 +29,7 @@ class Look(NamedTuple):
 
 
 def looks_of(body: Any, cameras: Sequence[Camera], projection: Projection) -> Iterator[Look]:
-    """The footprints in the state of a vehicle with these cameras; none of a camera that it has not."""
+    """The footprints in a vehicle's state; payloads that are not among these cameras are skipped."""
     for payload in body.PayloadStateList:
         told = getattr(payload, "Footprint", None)
         camera = _camera(cameras, payload.PayloadID) if told and len(told) >= 3 else None
@@ -43,17 +43,17 @@ def looks_of(body: Any, cameras: Sequence[Camera], projection: Projection) -> It
 
 
 def _camera(cameras: Sequence[Camera], number: int) -> Camera | None:
-    """The camera that a payload is: by its gimbal, as our own logs have it, or by its own id."""
+    """The camera of a payload: by its gimbal, as in CRATOUS logs, or by its own id."""
     by_id = (c for c in cameras if c.camera_id and c.camera_id == number)
     return next((c for c in cameras if c.payload_id == number), next(by_id, None))
 
 
 def counts(one: Look, task: Task) -> bool:
-    """Whether a look counts for a task."""
+    """Whether a footprint counts for a task."""
     centre = middle(one.corners)
     if not suits(one.camera, task) or centre is None:
         return False
-    height_m = max(one.height_m, 0.0)  # from below the ground, and on it, nothing is within reach
+    height_m = max(one.height_m, 0.0)  # on or below the ground nothing is within reach
     reach = reach_m(height_m)
     if not all(in_ring(one.here, Vec2(*corner), 0.0, reach) for corner in one.corners):
         return False

@@ -1,4 +1,4 @@
-"""From when to when each aircraft was seen without a break: what nobody saw is not said to hold."""
+"""Spans over which each aircraft was observed without a gap: nothing is claimed about the rest."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ Span = tuple[int, int]
 
 
 class Ending(NamedTuple):
-    """When the messages end [ms], and whether the mission had ended by then."""
+    """Time of the last message [ms], and whether the mission had ended by then."""
 
     at_ms: int
     over: bool
 
 
 class Presence:
-    """The spans over which each aircraft was sampled step by step, none longer than the simulation's."""
+    """Spans over which each aircraft was sampled with no gap longer than the simulation step."""
 
     def __init__(self, step_ms: int) -> None:
         self.step_ms = step_ms
@@ -38,7 +38,7 @@ class Presence:
                 spans.append((begin, end))
 
     def unseen(self, number: int, wanted: Span, ending: Ending) -> str:
-        """What was not seen of the aircraft between two instants, in words; empty if all was."""
+        """Observation gaps of the aircraft between two instants, in words; empty if none."""
         here, until = wanted
         for begin, end in self._spans.get(number, ()):
             if begin > here:
@@ -53,7 +53,7 @@ class Presence:
 
 
 def in_the_air(traffic: Traffic, step_ms: int, end_ms: int) -> Span | None:
-    """The first and the last instant of a flight at which such an aircraft is there; None if at none."""
+    """First and last instant at which a traffic aircraft is present; None if it never is."""
     first = -(-max(traffic.appears_ms, 0) // step_ms) * step_ms
     last = end_ms if traffic.vanishes_ms is None else min(traffic.vanishes_ms, end_ms)
     last = last // step_ms * step_ms

@@ -1,4 +1,4 @@
-"""How much of a line or an area lies outside of the zones: said beside a search that was not served."""
+"""How much of a line or an area lies outside the permitted zones: noted on a search that was not served."""
 
 from __future__ import annotations
 
@@ -15,16 +15,17 @@ from cratous.spec.mission.plan import percent
 
 
 class Outside(NamedTuple):
-    """In words, and as data: of each vehicle that may do the search at its altitude."""
+    """In words, and as data: for each vehicle eligible for the search, at its altitude."""
 
     words: tuple[str, ...]
     data: tuple[dict[str, Any], ...]
 
 
 def outside_zones(mission: Mission, task: Task, end_ms: int) -> Outside:
-    """The shares of a line or an area over which its vehicles may fly, by the zones known at an instant.
+    """The fractions of a line or an area over which its vehicles may fly, by the zones known at
+    end_ms.
 
-    Nothing where no zone covers a part of it, or of a task of another kind.
+    Empty if the zones exclude no part of it, and for tasks of other kinds.
     """
     if task.kind not in (TaskKind.LINE_SEARCH, *AREAS):
         return Outside((), ())

@@ -1,6 +1,6 @@
 """Checks a plan against its mission with the proved kernels, and measures the margins.
 
-Nothing is taken from the planner but its result: constraint rows are made anew from the mission's
+Only the planner's result is used: constraint rows are derived afresh from the mission's
 process-algebra text, routes are checked leg by leg, times are recomputed from lengths and speeds.
 """
 
@@ -27,10 +27,11 @@ Path = tuple[Position, ...]
 
 WHOLE = "plan: every task of one choice, once"
 PART = "plan: a part that the relations permit"
-"""A plan that leaves tasks out has this row as well. Of a flight the tasks served are judged instead of the first
-one: a later plan may do what the first leaves out, or it may be withdrawn."""
+"""Additional row of a plan that leaves tasks out. In a flight the tasks served are judged instead:
+a later plan may contain what the first leaves out, or the task may be withdrawn.
+"""
 SPEED_TOLERANCE_MS = 2
-"""Rounding of a route's flight time to whole milliseconds, at both of its ends."""
+"""Rounding of a route's flight time to whole milliseconds, at both ends [ms]."""
 
 
 def check_plan(mission: Mission, plan: Plan) -> list[Verdict]:
@@ -49,14 +50,14 @@ def _verdict(item: str, good: bool, note: str, method: str, **more: object) -> V
 
 
 def _complete(mission: Mission, plan: Plan) -> Iterator[Verdict]:
-    """Every task of one branch is planned exactly once, and no other; if not, whether it is a part."""
+    """Every task of one branch is planned exactly once, and no other; otherwise, whether it is a permitted part."""
     planned = sorted(item.task_id for item in plan.items)
     chosen = frozenset(planned)
     alike = is_choice(mission, chosen)
     wanted = chosen if alike else _first_choice(mission)
     known = sorted({*planned, *(task.id for task in mission.tasks), *wanted})
     in_part = {one.task_id: one for one in in_part_of(plan)}
-    # what is done in part is not done as it is asked
+    # a task planned in part does not count as planned
     whole = {t: 0 if t in in_part else planned.count(t) for t in known}
     counts = [(int(t in wanted), int(t in wanted), whole[t]) for t in known]
     twice = sorted({task for task in planned if planned.count(task) > 1})
@@ -112,9 +113,9 @@ def _length_m(path: Path) -> float:
 
 
 def _ways(start: Position, chain: tuple[PlanItem, ...]) -> list[tuple[PlanItem, Path, Path]]:
-    """Each item with its transit and its path, joined to where the aircraft was before.
+    """Each item with its transit and its path, joined to the aircraft's previous position.
 
-    A gap in the plan becomes a leg like any other: it takes time, and it has to obey the zones.
+    A gap in the plan becomes a leg like any other: it takes time and has to respect the zones.
     """
     found, here = [], start
     for item in chain:
@@ -130,7 +131,7 @@ def _follows(later_ms: int, earlier_ms: int, gap_ms: int = 0) -> bool:
 
 
 def _chains(mission: Mission, plan: Plan) -> Iterator[Verdict]:
-    """Each vehicle flies its items one after the other, no faster than planned and than it can."""
+    """Each vehicle flies its items in sequence, no faster than planned and than its maximum speed."""
     for vehicle in mission.vehicles:
         free_ms = 0
         chain = plan.chain(vehicle.id)
@@ -185,7 +186,7 @@ def _relations(mission: Mission, plan: Plan) -> Iterator[Verdict]:
 
 
 def _circle(item: PlanItem) -> Path:
-    """A polygon around the circle of a wait: what is flown lies within it."""
+    """A polygon that encloses the circle of a wait."""
     if item.hold is None or item.wait_ms <= 0:
         return ()
     h = item.hold

@@ -1,9 +1,10 @@
-"""A mission's relations for plan check and monitor: whether tasks are one choice, and which rows count.
+"""A mission's task relations for plan check and monitor: whether tasks form a branch, and which
+rows apply.
 
-What is decided about a term is decided on it as data by the kernels of `core.algebra`: whether tasks are
-those of one branch, whether a part of one may be done, whether all was done as the term permits, and which
-operand of each `+` is kept. The constraint rows of that branch say to people what was kept and what not;
-where they and the kernels do not say the same, nothing is known.
+The kernels of `core.algebra` decide on the term as data: whether tasks are those of one branch,
+whether a part of one may be done, whether everything was done as the term permits, and which
+operand of each `+` is kept. The constraint rows of that branch state what was kept and what was
+not; where they disagree with the kernels, the verdict is unknown.
 """
 
 from __future__ import annotations
@@ -29,12 +30,13 @@ from cratous.spec.mission.asked import term_of
 from cratous.spec.mission.guarantees import Outcome, Verdict
 
 CHOICES_MAX = 4096
-"""So many branches of the same tasks are looked at, where the term itself cannot be judged yet, for one whose
-rows hold."""
+"""Maximum number of branches with the same tasks that are searched for one whose rows hold, where
+the term itself cannot be judged yet.
+"""
 
 
 class Kept(NamedTuple):
-    """The rows that count. kernels: who judged the term beside them; doubt: why their verdicts are not known."""
+    """The rows that apply. kernels: those that decided on the term; doubt: why the verdicts are unknown."""
 
     rows: tuple[Row, ...]
     kernels: tuple[str, ...] = ()
@@ -54,12 +56,12 @@ class Kept(NamedTuple):
 
 
 def by_term(mission: Mission) -> tuple[str, ...]:
-    """The kernels that decide the relations of a mission; none if it has no tasks."""
+    """The kernels that decide the relations of a mission; empty if it has no tasks."""
     return (qualified(term_parts),) if mission.tasks else ()
 
 
 def is_choice(mission: Mission, chosen: frozenset[int]) -> bool:
-    """Whether these are the tasks of one branch of the relations, all of them and no other."""
+    """Whether these are exactly the tasks of one branch of the relations."""
     nodes = mission_nodes(mission)
     if not nodes:
         return not chosen
@@ -67,7 +69,7 @@ def is_choice(mission: Mission, chosen: frozenset[int]) -> bool:
 
 
 def is_part(mission: Mission, chosen: frozenset[int]) -> bool:
-    """Whether the relations permit that just these tasks are done, one at least."""
+    """Whether the relations permit that exactly these tasks, at least one, are done."""
     nodes = mission_nodes(mission)
     known = bool(chosen) and chosen <= {node.task for node in nodes}
     return known and may_be_done(nodes, chosen, False)
@@ -76,11 +78,12 @@ def is_part(mission: Mission, chosen: frozenset[int]) -> bool:
 def branch_rows(
     mission: Mission, chosen: frozenset[int], times: Times, *, part: bool = False
 ) -> Kept | None:
-    """The rows that count for the chosen tasks; None if they are no branch (part: nor a part of one).
+    """The rows that apply to the chosen tasks; None if they form no branch (part: nor a part of
+    one).
 
-    times: of the tasks that ended, [ms]. Of several branches with these tasks it is one that was kept; if
-    none was, the first of those with the fewest broken rows. Where a task has no times yet, rows
-    that speak of it are passed over.
+    times: of the finished tasks [ms]. If several branches have these tasks, the result is one that
+    was kept; if none was, the first of those with the fewest violated rows. Rows on tasks without
+    times are skipped.
     """
     if not (is_part if part else is_choice)(mission, chosen):
         return None
@@ -95,7 +98,7 @@ def branch_rows(
     try:
         found = term_parts(nodes, ran, not part)
     except BadInput as error:
-        # times that no kernel is proved for, from messages
+        # times from messages outside the range for which the kernels are proved
         return _by_rows(choices, times)._replace(doubt=str(error))
     kept = kept_operands(nodes, found)
     if kept is not None:
@@ -110,7 +113,7 @@ def branch_rows(
 
 
 def _resolved(term: Term, kept: dict[int, int]) -> Term:
-    """The term with the kept operand alone in each `+`; kept: by the place of the `+` in postfix order."""
+    """The term with each `+` replaced by its kept operand; kept: by the `+`'s position in postfix order."""
     place = -1
 
     def made(part: Term) -> Term:
@@ -126,7 +129,7 @@ def _resolved(term: Term, kept: dict[int, int]) -> Term:
 
 
 def _by_rows(choices: Iterator[tuple[Row, ...]], times: Times) -> Kept:
-    """The first rows of which none is broken, else the first with the fewest; of those that are known."""
+    """The first rows of which none is violated, else the first with the fewest violated among the known ones."""
     best: tuple[Row, ...] = ()
     least, count = math.inf, 0
     for count, choice in enumerate(choices, 1):
@@ -140,14 +143,15 @@ def _by_rows(choices: Iterator[tuple[Row, ...]], times: Times) -> Kept:
     return Kept(best, (), f"only {count} of the branches were looked at" if more else "")
 
 
-# ---- branches, to be gone through --------------------------------------------------------------
+# ---- iteration over branches --------------------------------------------------------------
 
 
 def row_choices(mission: Mission, chosen: frozenset[int]) -> Iterator[tuple[Row, ...]]:
-    """The constraint rows of each branch that consists of the chosen tasks, in the order of the text.
+    """The constraint rows of each branch that consists of the chosen tasks, in the order of the
+    text.
 
-    Several branches may have the same tasks, as in `+(.(p1 p2) .(p2 p1))`. Nothing comes where no branch
-    has these tasks.
+    Several branches may have the same tasks, as in `+(.(p1 p2) .(p2 p1))`. Empty if no branch has
+    exactly these tasks.
     """
     term = term_of(mission)
     if term is None:
@@ -161,8 +165,8 @@ def row_choices(mission: Mission, chosen: frozenset[int]) -> Iterator[tuple[Row,
 def _within(term: Term, chosen: frozenset[int]) -> Term | None:
     """The term without the operands of `+` that need another task; None if nothing is left.
 
-    So no branch is made that cannot consist of the chosen tasks: of twenty choices between two tasks
-    one branch is left of a million.
+    This avoids building branches that cannot consist of the chosen tasks: with twenty choices
+    between two tasks, one branch of a million is left.
     """
     if isinstance(term, Atom):
         return term if term.task in chosen else None
@@ -174,9 +178,10 @@ def _within(term: Term, chosen: frozenset[int]) -> Term | None:
 
 
 def part_choices(mission: Mission, chosen: frozenset[int]) -> Iterator[tuple[Row, ...]]:
-    """The rows on the chosen tasks of each branch that permits that just these of its tasks are done.
+    """The rows on the chosen tasks for each branch that permits exactly these of its tasks to be
+    done.
 
-    No more than CHOICES_MAX branches are looked at.
+    At most CHOICES_MAX branches are searched.
     """
     term = term_of(mission)
     if term is None or not chosen:
@@ -187,5 +192,5 @@ def part_choices(mission: Mission, chosen: frozenset[int]) -> Iterator[tuple[Row
 
 
 def first_choices(mission: Mission, chosen: frozenset[int]) -> Iterator[tuple[Row, ...]]:
-    """The first of `row_choices`, CHOICES_MAX at most."""
+    """The first CHOICES_MAX of `row_choices`."""
     return islice(row_choices(mission, chosen), CHOICES_MAX)

@@ -1,7 +1,7 @@
 """The rows that each requirement promises for a mission, and those of them that are missing.
 
-They follow from the mission and from how long its flight was watched, never from what a planner
-accepted or a log happens to show. A row that nobody wrote is unknown: not observed.
+They follow from the mission and the observed duration of the flight, never from what a planner
+accepted or a log happens to contain. A promised row without a verdict is unknown: not observed.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ WAYS = {"Down": "to", "Up": "from"}
 
 
 class Row(NamedTuple):
-    """A promised row: of which requirement, on what, about which of our vehicles."""
+    """A promised row: requirement, subject, and the mission vehicles concerned."""
 
     requirement: str
     item: str
@@ -35,11 +35,11 @@ class Row(NamedTuple):
 
 
 PLAN_ROWS = (Row("G1", WHOLE), Row("G1", "plan: all order and timing rows at once"))
-"""What the check of the plan before the flight says of every plan."""
+"""Rows that the check before the flight yields for every plan."""
 
 
 class Watched(NamedTuple):
-    """What the promises depend on: the tasks asked for, their mission, and the flight's length."""
+    """What the promised rows depend on: the requested tasks, their mission, and the flight's duration."""
 
     mission: Mission
     asked: Mission
@@ -48,19 +48,20 @@ class Watched(NamedTuple):
 
 
 def watched(mission: Mission, end_ms: int, done: Set[int], accepted: Set[int]) -> Watched:
-    """What is judged of a flight that lasted until `end_ms`: done are the tasks flown to their end,
-    accepted those of the last plan, which only says which branch of a `+` was chosen."""
+    """What is judged of a flight that lasted until end_ms [ms]. done: tasks flown to their end;
+    accepted: tasks of the last plan, used only to tell which branch of a `+` was chosen.
+    """
     wanted = asked_by(mission, end_ms, done)
     return Watched(mission, wanted, asked(wanted, done, accepted), end_ms)
 
 
 def fence_item(zone: Zone, vehicle: int) -> str:
-    """The row on a zone and a vehicle."""
+    """Name of the row on a zone and a vehicle."""
     return f"zone: {zone.kind.value} {zone.id}, flight of vehicle {vehicle}"
 
 
 def eligible_item(task: int) -> str:
-    """The name of the row on which vehicle flew a task."""
+    """Name of the row on the eligibility of the vehicle that flew a task."""
     return f"eligibility: task {task} in flight"
 
 
@@ -76,17 +77,17 @@ def merging_pairs(mission: Mission) -> list[tuple[int, int]]:
 
 
 def pair_item(own: int, other: int) -> str:
-    """The row on two aircraft."""
+    """Name of the row on a pair of aircraft."""
     return f"well clear of {own} and {other}"
 
 
 def alone_item(own: int) -> str:
-    """The row of a vehicle that has no traffic to keep well clear of."""
+    """Name of the row of a vehicle without traffic to keep well clear of."""
     return f"well clear of {own}"
 
 
 def served_item(task: int) -> str:
-    """The row on a task."""
+    """Name of the row on the service of a task."""
     return f"task {task} served"
 
 
@@ -96,22 +97,22 @@ def authority_item(vehicle: int) -> str:
 
 
 def take_off_item(vehicle: int) -> str:
-    """The row of G4 on how a vehicle leaves the ground."""
+    """Name of the G4 row on how a vehicle takes off."""
     return f"take-off of vehicle {vehicle}"
 
 
 def alone_without_link_item(vehicle: int) -> str:
-    """The row of G5 on what a vehicle flies without the link."""
+    """Name of the G5 row on what a vehicle flies without the link."""
     return f"what vehicle {vehicle} flies without the link"
 
 
 def beat_item(vehicle: int, way: str) -> str:
-    """The row on the heartbeats of a vehicle in one direction, `Down` or `Up`."""
+    """Name of the row on the heartbeats of a vehicle in one direction, `Down` or `Up`."""
     return f"heartbeat {WAYS[way]} the ICAROUS instance of {vehicle}"
 
 
 def pairs_of(mission: Mission, end_ms: int) -> dict[tuple[int, int], Span]:
-    """The pairs of aircraft of which one is protected, each with when both are in the air."""
+    """Pairs of aircraft with at least one protected, each with the span in which both are in the air."""
     step_ms = mission.simulation.step_ms
     ours = {v.id: v.protected for v in mission.vehicles}
     others: dict[int, Span] = dict.fromkeys(ours, (0, end_ms))
@@ -128,10 +129,10 @@ def pairs_of(mission: Mission, end_ms: int) -> dict[tuple[int, int], Span]:
 
 
 def relation_items(seen: Watched, present: Collection[str]) -> list[str]:
-    """The rows on order and timing: those of one branch of the tasks asked for.
+    """Names of the rows on order and timing: those of one branch of the requested tasks.
 
-    Where several branches have these tasks, it is the one of which the fewest rows are missing among
-    the present items.
+    If several branches have these tasks, the one with the fewest rows missing from `present` is
+    taken.
     """
     best: list[str] | None = None
     for rows in first_choices(seen.asked, frozenset(seen.tasks)):
@@ -145,7 +146,7 @@ def relation_items(seen: Watched, present: Collection[str]) -> list[str]:
 
 
 def promised(seen: Watched, present: Collection[str] = ()) -> Iterator[Row]:
-    """Every row that a judged flight must have; present: items of G1 that it has."""
+    """Every row that a judged flight must have; present: the G1 items that it has."""
     mission, guarded = seen.mission, [v.id for v in seen.mission.vehicles if v.protected]
     for bound in zones_of(mission, seen.end_ms):
         yield from (Row("G1", fence_item(bound.zone, vehicle), (vehicle,)) for vehicle in guarded)

@@ -1,4 +1,4 @@
-"""Truth states put together into steps: who was where at two successive instants."""
+"""Groups true states into steps: the positions of all aircraft at two successive instants."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Step = tuple[dict[int, Sample], dict[int, Sample]]
 
 
 class Sampler:
-    """Collects the states of one instant; a state of a later one completes the step."""
+    """Collects the states of one instant; a state with a later time completes the step."""
 
     def __init__(self, ours: frozenset[int]) -> None:
         self._ours = ours
@@ -30,7 +30,7 @@ class Sampler:
         self._sequence = 0
 
     def add(self, body: Any) -> list[Step]:
-        """One TruthState; returns the step that it completes, if it does."""
+        """Add one TruthState; returns the step that it completes, if any."""
         done = []
         if self._now and body.Time != next(iter(self._now.values())).time_ms:
             done = self.flush()
@@ -40,7 +40,7 @@ class Sampler:
         return done
 
     def flush(self) -> list[Step]:
-        """Complete the present instant."""
+        """Complete the current instant."""
         if not self._now:
             return []
         step = (self._before, self._now)

@@ -1,12 +1,12 @@
 """G2: well clear between every protected vehicle and every other aircraft, at every instant.
 
-A loss is a violation unless `core.excuse.watch` says that there was no way out; then it is excused,
-with the manoeuvres that were refused as evidence.
+A loss is a violation unless `core.excuse.watch` finds that no avoiding manoeuvre existed; then it
+is excused, with the refused manoeuvres as evidence.
 
 Each pair and step is one question to the kernel `violation_within`: is well clear lost at any
-instant of the step, if both fly straight during it? Positions are taken as the rationals that
-the doubles are, so the answer is exact, between the samples too. It is asked in units of length and
-time in which all of them are whole numbers: the answer is the same, and comes in a fraction of the time.
+instant of the step if both fly straight? Positions are taken as the exact rationals that the
+doubles represent, so the answer is exact between the samples too. Lengths and times are scaled so
+that all are integers: the answer is the same and is computed much faster.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 
 @dataclass
 class Pair:
-    """What has been seen of one pair of aircraft."""
+    """Observations of one pair of aircraft."""
 
     checks: int = 0
     lost_ms: int | None = None
@@ -39,11 +39,12 @@ class Pair:
     nearest_m: float = math.inf
     nearest_ms: int = 0
     miss_m: float = math.inf
-    """Least miss distance that a step lost well clear with was headed for: by modified tau well clear
-    is lost before anybody is near."""
+    """Least predicted miss distance over the steps in which well clear was lost: modified tau can
+    signal a loss while the aircraft are still far apart.
+    """
     level: bool = False
     measured: Sample | None = None
-    """Own, at the end of the last step at which the pair was looked at."""
+    """The ownship's sample at the end of the last step that was measured."""
 
 
 def _relative(own: Sample, other: Sample) -> tuple[Fraction, Fraction, Fraction]:
@@ -56,10 +57,11 @@ def _relative(own: Sample, other: Sample) -> tuple[Fraction, Fraction, Fraction]
 
 
 class WholeUnits:
-    """Questions to `violation_within` in whole numbers, for thresholds [m, s] in any numbers.
+    """Scales questions to `violation_within` to integers, for arbitrary thresholds [m, s].
 
-    The kernel's answer does not depend on the units of length and of time. Time is in parts of a
-    millisecond, length in parts of a metre times the span, so that velocity is whole as well.
+    The kernel's answer does not depend on the units of length and time. Times are in fractions of a
+    millisecond, lengths in fractions of a metre times the span, so that velocities are integers
+    too.
     """
 
     def __init__(self, thresholds: StandardThresholds) -> None:
@@ -69,62 +71,81 @@ class WholeUnits:
         times = tthr * 1000, tcoa * 1000
         self._parts_of_ms = math.lcm(*(x.denominator for x in times))
         self._times = [int(x * self._parts_of_ms) for x in times]
+        self._newest: dict[int, tuple[Sample, list[tuple[int, int]]]] = {}
+
+    def ratios(self, number: int, sample: Sample) -> list[tuple[int, int]]:
+        """Numerators and denominators of a position; the newest is cached, since one step begins
+        where the last ended.
+        """
+        kept = self._newest.get(number)
+        if kept is not None and kept[0] is sample:
+            return kept[1]
+        found = [x.as_integer_ratio() for x in sample.position[:3]]
+        self._newest[number] = sample, found
+        return found
 
     def step(self, before: dict[int, Sample], after: dict[int, Sample]) -> WholeStep:
-        """A step of all that were seen at both ends of it."""
+        """The step of all aircraft sampled at both ends of it."""
         return WholeStep(self, before, after)
 
     def thresholds(self, unit: int, span: int) -> StandardThresholds:
-        """In whole numbers; unit: parts of a metre; span: of time."""
+        """The thresholds as integers. unit: length units per metre; span: duration of the step in time units."""
         dthr, zthr = (int(x * unit) * span for x in self._lengths)
         return StandardThresholds(dthr, zthr, *self._times)
 
     @property
     def part(self) -> int:
-        """Parts of a metre in which the thresholds are whole."""
+        """Length units per metre for which the thresholds are integers."""
         return self._part
 
     @property
     def parts_of_ms(self) -> int:
-        """Parts of a millisecond in which they are."""
+        """Time units per millisecond for which the thresholds are integers."""
         return self._parts_of_ms
 
 
 class WholeStep:
-    """One step of many aircraft, in whole numbers; each position is turned into them once."""
+    """One step of many aircraft in integers; each position is converted once."""
 
     def __init__(
         self, units: WholeUnits, before: dict[int, Sample], after: dict[int, Sample]
     ) -> None:
         self._before, self._after = before, after
         seen = before.keys() & after.keys()
-        ratios = {
-            i: [x.as_integer_ratio() for one in (before[i], after[i]) for x in one.position[:3]]
-            for i in seen
-        }
+        ratios = {i: units.ratios(i, before[i]) + units.ratios(i, after[i]) for i in seen}
         parts = {below for found in ratios.values() for _, below in found}
         unit = math.lcm(units.part, *parts)
         self._at = {i: [n * (unit // below) for n, below in r] for i, r in ratios.items()}
         self._units, self._unit = units, unit
         self._by_span: dict[int, StandardThresholds] = {}
+        self._of_own: dict[int, tuple[int, StandardThresholds]] = {}
 
     def lost(self, own: int, other: int) -> bool:
-        """Whether well clear of two aircraft is lost during the step."""
+        """Whether two aircraft lose well clear during the step."""
+        asked = self._of_own.get(own)
+        span, thresholds = asked if asked is not None else self._asked(own)
+        a0, a1, a2, a3, a4, a5 = self._at[own]
+        b0, b1, b2, b3, b4, b5 = self._at[other]
+        x, y, z = a0 - b0, a1 - b1, a2 - b2
+        # as Vec2(x, y), in half the time
+        s: Any = tuple.__new__(Vec2, (x * span, y * span))
+        v = tuple.__new__(Vec2, (a3 - b3 - x, a4 - b4 - y))
+        return bool(violation_within(s, v, z * span, a5 - b5 - z, thresholds, span))
+
+    def _asked(self, own: int) -> tuple[int, StandardThresholds]:
+        """Duration of an aircraft's step in time units, and the thresholds scaled for it."""
         took_ms = self._after[own].time_ms - self._before[own].time_ms
         span = took_ms * self._units.parts_of_ms
         if span <= 0:
             raise ValueError(f"a span of {took_ms} ms")
         if span not in self._by_span:
             self._by_span[span] = self._units.thresholds(self._unit, span)
-        a, b = self._at[own], self._at[other]
-        x, y, z = a[0] - b[0], a[1] - b[1], a[2] - b[2]
-        u, v, w = a[3] - b[3] - x, a[4] - b[4] - y, a[5] - b[5] - z
-        s: Any = Vec2(x * span, y * span)
-        return bool(violation_within(s, Vec2(u, v), z * span, w, self._by_span[span], span))
+        self._of_own[own] = span, self._by_span[span]
+        return self._of_own[own]
 
 
 class SeparationWatch:
-    """Watch of well clear for every protected vehicle. `presence`: which aircraft were observed when."""
+    """Watches well clear for every protected vehicle. `presence`: observation spans of each aircraft."""
 
     def __init__(self, mission: Mission, presence: Presence) -> None:
         self._mission, self._presence = mission, presence
@@ -151,7 +172,7 @@ class SeparationWatch:
             if own not in before or own not in after:
                 continue
             for other in there:
-                if other == own or (other < own and other in self._ours):  # a pair once
+                if other == own or (other < own and other in self._ours):  # each pair once
                     continue
                 whole = whole or self._units.step(before, after)
                 if self._check((own, other), before, after, whole.lost(own, other)):
@@ -162,9 +183,11 @@ class SeparationWatch:
         self, key: tuple[int, int], before: dict[int, Sample], after: dict[int, Sample], lost: bool
     ) -> bool:
         own, other = key
-        pair = self.pairs.setdefault(key, Pair())
+        pair = self.pairs.get(key)
+        if pair is None:
+            pair = self.pairs[key] = Pair()
         pair.checks += 1
-        if pair.measured is not before[own]:  # else that was the end of the step before
+        if pair.measured is not before[own]:  # otherwise the end of the previous step was measured
             self._measure(pair, before[own], before[other])
         self._measure(pair, after[own], after[other])
         pair.measured = after[own]
@@ -199,7 +222,8 @@ class SeparationWatch:
             margin = pair.nearest_m - self._volume.dthr_m
             note = f"nearest {pair.nearest_m:.1f} m at {pair.nearest_ms / 1000:.2f} s"
         if lost:
-            # who is lost is headed for a miss by DTHR at most; doubles may say a hair more
+            # a loss implies a predicted miss of at most DTHR; rounding in doubles may exceed it
+            # slightly
             margin = min(0.0, min(pair.nearest_m, pair.miss_m) - self._volume.dthr_m)
             note = (
                 f"lost at {(pair.lost_ms or 0) / 1000:.2f} s, in {pair.lost_steps} "
@@ -255,14 +279,14 @@ class SeparationWatch:
 
 
 def _miss(x: float, y: float, vx: float, vy: float) -> float:
-    """Least horizontal distance [m] of straight flight from now on, from relative position and velocity."""
+    """Least horizontal distance [m] under straight flight, from relative position and velocity."""
     if x * vx + y * vy >= 0:
         return math.hypot(x, y)
     return abs(x * vy - y * vx) / math.hypot(vx, vy)
 
 
 def _scene(samples: dict[int, Sample]) -> Scene:
-    """Where everybody was, east, north, up."""
+    """Positions of all aircraft: east, north, up."""
     time_ms = next(iter(samples.values())).time_ms
     return Scene(
         time_ms,

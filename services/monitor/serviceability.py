@@ -1,7 +1,8 @@
-"""Beside a task that was not served: whether any vehicle could have served it, as far as is known.
+"""For a task that was not served: whether any vehicle could have served it, as far as is known.
 
-From the mission alone: who takes part when, is eligible, and able in the wind. Whether a way and the
-time were left is the planner's matter, which the monitor does not repeat: that is not determined.
+Judged from the mission alone: which vehicles take part when, are eligible, and able in the wind.
+Whether a route and enough time were left is for the planner, which the monitor does not repeat:
+that remains undetermined.
 """
 
 from __future__ import annotations
@@ -22,8 +23,9 @@ OPEN = "not determined"
 def prospects(
     mission: Mission, task: Task, end_ms: int, down: Mapping[int, Down]
 ) -> tuple[str, dict[str, Any]]:
-    """In words and as data: whether the task could have been served, and the state of each vehicle
-    at the end. down: those on the ground."""
+    """Whether the task could have been served, and the state of each vehicle at the end, in words
+    and as data. down: vehicles on the ground.
+    """
     why = _unable(mission, task, end_ms, down)
     vehicles = [
         {"vehicle": v.id, "unable": why.get(v.id, "")}
@@ -50,7 +52,7 @@ def prospects(
 
 
 def _unable(mission: Mission, task: Task, now_ms: int, down: Mapping[int, Down]) -> dict[int, str]:
-    """Who can not do a task at an instant, and why."""
+    """Vehicles that cannot perform a task at an instant, with the reason."""
     away = absent(mission, now_ms)
     found = {}
     for vehicle in mission.vehicles:
@@ -64,7 +66,7 @@ def _unable(mission: Mission, task: Task, now_ms: int, down: Mapping[int, Down])
 
 
 def _since(mission: Mission, task: Task, end_ms: int, down: Mapping[int, Down]) -> int:
-    """The time from which no vehicle could do the task until the end of the mission."""
+    """Time from which no vehicle could perform the task until the end of the mission [ms]."""
     happened, _ = split(mission.changes, end_ms)
     landed = (place.since_ms for place in down.values())
     instants = sorted({0, *(change.at_ms for change in happened), *landed}, reverse=True)
@@ -77,6 +79,6 @@ def _since(mission: Mission, task: Task, end_ms: int, down: Mapping[int, Down]) 
 
 
 def _asked(mission: Mission, task: Task) -> int:
-    """When the task was first asked for."""
+    """Time at which the task was first requested [ms]."""
     added = [c.at_ms for c in mission.changes if c.kind == TASK_ADDED and c.task == task.id]
     return min(added, default=0)

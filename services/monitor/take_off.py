@@ -1,9 +1,11 @@
-"""G4 of a vehicle that starts on the ground: that it leaves it under ICAROUS, by a roll that was said to be permitted.
+"""G4 for a vehicle that starts on the ground: it takes off under ICAROUS, in a roll reported as
+permitted.
 
-By where it was and what its ICAROUS said of it (`TakeOffState`), held against the kernel `departure_step`: from the mode
-before, the one that it told must follow, whatever was permitted. On the ground it moves only while its gate has ICAROUS
-command, is faster only while it is said to roll, and leaves it out of such a roll, which is said within two heartbeats.
-Of what was not seen nothing is said: not that it was wrong, and not that it was as it should.
+The vehicle's positions and the states that its ICAROUS reported (`TakeOffState`) are checked
+against the kernel `departure_step`: each reported mode must follow from the one before. On the
+ground it moves only while its gate gives ICAROUS command, accelerates only while a roll is
+reported, and lifts off only out of such a roll, which is reported within two heartbeats. Nothing is
+claimed about unobserved periods.
 """
 
 from __future__ import annotations
@@ -33,17 +35,19 @@ from cratous.spec.mission import GroundedVehicle, Mission
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 
 LATEST_BEATS = 2
-"""So many heartbeats after it is off the ground it has been said."""
+"""Heartbeats after lift-off within which it has to be reported."""
 ROUNDED_M = 1e-3
-"""Positions are sums of rounded steps: a leg that is longer than the one before by no more is as long [m]."""
+"""Tolerance on a leg's length [m]: positions are sums of rounded steps, so a smaller increase is none."""
 EITHER = (False, True)
 
 
 @dataclass
 class Seen:
-    """One vehicle: said: its modes, since when [ms]; icarous: whether it is ICAROUS that commands, since when [ms]; leg_m:
-    how far it was flown along the ground in the last step that was seen, which ended at leg_ms [ms]; off_ms: when it was
-    last on the ground, as far as was seen, None as long as it is; wrong: what should not have been, with the time [ms]."""
+    """One vehicle. said: its modes with times [ms]; icarous: changes of ICAROUS's command with
+    times [ms]; leg_m: distance along the ground in the last observed step, which ended at leg_ms
+    [ms]; off_ms: time of the last observation on the ground, None while on it; wrong: faults with
+    their times [ms].
+    """
 
     said: list[tuple[int, int]] = field(default_factory=lambda: [(0, STANDING)])
     icarous: list[tuple[int, bool]] = field(default_factory=lambda: [(0, False)])
@@ -56,12 +60,12 @@ class Seen:
 
 
 def _at(history: list[tuple[int, Any]], time_ms: int) -> Any:
-    """What was so at an instant, by its changes."""
+    """The value at an instant, from its history of changes."""
     return next(value for since_ms, value in reversed(history) if lasted(since_ms, time_ms, 0))
 
 
 class TakeOffWatch:
-    """The vehicles with an ICAROUS instance that start on the ground; nobody where the mission has none."""
+    """Watches vehicles with an ICAROUS instance that start on the ground; empty if the mission has none."""
 
     def __init__(self, mission: Mission, presence: Presence) -> None:
         self._presence, self._beat_ms = presence, mission.simulation.heartbeat_ms
@@ -72,7 +76,7 @@ class TakeOffWatch:
         self._end_ms: int | None = None
 
     def state(self, body: Any) -> None:
-        """Take a vehicle's take-off state."""
+        """Process a vehicle's TakeOffState."""
         seen = self._seen.get(body.VehicleID)
         if seen is None:
             return
@@ -87,7 +91,7 @@ class TakeOffWatch:
             for air in EITHER
             for end in EITHER
         }
-        # why it stands may be said again
+        # the reason for standing may be reported repeatedly
         if mode not in may or (mode == before and mode != STANDING):
             seen.wrong.append((now_ms, f"{body.Mode.name} is not what follows then"))
         if mode != before:
@@ -118,7 +122,7 @@ class TakeOffWatch:
             seen.off_ms = at_ms
         whole = in_time(at_ms, after.time_ms, self._presence.step_ms)
         if not whole or not (was_down or in_time(0, at_ms, 0)):
-            return  # how it moved was not seen, or it had left the ground before it was
+            return  # its motion was not observed, or it had already left the ground
         moved = Vec2(there.north_m - here.north_m, there.east_m - here.east_m)
         mode, still = _at(seen.said, at_ms), disc_within(moved, 0.0, 0.0)
         rolls = mode == ROLLING
@@ -149,11 +153,11 @@ class TakeOffWatch:
                     seen.wrong.append((seen.off_ms, f"{text}, and did not say so then"))
 
     def _unseen(self, number: int, span: Span) -> str:
-        """What was not seen of a vehicle between two instants; empty if all was."""
+        """Observation gaps of a vehicle between two instants, in words; empty if none."""
         return self._presence.unseen(number, span, Ending(span[1], True))
 
     def verdicts(self) -> list[Verdict]:
-        """One verdict a vehicle."""
+        """One verdict per vehicle."""
         return [self._verdict(number, seen) for number, seen in sorted(self._seen.items())]
 
     def _verdict(self, vehicle: int, seen: Seen) -> Verdict:

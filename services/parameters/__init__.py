@@ -1,1 +1,1 @@
-"""What ICAROUS and detect-and-avoid are set to for a mission, and the parameter files of the original."""
+"""Parameters of ICAROUS and detect and avoid for a mission, and the original's parameter files."""

@@ -1,7 +1,8 @@
-"""The parameters of ICAROUS by name, with unit and default, and what each is here.
+"""The parameters of ICAROUS by name, with unit and default, and their meaning here.
 
-137 names of its parameter files (as of 2022-01-12), in groups: those that set an item of a mission, and those that
-are not used here, with the reason. Names, units and defaults are facts of the format; the words are ours.
+137 names of its parameter files (as of 2022-01-12), in groups: those that set an item of a mission, and those
+not used here, with the reason. Names, units and defaults are facts of the format; the descriptions are our
+own.
 """
 
 from __future__ import annotations
@@ -10,8 +11,9 @@ from typing import NamedTuple
 
 
 class Name(NamedTuple):
-    """One name of a parameter file. item: of the mission file that it sets, "" if it is not used here; why: how it
-    does, or why not."""
+    """One name of a parameter file. item: of the mission file that it sets, "" if it is not used here; why:
+    how it does, or why not.
+    """
 
     name: str
     default: str
@@ -21,7 +23,7 @@ class Name(NamedTuple):
 
 
 class Group(NamedTuple):
-    """Names with one item and one reason: (name, default, unit) each."""
+    """Names with the same item and reason: (name, default, unit) each."""
 
     item: str
     why: str
@@ -245,4 +247,4 @@ NAMES: dict[str, Name] = {
     for group in GROUPS
     for name, default, unit in group.names
 }
-"""By name."""
+"""The parameters by name."""

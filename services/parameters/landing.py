@@ -1,4 +1,4 @@
-"""The parameters of a landing without the link, of a vehicle that may land."""
+"""The parameters of a landing without the link, for a vehicle that may land."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cratous.spec.mission import Mission, Vehicle
 
 
 def landing_rows(mission: Mission, vehicle: Vehicle) -> Iterator[Parameter]:
-    """None where there is no landing site."""
+    """The parameters of a vehicle's landing; none without a landing site."""
     if not sites_of(mission):
         return
     speed, climb = vehicle.min_speed_m_s, vehicle.max_climb_m_s

@@ -1,7 +1,8 @@
-"""Every parameter that ICAROUS and detect-and-avoid use for a mission, given, left out, derived or fixed.
+"""Every parameter that ICAROUS and detect and avoid use for a mission: given, defaulted, derived or fixed.
 
-What may be given has its default and range in the mission's JSON Schema. What is derived is computed by the
-functions that fly it (`services.icarous.derived`); in flight by the speed that is flown, here at cruise speed.
+Parameters that may be given have their default and range in the mission's JSON Schema. Derived ones are
+computed by the functions used in flight (`services.icarous.derived`): here at cruise speed, in flight at the
+present speed.
 """
 
 from __future__ import annotations
@@ -51,8 +52,9 @@ EXCUSE = "whether there was a way out (G2) is looked for so among"
 
 
 def parameters_of(mission: Mission, path: Path) -> tuple[Parameter, ...]:
-    """All of a mission that was read from a path, those of the mission first. Raises BadInput if it cannot be
-    read again."""
+    """All parameters of a mission read from a path, those of the mission first. Raises BadInput if it cannot
+    be read again.
+    """
     written = _written(path)
     rows = [*_of_mission(mission, written), *_of_sensing(mission, written)]
     rows += [*_of_link_loss(mission, written), *merging_rows(mission, written)]
@@ -65,7 +67,7 @@ def parameters_of(mission: Mission, path: Path) -> tuple[Parameter, ...]:
 
 
 def _written(path: Path) -> Any:
-    """What the mission file says, as plain data; None of a mission in messages."""
+    """The mission file's contents as plain data; None for a mission in messages."""
     if path.is_dir() and (path / "mission.yaml").is_file():
         path = path / "mission.yaml"
     return read_document(path).data if path.suffix.lower() in (".yaml", ".yml") else None

@@ -1,4 +1,4 @@
-"""What a parameter file of ICAROUS sets in a mission: items with values in the mission file's units."""
+"""The mission items that an ICAROUS parameter file sets, with values in the mission file's units."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cratous.services.parameters.parameter_file import Given
 
 
 class Setting(NamedTuple):
-    """An item of a mission file, its value there, and the name and place that it comes from."""
+    """An item of a mission file, its value there, and the parameter name and place that it comes from."""
 
     item: str
     value: Any
@@ -20,7 +20,9 @@ class Setting(NamedTuple):
 
 
 def settings_of(given: Mapping[str, Given], speed_m_s: float) -> dict[str, Setting]:
-    """The items that a file sets, by item; speed_m_s: the cruise speed, by which a turn rate is a bank."""
+    """The items that a file sets, by item. speed_m_s: cruise speed for converting a turn rate to a bank
+    angle.
+    """
     found = dict[str, Setting]()
     for one in given.values():
         item, value = one.name.item, one.value

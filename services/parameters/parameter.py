@@ -1,17 +1,18 @@
-"""One parameter of a mission: its value, where that comes from, and how."""
+"""One parameter of a mission: its value, origin and formula."""
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
 GIVEN, DEFAULT, DERIVED, FIXED = "given", "default", "derived", "fixed"
-"""Written in the mission; left out there; follows from vehicle and mission; the same for all missions."""
+"""Set in the mission; its default; derived from vehicle and mission; the same for all missions."""
 
 
 class Parameter(NamedTuple):
-    """name: as the mission file has it, or of what is derived; vehicle: whose, 0 for the whole mission; value, unit;
-    default, low, high: of what may be given, None where there is none; origin: one of GIVEN, DEFAULT,
-    DERIVED, FIXED; how: the formula, or what it is, in words."""
+    """name: as in the mission file, or of the derived value; vehicle: its id, 0 for the whole mission; value,
+    unit; default, low, high: of parameters that may be given, None where there is none; origin: one of
+    GIVEN, DEFAULT, DERIVED, FIXED; how: the formula or a description, in words.
+    """
 
     name: str
     vehicle: int
@@ -25,7 +26,7 @@ class Parameter(NamedTuple):
 
     @property
     def range_text(self) -> str:
-        """From what to what, or "-"."""
+        """The range in words, or "-"."""
         if self.low is None and self.high is None:
             return "-"
         low = "" if self.low is None else f"{self.low:g}"

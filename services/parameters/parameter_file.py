@@ -1,7 +1,8 @@
 """Reading parameter files of ICAROUS: `key = value [unit]`, `#` begins a comment.
 
-Every name is known: it sets an item of the mission, or is named as not used here, with the reason. Values are held
-against the kind and the unit of the name. A value without unit is in SI, as in detect-and-avoid configurations.
+Every name is known: it sets an item of the mission, or is listed as not used here, with the reason. Values
+are checked against the type and the unit of the name. A value without unit is in SI, as in detect-and-avoid
+configurations.
 """
 
 from __future__ import annotations
@@ -28,12 +29,14 @@ WORDS = {
     VOLUME,
 }
 MISSPELT = ("undertainty", "uncertainty")
-"""As one of the files that ship with ICAROUS spells it in twelve names."""
+"""Misspelling in twelve names of a file that ships with ICAROUS, and its correction."""
 SQUARES = {"m^2", "m2", "m^2/s^2"}
 
 
 class Given(NamedTuple):
-    """One line of a file: the name with what it is here, the value in SI (degrees are radians), where it stands."""
+    """One line of a file: the name with its meaning here, the value in SI (degrees as radians), its text and
+    its place.
+    """
 
     name: Name
     value: float | bool | str
@@ -47,7 +50,7 @@ def read(file: Path) -> dict[str, Given]:
 
 
 def parse(text: str, file: str) -> dict[str, Given]:
-    """The same of a text."""
+    """The lines of a parameter text by name; errors as in `read`."""
     found = dict[str, Given]()
     for entry in entries(text, file).values():
         key = entry.key if entry.key in NAMES else entry.key.replace(*MISSPELT)
@@ -64,13 +67,13 @@ def parse(text: str, file: str) -> dict[str, Given]:
 
 
 def default_of(name: Name) -> float | bool | str:
-    """What ICAROUS takes where a file does not say it, in SI."""
+    """The default of ICAROUS for a parameter, in SI."""
     text = f"{name.default} [{name.unit}]" if name.unit else name.default
     return _value(name, Entry("", name.name, text, ""))
 
 
 def nearest_name(name: str) -> str:
-    """The known names that look like one; a few words if none does."""
+    """The most similar known names; a hint if there is none."""
     text = nearest(name, NAMES)
     return "one of the names of `cratous params --names`" if text.count(",") > 5 else text
 
@@ -95,7 +98,9 @@ def _value(name: Name, entry: Entry) -> float | bool | str:
 
 
 def _bounds(name: Name) -> tuple[float, float]:
-    """In SI: of detect-and-avoid what its own keys allow, of all else no negative amounts."""
+    """Bounds in SI: those of detect and avoid for its keys; otherwise negative values are excluded where
+    meaningless.
+    """
     key = KEYS.get(name.name)
     if key is not None:
         return key.low, key.high
@@ -117,7 +122,7 @@ def _word(name: Name, entry: Entry) -> str:
 
 
 def _consistent(found: Mapping[str, Given]) -> None:
-    """Least and greatest values the right way round; of climb rates one descends, one climbs."""
+    """Check that lower limits are not above upper ones, and the signs of the climb rates; BadInput otherwise."""
     for name, sign in (("min_vs", -1), ("max_vs", 1)):
         one = found.get(name)
         if one is not None and sign * float(one.value) <= 0:

@@ -1,4 +1,4 @@
-"""The parameters of what ICAROUS sees: of the section `sensing`, sensor by sensor."""
+"""The parameters of ICAROUS's sensors: the section `sensing`, sensor by sensor."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ SECTION = "sensing"
 
 
 class Row(NamedTuple):
-    """name: of the parameter; path: where it stands in a mission file; value: in the file's unit; facts: of the schema."""
+    """name: of the parameter; path: its place in a mission file; value: in the file's unit; facts: of the
+    schema.
+    """
 
     name: str
     path: tuple[str | int, ...]
@@ -20,7 +22,7 @@ class Row(NamedTuple):
 
 
 def rows_of(sensing: Sensing, schema: Any) -> Iterator[Row]:
-    """All, of the tracks first. schema: of the section. A range that is not bounded has no row."""
+    """All parameters, those of the tracks first. schema: of the section. An unbounded range has no row."""
     of_tracks: dict[str, float] = {
         "seed": sensing.seed,
         "sigmas": sensing.sigmas,

@@ -1,4 +1,4 @@
-"""The parameters of a take-off, of a vehicle that starts on the ground."""
+"""The parameters of a take-off, for a vehicle that starts on the ground."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The planning services of UxAS on the bus: drivers of the proved kernels of `core.contracts`."""
+"""The planning services of UxAS on the bus: they drive the proved kernels of `core.contracts`."""

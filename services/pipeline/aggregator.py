@@ -1,9 +1,9 @@
-"""RouteAggregatorService: checklists of routes and options, driven by `core.contracts.checklists`.
+"""RouteAggregatorService: collects routes and options, driven by `core.contracts.checklists`.
 
-Collector: UniqueAutomationRequest -> all TaskPlanOptions -> RoutePlanRequests, one a vehicle ->
-all RoutePlanResponses -> AssignmentCostMatrix. Aggregator: RouteRequest -> RoutePlanRequests, one a
-vehicle -> RouteResponse. The ids of plan requests come in blocks, one block for each request, so
-that a response belongs to exactly one.
+Collector: UniqueAutomationRequest -> all TaskPlanOptions -> RoutePlanRequests, one per vehicle -> all
+RoutePlanResponses -> AssignmentCostMatrix. Aggregator: RouteRequest -> RoutePlanRequests, one per vehicle ->
+RouteResponse. The ids of plan requests are allocated in disjoint blocks, one per request, so that each
+response belongs to exactly one.
 """
 
 from __future__ import annotations
@@ -35,39 +35,40 @@ PLANS = "uxas.messages.route.RoutePlanResponse"
 ROUTES = "uxas.messages.route.RouteRequest"
 AWAITS_OPTIONS = 1
 AT_ONCE = 64
-"""RouteRequests that are kept at the same time; the oldest makes room."""
+"""Most RouteRequests kept at the same time; beyond that the oldest is dropped."""
 
 End = tuple[int, int]
-"""Task and option, (0, 0) for where a vehicle is."""
+"""Task and option; (0, 0) for a vehicle's position."""
 
 
 class Block(NamedTuple):
-    """Plan requests of one request: first id, vehicles in order, responses by id."""
+    """The plan requests of one request: first id, vehicles in order, responses by id."""
 
     first: int = 0
     vehicles: tuple[int, ...] = ()
     plans: tuple[tuple[int, Any], ...] = ()
 
     def owns(self, number: int) -> bool:
-        """True iff an id is one of this block's."""
+        """Whether an id belongs to this block."""
         return owns(self.first, len(self.vehicles), number)
 
     @property
     def complete(self) -> bool:
-        """True iff all have been answered."""
+        """Whether all have been answered."""
         have = {number for number, _ in self.plans}
         return list_complete([(self.first + k in have,) for k in range(len(self.vehicles))])
 
     def plus(self, response: Any) -> Block:
-        """With a response; of several to one request the first counts."""
+        """The block with a response added; duplicates are ignored."""
         if any(number == response.ResponseID for number, _ in self.plans):
             return self
         return self._replace(plans=(*self.plans, (response.ResponseID, response)))
 
 
 class Collecting(NamedTuple):
-    """One automation request: the kernel's stage, the request, options by task, its routes, and for
-    each vehicle from where to where the routes lead, by RouteID."""
+    """One automation request: the kernel's stage, the request, options by task, its routes, and for each
+    vehicle the ends of its routes, by RouteID.
+    """
 
     stage: int
     request: Any
@@ -95,8 +96,9 @@ class RouteAggregatorService:
     knows = ("EntityConfiguration", "EntityState")
 
     def __init__(self, contexts: Contexts, group: str = "", fast: bool = False) -> None:
-        """group: of the planners that are asked for waypoints, none for all planners; fast: what ways of vehicles that
-        drive cost is not asked for, but taken as that of straight lines."""
+        """group: address of the planners for waypoints, "" for all planners; fast: costs of ground vehicles
+        are taken from straight lines instead of being requested.
+        """
         self._contexts, self._group, self._fast = contexts, group, fast
 
     def start(self) -> Open:
@@ -113,7 +115,7 @@ class RouteAggregatorService:
             if mine is None or body.TaskID not in mine.request.OriginalRequest.TaskList:
                 return state, ()
             if body.TaskID in mine.options:
-                return state, ()  # the first offer counts: routes may have been asked for already
+                return state, ()  # the first offer counts: routes may have been requested already
             return self._collect(state, mine._replace(options={**mine.options, body.TaskID: body}))
         if topic == PLANS:
             return self._answered(state, body)
@@ -139,7 +141,7 @@ class RouteAggregatorService:
         return state, ()
 
     def _collect(self, state: Open, mine: Collecting) -> Step:
-        """Do what the collector of one request does, until it waits again."""
+        """Advance the collector of one request until it has to wait."""
         key = mine.request.RequestID
         out: list[Any] = []
         while True:
@@ -170,7 +172,7 @@ class RouteAggregatorService:
         states = {planning.EntityID: planning for planning in mine.request.PlanningStates}
         options = [o for task in request.TaskList for o in mine.options[task].Options]
         may_follow = set(context.inputs.may_follow)
-        # of a task that is no choice of one option, one option may follow another
+        # of a task that is not a choice of one option, one option may follow another
         told = {task: composition(mine.options[task]) for task in request.TaskList}
         may_follow |= {(task, task) for task, term in told.items() if not is_choice(term)}
         asked: list[Any] = []
@@ -215,7 +217,7 @@ class RouteAggregatorService:
         return state, mine._replace(block=block, ends=tuple(ends)), asked
 
     def _straight(self, asked: list[Any], block: Block) -> tuple[list[Any], Block]:
-        """Requests that are still to be sent, and the block with the answers to those that are not."""
+        """The requests still to be sent, and the block with the answers to the others."""
         left = []
         for one in asked:
             if self._fast and is_ground(self._contexts.world, one.VehicleID):
@@ -225,11 +227,11 @@ class RouteAggregatorService:
         return left, block
 
     def _state(self, vehicle: int) -> Any:
-        """Where a vehicle is, for requests whose PlanningStates do not say."""
+        """A vehicle's newest state, for requests whose PlanningStates lack it."""
         return self._contexts.world.get("state", vehicle)
 
     def _aggregate(self, state: Open, request: Any) -> Step:
-        """One plan request for each vehicle of a RouteRequest; no vehicle means all that are known."""
+        """One plan request per vehicle of a RouteRequest; an empty list means all known vehicles."""
         vehicles = list(dict.fromkeys(request.VehicleID))
         vehicles = vehicles or self._contexts.world.ids("configuration")
         block = Block(state.free, tuple(vehicles))
@@ -272,7 +274,7 @@ def _reply(request: Any, block: Block) -> Any:
 
 
 def _matrix(mine: Collecting) -> Any:
-    """The costs of all routes that were found."""
+    """The cost matrix of all routes that were found."""
     request, plans = mine.request.OriginalRequest, dict(mine.block.plans)
     rows = []
     for k, vehicle in enumerate(mine.block.vehicles):

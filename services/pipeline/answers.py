@@ -8,12 +8,13 @@ from typing import Any, NamedTuple
 from cratous.bridge import lmcp
 from cratous.services.pipeline.status import status
 
-_INFO = 8  # entries of AutomationResponse.Info
+_INFO = 8  # most entries of AutomationResponse.Info
 
 
 class Asked(NamedTuple):
-    """A request as it came: its message, the AutomationRequest inside, whether it is only a trial,
-    the states that it brings, its number on the bus, and the RequestID that it asks for, 0 for any."""
+    """A request as received: its message, the AutomationRequest inside, whether it is only a trial, its
+    planning states, its number on the bus, and its own RequestID, 0 for none.
+    """
 
     body: Any
     request: Any
@@ -24,7 +25,7 @@ class Asked(NamedTuple):
 
 
 def asked_of(topic: str, body: Any, seq: int) -> Asked:
-    """A request of any kind."""
+    """Normalise a request of any of the three kinds."""
     if topic.endswith(".ImpactAutomationRequest"):
         return Asked(body, body.TrialRequest, body.Sandbox, [], seq)
     if topic.endswith(".TaskAutomationRequest"):
@@ -66,7 +67,7 @@ def answer(asked: Asked, unique: Any, notes: Sequence[str]) -> Any:
 
 
 def refusal(asked: Asked, number: int, reasons: Sequence[str]) -> list[Any]:
-    """A ServiceStatus of type Error, and a response without commands that says why."""
+    """A ServiceStatus of type Error, and a response without commands that carries the reasons."""
     pairs = [lmcp.new("KeyValuePair", Key="reason", Value=text) for text in reasons]
     empty = lmcp.new("AutomationResponse", Info=pairs[:_INFO])
     told = status(number, "Error", [("reason", text) for text in reasons])

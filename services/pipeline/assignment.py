@@ -1,8 +1,8 @@
-"""AssignmentTreeBranchBoundService: options and costs -> who does what, or why nobody can.
+"""AssignmentTreeBranchBoundService: an assignment from options and costs, or the reasons why none exists.
 
-Options, their costs and who may fly them come from TaskPlanOptions, the ways from the
-AssignmentCostMatrix; vehicles that the request does not name take no part, whatever rows there are.
-The search is that of `services.planning.mission_assign`.
+Options, their costs and eligible vehicles come from TaskPlanOptions, the routes from the
+AssignmentCostMatrix; rows of vehicles that the request does not name are ignored. The search is that of
+`services.planning.mission_assign`.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ NAME = "AssignmentTreeBranchBoundService"
 class AssignmentTreeBranchBoundService:
     """UniqueAutomationRequest, TaskPlanOptions, AssignmentCostMatrix -> TaskAssignmentSummary.
 
-    In the summary TimeThreshold is the instant at which the task starts, so that a later
-    departure becomes a wait; TimeTaskCompleted is its end (ms after mission start).
+    In the summary TimeThreshold is the start of the task, so that a later departure becomes a wait;
+    TimeTaskCompleted is its end (ms after mission start).
     """
 
     name = NAME
@@ -79,7 +79,7 @@ class AssignmentTreeBranchBoundService:
         return left, out
 
     def _assign(self, mine: Told, matrix: Any, out: list[Any]) -> None:
-        """The summary of an assignment; NoPlan or BadInput with the reasons why there is none."""
+        """Publish the summary of an assignment; NoPlan or BadInput with the reasons if there is none."""
         key = mine.request.RequestID
         context = self._contexts.of(key)
         offered = read(mine, matrix, context)
@@ -117,24 +117,24 @@ class AssignmentTreeBranchBoundService:
 
 
 def _task(number: int, pairs: Mapping[int, Pair]) -> int:
-    """The task of a request that a task of the assignment is of."""
+    """The request's task for a task of the assignment."""
     return pairs[number][0] if number in pairs else number
 
 
 def _found(offered: Read) -> mission_assign.Found:
-    """The assignment of all tasks, else of the part that leaves out least; if nothing can be done, NoPlan
-    with what no vehicle can do or reach, or which constraints clash.
+    """The assignment of all tasks, else of the part that leaves out least; NoPlan if nothing can be done,
+    with the tasks that no vehicle can do or reach, or the conflicting constraints.
 
-    Where options are tasks, a part might be half of a task: then it is all or nothing.
+    Where options are tasks of their own, a partial assignment might split a task: then it is all or nothing.
     """
     inputs, rows, tasks = offered.inputs, offered.rows, offered.tasks
     mission, problem = inputs.mission, inputs.problem(travel_of(inputs, rows))
     limits = mission_assign.limits_of(mission)
     try:
-        # of a mission the part that can be done says why the rest cannot
+        # for a mission, the partial assignment explains why the rest cannot be done
         found = mission_assign.assign(problem, limits, tell=bool(offered.split.ids))
     except BadInput as error:
-        # only what is said of tasks better elsewhere is no mistake of ours
+        # an error already explained per task is no input error
         why = without_vehicles.why_none(inputs) or tuple(inputs.undone.values())
         if not why:
             raise
@@ -164,7 +164,7 @@ def _found(offered: Read) -> mission_assign.Found:
 def _nothing(
     inputs: Inputs, part: mission_assign.Found, unreached: Sequence[int]
 ) -> tuple[str, ...]:
-    """Why each task that is asked for cannot be done, where none can. unreached: the costs have no way to these."""
+    """Why each requested task cannot be done, if none can. unreached: tasks to which the costs have no route."""
     no_options, no_routes = without_vehicles.without_options, without_vehicles.without_routes
     named = no_options(inputs).keys() | no_routes(inputs).keys()
     others = [one.text for one in part.left_out if one.task_id not in named]
@@ -174,7 +174,7 @@ def _nothing(
 
 
 def _not_all(key: int, inputs: Inputs) -> list[Any]:
-    """A warning where there are more ways to choose among alternatives than were looked at."""
+    """A warning where not all alternatives were examined."""
     cut = not_all_of(inputs.term)
     text = f"{cut}: there may be a better plan"
     return [status(key, "Warning", [("reason", text)])] if cut else []
@@ -206,7 +206,7 @@ def _in_part(key: int, options: Sequence[Option], result: Assignment) -> list[An
 
 
 def facts(result: Assignment, cost: str) -> list[tuple[str, str]]:
-    """What is known of an assignment, for a status: `optimal` only with a certificate."""
+    """Facts about an assignment, for a status. Its status is `optimal` only with a certificate."""
     return [
         (f"cost_{COST_UNITS[cost].lower()}", str(result.cost)),
         ("status", result.status),

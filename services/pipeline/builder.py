@@ -1,7 +1,7 @@
-"""PlanBuilderService: the parts of a plan in assignment order, driven by the proved `building_step`.
+"""PlanBuilderService: assembles a plan in assignment order, driven by the proved `building_step`.
 
-TaskAssignmentSummary -> TaskImplementationRequest, one task after the other, each from where the
-one before ends -> UniqueAutomationResponse, or a ServiceStatus of type Error; one answer.
+TaskAssignmentSummary -> TaskImplementationRequest, one task after the other, each starting where the one
+before ends -> UniqueAutomationResponse, or a ServiceStatus of type Error; exactly one answer.
 """
 
 from __future__ import annotations
@@ -24,8 +24,9 @@ ASK, ANSWER, REFUSE, REPORT = 1, 2, 3, 4
 
 
 class Work(NamedTuple):
-    """One request: the kernel's progress, the request, its assignment, waypoints and last response
-    by vehicle."""
+    """One request: the kernel's progress, the request, its assignment, waypoints and last response by
+    vehicle.
+    """
 
     progress: Building
     request: Any
@@ -42,14 +43,14 @@ class Built(NamedTuple):
 
 
 class Options(NamedTuple):
-    """turn_type: of all waypoints; loiter_m: radius of a loiter at the end [m], 0 for none."""
+    """turn_type: of all waypoints; loiter_m: radius of a final loiter [m], 0 for none."""
 
     turn_type: str = "TurnShort"
     loiter_m: float = 0.0
 
 
 class PlanBuilderService:
-    """Puts plans together."""
+    """Assembles plans."""
 
     name = NAME
     subscribes: tuple[str, ...] = (UNIQUE, SUMMARY, IMPLEMENTED, *ENDINGS)
@@ -144,7 +145,7 @@ class PlanBuilderService:
         )
 
     def _from(self, work: Work, vehicle: int) -> tuple[Any, float]:
-        """Where a vehicle plans from: as the request says, else where it is."""
+        """Where a vehicle's plan starts: as the request states, else its newest state."""
         for planning in work.request.PlanningStates:
             if planning.EntityID == vehicle:
                 return planning.PlanningPosition, planning.PlanningHeading
@@ -182,7 +183,9 @@ class PlanBuilderService:
         )
 
     def _finished(self, points: tuple[Any, ...]) -> list[Any]:
-        """A vehicle's waypoints: turned as asked, the last one leads to itself or is loitered at."""
+        """A vehicle's waypoints with the configured turn type; the last is its own successor, or ends in a
+        loiter.
+        """
         turn = self._options.turn_type
         if points[-1].AssociatedTasks and self._contexts.source.outside is not None:
             points = _released(points)
@@ -209,14 +212,14 @@ class PlanBuilderService:
 
 
 def _released(points: tuple[Any, ...]) -> tuple[Any, ...]:
-    """With a waypoint more where the last one is: who makes for it does no task, so the last is complete."""
+    """Add a copy of the last waypoint without tasks: flying to it shows that the last task is complete."""
     last, number = points[-1], 1 + max(w.Number for w in points)
     more = last.copy(Number=number, AssociatedTasks=[], VehicleActionList=[])
     return *points[:-1], last.copy(NextWaypoint=number), more
 
 
 def _part(work: Work, body: Any) -> int:
-    """Which part of the assignment a response is of: the one asked for, if it is that task's."""
+    """Index of the part of the assignment that a response belongs to, the requested one first; -1 if none."""
     for k in (work.progress.at, *range(len(work.parts))):
         if k in range(len(work.parts)):
             part = work.parts[k]

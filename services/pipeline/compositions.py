@@ -1,8 +1,8 @@
-"""What a task's composition of its options means: any term of the process algebra over them.
+"""The meaning of a task's Composition: any term of the process algebra over its options.
 
-A task whose composition is a choice of one option is one task of the assignment. Of any other, each option is
-one, and the composition stands in the relations in the place of the task: the assignment then does of the
-options exactly what the composition asks for, in its order, whichever vehicles fly them.
+A task whose composition is a choice of one option is one task of the assignment. For any other, each option
+becomes a task, and the composition replaces the task in the relations: the assignment then does exactly the
+options that the composition requires, in its order, with any vehicles.
 """
 
 from __future__ import annotations
@@ -19,22 +19,22 @@ from cratous.spec.errors import BadInput
 from cratous.spec.mission import TaskKind
 
 Pair = tuple[int, int]
-"""A task and an option of it."""
+"""(task, option)."""
 
 
 class Split(NamedTuple):
-    """Inputs in which options are tasks, and the ids of these; no ids where there are none."""
+    """Inputs in which options are tasks, and the ids of these tasks; no ids if there are none."""
 
     inputs: Inputs
     ids: Mapping[Pair, int]
 
     @property
     def pairs(self) -> dict[int, Pair]:
-        """The task and option that an id stands for."""
+        """The (task, option) of each id."""
         return {number: pair for pair, number in self.ids.items()}
 
     def told(self, text: str) -> str:
-        """A reason with the tasks' own ids."""
+        """A reason with these ids replaced by the original tasks and options."""
         pairs = self.pairs
 
         def named(match: re.Match[str]) -> str:
@@ -45,7 +45,9 @@ class Split(NamedTuple):
 
 
 def composition(told: Any) -> algebra.Term | None:
-    """The composition of TaskPlanOptions, None without options; BadInput if it does not name each of them."""
+    """The composition in TaskPlanOptions, None without options; BadInput if it does not name exactly the
+    options.
+    """
     item = f"TaskPlanOptions of task {told.TaskID}"
     listed = {option.OptionID for option in told.Options}
     if not told.Composition.strip() and not listed:
@@ -63,7 +65,7 @@ def composition(told: Any) -> algebra.Term | None:
 
 
 def is_choice(term: algebra.Term | None) -> bool:
-    """True if a term is one of its atoms, whatever the nesting of the choices, and at any time."""
+    """Whether a term is a choice among single options, however nested, without timing."""
     if term is None:
         return True
     if term.suffix is not None:
@@ -75,7 +77,7 @@ def is_choice(term: algebra.Term | None) -> bool:
 
 
 def split(inputs: Inputs, composed: Mapping[int, algebra.Term]) -> Split:
-    """The inputs in which each option of some tasks is a task, related as their compositions say."""
+    """The inputs with each option of the composed tasks as a task, related as the compositions require."""
     if not composed:
         return Split(inputs, {})
     mission = inputs.mission
@@ -101,7 +103,7 @@ def _renamed(term: algebra.Term, task: int, ids: Mapping[Pair, int]) -> algebra.
 
 
 def _substituted(term: algebra.Term, terms: Mapping[int, algebra.Term]) -> algebra.Term:
-    """A term with terms in the place of tasks; the timing of a task is that of what stands in its place."""
+    """The term with tasks replaced by terms; a task's timing then applies to its replacement."""
     if isinstance(term, algebra.Op):
         operands = tuple(_substituted(part, terms) for part in term.operands)
         return replace(term, operands=operands)

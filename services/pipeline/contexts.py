@@ -1,10 +1,9 @@
-"""What each request means to the services of a pipeline, kept for the newest ones.
+"""The planning inputs of each request for the services of a pipeline; the newest are kept.
 
-A service of the pipeline works from messages alone. What follows from a UniqueAutomationRequest and
-what is known when it comes (mission, zones, options) is a function of both; it is computed when first
-asked for, so that services of one process do not compute it twice. In another process the same
-messages give the same. A service that stands on it names in `knows` what it reads there. Frame: the
-mission's, from the source.
+A service of the pipeline works from messages alone. The inputs (mission, zones, options) are a function of a
+UniqueAutomationRequest and of what is known when it arrives; they are computed on first use and shared by the
+services of one process. In another process the same messages give the same inputs. A service that depends on
+them declares in `knows` what it reads. Frame: the mission's, from the source.
 """
 
 from __future__ import annotations
@@ -23,14 +22,14 @@ from cratous.spec.errors import BadInput, CratousError, NoPlan
 
 UNIQUE = "uxas.messages.task.UniqueAutomationRequest"
 KEPT = 8
-"""Requests whose meaning is kept."""
+"""Number of requests whose context is kept."""
 
 
 class Context:
     """One UniqueAutomationRequest and the mission that it asks for.
 
-    offered: tasks whose options were computed here; withheld: by task, options that it did not offer, and why; assigned: what the search has found here;
-    error: why the request ended without a plan.
+    offered: tasks whose options were computed here; withheld: by task, options not offered, and why;
+    assigned: assignment found here; error: why the request ended without a plan.
     """
 
     def __init__(self, request: Any, inputs: Inputs, places: RequestPlaces) -> None:
@@ -42,7 +41,7 @@ class Context:
 
     @property
     def vehicles(self) -> list[int]:
-        """The vehicles that it is for; no EntityList means all that are known."""
+        """The vehicles of the request; an empty EntityList means all known ones."""
         return [vehicle.id for vehicle in self.inputs.mission.vehicles]
 
     @property
@@ -51,12 +50,12 @@ class Context:
         return int(self.request.OriginalRequest.OperatingRegion)
 
     def usual_speed_m_s(self, vehicle: int) -> float:
-        """How fast a vehicle flies where no task asks for more [m/s]."""
+        """Speed of a vehicle unless a task requires another [m/s]."""
         return self.inputs.mission.vehicle(vehicle).speed_m_s
 
 
 class Contexts:
-    """A service without a part of its own: hears the world, and each request as it is published."""
+    """A passive service: it records the world and opens the context of each published request."""
 
     name = "WorldState"
 
@@ -69,7 +68,7 @@ class Contexts:
 
     @property
     def world(self) -> Known:
-        """What is known by id."""
+        """The known objects by id."""
         return self.source.world
 
     def start(self) -> None:
@@ -83,7 +82,7 @@ class Contexts:
         return state, ()
 
     def open(self, request: Any, where: str) -> Context | CratousError:
-        """What a request means with what is known now; an error if it means nothing."""
+        """The context of a request from present knowledge; the error if it cannot be planned."""
         found = self._found.get(request.RequestID)
         if isinstance(found, Context) and found.request == request:
             return found
@@ -100,7 +99,7 @@ class Contexts:
 
     def _context(self, request: Any, where: str) -> Context:
         inputs = self.source.inputs(request, where)
-        # the same request again: what was computed for it holds
+        # a repeated request reuses what was computed for it
         same = (k for k in self._found.values() if isinstance(k, Context) and k.inputs == inputs)
         known = next(same, None)
         if known is not None:
@@ -118,17 +117,17 @@ class Contexts:
         return Context(request, inputs, places)
 
     def expect(self, inputs: Inputs) -> None:
-        """A request that may come: what is made for it until then, the one that comes takes over where it fits."""
+        """Announce a request that may come: what is computed for it is reused as far as it fits."""
         if self._expected is not None:
             inputs.take_over(self._expected)
         self._expected = inputs
 
     def put(self, request: Any, context: Context) -> None:
-        """A request that is about to be published means what was found for it."""
+        """Bind a request that is about to be published to the context found for it."""
         self._found[request.RequestID] = Context(request, context.inputs, context.places)
 
     def of(self, request_id: int) -> Context:
-        """The context of a request; BadInput if it is unknown, or what is wrong with it."""
+        """The context of a request. BadInput if it is unknown; raises the request's own error if it has one."""
         found = self._found.get(request_id)
         if found is None:
             raise BadInput(
@@ -142,12 +141,12 @@ class Contexts:
         return found
 
     def begin_ms(self, request_id: int) -> int:
-        """When the vehicles of a request set off, 0 if nothing else is known."""
+        """Departure time of a request's vehicles [ms]; 0 if unknown."""
         found = self._found.get(request_id)
         return found.inputs.now_ms if isinstance(found, Context) else 0
 
     def refused(self, request_id: int) -> bool:
-        """True if a request means nothing that could be planned."""
+        """Whether a request cannot be planned."""
         return isinstance(self._found.get(request_id), CratousError)
 
     def refusal(self, request_id: int) -> list[Any]:
@@ -159,7 +158,7 @@ class Contexts:
         return [self.fail(request_id, found)]
 
     def fail(self, request_id: int, error: CratousError) -> Any:
-        """The status that ends a request with the reasons of an error."""
+        """Record an error as the end of a request; returns the status with its reasons."""
         found = self._found.get(request_id)
         if isinstance(found, Context):
             found.error = error
@@ -171,9 +170,9 @@ class Contexts:
         return found if found is None or isinstance(found, CratousError) else found.error
 
     def for_routes(self, region: int, vehicle: int) -> RequestPlaces:
-        """The frame, zones and vehicles for routes of a vehicle in a region.
+        """Frame, zones and vehicles for the routes of a vehicle in a region.
 
-        Those of the newest request that has both; else as the world is now. BadInput if unknown.
+        From the newest request that has both, else from the present world. BadInput if unknown.
         """
         for found in reversed(self._found.values()):
             if (

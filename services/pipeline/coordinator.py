@@ -1,9 +1,9 @@
 """The service of an AssignmentCoordinatorTask: processes of several vehicles plan one request together.
 
-Each hears the CoordinatedAutomationRequest, and tells the others where its own vehicle plans from
-(AssignmentCoordination). When all have, or MaximumResponseTime is over (kernel `goes_out`), it asks its own
-pipeline with the states of all that have (TaskAutomationRequest, states in the order of their ids), and its
-answer is the plan (AutomationResponse). As all ask the same, all plan the same.
+Each receives the CoordinatedAutomationRequest and sends the others its own vehicle's planning state
+(AssignmentCoordination). When all have done so, or MaximumResponseTime has elapsed (kernel `goes_out`), it
+sends its own pipeline a TaskAutomationRequest with all received states, sorted by id; the answer is the plan
+(AutomationResponse). Since all send the same request, all obtain the same plan.
 """
 
 from __future__ import annotations
@@ -25,31 +25,31 @@ TOLD = "uxas.messages.task.AssignmentCoordination"
 ANSWER = "uxas.messages.task.TaskAutomationResponse"
 STATE = "afrl.cmasi.EntityState"
 MOST = 64
-"""Requests that are waited for, and that entities have told of, at one time; the oldest makes room."""
+"""Most pending requests, and most requests with states received; beyond that the oldest is dropped."""
 MOST_ENTITIES = 1024
-"""Entities of which one request can be."""
+"""Most entities of one request."""
 
 
 class Waiting(NamedTuple):
-    """A CoordinatedAutomationRequest, and when it came [ms]."""
+    """A CoordinatedAutomationRequest, and when it arrived [ms]."""
 
     body: Any
     since: int
 
 
 class Coordinated(NamedTuple):
-    """asked: what is waited for; told: states by request and entity; out: requests that went out, by number."""
+    """asked: pending requests; told: states by request and entity; out: requests sent out, by number."""
 
     asked: Mapping[int, Waiting] = MappingProxyType({})
     told: Mapping[int, Mapping[int, Any]] = MappingProxyType({})
     out: Mapping[int, None] = MappingProxyType({})
 
     def with_told(self, number: int, states: Iterable[Any]) -> Coordinated:
-        """With where entities plan a request from."""
+        """The state with planning states added to a request."""
         known = {**self.told.get(number, {}), **{s.EntityID: s for s in states}}
         known = dict(list(known.items())[:MOST_ENTITIES])
         kept = {**self.told, number: known}
-        # requests that nobody knows push out none that is waited for
+        # unknown requests do not displace pending ones
         strangers = [n for n in kept if n not in self.asked]
         for n in strangers[:-MOST]:
             del kept[n]
@@ -65,8 +65,9 @@ class AssignmentCoordinatorTaskService:
     subscribes: tuple[str, ...] = (ASKED, TOLD, ANSWER, STATE)
 
     def __init__(self, task_id: int, entity: int, world: Known, ended: Callable[[], None]) -> None:
-        """entity: the own vehicle, the EntityID of the configuration; world: knows its newest state; ended: called
-        when the task is removed."""
+        """entity: the own vehicle, EntityID of the configuration; world: has its newest state; ended: called
+        when the task is removed.
+        """
         self._task_id, self._entity, self._world, self._when_ended = task_id, entity, world, ended
         self.name = f"{NAME}[{task_id}]"
 
@@ -84,7 +85,7 @@ class AssignmentCoordinatorTaskService:
         if topic == TOLD:
             number = body.CoordinatedAutomationRequestID
             if number in state.out or body.PlanningState.EntityID == self._entity:
-                return state, []  # too late, or what was told here
+                return state, []  # too late, or the own state
             return self._checked(state.with_told(number, [body.PlanningState]), number, now_ms)
         if topic == ANSWER:
             if body.ResponseID not in state.out or body.OriginalResponse is None:
@@ -102,7 +103,7 @@ class AssignmentCoordinatorTaskService:
         return state, out
 
     def wake(self, state: Coordinated, key: Any, now_ms: int) -> Step:
-        """The time of a request may be over."""
+        """A request may be due."""
         return self._checked(state, key, now_ms)
 
     def _asked(self, state: Coordinated, body: Any, now_ms: int) -> Step:
@@ -123,7 +124,7 @@ class AssignmentCoordinatorTaskService:
         ]
         state = state._replace(asked=asked)
         given = {s.EntityID: s for s in body.PlanningStates}
-        # what an entity has told itself is newer than what the request brings
+        # a state sent by the entity itself is newer than the request's
         mine = [s for n, s in given.items() if n not in state.told.get(number, {})]
         state = state.with_told(number, [s for s in mine if s.EntityID != self._entity])
         state, more = self._tell(state, number)
@@ -134,7 +135,7 @@ class AssignmentCoordinatorTaskService:
         return state, [*out, *more]
 
     def _tell(self, state: Coordinated, number: int) -> Step:
-        """Where the own vehicle plans from, if it takes part."""
+        """Send the own vehicle's planning state, if it takes part."""
         if self._entity not in state.asked[number].body.OriginalRequest.EntityList:
             return state, []
         own = self._world.get("state", self._entity)
@@ -155,7 +156,7 @@ class AssignmentCoordinatorTaskService:
         return state.with_told(number, [planning]), [told]
 
     def _checked(self, state: Coordinated, number: int, now_ms: int) -> Step:
-        """The request goes out, if all have told or its time is over."""
+        """Send the request out if all states have arrived or its time is over."""
         waiting = state.asked.get(number)
         if waiting is None:
             return state, []

@@ -1,4 +1,4 @@
-"""When a request is over for the services of the pipeline, and how many they keep."""
+"""The end of a request for the services of the pipeline, and how many requests they keep."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ RESPONSE = "uxas.messages.task.UniqueAutomationResponse"
 STATUS = "afrl.cmasi.ServiceStatus"
 ENDINGS = (RESPONSE, STATUS)
 AT_ONCE = 16
-"""Requests kept at the same time; one is in the pipeline, others have been given up by then."""
+"""Requests kept at the same time: one is in the pipeline, older ones have been given up."""
 
 V = TypeVar("V")
 
@@ -26,5 +26,5 @@ def request_ended(topic: str, body: Any) -> int:
 
 
 def newest(kept: dict[int, V]) -> dict[int, V]:
-    """The newest entries; a dictionary's order is that of their coming."""
+    """The newest entries, by insertion order."""
     return dict(list(kept.items())[-AT_ONCE:])

@@ -1,5 +1,6 @@
-"""Kinds of tasks that keep to what moves, to each other, or to roads. They follow messages, so `cratous uxas` alone
-does them."""
+"""Kinds of tasks relative to moving entities, to other vehicles, or to roads. They depend on messages, so
+only `cratous uxas` does them.
+"""
 
 from __future__ import annotations
 
@@ -18,6 +19,6 @@ FOLLOWED = {
     RENDEZVOUS: "RendezvousTaskService",
     CORDON: "CordonTaskService",
 }
-"""Full names of types, and those of their services; a WatchTask is one of them where what it watches moves."""
+"""Service names by full type name; a WatchTask belongs to them if the watched entity moves."""
 WATCH_SERVICE = "WatchTaskService"
-"""The service of a WatchTask; where what it watches stands still, it is a point search."""
+"""The service of a WatchTask; one of a stationary entity is a point search."""

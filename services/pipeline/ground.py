@@ -1,4 +1,4 @@
-"""Who plans for vehicles that drive: the OsmPlannerService, along roads, and nobody else."""
+"""Planning for ground vehicles: by the OsmPlannerService only, along roads."""
 
 from __future__ import annotations
 
@@ -9,5 +9,5 @@ ROADS = "OsmPlannerService"
 
 
 def is_ground(world: Known, vehicle: int) -> bool:
-    """Whether a vehicle is known as one that drives."""
+    """Whether a vehicle is known to be a ground vehicle."""
     return type(world.get("configuration", vehicle)).__name__ == CONFIGURATION

@@ -1,4 +1,4 @@
-"""What a task says of itself in messages: its options, and the waypoints of the chosen one."""
+"""A task's messages about its options, and the waypoints of the chosen one."""
 
 from __future__ import annotations
 
@@ -22,8 +22,9 @@ from cratous.spec.mission import Camera, Position, Task
 from cratous.spec.mission.plan import Hold
 
 ROUNDED_MS = 50
-"""A shorter wait than this [ms] is none: a way that ICAROUS has found comes by places of six decimals, and may be so
-much shorter than UxAS's own, by which the start was planned. The task then begins so much earlier, which is said."""
+"""Shorter waits are omitted [ms]. An ICAROUS route has places of six decimals and may be this much shorter
+than UxAS's own route, by which the start was planned. The task then begins earlier, which is reported.
+"""
 
 
 def offer(context: Context, task_id: int, options: Sequence[Option]) -> Any:
@@ -50,7 +51,7 @@ def _option(places: RequestPlaces, option: Option) -> Any:
 
 
 def way_asked(context: Context, option: Option, request: Any, number: int) -> Any:
-    """The RoutePlanRequest for the way to a chosen option, from where the vehicle is by then."""
+    """The RoutePlanRequest for the route to a chosen option, from where the vehicle will be."""
     place, heading_deg = context.places.sent(option.start)
     route = lmcp.new(
         "RouteConstraints",
@@ -74,14 +75,14 @@ def way_asked(context: Context, option: Option, request: Any, number: int) -> An
 def implemented(
     context: Context, task: Task, option: Option, request: Any, plan: Any, outside: Outside | None
 ) -> list[Any]:
-    """The waypoints of the way there (a RoutePlan), the hold if there is a wait, and the task; a warning as well
-    if a short wait is left out.
+    """The waypoints of the route (a RoutePlan), a hold if there is a wait, and the task; and a warning if a
+    short wait is omitted.
 
     NoPlan if there is no room to hold.
     """
     places = context.places
     first, speed = request.StartingWaypointID, option.flyer.speed_m_s
-    # copies of the planner's waypoints, renumbered: a published object is a value
+    # published objects are values: copies of the planner's waypoints are renumbered
     points = [
         w.copy(Number=first + k, NextWaypoint=first + k + 1)
         for k, w in enumerate(plan.Waypoints[:-1])
@@ -102,7 +103,7 @@ def implemented(
     if hold is not None:
         actions.append(loiter_action(places, task.id, hold, wait, speed))
     mine[0].VehicleActionList = actions
-    mine[0].Speed = context.usual_speed_m_s(request.VehicleID)  # it ends the way there
+    mine[0].Speed = context.usual_speed_m_s(request.VehicleID)  # the last leg of the route
     end, heading_deg = places.sent(option.end)
     made = lmcp.new(
         "TaskImplementationResponse",
@@ -126,13 +127,13 @@ def implemented(
 
 
 def _views(task: Task, option: Option, terrain_m: float) -> list[Any]:
-    """Where the camera looks and how wide it sees, if the task asks for a view."""
+    """Camera direction and field of view, if the task requires a view."""
     if option.view_elevation_rad is None:
         return []
     camera = camera_for(task, option.flyer.cameras)
     made_for = Angles(option.view_elevation_rad, option.view_azimuth_rad)
     view = flown_view(task, made_for, option.flyer.cameras)
-    # the gimbal is told against the heading with which the task begins
+    # a gimbal azimuth is relative to the heading at the start of the task
     north_rad = option.start.heading_rad if view is not None and view.inertial else 0.0
     azimuth_rad = math.remainder(option.view_azimuth_rad - north_rad, 2 * math.pi)
     look = lmcp.new(
@@ -146,7 +147,7 @@ def _views(task: Task, option: Option, terrain_m: float) -> list[Any]:
 
 
 def _zoom(task: Task, camera: Camera | None, height_m: float) -> list[Any]:
-    """The field of view for which the option was made, if the camera has several: it may be set to any."""
+    """The field of view for which the option was made, if the camera has several."""
     if camera is None or not camera.zoom_rad:
         return []
     narrow = zoomed(camera, task, height_m)

@@ -1,15 +1,14 @@
-"""LoiterAssignmentService: vehicles that would begin a task too early are told to loiter.
+"""LoiterAssignmentService: loiters for vehicles that would begin a task too early.
 
-TaskAssignmentSummary says who does what; relations and timings say when. The loiters in between are
-those of `services.planning.loiters`, from proved kernels, whoever made the assignment: a start that
-it names (TimeThreshold) is kept, and where it names none order and timing are enforced all the
-same. An assignment for which there are no times ends its request with the constraint that clashes.
+TaskAssignmentSummary gives the assignment; relations and timings give the times. The loiters in between are
+those of `services.planning.loiters`, from proved kernels, whoever made the assignment: a start that it states
+(TimeThreshold) is kept; where it states none, order and timing are enforced all the same. An assignment
+without feasible times ends its request with the conflicting constraint.
 
-Once the plan is out, its own loiters are compared. For those that it does not have, the vehicle is
-sent a VehicleActionCommand with a LoiterAction at the instant of its arrival, and one to go to the
-task's first waypoint when the wait is over. A new plan for a vehicle voids what it was still to be
-sent; plans that are not flown (`SandBoxRequest`) do nothing. Times count from the plan, in the bus'
-time [ms].
+When the plan is published, its own loiters are compared. For those that it lacks, the vehicle is sent a
+VehicleActionCommand with a LoiterAction at its arrival, and one to go to the task's first waypoint after the
+wait. A new plan for a vehicle voids its pending commands; plans that are not flown (`SandBoxRequest`) have no
+effect. Times count from the plan, in the bus's time [ms].
 """
 
 from __future__ import annotations
@@ -33,11 +32,11 @@ NAME = "LoiterAssignmentService"
 MATRIX = "uxas.messages.task.AssignmentCostMatrix"
 SUMMARY = "uxas.messages.task.TaskAssignmentSummary"
 COMMANDS_FROM = 2**40
-"""Ids of its commands, apart from those of plans."""
+"""Ids of its commands start here, apart from those of plans."""
 
 
 class Due(NamedTuple):
-    """A loiter task, and the action by which a vehicle is commanded to do it."""
+    """A loiter, and the action that commands it."""
 
     loiter: Loiter
     action: Any
@@ -52,14 +51,14 @@ class Work(NamedTuple):
 
 
 class Order(NamedTuple):
-    """A loiter that has still to be commanded, and the waypoint to go to after it."""
+    """A loiter still to be commanded, and the waypoint to go to after it."""
 
     due: Due
     waypoint: int
 
 
 class Loiters(NamedTuple):
-    """Requests in progress; orders by number; how many orders and commands have been sent."""
+    """Requests in progress; pending orders by number; numbers of orders and commands issued."""
 
     work: dict[int, Work]
     orders: dict[int, Order]
@@ -71,7 +70,7 @@ Result = tuple[Loiters, Iterable[Any]]
 
 
 class LoiterAssignmentService:
-    """TaskAssignmentSummary, UniqueAutomationResponse -> VehicleActionCommand at their instants."""
+    """TaskAssignmentSummary, UniqueAutomationResponse -> VehicleActionCommand at their times."""
 
     name = NAME
     subscribes: tuple[str, ...] = (UNIQUE, OPTIONS, MATRIX, SUMMARY, *ENDINGS)
@@ -108,7 +107,7 @@ class LoiterAssignmentService:
         return state._replace(work={**state.work, key: mine}), ()
 
     def _assigned(self, state: Loiters, key: int, mine: Work, summary: Any) -> Result:
-        """The loiters of an assignment, or an error that ends its request."""
+        """Compute the loiters of an assignment; an error ends its request."""
         try:
             due = _due(self._contexts.of(key), mine, summary)
         except CratousError as error:
@@ -119,7 +118,7 @@ class LoiterAssignmentService:
         return state._replace(work=work), [status(key, "Information", facts)] if facts else ()
 
     def _planned(self, state: Loiters, mine: Work, response: Any) -> Result:
-        """The plan is out: what was still to be sent to its vehicles is void, its loiters are due."""
+        """A plan is published: pending orders of its vehicles are void, its missing loiters are scheduled."""
         commands = {c.VehicleID: c for c in response.OriginalResponse.MissionCommandList}
         orders = {
             k: order for k, order in state.orders.items()
@@ -134,7 +133,7 @@ class LoiterAssignmentService:
                 if loiter.task_id in point.AssociatedTasks
             ]  # fmt: skip
             held = sum(_held(point, loiter.task_id) for point in points)
-            # as a task of its own: begun at the arrival, it ends at the start of the task
+            # checked as a task of its own: from the arrival to the start of the task
             as_leg = (loiter.arrive_ms, loiter.arrive_ms, loiter.start_ms, held)
             if points and chain_holds([as_leg]):
                 continue
@@ -149,7 +148,7 @@ class LoiterAssignmentService:
         return state._replace(orders=orders, numbers=number), out
 
     def wake(self, state: Loiters, key: int, now_ms: int) -> Result:
-        """A vehicle arrives, or it has waited: the number of the order, negative at its end."""
+        """A vehicle arrives (positive order number) or its wait is over (negative)."""
         order = state.orders.get(abs(key))
         if order is None:
             return state, ()
@@ -192,7 +191,7 @@ def _due(context: Context, mine: Work, summary: Any) -> tuple[Due, ...]:
     loiters = loiters_of(steps, offered.inputs.options, context.inputs.zones)
     for loiter in loiters:
         if loiter.task_id in offered.split.pairs:
-            # the waypoints of a plan name tasks: before which of several options it is, they cannot say
+            # waypoints name tasks only: they cannot tell several options of a task apart
             raise BadInput(
                 "a wait before one of several options of a task is not covered here",
                 item="TaskAssignmentSummary",
@@ -207,7 +206,7 @@ def _action(context: Context, one: Loiter) -> Any:
 
 
 def _held(point: Any, task: int) -> int:
-    """How long a plan has a vehicle loiter at a waypoint before a task [ms]."""
+    """Time that a plan has a vehicle loiter at a waypoint before a task [ms]."""
     return sum(
         action.Duration
         for action in point.VehicleActionList

@@ -1,6 +1,6 @@
-"""What the services of the pipeline know of a mission: its exact inputs, for the one request made of it.
+"""The pipeline's source for a mission: its exact inputs, for the single request made from it.
 
-Messages have degrees; what was read from the mission stays exact beside them.
+Messages carry degrees; values read from the mission stay exact alongside.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from cratous.spec.errors import BadInput
 
 
 class MissionWorld:
-    """The contents of a mission, by id; not obtained from messages."""
+    """The objects of a mission by id, not received as messages."""
 
     def __init__(self, inputs: Inputs) -> None:
         vehicles = [vehicle.id for vehicle in inputs.mission.vehicles]
@@ -24,20 +24,20 @@ class MissionWorld:
         self._ids = {"configuration": vehicles, "state": vehicles, "task": tasks}
 
     def has(self, sort: str, number: int) -> bool:
-        """True if there is an object of a sort with this id."""
+        """Whether an object of a sort has this id."""
         return number in self.ids(sort)
 
     def get(self, sort: str, number: int) -> Any:
-        """No message about anything."""
+        """None: a mission has no messages."""
         return None
 
     def ids(self, sort: str) -> list[int]:
-        """All of a sort."""
+        """The ids of a sort."""
         return self._ids.get(sort, [])
 
 
 class MissionSource:
-    """The facts of one request: what a mission has left to do, from given poses."""
+    """The source of one request: the remaining tasks of a mission, from given poses."""
 
     subscribes: tuple[str, ...] = ()
     outside = None
@@ -53,10 +53,10 @@ class MissionSource:
         )
 
     def hear(self, envelope: Envelope, now_ms: int) -> None:
-        """Nothing that comes in messages changes a mission."""
+        """Ignored: messages do not change a mission."""
 
     def conditions(self, request_id: int, pairs: Sequence[Any]) -> None:
-        """Speeds and altitudes are the mission's."""
+        """Ignored: speeds and altitudes are the mission's."""
 
     def asks(self, service: str) -> bool:
         """False: options were already checked exactly against the mission's zones and cameras."""
@@ -75,7 +75,7 @@ class MissionSource:
         return self._inputs
 
     def surroundings(self, vehicle: int, region: int) -> RequestPlaces:
-        """BadInput: routes are asked for as parts of the request."""
+        """BadInput: routes are requested within the mission's request only."""
         raise BadInput(
             "no such vehicle or region in the mission",
             where=self._inputs.mission.source,

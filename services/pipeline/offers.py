@@ -1,7 +1,8 @@
-"""What the messages of a request offer: options from TaskPlanOptions, ways from the AssignmentCostMatrix.
+"""The offers of a request as read from messages: options from TaskPlanOptions, routes from the
+AssignmentCostMatrix.
 
-Read by the services that assign tasks and that assign loiters, so that both mean the same by them.
-Whatever is missing, or stands in the costs without having been offered, is a named error.
+Shared by the services that assign tasks and loiters. Missing options, and costs of options that were not
+offered, are named errors.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ class Told(NamedTuple):
 
 
 class Offered(Inputs):
-    """Inputs whose options are those that the tasks have offered in messages."""
+    """Inputs whose options are those offered in messages."""
 
     def __init__(
         self,
@@ -42,8 +43,9 @@ class Offered(Inputs):
         known: bool,
         withheld: Mapping[int, tuple[Dropped, ...]],
     ) -> None:
-        """known: options were computed here, so that it is known which were dropped, and why; withheld: of
-        tasks that say themselves what they do not offer."""
+        """known: options were computed here, so the dropped ones are known; withheld: dropped options of
+        tasks that report them themselves.
+        """
         super().__init__(
             base.mission, base.starts, base.fixed, base.now_ms, base.flying, base.absent,
             base.undone, base.begun,
@@ -80,9 +82,9 @@ class Offered(Inputs):
 
 
 class Read(NamedTuple):
-    """The inputs with what was offered, the ways that count, tasks, and rows that take no part.
+    """The inputs with what was offered, the relevant cost rows, tasks, and the number of rows ignored.
 
-    split: where options are tasks of the assignment; inputs, rows and tasks are in its ids.
+    split: options that are tasks of the assignment; inputs, rows and tasks use its ids.
     """
 
     inputs: Offered
@@ -93,9 +95,9 @@ class Read(NamedTuple):
 
 
 def read(told: Told, matrix: Any, context: Context) -> Read:
-    """The options and ways of a request; BadInput for what is missing, or means nothing."""
+    """The options and routes of a request; BadInput for what is missing or invalid."""
     request = told.request.OriginalRequest
-    # tasks that the relations do not name are not done, whoever has asked for them
+    # tasks that the relations do not name are not done
     tasks = tuple(task for task in request.TaskList if task in context.inputs.wanted)
     unnamed = set(request.TaskList) - set(tasks)
     missing = [task for task in tasks if task not in told.options]
@@ -135,7 +137,7 @@ def read(told: Told, matrix: Any, context: Context) -> Read:
 
 
 def _renamed(row: Any, ids: Mapping[Pair, int]) -> Any:
-    """A way of the costs between options that are tasks."""
+    """A cost row in the ids of options that are tasks."""
     start, to = row.IntialTaskID, row.DestinationTaskID
     return row.copy(
         IntialTaskID=ids.get((start, row.IntialTaskOption), start),
@@ -144,7 +146,7 @@ def _renamed(row: Any, ids: Mapping[Pair, int]) -> Any:
 
 
 def _options(told: Any, context: Context) -> list[Option]:
-    """TaskPlanOptions as options; BadInput for what is none."""
+    """TaskPlanOptions as options; BadInput for an invalid one."""
     item = f"TaskPlanOptions of task {told.TaskID}"
     mission, made = context.inputs.mission, []
     flyers = {vehicle.id: flyer_of(vehicle) for vehicle in mission.vehicles}
@@ -172,7 +174,7 @@ def _options(told: Any, context: Context) -> list[Option]:
         if known is not None and same == (start, end, option.Cost, flyer):
             made.append(replace(known, vehicles=tuple(able)))
             continue
-        if start.alt_m == 0:  # it says nothing of the altitude: that of the vehicles
+        if start.alt_m == 0:  # no altitude given: that of the vehicles
             start = start._replace(alt_m=flyer.alt_m)
         rooms = hold_rooms(start, flyer.radius_m, context.inputs.zones)
         label = f"option {option.OptionID}"
@@ -182,7 +184,7 @@ def _options(told: Any, context: Context) -> list[Option]:
 
 
 def travel_of(inputs: Inputs, rows: Iterable[Any]) -> Travel:
-    """The ways of an AssignmentCostMatrix in indices of vehicles and options."""
+    """The routes of an AssignmentCostMatrix by indices of vehicles and options."""
     times: dict[tuple[int, int, int], int] = {}
     for row in rows:
         before = (row.IntialTaskID, row.IntialTaskOption)

@@ -1,4 +1,4 @@
-"""How plans go out to vehicles that fly by messages alone."""
+"""Settings for vehicles that are controlled by messages only."""
 
 from __future__ import annotations
 
@@ -6,10 +6,11 @@ from typing import NamedTuple
 
 
 class Outside(NamedTuple):
-    """For vehicles that fly by messages alone: what is done so that an autopilot and its payloads can.
+    """How plans are sent to vehicles that are controlled by messages only, so that autopilot and payloads can
+    follow.
 
-    separation_m: least distance of waypoints, as the configuration says [m], which a vehicle's turn radius may
-    exceed; 0: all are sent.
+    separation_m: configured least distance of waypoints [m], raised to a vehicle's turn radius if that is
+    larger; 0: all points are sent.
     """
 
     separation_m: float = 50.0

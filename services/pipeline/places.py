@@ -1,7 +1,7 @@
-"""Places of one request: messages have degrees, the mission's frame has metres.
+"""Conversion of one request's places: messages carry degrees, the mission's frame metres.
 
-A place or pose that was sent from here is read as exactly the one that it was, so that nothing is
-lost on the way through messages; any other is read from the message.
+A place or pose that was sent from here is read back exactly, so that messages lose no precision; any other is
+read from the message.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ _Spot = tuple[float, float, float, str]
 
 
 def _spot(location: Any) -> _Spot:
-    """What a Location3D says."""
+    """The fields of a Location3D."""
     kind = location.AltitudeType.name
     return location.Latitude, location.Longitude, location.Altitude, kind
 
 
 def read_pose(location: Any, heading_deg: float, places: Places, where: str, item: str) -> Pose:
-    """A Location3D and a heading as a pose of a frame; BadInput for what is no place or no heading."""
+    """A Location3D and a heading as a pose of a frame; BadInput for an invalid place or heading."""
     position = point(location, places, Sent(None, where, 0), item)
     return Pose(*position, heading(heading_deg, where, f"heading at {item}"))
 
 
 class Way(NamedTuple):
-    """From where to where, as `Routes` takes it: from a way's own `end` to its own `start`."""
+    """The ends of a route, as `Routes` takes them: it leads from `end` to `start`."""
 
     end: Pose
     start: Pose
@@ -46,7 +46,7 @@ class RequestPlaces:
     """Positions of one mission: conversion to and from messages, and routes between them."""
 
     def __init__(self, mission: Mission, finder: Routes) -> None:
-        """finder: routes of the mission's vehicles among its zones; what is found is kept there."""
+        """finder: routes of the mission's vehicles around its zones; it caches what is found."""
         self.mission = mission
         self.projection = Projection(mission.frame)
         self._finder = finder
@@ -55,12 +55,12 @@ class RequestPlaces:
         self._poses: dict[tuple[_Spot, float], Pose] = {}
 
     def routes_of(self, ways: Sequence[Way]) -> Routes:
-        """Routes of the mission's vehicles: way k is that from k to k."""
+        """Routes of the mission's vehicles; route k belongs to ways[k]."""
         return self._finder.between(ways)
 
     @property
     def zones(self) -> tuple[Zone, ...]:
-        """The zones that bind, as routes are held against them."""
+        """The zones in force, against which routes are checked."""
         return self._finder.zones
 
     def location(self, point: Position | Pose) -> Any:
@@ -77,7 +77,7 @@ class RequestPlaces:
         return made, heading_deg
 
     def ends(self, start: Pose, end: Pose) -> dict[str, Any]:
-        """Where a way begins and ends, as the four fields that messages have for it."""
+        """The ends of a route, as the four fields that messages have for them."""
         (place, heading_deg), (last, last_deg) = self.sent(start), self.sent(end)
         return {
             "StartLocation": place,
@@ -91,7 +91,7 @@ class RequestPlaces:
         return None if location is None else self._poses.get((_spot(location), heading_deg))
 
     def pose(self, location: Any, heading_deg: float, where: str, item: str) -> Pose:
-        """A Location3D and a heading as a pose of the frame; BadInput for what is no place or no heading."""
+        """A Location3D and a heading as a pose of the frame; BadInput for an invalid place or heading."""
         exact = self.exact(location, heading_deg)
         if exact is not None:
             return exact
@@ -103,7 +103,7 @@ class RequestPlaces:
     def spaced(
         self, points: Sequence[Position], radius_m: float, outside: Outside | None
     ) -> Sequence[Position]:
-        """The points of a path that go out as waypoints; radius_m: of the vehicle's turns."""
+        """The points of a path to send as waypoints. radius_m: the vehicle's turn radius."""
         if outside is None or not outside.separation_m:
             return points
         least_m = max(outside.separation_m, radius_m)

@@ -1,4 +1,4 @@
-"""Make a plan for a mission: one automation request to the services of the pipeline, on a bus.
+"""Plan a mission: one automation request to the services of the pipeline, on a bus.
 
 AutomationRequest -> validator -> UniqueAutomationRequest -> tasks -> TaskPlanOptions
 -> route aggregator and planner -> AssignmentCostMatrix -> branch and bound
@@ -34,14 +34,14 @@ from cratous.spec.mission.changes import with_choices
 from cratous.spec.mission.plan import COST_UNITS, LeftOut, Plan, Pose, partial
 
 LIMIT_MS = 5000
-"""How long a request may take [ms]; here no time passes while one is planned."""
+"""Time limit of a request [ms]; no virtual time passes during planning here."""
 
 
 class MissionRequests:
-    """Who asks for the plans of a mission: hears what the services say of its requests.
+    """The client for a mission's plans: it records the services' messages about its requests.
 
-    shared: RequestIDs that were given on this bus; certificate: of the newest assignment; told: of
-    the request in work, by type.
+    shared: RequestIDs used on this bus; certificate: of the newest assignment; told: messages about the
+    present request, by type.
     """
 
     name = "Mission"
@@ -70,7 +70,7 @@ class MissionRequests:
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """Why there is no plan, as the services say."""
+        """Why there is no plan, as reported by the services."""
         said = self.told.get("ServiceStatus", ())
         errors = [body for body in said if body.StatusType.name == "Error"]
         return tuple(p.Value for body in errors for p in body.Info if p.Key == "reason")
@@ -87,17 +87,17 @@ def make_plan(
     undone: Mapping[int, str] | None = None,
     begun: Collection[int] = (),
 ) -> Plan:
-    """The best plan found for the mission, a `PartialPlan` where not all of it can be done.
+    """The best plan found for the mission; a `PartialPlan` if not all of it can be done.
 
     BadInput for a bad start, NoPlan with reasons if nothing can be done.
 
-    bus: where the planning messages go (its own if None); its queue is run until it is empty, and
-    the services leave it afterwards. starts: present poses by vehicle id, instead of the mission's;
-    done: tasks already flown, as (task_id, start_ms, end_ms) or anything with these attributes;
-    now_ms: when the vehicles set off; absent: vehicles that are not in the mission as it is known,
-    with the reason; undone: tasks that have ended undone, with the reason; begun: tasks that have been begun
-    and are not ended, which make the choice of a `+`. In flight (starts given) a vehicle inside a zone is no bad input: its
-    routes begin with the shortest level way out; and nothing may be left to do.
+    bus: carries the planning messages (its own if None); its queue is run until empty, and the services leave
+    it afterwards. starts: present poses by vehicle id, instead of the mission's; done: tasks already flown,
+    as (task_id, start_ms, end_ms) or anything with these attributes; now_ms: departure time of the vehicles;
+    absent: vehicles missing from the mission as known, with the reason; undone: tasks that ended undone, with
+    the reason; begun: tasks that have begun but not ended, which fix the choice of a `+`. In flight (starts
+    given), a vehicle inside a zone is no bad input: its routes begin with the shortest level way out; and
+    there may be nothing left to do.
     """
     flying = starts is not None
     if not mission.tasks and flying:
@@ -144,7 +144,7 @@ def requests_on(bus: Bus) -> MissionRequests:
 def services_on(
     bus: Bus, inputs: Inputs, contexts: Contexts, requests: MissionRequests
 ) -> Iterator[Contexts]:
-    """The services of the pipeline on a bus, for one request of a mission."""
+    """Context manager: the services of the pipeline on a bus, for one request of a mission."""
     services: list[Any] = [
         contexts,
         AutomationRequestValidatorService(requests.shared, contexts, LIMIT_MS),
@@ -165,7 +165,7 @@ def services_on(
 
 
 def _answered(requests: MissionRequests, contexts: Contexts) -> Plan:
-    """The plan that the services have answered with; NoPlan or BadInput with what they say."""
+    """The plan that the services have answered; NoPlan or BadInput with their reasons."""
     unique, response = (
         requests.newest("UniqueAutomationRequest"),
         requests.newest("AutomationResponse"),
@@ -199,7 +199,7 @@ def _order(command: Any) -> list[int]:
 
 
 def _exact(context: Context, summary: Any) -> Plan:
-    """The plan in the mission frame: times from the summary, ways and constraints from the inputs."""
+    """The plan in the mission frame: times from the summary, routes and constraints from the inputs."""
     inputs = context.inputs
     assert context.assigned is not None
     assert context.assigned.assignment is not None
@@ -242,7 +242,7 @@ def cost_of(plan: Plan, mission: Mission) -> int:
 
 
 def certificate_of(bus: Bus) -> dict[str, Any] | None:
-    """The certificate of the last assignment that was made on a bus; None if there is none."""
+    """The certificate of the last assignment made on a bus; None if there is none."""
     if MissionRequests.name not in bus.names():
         return None
     requests: MissionRequests = bus.state(MissionRequests.name)

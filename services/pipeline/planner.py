@@ -1,10 +1,9 @@
 """RoutePlannerVisibilityService: RoutePlanRequest -> RoutePlanResponse, costs or waypoints.
 
-Any vehicle that is known, any places, any operating region that is known. A route that was not
-found has the cost -1 and its reason in RouteError; every request is answered, to the service that
-has asked. An OwnRoutePlanner message says that another planner answers requests for waypoints; then this one
-answers those for costs alone. Routes are those of
-`services.planning`: each leg is held against the zones by proved kernels.
+For any known vehicle, any places, any known operating region. A route that was not found has the cost -1 and
+its reason in RouteError; every request is answered, to the requesting service. After an OwnRoutePlanner
+message that another planner answers requests for waypoints, this one answers those for costs only. Routes are
+those of `services.planning`: proved kernels check each leg against the zones.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ OWN_PLANNER = "cratous.OwnRoutePlanner"
 
 
 class RoutePlannerVisibilityService:
-    """Routes for one vehicle at a time. Its state: whether it answers requests for waypoints too."""
+    """Routes for one vehicle at a time. State: whether it also answers requests for waypoints."""
 
     name = NAME
     subscribes: tuple[str, ...] = (
@@ -39,7 +38,7 @@ class RoutePlannerVisibilityService:
     knows = ("EntityConfiguration", "EntityState", "KeepInZone", "KeepOutZone", "OperatingRegion")
 
     def __init__(self, contexts: Contexts, used: bool = True) -> None:
-        """used: until an OwnRoutePlanner says otherwise it answers more than requests for costs."""
+        """used: whether it answers requests for waypoints until an OwnRoutePlanner message says otherwise."""
         self._contexts, self._used = contexts, used
 
     def start(self) -> bool:
@@ -57,7 +56,9 @@ class RoutePlannerVisibilityService:
         return used, [answered(envelope, plans)]
 
     def _driven(self, asked: Envelope) -> list[Any]:
-        """What drives is planned for along roads, by a service of its own; without that there is no way."""
+        """A ground vehicle's routes are planned along roads by a service of their own; without it there is
+        none.
+        """
         if self._contexts.source.asks(ROADS):
             return []
         why = f"vehicle {asked.body.VehicleID} drives, and no {ROADS} is here"
@@ -65,13 +66,13 @@ class RoutePlannerVisibilityService:
 
 
 class RoutePlannerService(RoutePlannerVisibilityService):
-    """The planner of older configurations: the same routes, and nothing to set."""
+    """The planner of older configurations: the same routes, without settings."""
 
     name = "RoutePlannerService"
 
 
 def answered(asked: Envelope, plans: list[Any]) -> Any:
-    """The RoutePlanResponse to a request, for the service that has asked, as the original has it."""
+    """The RoutePlanResponse to a request, addressed to the requesting service as the original does."""
     return back(asked, _answer(asked.body, plans))
 
 
@@ -106,14 +107,14 @@ def straight_costs(contexts: Contexts, request: Any) -> Any:
 
 
 def back(asked: Envelope, answer: Any) -> Any:
-    """An answer for the service that has asked; for all if it has not said which it is."""
+    """An answer addressed to the requesting service; broadcast if that is not identified."""
     if not asked.service_id:
         return answer
     return Send(answer, unicast(asked.entity_id, asked.service_id))
 
 
 def plans_of(contexts: Contexts, request: Any, constraints: Sequence[Any]) -> list[Any]:
-    """A RoutePlan for each of some RouteConstraints of a request; one without a route says why."""
+    """A RoutePlan for each of some RouteConstraints of a request; one without a route carries the reason."""
     try:
         return _plans(contexts, request, constraints)
     except CratousError as error:
@@ -141,7 +142,7 @@ def _plans(contexts: Contexts, request: Any, constraints: Sequence[Any]) -> list
 
 
 def asked_way(contexts: Contexts, request: Any, constraint: Any) -> tuple[RequestPlaces, Way]:
-    """From where to where a constraint asks for a route, and the plane in which that is; BadInput if unknown."""
+    """The ends of the route that a constraint requests, and the places of its frame; BadInput if unknown."""
     places, (way,) = _ways(contexts, request, (constraint,))
     return places, way
 
@@ -149,8 +150,9 @@ def asked_way(contexts: Contexts, request: Any, constraint: Any) -> tuple[Reques
 def led_over(
     contexts: Contexts, request: Any, constraint: Any, given: Sequence[tuple[float, float, float]]
 ) -> tuple[Any, str]:
-    """The RoutePlan that leads over places of somebody else's route (latitude, longitude [deg], altitude [m]),
-    its legs checked as those of any route; or None and why there is none."""
+    """The RoutePlan through the points of another planner's route (latitude, longitude [deg], altitude [m]),
+    with its legs checked as those of any route; or None and the reason.
+    """
     try:
         places, way = asked_way(contexts, request, constraint)
         mission = places.mission
@@ -185,10 +187,10 @@ def _waypoints(
 
 
 def _way(places: RequestPlaces, constraint: Any, cruise_m: float) -> Way:
-    """Where a heading is not asked for, it is that of the straight way.
+    """The ends of a requested route; a heading that is not requested is that of the straight line.
 
-    An altitude of 0 that was not sent from here says nothing, as the original's tasks have it: the
-    start's holds, or cruise_m.
+    An altitude of 0 that was not sent from here counts as unspecified, as in the original's tasks: the
+    start's altitude applies, or cruise_m.
     """
     where, asked = f"route {constraint.RouteID}", constraint
     start = places.pose(asked.StartLocation, asked.StartHeading, where, "StartLocation")
@@ -208,6 +210,6 @@ def _way(places: RequestPlaces, constraint: Any, cruise_m: float) -> Way:
 
 
 def refused(route: int, reasons: Iterable[str]) -> Any:
-    """The RoutePlan of a way that there is not, and why."""
+    """The RoutePlan for a route that does not exist, with the reasons."""
     why = [lmcp.new("KeyValuePair", Key="reason", Value=text) for text in reasons]
     return lmcp.new("RoutePlan", RouteID=route, RouteCost=-1, RouteError=why)

@@ -1,9 +1,9 @@
-"""What a task asks others before it offers its options, and what the answers leave of them.
+"""A task's questions to other services before it offers its options, and the options left by the answers.
 
-In SensorRequest: the SensorManagerService, whether the sensors of a vehicle see ground; a vehicle of
-which no footprint comes is not offered. In OptionRoutes: the RoutePlannerVisibilityService, for the way from
-where each option begins to where it ends; an option whose places it cannot fly to is not offered.
-Only what runs on the same bus is asked; without it a state is passed at once.
+In state SensorRequest: to the SensorManagerService, whether a vehicle's sensors see the ground; a vehicle
+without a footprint is not offered. In state OptionRoutes: to the RoutePlannerVisibilityService, for the route
+from each option's start to its end; an option without a route is not offered. Only services on the same bus
+are asked; without them a state is passed at once.
 """
 
 from __future__ import annotations
@@ -25,15 +25,16 @@ _TICKETS, _TASKS = 2**20, 2**39
 
 
 class Asked(NamedTuple):
-    """blind: vehicles of which no footprint came; waiting: vehicles whose routes are still to
-    come; refused: options that the planner has no way for, each with its reason."""
+    """blind: vehicles without a footprint; waiting: vehicles whose routes are still to come; refused: options
+    without a route, each with its reason.
+    """
 
     blind: frozenset[int] = frozenset()
     waiting: tuple[int, ...] = ()
     refused: tuple[tuple[int, str], ...] = ()
 
     def left(self, options: Iterable[Option]) -> list[Option]:
-        """The options that are offered, and to whom."""
+        """The options still offered, each with its remaining vehicles."""
         no = {number for number, _ in self.refused}
         found = [
             replace(o, vehicles=tuple(v for v in o.vehicles if v not in self.blind))
@@ -43,7 +44,7 @@ class Asked(NamedTuple):
         return [option for option in found if option.vehicles]
 
     def reasons(self, task_id: int) -> list[str]:
-        """Why less is offered than could be."""
+        """Why options or vehicles are not offered."""
         made = [
             f"vehicle {vehicle} is not offered for task {task_id}: no footprint of its sensors came"
             for vehicle in sorted(self.blind)
@@ -67,12 +68,12 @@ class Asked(NamedTuple):
 
 
 def sensor_id(task_id: int, ticket: int) -> int:
-    """The RequestID of a task's question for footprints; tasks on one bus have different ones."""
+    """The RequestID of a task's question for footprints, distinct for each task on a bus."""
     return _SENSORS_FROM + task_id % _TASKS * _TICKETS + ticket % _TICKETS
 
 
 def ticket_of_sensors(task_id: int, number: int, tickets: Iterable[int]) -> int:
-    """The ticket that a ResponseID answers, -1 if it is none of this task's."""
+    """The ticket that a ResponseID answers; -1 if it is not one of this task's."""
     return next((t for t in tickets if sensor_id(task_id, t) == number), -1)
 
 
@@ -117,13 +118,13 @@ def sensor_request(context: Context, task: Task, ticket: int) -> Any | None:
 
 
 def blind(context: Context, task: Task, response: Any) -> frozenset[int]:
-    """The vehicles that were asked about and of which no footprint came."""
+    """The vehicles asked about for which no footprint came."""
     seen = {footprint.VehicleID for footprint in response.Footprints}
     return frozenset(sensors_asked(context, task)) - seen
 
 
 def route_requests(context: Context, task_id: int, options: list[Option], ticket: int) -> list[Any]:
-    """One RoutePlanRequest for each vehicle that represents its class; the RouteID is the option's id."""
+    """One RoutePlanRequest per vehicle that represents its class; the RouteID is the option's id."""
     of: dict[int, list[Option]] = {}
     for option in options:
         of.setdefault(option.vehicles[0], []).append(option)
@@ -142,6 +143,6 @@ def route_requests(context: Context, task_id: int, options: list[Option], ticket
 
 
 def _through(places: RequestPlaces, option: Option) -> Any:
-    """The way from where an option begins to where it ends."""
+    """The route from an option's start to its end."""
     ends = places.ends(option.start, option.end)
     return lmcp.new("RouteConstraints", RouteID=option.option_id, **ends)

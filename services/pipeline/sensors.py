@@ -1,9 +1,9 @@
-"""SensorManagerService: what a vehicle's cameras see, for tasks that ask.
+"""SensorManagerService: the footprints of a vehicle's cameras, on request.
 
-SensorFootprintRequests -> SensorFootprintResponse: one footprint for each camera that fits and each
-combination of altitude, elevation and ground sample distance. Where a list is empty: any wavelength;
-no wanted sample distance (widest view); the nominal altitude; as steep as the gimbal goes. With a
-wanted sample distance the view is as wide as meets it; what is achieved is in AchievedGSD.
+SensorFootprintRequests -> SensorFootprintResponse: one footprint for each suitable camera and each
+combination of altitude, elevation and ground sample distance. An empty list means: any wavelength; no
+required sample distance (widest view); the nominal altitude; the steepest elevation of the gimbal. With a
+required sample distance, the widest view that meets it is used; AchievedGSD reports the result.
 """
 
 from __future__ import annotations
@@ -22,27 +22,27 @@ from cratous.spec.mission import Camera
 NAME = "SensorManagerService"
 REQUESTS = "uxas.messages.task.SensorFootprintRequests"
 LEVEL_DEG = -0.5
-"""A boresight above this elevation is said to see no ground."""
+"""A boresight above this elevation counts as seeing no ground [deg]."""
 
 
 class Mount(NamedTuple):
-    """A camera on a gimbal, as the configuration has them."""
+    """A camera on a gimbal, from the configuration."""
 
     gimbal: Any
     camera: Any
 
     @property
     def steepest_deg(self) -> float:
-        """The elevation nearest to straight down."""
+        """The gimbal elevation closest to straight down [deg]."""
         return float(max(self.gimbal.MinElevation, min(-90.0, self.gimbal.MaxElevation)))
 
     def clipped_deg(self, elevation_deg: float) -> float:
-        """An elevation within the gimbal's limits."""
+        """An elevation limited to the gimbal's range [deg]."""
         return float(max(self.gimbal.MinElevation, min(self.gimbal.MaxElevation, elevation_deg)))
 
     @property
     def aspect(self) -> float:
-        """Width of the image over its height; 4:3 where it does not say."""
+        """Width of the image over its height; 4:3 if not configured."""
         width, height = (
             self.camera.VideoStreamHorizontalResolution,
             self.camera.VideoStreamVerticalResolution,
@@ -50,7 +50,9 @@ class Mount(NamedTuple):
         return float(width / height) if width and height else 4 / 3
 
     def view_deg(self, gsd: float, slant: float) -> float:
-        """The widest view that meets a sample distance [m] at a slant range [m]; 0: any distance."""
+        """The widest field of view [deg] that meets a sample distance [m] at a slant range [m]; 0: any
+        distance.
+        """
         widest, narrowest = (
             self.camera.MaxHorizontalFieldOfView,
             self.camera.MinHorizontalFieldOfView,
@@ -85,11 +87,11 @@ def footprint(
     view = mount.view_deg(gsd, slant)
     limits = (radians(elevation), radians(elevation), 0.0, 0.0)
     camera = Camera(0, radians(view), mount.aspect, *limits, wavelength="AllAny", pixels=1)
-    # what is asked here is where the image lies, and not what counts as seen
+    # only the image's position is needed here, not what counts as seen
     look = Look(0.0, 0.0, 0.0, centre, 0.0)
     corners = footprints([look], altitude, camera, flattest_rad=0.0)[0]
     if corners[0, 0] != corners[0, 0]:
-        return None  # its upper edge looks above the horizon
+        return None  # its upper edge is above the horizon
     width = 2 * slant * tan(radians(view / 2))
     pixels = mount.camera.VideoStreamHorizontalResolution
     return {
@@ -110,7 +112,7 @@ def footprint(
 
 
 class SensorManagerService:
-    """Answers every request; what has no footprint is named in a status."""
+    """Answers every request; combinations without a footprint are reported in a status."""
 
     name = NAME
     subscribes: tuple[str, ...] = (REQUESTS,)
@@ -119,8 +121,8 @@ class SensorManagerService:
     def __init__(self, configuration_of: Callable[[int], Any], radian: bool = False) -> None:
         """configuration_of(vehicle): its newest configuration, or None.
 
-        radian: ElevationAngles of requests are in radians, as OpenUxAS's own tasks send them; the
-        message's definition says degrees.
+        radian: ElevationAngles of requests are in radians, as OpenUxAS's own tasks send them; the message's
+        definition says degrees.
         """
         self._configuration_of, self._radian = configuration_of, radian
 

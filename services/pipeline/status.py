@@ -9,7 +9,7 @@ from cratous.bridge import lmcp
 
 
 def status(request_id: int, kind: str, facts: Iterable[tuple[str, str]]) -> Any:
-    """A ServiceStatus about a request: kind is Information, Warning or Error."""
+    """A ServiceStatus about a request. kind: Information, Warning or Error."""
     pairs = [("RequestID", str(request_id)), *facts]
     return lmcp.new(
         "ServiceStatus",

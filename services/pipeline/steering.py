@@ -1,7 +1,7 @@
-"""What a task's service tells the payloads of a vehicle that flies it: where to look, with each of its states.
+"""Camera commands of a task's service: where to look, sent with each state of the vehicle that flies it.
 
-Lines and points are stared at; over an area the gimbal is held at the angles for which the option was
-planned. What is planned to be seen and what is looked at so come from one source (`planning.targets`).
+Lines and points are stared at; over an area the gimbal holds the angles for which the option was planned.
+Planned and commanded views thus come from one source (`planning.targets`).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from cratous.spec.mission.plan import Pose
 
 
 class Steering(NamedTuple):
-    """A task as it is flown: by which option, with which camera, in which frame."""
+    """A task being flown: its option, camera and frame."""
 
     task: Task
     option: Option
@@ -32,7 +32,7 @@ class Steering(NamedTuple):
 
 
 def steering_of(context: Context, task: Task, option: Option) -> Steering | None:
-    """How the payloads are steered for an option; None where there is nothing to look at, or no camera."""
+    """The camera steering for an option; None if there is nothing to look at, or no camera."""
     camera = camera_for(task, option.flyer.cameras)
     if task.kind not in SEARCHES or camera is None:
         return None
@@ -41,16 +41,19 @@ def steering_of(context: Context, task: Task, option: Option) -> Steering | None
 
 
 def look_command(steering: Steering, state: Any) -> Any:
-    """The VehicleActionCommand for a vehicle in a state (an EntityState); BadInput if that is at no place."""
+    """The VehicleActionCommand for a vehicle in a state (an EntityState); BadInput if its position is
+    invalid.
+    """
     where = f"state of vehicle {state.ID}"
     here = read_pose(state.Location, state.Heading, steering.places, where, "Location")
     return _looking_from(steering, here, state.ID)
 
 
 def last_look(steering: Steering, vehicle: int) -> Any:
-    """The VehicleActionCommand for a vehicle whose task is told complete: that for where the path ends.
+    """The VehicleActionCommand for a vehicle whose task is reported complete: the look from the end of the
+    path.
 
-    An autopilot that turns short counts the end as reached when it is still up to two turn radii away.
+    An autopilot that turns short counts the end as reached up to two turn radii before it.
     """
     return _looking_from(steering, steering.option.end, vehicle)
 
@@ -66,7 +69,7 @@ def _looking_from(steering: Steering, here: Pose, vehicle: int) -> Any:
 
 
 def _held(steering: Steering, made_for: Angles, elevation_rad: float, heading_rad: float) -> Any:
-    """The angles of the option's view; from north they are turned against the heading."""
+    """The angles of the option's view; inertial ones are converted to relative ones with the heading."""
     view = flown_view(steering.task, made_for, steering.option.flyer.cameras)
     north_rad = heading_rad if view is not None and view.inertial else 0.0
     azimuth_rad = math.remainder(made_for.azimuth_rad - north_rad, 2 * math.pi)
@@ -80,7 +83,7 @@ def _held(steering: Steering, made_for: Angles, elevation_rad: float, heading_ra
 
 
 def _stare(steering: Steering, made_for: Angles, here: Pose) -> Any:
-    """The place that planning has the camera look at from here."""
+    """The point that planning has the camera look at from here."""
     task, cameras = steering.task, steering.option.flyer.cameras
     terrain_m, place = steering.places.terrain_m, Position(*here[:3])
     target = target_from(place, here.heading_rad, task, made_for, cameras, terrain_m)

@@ -1,4 +1,4 @@
-"""TaskManagerService: a task's service is made when the task comes, and ends when it is removed."""
+"""TaskManagerService: creates a task's service when the task arrives, and ends it when the task is removed."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cratous.services.pipeline.world import World
 
 
 class TaskManagerService:
-    """Task -> CreateNewService with its XML; a task of a known id, or RemoveTasks -> KillService."""
+    """Task -> CreateNewService with its XML; a task with a known id, or RemoveTasks -> KillService."""
 
     subscribes: tuple[str, ...] = ("afrl.cmasi.Task", "afrl.cmasi.RemoveTasks")
     knows = ("EntityConfiguration", "EntityState")
@@ -40,7 +40,7 @@ class TaskManagerService:
 
     def _create(self, task: Any, full_name: str, number: int) -> Any:
         world = self._world
-        # the closing tag is the receiver's to add, as UxAS has it
+        # the receiver adds the closing tag, as in UxAS
         text = f'<Service Type="{full_name}"><TaskRequest>{lmcp.xml.dumps(task)}</TaskRequest>'
         return lmcp.new(
             "CreateNewService",

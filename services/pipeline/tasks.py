@@ -1,11 +1,10 @@
 """A task's service: the nine states of `core.contracts.tasks`, driven by messages.
 
 UniqueAutomationRequest -> SensorFootprintRequests -> SensorFootprintResponse -> RoutePlanRequests ->
-RoutePlanResponses -> TaskPlanOptions; TaskImplementationRequest -> RoutePlanRequest ->
-RoutePlanResponse -> TaskImplementationResponse; vehicles' states -> TaskActive, TaskComplete, and where the
-camera has to look meanwhile (VehicleActionCommand).
-What is asked before options are offered: `questions`. Options and ways are those of
-`services.planning`; what is said of them, `implementation`.
+RoutePlanResponses -> TaskPlanOptions; TaskImplementationRequest -> RoutePlanRequest -> RoutePlanResponse ->
+TaskImplementationResponse; vehicle states -> TaskActive, TaskComplete, and camera commands
+(VehicleActionCommand). Questions before options are offered: `questions`. Options and routes are those of
+`services.planning`; their messages: `implementation`.
 """
 
 from __future__ import annotations
@@ -38,7 +37,7 @@ TASKS = {
     "afrl.impact.ImpactPointSearchTask": TaskKind.POINT_SEARCH,
     "afrl.impact.AngledAreaSearchTask": TaskKind.AREA_SEARCH,
     "afrl.impact.PatternSearchTask": TaskKind.PATTERN_SEARCH,
-    "afrl.impact.WatchTask": TaskKind.POINT_SEARCH,  # of what stands still, as the loader has it
+    "afrl.impact.WatchTask": TaskKind.POINT_SEARCH,  # of a stationary entity, as in the loader
 }
 NAMES = {
     TaskKind.LINE_SEARCH: "CmasiLineSearchTaskService",
@@ -52,7 +51,7 @@ AUTHORITY, REMOVE = "cratous.AuthorityChange", "afrl.cmasi.RemoveTasks"
 WITH_UXAS, WITH_ICAROUS, HANDED_BACK = 0, 1, 2
 AWAY = {"ICAROUS": WITH_ICAROUS, "UxAS": HANDED_BACK}
 ROUTES_FROM = 2**60
-"""Ids of a task's own route requests: beyond the blocks that the aggregator gives out."""
+"""Ids of a task's own route requests start here, beyond the aggregator's blocks."""
 
 INITIALISED, REQUESTED, SENSORS_KNOWN, ROUTES_KNOWN, CHOSEN, FINAL_KNOWN = 1, 2, 3, 4, 5, 6
 LISTED, UNLISTED, ENDED, WITHDRAWN, PROCEED = 7, 8, 9, 10, 11
@@ -67,12 +66,12 @@ _EVENTS = {
 
 
 class State(NamedTuple):
-    """The kernel's state; the implementation request in progress; the vehicle that the task is assigned to,
-    and how its payloads are steered (None: they are not).
+    """The kernel's state; the implementation request in progress; the assigned vehicle, and its camera
+    steering (None: none).
 
-    The kernel's requests are tickets that count up, as RequestIDs need not; tickets: the newest with
-    their RequestIDs. asked: what others have said of the options. away: whether ICAROUS has the vehicle, or
-    has just handed it back: what its states say of tasks is then not about the plan.
+    The kernel identifies requests by increasing tickets, since RequestIDs need not increase; tickets: the
+    newest ones with their RequestIDs. asked: other services' answers about the options. away: whether ICAROUS
+    has the vehicle or has just handed it back: the tasks in its states then do not refer to the plan.
     """
 
     task: Kernel = Kernel(0, 0, 0)
@@ -88,12 +87,12 @@ class State(NamedTuple):
         return dict(self.tickets)[ticket]
 
     def ticket(self, number: int) -> int:
-        """The ticket of the request in progress, or the one after it, if this is its RequestID, else -1."""
+        """The ticket of the request in progress, or of the next one, that has this RequestID; -1 for neither."""
         mine = (self.task.request, self.task.kept)
         return next((t for t, n in self.tickets if n == number and t in mine), -1)
 
     def arrived(self, number: int) -> tuple[State, int]:
-        """With a ticket for a request."""
+        """The state with a ticket for a request, and that ticket."""
         ticket = self.ticket(number)
         if ticket >= 0:
             return self, ticket
@@ -108,7 +107,7 @@ def nothing() -> None:
 
 
 class TaskService:
-    """One task; it lives until it is killed."""
+    """The service of one task; it lives until it is killed."""
 
     subscribes: tuple[str, ...] = (
         UNIQUE,
@@ -155,7 +154,7 @@ class TaskService:
         return State()
 
     def begin(self, state: State) -> tuple[State, Iterable[Any]]:
-        """The task needs nothing to initialise itself: it is there."""
+        """Report the task as initialised: it needs nothing for that."""
         return self._advance(state, INITIALISED, 0, None)
 
     def handle(self, state: State, envelope: Envelope, now_ms: int) -> tuple[State, Iterable[Any]]:
@@ -181,13 +180,13 @@ class TaskService:
         return (state, ()) if state.away else self._flown(state, body)
 
     def _taken(self, state: State, change: Any) -> State:
-        """ICAROUS takes the vehicle or hands it back: until it flies waypoints again, no task ends."""
+        """ICAROUS takes the vehicle or hands it back: no task ends until it flies waypoints again."""
         if change.VehicleID != state.vehicle:
             return state
         return state._replace(away=AWAY[change.Owner.name])
 
     def _requested(self, state: State, body: Any) -> tuple[State, Iterable[Any]]:
-        """A request that means nothing is answered, once a process; it disturbs no task."""
+        """A request that cannot be planned is answered once per process, and affects no task."""
         number = body.RequestID
         if self._contexts.refused(number):
             return state, self._contexts.refusal(number)
@@ -197,7 +196,7 @@ class TaskService:
         return self._advance(state, REQUESTED, ticket, body)
 
     def _flown(self, state: State, body: Any) -> tuple[State, Iterable[Any]]:
-        """A vehicle says which tasks it flies."""
+        """Process a state of the task's vehicle, which lists the tasks that it flies."""
         if state.vehicle != body.ID:
             return state, ()
         event = LISTED if self._task_id in body.AssociatedTasks else UNLISTED
@@ -210,7 +209,7 @@ class TaskService:
         return state, out
 
     def _withdrawn(self, state: State, body: Any) -> bool:
-        """The task is removed, or there is a new plan for the vehicle that does not have it."""
+        """Whether the task is removed, or missing from a new plan for its vehicle."""
         if hasattr(body, "TaskList"):
             return self._task_id in body.TaskList
         for command in body.MissionCommandList:
@@ -220,7 +219,7 @@ class TaskService:
         return False
 
     def _reply(self, state: State, event: int, body: Any) -> tuple[State, Iterable[Any]]:
-        """Footprints, routes of options, the choice of one, or final routes, for this task."""
+        """Process footprints, routes of options, the choice of an option, or final routes, for this task."""
         if event == CHOSEN:
             if body.TaskID != self._task_id:
                 return state, ()
@@ -249,7 +248,7 @@ class TaskService:
     def _advance(
         self, state: State, event: int, ticket: int, body: Any
     ) -> tuple[State, Iterable[Any]]:
-        """Tell the kernel what happened and do what it answers, until it waits for something."""
+        """Pass an event to the kernel and carry out its acts, until it has to wait."""
         out: list[Any] = []
         while event:
             task, act = task_step(state.task, event, ticket)
@@ -264,7 +263,7 @@ class TaskService:
         return state, out
 
     def _do(self, state: State, act: int, body: Any, out: list[Any]) -> tuple[State, int]:
-        """One act of the kernel's; what happens at once because of it, 0 for nothing."""
+        """Carry out one act of the kernel; returns the event that follows at once, 0 for none."""
         if act == ANNOUNCE:
             out.append(lmcp.new("TaskInitialized", TaskID=self._task_id))
             return state, PROCEED
@@ -328,7 +327,7 @@ class TaskService:
         return state.asked.left(self._options(context))
 
     def _options(self, context: Context) -> Sequence[Option]:
-        """All ways to fly the task."""
+        """All options for the task."""
         return context.inputs.options_of(self._task_in(context).id)
 
     def _offer(self, context: Context, options: list[Option]) -> Any:
@@ -366,14 +365,14 @@ class TaskService:
         return implemented(context, task, option, request, plan, outside)
 
     def _steering(self, request: Any) -> Steering | None:
-        """How the payloads of a vehicle outside are steered for the option that it flies."""
+        """The camera steering of a vehicle controlled by messages, for the option that it flies."""
         if self._contexts.source.outside is None:
             return None
         context = self._context
         return steering_of(context, self._task_in(context), self._option(request))
 
     def _ended(self, state: State, body: Any) -> Any:
-        """The task is over: complete if a vehicle flew it and went on, else it ends undone."""
+        """The end of the task: complete if a vehicle flew it and moved on, otherwise undone."""
         if hasattr(body, "AssociatedTasks"):
             return lmcp.new(
                 "TaskComplete",
@@ -392,7 +391,7 @@ class TaskService:
 
 
 def on_its_way(body: Any) -> bool:
-    """Whether a state is of a vehicle that flies waypoints; one that does not say its mode does."""
+    """Whether a state is of a vehicle that flies waypoints; assumed if it has no mode."""
     return not hasattr(body, "Mode") or bool(body.Mode.name == "Waypoint")
 
 

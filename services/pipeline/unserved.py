@@ -1,9 +1,8 @@
-"""Tasks of kinds that no service of this process does: another's service may speak for them.
+"""Tasks of kinds without a service in this process: another process's service may answer for them.
 
-A task's service says TaskInitialized at once. Where a task manager of this process hears of a task whose
-kind nobody here does, another's service has `OTHERS_MS` to speak for it; after that, a request with this
-task is answered with the name of its kind, and need not wait until its time is over. Who speaks later is
-heard all the same: the next request counts on it.
+A task's service sends TaskInitialized at once. For a task whose kind has no service here, another process has
+`OTHERS_MS` to do so; after that, a request with this task is answered with the name of its kind instead of
+waiting for its time limit. A later TaskInitialized still counts for the next request.
 """
 
 from __future__ import annotations
@@ -16,33 +15,36 @@ from cratous.services.bus import Wake
 
 OTHERS_MS = 1000
 MOST = 10_000
-"""Tasks that are remembered; the oldest makes room, and a request with it waits as for any task."""
+"""Most tasks remembered; beyond that the oldest is dropped, and a request with it waits as for any task."""
 
 Alien = tuple[int, int]
-"""A task's id and the number of the message that told of it."""
+"""A task's id and the number of the message that announced it."""
 
 
 class Unserved(NamedTuple):
-    """Task kinds that no service here handles: those that others may still answer for, and those reported as
-    unhandled."""
+    """Task kinds without a service here. waiting: those that others may still answer for; named: those
+    reported as unhandled.
+    """
 
     waiting: Mapping[Alien, str] = MappingProxyType({})
     named: Mapping[int, str] = MappingProxyType({})
 
     def arrived(self, task: Alien, kind: str) -> tuple[Unserved, Wake]:
-        """A task of a kind that no service here handles; and when to check whether another has answered."""
+        """A task of an unhandled kind has arrived. Returns when to check whether another service has
+        answered.
+        """
         waiting = {**self.without([task[0]]).waiting, task: kind}
         kept = dict(list(waiting.items())[-MOST:])
         return self.without([task[0]])._replace(waiting=kept), Wake(OTHERS_MS, task)
 
     def without(self, tasks: Iterable[int]) -> Unserved:
-        """Without these tasks: they were removed, replaced, or a service has answered for them."""
+        """The state without these tasks: they were removed, replaced, or a service has answered for them."""
         gone = set(tasks)
         waiting = {task: kind for task, kind in self.waiting.items() if task[0] not in gone}
         return Unserved(waiting, {n: kind for n, kind in self.named.items() if n not in gone})
 
     def due(self, task: Alien) -> Unserved:
-        """The time to speak for a task is over; nothing if it is another task by now, or spoken for."""
+        """The time to answer for a task is over; no effect if it was replaced or answered for."""
         kind = self.waiting.get(task)
         if kind is None:
             return self
@@ -51,5 +53,5 @@ class Unserved(NamedTuple):
         return Unserved(left, named)
 
     def wakes(self) -> tuple[Wake, ...]:
-        """When to look for those that others have time to speak for, which begins anew."""
+        """Wake-ups for the tasks that others may still answer for; their time starts anew."""
         return tuple(Wake(OTHERS_MS, task) for task in self.waiting)

@@ -1,15 +1,17 @@
-"""AutomationRequestValidatorService: the line of requests, driven by the proved `line_step`.
+"""AutomationRequestValidatorService: the queue of requests, driven by the proved `line_step`.
 
-Every request gets a ticket when it comes. When its turn comes it is held against what is known
-(`validity`): a valid one is published as UniqueAutomationRequest, one that waits only for its tasks
-to initialise themselves waits (not for a kind that nobody does: `unserved`), any other is answered with the reasons. One is in the pipeline at a
-time; each is answered once, in order, by its response, by an error, or because its time ran out.
-A TaskAutomationRequest keeps its RequestID; the others, and one whose id has just been another's, are
-numbered in the order in which they come. A validator that is started anew in the same process goes on with the line of the one before it.
+Every request gets a ticket on arrival. When its turn comes it is validated against what is known
+(`validity`): a valid one is published as UniqueAutomationRequest; one that lacks only initialised tasks waits
+(except for kinds that no service handles: `unserved`); any other is answered with the reasons. One is in the
+pipeline at a time; each is answered once, in order, by its response, by an error, or when its time limit is
+over.
 
-A request is published as it came. What its tasks, vehicles and relations mean is the planning
-services' to say, so that a client's request reaches planners of any kind; where it means something
-here, the tasks that the relations leave out are taken out, and it says where each vehicle plans from.
+A TaskAutomationRequest keeps its RequestID unless that was used recently; all others are numbered in order of
+arrival. A validator restarted in the same process continues the queue of the previous one.
+
+A request is published as received. Its tasks, vehicles and relations are interpreted by the planning
+services, so that a client's request reaches planners of any kind; if it can be interpreted here, tasks that
+the relations omit are removed, and planning states are added.
 """
 
 from __future__ import annotations
@@ -36,9 +38,9 @@ INITIALISED = "uxas.messages.task.TaskInitialized"
 MANAGER = "TaskManagerService"
 CMASI_TASK, REMOVE = "afrl.cmasi.Task", "afrl.cmasi.RemoveTasks"
 REMEMBERED = 4096
-"""RequestIDs that are not given again."""
+"""Most recent RequestIDs that are not reused."""
 LINE = "line of requests"
-"""Under this what has not been answered is kept, for another validator that joins the bus."""
+"""Key under which unanswered requests are kept, for a later validator on the bus."""
 REQUESTS = (
     "afrl.cmasi.AutomationRequest",
     "afrl.impact.ImpactAutomationRequest",
@@ -47,9 +49,10 @@ REQUESTS = (
 
 
 class Requests(NamedTuple):
-    """line: the kernel's; asked: requests by ticket, each with its RequestID; published: the one
-    whose turn it is is out; initialised: tasks that have said so; notes: for its answer; unserved: tasks
-    that nobody does."""
+    """line: the kernel's; asked: requests by ticket, each with its RequestID; published: whether the request
+    whose turn it is is published; initialised: tasks that have reported so; notes: for its answer;
+    unserved: tasks without a service.
+    """
 
     line: Line
     asked: dict[int, Asked]
@@ -87,16 +90,16 @@ class AutomationRequestValidatorService:
     )
 
     def __init__(self, shared: dict[str, Any], contexts: Contexts, limit_ms: int) -> None:
-        """shared: keeps the RequestIDs that were given and the line as it stands, also for another validator on the bus."""
+        """shared: keeps the used RequestIDs and the queue, also for a later validator on the bus."""
         self._shared, self._contexts, self._limit_ms = shared, contexts, limit_ms
 
     def start(self) -> Requests:
-        """Where the validator before it has stopped."""
+        """The state in which the previous validator stopped."""
         kept: Requests | None = self._shared.get(LINE)
         return kept or Requests(Line(0, 0, False, 0), {}, False, frozenset())
 
     def begin(self, state: Requests) -> Step:
-        """What the validator before it was still to be woken for."""
+        """Repeat the pending wake-ups of the previous validator."""
         line = state.line
         wakes = (Wake(0, line.answered), Wake(self._limit_ms, line.answered)) if state.asked else ()
         return state, (*wakes, *state.unserved.wakes())
@@ -125,7 +128,7 @@ class AutomationRequestValidatorService:
             unserved = state.unserved.without(body.TaskList)
             initialised = state.initialised - set(body.TaskList)
             state = state._replace(initialised=initialised, unserved=unserved)
-        elif hasattr(body, "TaskID"):  # another task of this id, which has to initialise itself
+        elif hasattr(body, "TaskID"):  # a replaced task has to initialise itself again
             state = state._replace(initialised=state.initialised - {body.TaskID})
             unserved = state.unserved.without([body.TaskID])
             if topic not in (*TASKS, *FOLLOWED) and self._contexts.source.asks(MANAGER):
@@ -135,7 +138,7 @@ class AutomationRequestValidatorService:
         return self._pump(state, out, now_ms), out
 
     def wake(self, state: Requests, key: Any, now_ms: int) -> Step:
-        """A request's time may be over, and whether it is the kernel says; or a task's, to be spoken for."""
+        """A request's time may be over, as the kernel decides, or that of an unserved task."""
         out: list[Any] = []
         if isinstance(key, tuple):
             state = state._replace(unserved=state.unserved.due(key))
@@ -156,7 +159,7 @@ class AutomationRequestValidatorService:
         return state._replace(asked={**state.asked, ticket: asked})
 
     def _number(self, wanted: int) -> int:
-        """The RequestID that is asked for, if no newer request has had it, else the next free one."""
+        """The requested RequestID if no recent request has used it, else the next free one."""
         shared = self._shared
         used: dict[int, None] = shared.setdefault("RequestIDs", {})
         number = wanted
@@ -171,7 +174,7 @@ class AutomationRequestValidatorService:
         return number
 
     def _respond(self, state: Requests, body: Any, out: list[Any], now_ms: int) -> Requests:
-        # before the request is out, no response can be its own
+        # before the request is published, no response can be its own
         ticket = state.line.answered if state.work and body.ResponseID == state.work else -1
         state, act, ticket = self._step(state, requests.ANSWER, ticket, now_ms)
         if act != requests.PASS_ON:
@@ -182,7 +185,7 @@ class AutomationRequestValidatorService:
         return _done(state, ticket)
 
     def _noted(self, state: Requests, body: Any) -> Requests:
-        """A warning that a task of the request in the pipeline is left out, or done in part, goes into its answer."""
+        """Add a warning about a task left out or done in part to the answer of the request in the pipeline."""
         facts = {pair.Key: pair.Value for pair in body.Info}
         if body.StatusType.name != "Warning" or "TaskID" not in facts or not state.work:
             return state
@@ -205,7 +208,7 @@ class AutomationRequestValidatorService:
     def _refuse(
         self, state: Requests, why: Iterable[str], out: list[Any], now_ms: int, said: bool = False
     ) -> Requests:
-        """Answer the request whose turn it is with an error; said: the status is out already."""
+        """Answer the request whose turn it is with an error. said: its status has already been published."""
         state, act, ticket = self._step(state, requests.ANSWER, state.line.answered, now_ms)
         if act == requests.PASS_ON:
             asked = state.asked[ticket]
@@ -213,7 +216,7 @@ class AutomationRequestValidatorService:
         return _done(state, ticket)
 
     def _pump(self, state: Requests, out: list[Any], now_ms: int) -> Requests:
-        """Do what is due until nothing is."""
+        """Process everything that is due."""
         while True:
             if state.line.busy and not state.published:
                 ticket = state.line.answered
@@ -239,7 +242,7 @@ class AutomationRequestValidatorService:
         return verdict(things)
 
     def _begin(self, state: Requests, out: list[Any], now_ms: int) -> Requests:
-        """Publish the request whose turn it is, if it is valid; refuse it if it never will be."""
+        """Publish the request whose turn it is if it is valid; refuse it if it can never become so."""
         asked = state.asked[state.line.answered]
         number = asked.number
         found = self._verdict(state, asked)
@@ -259,7 +262,7 @@ class AutomationRequestValidatorService:
         self._contexts.source.conditions(number, pairs)
         context = self._contexts.open(unique, where)
         if not isinstance(context, Context):
-            # valid, but planning will fail: those who plan say why
+            # valid, but it cannot be planned: the planning services report why
             out.append(unique)
             return state._replace(published=True, notes=())
         out.append(self._complete(unique, context))
@@ -272,7 +275,7 @@ class AutomationRequestValidatorService:
         return state._replace(published=True, notes=notes)
 
     def _complete(self, unique: Any, context: Context) -> Any:
-        """The request without the tasks that are not to be done, and where each vehicle plans from."""
+        """The request without tasks that are not to be done, and with each vehicle's planning state."""
         inputs, request = context.inputs, unique.OriginalRequest
         tasks = [task for task in request.TaskList if task in inputs.wanted]
         if tasks != request.TaskList:

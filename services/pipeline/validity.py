@@ -1,9 +1,9 @@
-"""What an automation request names, held against what is known: the kernels of `core.contracts.validity`.
+"""Validation of an automation request against what is known: the kernels of `core.contracts.validity`.
 
-The service only looks up; whether a thing is as it must be, and whether the whole request is one to
-be planned, the proved kernels say. A task is defined if it and the place that it names are known.
-Whether there is a plan is not asked here: a vehicle that cannot fly as it is configured, or relations
-that mean nothing, the planning services answer.
+The service only looks objects up; the proved kernels decide whether each is as required, and whether the
+request is valid. A task is known if it and the place that it names are known. Whether a plan exists is not
+checked here: vehicles that cannot fly as configured and invalid relations are reported by the planning
+services.
 """
 
 from __future__ import annotations
@@ -17,12 +17,13 @@ from cratous.services.pipeline.source import Known
 VEHICLE, TASK, REGION, ZONE = 1, 2, 3, 4
 _NAMES = {VEHICLE: "vehicle", TASK: "task", REGION: "operating region", ZONE: "zone"}
 _PLACES = {"LineID": "line", "SearchAreaID": "area", "SearchLocationID": "point"}
-"""By which field a task names a place of interest, and of which sort; 0 names none."""
+"""The fields by which a task names a place of interest, and its sort; 0 names none."""
 
 
 class Thing(NamedTuple):
-    """One thing that a request names, as the kernels take it, its id, what it names that is not known, and
-    why there is nobody to do it."""
+    """One object that a request names: its properties for the kernels, its id, the unknown object that it
+    names (lacks), and its kind if no service handles that (nobody).
+    """
 
     kind: int
     known: bool
@@ -51,7 +52,7 @@ class Thing(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """valid: it can be planned; waits: only tasks that have not initialised themselves are wrong."""
+    """valid: it can be planned; waits: it lacks only tasks that have not initialised themselves."""
 
     valid: bool
     waits: bool
@@ -65,10 +66,10 @@ def things_of(
     initialised: Collection[int],
     unserved: Mapping[int, str] = {},
 ) -> list[Thing]:
-    """Everything that an AutomationRequest names; no EntityList means all vehicles.
+    """Everything that an AutomationRequest names; an empty EntityList means all vehicles.
 
-    given: vehicles whose state comes with the request; initialised: tasks that have said so; unserved:
-    kinds of tasks that nobody does.
+    given: vehicles whose state is part of the request; initialised: tasks that have reported so; unserved:
+    kinds of tasks without a service.
     """
     vehicles = list(request.EntityList) or world.ids("configuration")
     made = [
@@ -81,7 +82,7 @@ def things_of(
         known = world.has("task", number) and not lacks and not nobody
         made.append(Thing(TASK, known, number in initialised, False, number, lacks, nobody))
     number = request.OperatingRegion
-    if number:  # region 0 is of whatever zones there are, and need not be known
+    if number:  # region 0 means all known zones
         region = world.get("region", number)
         made.append(Thing(REGION, region is not None, True, False, number))
         if region is not None:
@@ -91,7 +92,7 @@ def things_of(
 
 
 def _lacking(world: Known, task: int) -> str:
-    """The place of interest that a task names and that nobody has told, empty if there is none."""
+    """The place of interest that a task names and that is unknown; "" if there is none."""
     body = world.get("task", task)
     for field, sort in _PLACES.items():
         number = getattr(body, field, 0)

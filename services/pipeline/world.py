@@ -1,6 +1,6 @@
-"""What the messages have told so far: the newest of each entity, task, zone and region.
+"""What messages have reported so far: the newest state of each entity, task, zone and region.
 
-From this a mission is made when a request comes, by the same loader that reads UxAS folders.
+A request's mission is built from this, by the same loader that reads UxAS folders.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from typing import Any
 from cratous.services.bus import Envelope
 from cratous.services.loading.uxas_cfg import Configuration, Sent
 
-MOST = 100_000  # objects remembered of one kind
+MOST = 100_000  # most objects kept of one sort
 
 
 class World:
-    """A service that remembers; it publishes nothing."""
+    """A service that records objects; it publishes nothing."""
 
     subscribes: tuple[str, ...] = (
         "afrl.cmasi.EntityConfiguration",
@@ -47,7 +47,7 @@ class World:
         return state, ()
 
     def add(self, body: Any, where: str, time_ms: int = 0) -> None:
-        """Remember an object in place of the older one with its id."""
+        """Store an object in place of the previous one with its id."""
         kind = type(body).__name__
         if kind.startswith("Remove"):
             self._remove(kind, body)
@@ -69,7 +69,7 @@ class World:
         return self._kept.get("task", {}).get(number)
 
     def has(self, sort: str, number: int) -> bool:
-        """True if there is an object of a sort with this id."""
+        """Whether an object of a sort has this id."""
         return number in self._kept.get(sort, {})
 
     def get(self, sort: str, number: int) -> Any:
@@ -78,11 +78,11 @@ class World:
         return None if found is None else found.body
 
     def forget(self, sort: str, number: int) -> None:
-        """There is no such object any more."""
+        """Remove an object."""
         self._kept.get(sort, {}).pop(number, None)
 
     def knows(self, body: Any) -> bool:
-        """True if there is an object with the id of this one already."""
+        """Whether an object with this one's id is known already."""
         sort, number = _key(body)
         return number in self._kept.get(sort, {})
 
@@ -91,14 +91,15 @@ class World:
         return list(self._kept.get(sort, {}))
 
     def of(self, sort: str) -> list[Any]:
-        """All objects of a sort: configuration, state, task, zone, region, point, line, area; mission: the newest
-        command of a vehicle's plan."""
+        """All objects of a sort: configuration, state, task, zone, region, point, line, area; mission: the
+        newest command of a vehicle's plan.
+        """
         return [sent.body for sent in self._kept.get(sort, {}).values()]
 
     def configuration(
         self, path: Path, root: dict[str, str], services: Any, request: Sent
     ) -> Configuration:
-        """Everything so far and a request, as the loader takes it."""
+        """All objects known and a request, in the loader's form."""
         sorts = sorted(sort for sort in self._kept if sort != "mission")
         kept = [sent for sort in sorts for sent in self._kept[sort].values()]
         return Configuration(path, root, services, (*kept, request), ())

@@ -1,1 +1,1 @@
-"""Planning: from a mission to a plan, as pure stages; `services.pipeline` drives them by messages."""
+"""Planning: from a mission to a plan, as pure stages; `services.pipeline` runs them by messages."""

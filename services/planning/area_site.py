@@ -1,4 +1,4 @@
-"""What the ways over one area have in common: the area, who flies over it, and what a pass sees."""
+"""Data shared by all paths over one area: the area, the vehicle class, and the swath of a pass."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from cratous.services.planning.smoothing import MARGIN
 from cratous.spec.mission import Camera, Task, View
 
 GLANCE_S = 2.0
-"""Each part of a swath stays in view for so long, so that nothing is missed between frames."""
+"""Least time for which each part of a swath stays in view [s], so that nothing is missed between frames."""
 
 
 class Candidate(NamedTuple):
-    """A way over an area without its turns, and how long it is."""
+    """A path over an area without its turns, and its length [m]."""
 
     label: str
     pieces: tuple[Piece, ...]
@@ -28,7 +28,7 @@ class Candidate(NamedTuple):
 
 
 class Site(NamedTuple):
-    """What is the same for all ways of one class of vehicles over one area."""
+    """Data shared by all paths of one class of vehicles over one area."""
 
     task: Task
     flyer: Flyer
@@ -50,18 +50,18 @@ def site_of(task: Task, flyer: Flyer, camera: Camera, terrain_m: float) -> Site:
 def candidate_of(
     site: Site, label: str, pieces: Sequence[Piece], view: View | None = None
 ) -> Candidate:
-    """A way of these pieces, as long as it is where no zone is in the way of its turns."""
+    """A candidate from these pieces, with its length if no zone obstructs its turns."""
     return Candidate(label, tuple(pieces), unjoined_m(pieces, site.flyer.radius_m), view)
 
 
 def lane_width_m(swath_of: SwathOf, heading_rad: float) -> float:
-    """How wide the lanes of a heading may be, there and back [m]; 0: none covers anything."""
+    """Lane width for a heading, flown in both directions [m]; 0 if no swath exists."""
     seen = [swath_of(h) for h in (heading_rad, heading_rad + math.pi)]
     return max(0.0, min((s.width_m if s is not None else 0.0) for s in seen))
 
 
 def swaths_of(site: Site, view: View | None) -> SwathOf:
-    """The swath by heading, narrowed by a square on each side so that seams are seen whole."""
+    """The swath by heading, narrowed by one square on each side so that squares at the seams are covered."""
     least_m = GLANCE_S * site.flyer.speed_m_s + site.side_m
     return functools.partial(_swath, site.camera, view, site.height_m, site.side_m, least_m)
 
@@ -75,7 +75,7 @@ def _swath(
     least_m: float,
     heading_rad: float,
 ) -> Swath | None:
-    """Kept, since classes of vehicles and plans one after the other ask for the same."""
+    """Cached, since vehicle classes and successive plans ask for the same swaths."""
     import numpy as np
 
     step = np.array([[math.cos(heading_rad), math.sin(heading_rad)]])

@@ -1,7 +1,7 @@
-"""From where the camera may look over an area whose task leaves that open.
+"""Views over an area whose task leaves the view open.
 
-A view that is tilted along the lanes, ahead on the way there and back on the way back, sees a wider strip
-than one straight down and costs nothing in the turns: all footprints lie off the aircraft by the same.
+A view tilted along the lanes, ahead in one direction and back in the other, covers a wider strip than one
+straight down and costs nothing in the turns: all footprints have the same offset from the aircraft.
 """
 
 from __future__ import annotations
@@ -15,20 +15,21 @@ from cratous.services.planning.point_ways import STRAIGHT_DOWN_RAD
 from cratous.spec.mission import AREAS, Camera, Pattern, Task, View
 
 TILTS_DEG = (-75.0, -60.0, -55.0, -50.0, -45.0, -40.0, -35.0, -30.0)
-"""Tilts that are tried beside straight down, steepest first, and the one that the sample distance allows."""
+"""Tilts tried besides straight down, steepest first [deg]; the limit set by the sample distance is added."""
 SHALLOWEST_DEG = -45.0
-"""No view is shallower than this where the task names no ground sample distance: what is in the middle of
-the image is then seen from 1.4 times as far as straight down."""
+"""Shallowest tilt if the task requires no ground sample distance [deg]: the image centre is then seen from
+1.4 times the distance straight down.
+"""
 
 
 def open_view(task: Task) -> bool:
-    """Whether the planner chooses from where an area is seen: no view is asked for."""
+    """Whether the planner may choose the view of an area, since the task requires none."""
     lanes = task.pattern in (None, Pattern.SWEEP)
     return task.kind in AREAS and lanes and task.view is None and not task.views
 
 
 def brought_view(task: Task, elevation_rad: float | None, azimuth_rad: float) -> View | None:
-    """The view that an option has brought itself, by its angles; None where the task asks for one."""
+    """The view that the planner chose for an option, from its angles; None if the task requires one."""
     if not open_view(task) or elevation_rad is None:
         return None
     return View(azimuth_rad, elevation_rad, True)
@@ -42,10 +43,10 @@ def best_view(
     width_of: Callable[[View], float],
     vertices: Sequence[Corner],
 ) -> View | None:
-    """The steepest view along lanes of a heading that needs as few of them as any; None: straight down.
+    """The steepest view along lanes of a heading that needs the fewest lanes; None: straight down.
 
-    width_of: how wide a strip a pass with a view covers [m], 0: none. Only views that keep the task's ground
-    sample distance in the middle of the image count, and a camera that can look back.
+    width_of: strip width of a pass with a view [m], 0 for none. Only views that meet the task's ground sample
+    distance at the image centre are considered, and only for a camera that can look back.
     """
     needed: dict[View | None, int] = {}
     if camera.min_elevation_rad <= STRAIGHT_DOWN_RAD:
@@ -59,7 +60,7 @@ def best_view(
 
 
 def _tilts(task: Task, camera: Camera, height_m: float) -> list[float]:
-    """What the gimbal reaches and the wanted sample distance allows [rad], steepest first."""
+    """Tilts within the gimbal's range and the required sample distance [rad], steepest first."""
     shallowest = math.radians(SHALLOWEST_DEG)
     tilts = [math.radians(degrees) for degrees in TILTS_DEG]
     if camera.min_elevation_rad > STRAIGHT_DOWN_RAD:

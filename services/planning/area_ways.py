@@ -1,7 +1,7 @@
-"""Ways over an area: lanes as wide as the footprint, spirals, squares and sectors.
+"""Paths over an area: lanes as wide as the footprint, spirals, squares and sectors.
 
-Candidates are compared by their length without zones; those that cost much more than the shortest,
-and all beyond a small number, are dropped with that reason. The rest get turns around the zones.
+Candidates are compared by their length without zones; those much longer than the shortest, and all beyond a
+small number, are dropped with that reason. The rest get turns around the zones.
 """
 
 from __future__ import annotations
@@ -53,37 +53,38 @@ from cratous.spec.mission import Camera, Pattern, Position, Task, View, Zone
 from cratous.spec.mission.plan import Pose
 
 OPTIONS_MOST = 4
-"""How many ways over an area are offered."""
+"""Most paths offered over an area."""
 REFUSED_MOST = 8
-"""No more ways are tried when zones have forbidden so many."""
+"""Number of paths rejected because of zones after which no more are tried."""
 DEARER = 1.5
-"""A way that is longer than the shortest by more than this factor is not offered."""
+"""A path longer than the shortest by more than this factor is not offered."""
 LEADS = (0.8, 0.0)
-"""Room to settle before a lane, in turn radii; less where the zones leave no more."""
+"""Distance for settling before a lane, in turn radii; the second value is used where zones leave less room."""
 VIEWS_MOST = 4
 MEASURED_MOST = 8_000
-"""Coverage is measured in planning for ways with no more footprints than this."""
+"""Coverage is computed in planning for paths with at most this many footprints."""
 FEW, FEWER = 2_000, 8
-"""Of more footprints than FEW, one in FEWER is looked at first."""
+"""With more footprints than FEW, every FEWER-th is checked first."""
 TURN_RESERVE = 1.15
-"""The innermost turn of a spiral, in turn radii."""
+"""Radius of a spiral's innermost turn, in turn radii."""
 
 
 Maker = Callable[..., list[Candidate] | str]
-"""Makes the candidates of a site with so much room before its lanes (`lead_m`), or says why there is none."""
+"""Returns the candidates of a site with a settling distance `lead_m` [m], or why there are none."""
 
 
 def area_ways(
     task: Task, flyer: Flyer, camera: Camera, zones: Sequence[Zone], terrain_m: float
 ) -> Iterator[Way]:
-    """A few ways over the area for each wanted view, shortest first, and those not offered."""
+    """A few paths over the area for each wanted view, shortest first, and those not offered."""
     site = site_of(task, flyer, camera, terrain_m)
     maps = roadmaps(zones, flyer.radius_m)
     views = (task.view, *task.views)
     if open_view(task) and any(one.view for one in _along_lanes(site, 0.0)):
         found = list(_offered(site, _along_lanes, zones, maps))
         yield from found
-        # straight down lanes lie over the area itself, where zones may leave room that they do not leave beside it
+        # lanes seen straight down lie over the area itself, which may be clear of zones where its
+        # surroundings are not
         if any(not way.reason for way in found):
             return
     for view in views[:VIEWS_MOST]:
@@ -95,7 +96,7 @@ def area_ways(
 def _offered(
     site: Site, make: Maker, zones: Sequence[Zone], maps: Sequence[Roadmap]
 ) -> Iterator[Way]:
-    """The shortest of the ways that are made, and those not offered."""
+    """The shortest candidates as paths, and those not offered."""
     made = make(site, lead_m=LEADS[0] * site.flyer.radius_m)
     if isinstance(made, str):
         yield no_way("", made)
@@ -113,7 +114,7 @@ def _offered(
         else:
             way = _way(site, candidate, zones, maps)
             if way.reason:
-                # less room before the lanes may do where the zones are near
+                # a shorter settling distance may suffice where zones are near
                 way = _tighter(site, make, way, zones, maps)
             refused += bool(way.reason)
             offered += not way.reason
@@ -123,7 +124,7 @@ def _offered(
 def area_parts(
     task: Task, flyer: Flyer, camera: Camera, maps: Sequence[Roadmap], terrain_m: float
 ) -> Iterator[Way]:
-    """For each wanted view the shortest ways over an area, without what the zones forbid of them."""
+    """For each wanted view the shortest paths over an area, without the parts that zones forbid."""
     site = site_of(task, flyer, camera, terrain_m)
     for view in (task.view, *task.views)[:VIEWS_MOST]:
         made = _candidates(site, LEADS[1] * flyer.radius_m, view)
@@ -154,7 +155,9 @@ def area_parts(
 def _tighter(
     site: Site, make: Maker, way: Way, zones: Sequence[Zone], maps: Sequence[Roadmap]
 ) -> Way:
-    """The way of the same name with less room to settle, if that helps; else what was refused."""
+    """The candidate of the same name with a shorter settling distance, if that is possible; else the rejected
+    path.
+    """
     made = make(site, lead_m=LEADS[1] * site.flyer.radius_m)
     same = [c for c in made if isinstance(c, Candidate) and c.label == way.label]
     tight = _way(site, same[0], zones, maps) if same else way
@@ -162,7 +165,7 @@ def _tighter(
 
 
 def _way(site: Site, candidate: Candidate, zones: Sequence[Zone], maps: Sequence[Roadmap]) -> Way:
-    """A candidate with its turns and its coverage, or the reason why the zones forbid it."""
+    """A candidate with turns and coverage, or the reason why zones forbid it."""
     bad = _broken_lane(candidate, zones)
     if bad:
         return no_way(candidate.label, bad)
@@ -197,10 +200,10 @@ def _share(
     points: tuple[Position, ...],
     most: int | None = MEASURED_MOST,
 ) -> float | None:
-    """The share of the area that a flight along the points sees, with a margin for its wobble.
+    """The fraction of the area covered by a flight along the points, with a margin for tracking errors.
 
-    None where measuring it would take more than so many footprints: the lanes are made to cover, the
-    flight is measured.
+    None where the computation would take more than `most` footprints: lanes are built to cover, and the
+    flight is checked.
     """
     import numpy as np
 
@@ -212,7 +215,7 @@ def _share(
     seen = np.zeros(len(centres), np.bool_)
     quads = footprints(looks, site.height_m, site.camera, (1 + MARGIN) / 2)
     for some in (quads[::FEWER], quads) if len(quads) > FEW else (quads,):
-        # where some of them see all of it, all of them do
+        # if some of them cover everything, so do all
         if not seen.all():
             look(centres, site.side_m, some, seen)
     return share_covered(int((~seen).sum()), site.side_m, area_m2(site.vertices))
@@ -234,7 +237,7 @@ def _along_lanes(site: Site, lead_m: float) -> list[Candidate]:
 
 
 def _candidates(site: Site, lead_m: float, view: View | None) -> list[Candidate] | str:
-    """The ways without turns, or why there is none."""
+    """The candidates without turns, or why there are none."""
     swath_of = swaths_of(site, view)
     width = math.inf
     for degrees in range(0, 360, HEADING_STEP_DEG // 2):
@@ -259,7 +262,7 @@ def _candidates(site: Site, lead_m: float, view: View | None) -> list[Candidate]
 
 
 def _from_start(site: Site, candidate: Candidate) -> Candidate:
-    """The way with the point before it where the search has to begin, if the task names one."""
+    """The candidate preceded by the required start point of the search, if the task has one."""
     point, first = site.task.start_point, candidate.pieces[0].start
     if point is None:
         return candidate
@@ -272,7 +275,7 @@ def _from_start(site: Site, candidate: Candidate) -> Candidate:
 def _over(
     site: Site, parts: Sequence[Strip], heading: float, swath_of: SwathOf, lead_m: float
 ) -> Iterator[tuple[str, list[Piece]]]:
-    """Lanes over strips from both sides."""
+    """Lanes over strips, starting from either side."""
     for from_right in (False, True):
         side = "right" if from_right else "left"
         label = f"lanes along {round(math.degrees(heading)) % 360} deg from the {side}"
@@ -291,7 +294,7 @@ def _over(
 
 
 def _headings(site: Site) -> list[float]:
-    """Directions of lanes, there and back."""
+    """Directions of the lanes, each with its reverse."""
     swept, step = site.task.sweep_rad, math.radians(HEADING_STEP_DEG)
     ones = edge_headings(site.vertices, step) if swept is None else [swept]
     return [heading for one in ones for heading in (one, one + math.pi)]
@@ -317,7 +320,7 @@ def _lanes_along(
 
 @dataclass(frozen=True)
 class _Figure:
-    """A pattern that is flown from any of some headings: its name, its legs, and how far they are apart [deg]."""
+    """A pattern flown from several headings: its name, its legs, and the heading step [deg]."""
 
     name: str
     legs: Callable[..., list[Any]]
@@ -336,7 +339,7 @@ class _Figure:
 
 
 def _spiral(site: Site, swath_of: SwathOf, width: float, lead_m: float) -> list[Candidate]:
-    """Lanes over the middle, which is too tight to circle, then rounds outwards."""
+    """Lanes over the centre, where circles would be too tight, then laps outwards."""
     centre, alt_m = site.task.points[0][:2], site.flyer.alt_m
     sides = [swath_of(math.radians(degrees)) for degrees in range(0, 360, 90)]
     half = min(min(-s.left_m, s.right_m) for s in sides if s is not None)

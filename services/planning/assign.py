@@ -1,11 +1,10 @@
-"""Solving an assignment problem: anytime, with a bound, and with what proves it.
+"""Assignment search: anytime, with a proved bound and the evidence for it.
 
-The arrays of a branch go to the compiled search. Where they do not say all of it (upper limits
-between tasks, laps), each solution gets its times from a `Settler`, bounds of the arrays hold all
-the same, and what is left between is listed chain by chain (`core.assignment.chains`). A solution
-is returned only if the proved checker accepts its schedule (`replayed`). `optimal` is said only of
-what `assign_certificate` can show; that is done by `certified` there, so here a status is
-`feasible` until then.
+The arrays of a branch go to the compiled search. Where they do not express all constraints (upper limits
+between tasks, laps), a `Settler` computes the times of each solution, bounds of the arrays still hold, and
+the remaining gap is closed by enumerating chains (`core.assignment.chains`). A solution is returned only if
+the proved checker accepts its schedule (`replayed`). Only `certified` in `assign_certificate` may declare a
+solution `optimal`; here its status is `feasible`.
 """
 
 from __future__ import annotations
@@ -46,32 +45,33 @@ from cratous.services.planning.assign_warm import warm
 from cratous.spec.assignment.search import AssignmentProblem, Solution, Step
 
 WORK = 16_000_000
-"""Tasks that are decoded in one annealing: steps times tasks."""
+"""Task decodings per annealing run: steps times tasks."""
 ROUNDS, ROUNDS_MAX = 12, 10_000
-"""Improvements of a problem of many tasks without and with a limit."""
+"""Improvement rounds of a problem with many tasks, without and with a limit."""
 STEPS_A_NODE = 8
-"""Steps of annealing that count as a node of the exact search; a node takes longer than they do."""
+"""Annealing steps that count as one node of the exact search."""
 REBUILDS, REBUILD_NODES, HEATS = 150_000, 40, (0.0, 0.01, 0.003, 0.03)
-"""Rounds times tasks of one improvement, what a round counts as, and first temperatures."""
+"""Rounds times tasks of one improvement, nodes that a round counts as, and initial temperatures."""
 REPAIRS = 60
-"""Neighbourhoods of an incumbent that the exact search deals out anew."""
+"""Neighbourhoods of an incumbent reassigned by the exact search."""
 FEW_BRANCHES, NARROW = 4, 64
-"""Of so many branches, and with so many states for each number of tasks done, optimality is asked for at first."""
+"""With at most this many branches, a search of this width first tries to show optimality."""
 FIRST_NODES = 200_000
-"""Nodes spent on finding a first solution where the limit is lower."""
+"""Nodes spent on finding a first solution if the limit is lower."""
 CHAIN_NODES = 5_000_000
-"""Nodes spent on listing chains where no limit is given."""
+"""Nodes spent on enumerating chains without a limit."""
 DEALS_SURE = 16
-"""Instances of so many tasks are refuted at once; larger ones from 90 % of the cost upwards."""
+"""Instances with up to this many tasks are refuted directly; larger ones from 90 % of the cost upwards."""
 
 Progress = Callable[[int, int | None, int], None]
-"""Told (nodes, incumbent's cost or None, bound) whenever one of them changes."""
+"""Called with (nodes, incumbent's cost or None, bound) whenever one of them changes."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """How far to search. seconds, nodes: None for no limit; nodes 0: the first leaf only; gap: stop
-    once (cost - bound) / cost is at most this; width: states kept of a layer."""
+    """Search limits. seconds, nodes: None for no limit, 0 nodes for the first leaf only; gap: stop once (cost
+    - bound) / cost is at most this; width: states kept per layer.
+    """
 
     seconds: float | None = None
     nodes: int | None = None
@@ -104,7 +104,7 @@ class _Run:
         return late or (limits.nodes is not None and nodes > share * limits.nodes)
 
     def better(self, cost: int, branch: int, moves: Moves) -> None:
-        """Take a solution if it is the best so far; cost: as far as the arrays know."""
+        """Accept a solution if it is the best so far. cost: according to the arrays."""
         if cost >= self.cost:
             return
         rules = self.settlers[branch]
@@ -117,7 +117,7 @@ class _Run:
         self.tell()
 
     def late(self, nodes: int) -> bool:
-        """Whether the time is up."""
+        """Whether the time limit has passed."""
         return time.monotonic() - self.began > (self.limits.seconds or 0.0)
 
     def tell(self) -> None:
@@ -132,10 +132,10 @@ class _Run:
 def solve(
     problem: AssignmentProblem, limits: Limits | None = None, progress: Progress | None = None
 ) -> Solution:
-    """The best assignment found within the limits, and the bound that was proved for it.
+    """The best assignment found within the limits, and its proved bound.
 
-    Raises BadInput for a problem that means nothing. Without a solution the status is `infeasible`
-    if that was proved, else `unknown`.
+    Raises BadInput for an invalid problem. Without a solution the status is `infeasible` if that was proved,
+    else `unknown`.
     """
     check(problem)
     run, proofs = _searched(problem, limits or Limits(), *parts(problem), progress)
@@ -145,7 +145,7 @@ def solve(
 def search(
     problem: AssignmentProblem, limits: Limits, branches: Sequence[Part], complete: bool
 ) -> Solution:
-    """`solve` for these branches instead of the problem's own; the schedule is not replayed."""
+    """`solve` for the given branches instead of the problem's own; the schedule is not replayed."""
     return _solution(*_searched(problem, limits, tuple(branches), complete, None), False)
 
 
@@ -172,12 +172,12 @@ def _searched(
             run.better(improve(instance, moves, 0, run.limits.seed)[0], k, moves)
     proofs = [Proof("estimate", estimate(instance)) for instance in made]
     run.bound = min((p.bound for p in proofs), default=0)
-    # a first leaf that costs no more than the bound is not to be improved
+    # a first leaf at the bound cannot be improved
     if run.limits.nodes != 0 and not run.near():
         _anneal(run, made, firsts)
         _prove(run, made, proofs)
     _list_chains(run, proofs)
-    if not complete:  # of what was not looked at nothing is shown
+    if not complete:  # nothing is proved about branches not examined
         run.bound, proofs = 0, []
     else:
         run.bound = min((p.bound for p in proofs), default=NONE)
@@ -185,9 +185,9 @@ def _searched(
 
 
 def _list_chains(run: _Run, proofs: list[Proof]) -> None:
-    """What lies between the bound and the cost where the arrays do not say all of a branch.
+    """Close the gap between bound and cost where the arrays do not express all of a branch.
 
-    If there is no solution yet, one is sought beyond the limit of nodes, though not for ever.
+    Without a solution so far, one is sought beyond the node limit, up to a maximum.
     """
     open_ones = [
         k for k, rules in enumerate(run.settlers)
@@ -212,7 +212,7 @@ def _list_chains(run: _Run, proofs: list[Proof]) -> None:
 
 
 def _anneal(run: _Run, made: list[Instance], firsts: list[Moves | None]) -> None:
-    """Improve the first leaves: short everywhere, longer for the best of few branches."""
+    """Improve the first leaves: briefly for all, longer for the best of a few branches."""
     ends: list[tuple[int, int, Moves]] = []
     alive = [k for k, moves in enumerate(firsts) if moves is not None]
     for k in alive:
@@ -233,8 +233,9 @@ def _anneal(run: _Run, made: list[Instance], firsts: list[Moves | None]) -> None
 
 
 def _is_settled(run: _Run, made: list[Instance]) -> bool:
-    """Whether a narrow search of many tasks finds the best of few branches, and shows that nothing costs less, as
-    where the order is given: then there is nothing to improve. What it finds is taken only then."""
+    """Whether a narrow search of a large problem finds the optimum of a few branches and proves it, e.g.
+    where the order is fixed, so that no improvement is needed. Its solution is accepted only in that case.
+    """
     if run.best is None or len(made) > FEW_BRANCHES or made[run.best[0]].tasks <= DEALS_TASKS:
         return False
     found = [settle_bound(instance, run.cost, NARROW, run.over) for instance in made]
@@ -248,10 +249,10 @@ def _is_settled(run: _Run, made: list[Instance]) -> bool:
 
 
 def _go_on(run: _Run, made: list[Instance]) -> None:
-    """Many tasks: take strings of tasks out of the best and put them in again, now and then anneal,
-    cooler and warmer, until a limit is reached.
+    """For many tasks: remove strings of tasks from the best solution and reinsert them, alternating with
+    annealing at varying temperatures, until a limit is reached.
 
-    Refuting takes over below that, so there only the share of time is spent that it leaves over.
+    Below TASKS_MAX the refutation follows, so only a share of the time is spent here.
     """
     rounds, gains = 0, [1, 1]
     while run.best is not None and made[run.best[0]].tasks > DEALS_TASKS and rounds < ROUNDS_MAX:
@@ -263,7 +264,7 @@ def _go_on(run: _Run, made: list[Instance]) -> None:
         if unlimited and rounds >= ROUNDS:
             return
         rounds += 1
-        # what gained more the last time it was tried; the other one every third time
+        # the method with the larger recent gain; the other one every third round
         anneals, before = (gains[1] > gains[0]) != (rounds % 3 == 0), run.cost
         if anneals:
             hot = (0.5, 0.2, 1.0)[rounds % 3] / made[k].tasks
@@ -286,7 +287,7 @@ def _repair(run: _Run, instance: Instance, again: int) -> None:
 
 
 def _rebuild(run: _Run, instance: Instance, k: int, moves: Moves, again: int) -> None:
-    """Some rounds of taking out and putting in again, within what is left of the node limit."""
+    """Rounds of removal and reinsertion, within the remaining node limit."""
     rounds = REBUILDS // instance.tasks
     if run.limits.nodes is not None:
         rounds = min(rounds, max(0, run.limits.nodes - run.nodes) // REBUILD_NODES)
@@ -298,9 +299,9 @@ def _rebuild(run: _Run, instance: Instance, k: int, moves: Moves, again: int) ->
 def _try(
     run: _Run, instance: Instance, k: int, moves: Moves, steps: int, again: int, hot: float = 0.15
 ) -> tuple[int, Moves]:
-    """Anneal from a solution, within what is left of the node limit."""
+    """Anneal from a solution, within the remaining node limit."""
     if run.limits.nodes is not None:
-        # up to that many tasks refuting is worth the larger share
+        # for up to this many tasks the refutation gets the larger share
         share = 0.3 if instance.tasks <= DEALS_TASKS else 1.0
         left = max(0, int(share * run.limits.nodes) - run.nodes)
         steps = min(steps, STEPS_A_NODE * left)
@@ -314,7 +315,7 @@ def _try(
 
 
 def _prove(run: _Run, made: list[Instance], proofs: list[Proof]) -> None:
-    """Better proofs of a bound for each branch; better solutions are taken on the way."""
+    """Improve the bound of each branch; better solutions found on the way are accepted."""
     most = max((i.tasks for i in made), default=0)
     for share in (0, 1000) if most <= DEALS_SURE else (900, 950, 980, 1000):
         for k, instance in enumerate(made):
@@ -349,7 +350,7 @@ def _solution(run: _Run, proofs: list[Proof], replay: bool) -> Solution:
 
 
 def _steps(run: _Run, k: int, moves: Moves) -> tuple[Step, ...]:
-    """The steps with their best times; by start, or as assigned where order binds no times."""
+    """The steps with their best times, sorted by start, or as assigned where order does not bind times."""
     problem, part, instance, rules = run.problem, run.branches[k], run.made[k], run.settlers[k]
     times = timed(instance, moves) if rules is None else rules.settle(moves, NONE)[1]
     found = []

@@ -1,11 +1,10 @@
-"""Certificates: a solution with what shows its bound, as a file that can be checked without the search.
+"""Certificates: a solution with the evidence for its bound, as a file that can be checked without the search.
 
-The file holds the problem, the steps, the claim, and per branch a proof: `layers` (the origins of
-all states from which less could still have been reached; the checker makes the states anew and
-asks for every child that is not listed), `tables` (the checker makes the tables over sets anew),
-`estimate` (the bound of the first state), `chains` (the checker lists all chains below it anew), or
-`solvers` (z3 and cvc5 find nothing below the cost).
-A solution is called optimal only if the proved bound is its cost.
+The file holds the problem, the steps, the claim, and per branch a proof: `layers` (the origins of all states
+from which less could still have been reached; the checker recomputes the states and requires every child that
+is not listed), `tables` (the checker recomputes the tables over sets), `estimate` (the bound of the first
+state), `chains` (the checker enumerates all chains below it), or `solvers` (z3 and cvc5 find nothing below
+the cost). A solution is called optimal only if the proved bound equals its cost.
 """
 
 from __future__ import annotations
@@ -40,14 +39,14 @@ from cratous.spec.files.text_file import bytes_of
 FORMAT = "cratous-assignment-certificate/1"
 BYTES_MAX = 50_000_000
 CHAINS_MAX = 20_000_000
-"""Nodes of the longest listing of chains that is done anew."""
+"""Most nodes of a chain enumeration that is repeated."""
 SOLVER_TASKS = 8
-"""Problems of at most so many tasks are put to z3 and cvc5 where nothing else proves them."""
+"""Problems of at most this many tasks are given to z3 and cvc5 if nothing else proves them."""
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a check found: status, cost, bound, and the first thing that is wrong, or ""."""
+    """The result of a check: status, cost, bound, and the first error, or ""."""
 
     status: str
     cost: int | None
@@ -60,16 +59,16 @@ def certified(
 ) -> tuple[Solution, dict[str, Any]]:
     """The solution with the status that its certificate supports, and the certificate.
 
-    solvers: whether z3 and cvc5 may be asked where nothing else proves the optimum.
+    solvers: whether z3 and cvc5 may be used where nothing else proves the optimum.
     """
     proofs = list(found.proof) if isinstance(found.proof, list) else []
     written = [_proof(proof) for proof in proofs]
     for proof in written:
         if proof["kind"] == "chains" and found.cost is not None:
-            # nothing more has to be shown than the cost
+            # a bound above the cost is not needed
             proof["bound"] = min(proof["bound"], found.cost)
     low = min((w["bound"] for w in written), default=0)
-    # where the search says that nothing is cheaper, but nothing that can be checked does
+    # where the search claims optimality without checkable evidence
     if solvers and found.cost is not None and low < found.cost <= found.bound:
         few = len(problem.tasks) <= SOLVER_TASKS
         ends_only = not (problem.cost.distance or problem.cost.energy)
@@ -97,19 +96,19 @@ def certified(
         status = "optimal" if optimal else found.status
         body["claim"] = {"status": status, "cost": found.cost, "bound": low}
         text = json.dumps(body, sort_keys=True)
-    body["sha256"] = hashlib.sha256(text.encode()).hexdigest()  # as `_digest` has it
+    body["sha256"] = hashlib.sha256(text.encode()).hexdigest()  # as `_digest` computes it
     return replace(found, status=status, bound=low), body
 
 
 def _none_below(problem: AssignmentProblem, cost: int) -> tuple[bool, str]:
-    """Whether z3, and cvc5 where it is, find nothing cheaper; they are loaded only when they are asked."""
+    """Whether z3, and cvc5 if installed, find nothing cheaper; they are loaded only on demand."""
     from cratous.services.planning.assign_solvers import none_below
 
     return none_below(problem, cost)
 
 
 def _written(problem: AssignmentProblem) -> dict[str, Any]:
-    """The problem's fields; tables are tuples already, so they are not copied number by number."""
+    """The problem's fields; tables are tuples already and are not copied."""
     return {
         **vars(problem),
         "choices": [asdict(choice) for choice in problem.choices],
@@ -136,12 +135,12 @@ def _digest(body: dict[str, Any]) -> str:
 
 
 def write(file: Path, certificate: dict[str, Any]) -> None:
-    """Write a certificate, whole or not at all."""
+    """Write a certificate atomically."""
     write_atomically(file, json.dumps(certificate, sort_keys=True) + "\n", "the certificate")
 
 
 def read(file: Path) -> dict[str, Any]:
-    """A certificate from a file; BadInput for one that is none."""
+    """Read a certificate from a file; BadInput for an invalid one."""
     body = json_of(bytes_of(file, BYTES_MAX + 1_000, "a certificate"), str(file))
     if not isinstance(body, dict) or body.get("format") != FORMAT:
         raise BadInput("this is no certificate", where=str(file), expected=FORMAT)
@@ -149,7 +148,7 @@ def read(file: Path) -> dict[str, Any]:
 
 
 def verify(body: dict[str, Any]) -> Verdict:
-    """Check a certificate from the problem on: digest, schedule by kernels and by its meaning, bounds, claim."""
+    """Check a certificate completely: digest, schedule by kernels and by its meaning, bounds, claim."""
     status, cost, bound = "", None, 0
     try:
         status, cost, bound = from_data(_Claim, body.get("claim"), "claim")
@@ -174,7 +173,7 @@ def verify(body: dict[str, Any]) -> Verdict:
 
 
 def _what_fails(problem: AssignmentProblem, steps: Sequence[Step]) -> str:
-    """The words of the first constraint, by its meaning, that the schedule does not keep; else nothing."""
+    """The first constraint, by its meaning, that the schedule violates, in words; "" if none."""
     if witnessed(problem, steps):
         return ""
     from cratous.services.planning.assign_solvers import schedule_holds
@@ -193,7 +192,7 @@ class _Unable(NamedTuple):
 
 
 class _Proof(NamedTuple):
-    """What a proof of any kind may hold."""
+    """The fields of all kinds of proofs."""
 
     kind: str
     bound: int = 0
@@ -204,7 +203,7 @@ class _Proof(NamedTuple):
 
 
 def _evidence(body: dict[str, Any]) -> tuple[list[Step], list[dict[str, Any]]]:
-    """Steps and proofs; BadInput with the field that is of another kind."""
+    """Steps and proofs; BadInput with the field of the wrong type."""
     found = []
     for name in ("steps", "proofs"):
         if not isinstance(body.get(name), list):
@@ -216,7 +215,7 @@ def _evidence(body: dict[str, Any]) -> tuple[list[Step], list[dict[str, Any]]]:
 
 
 def _claims(status: str, cost: int | None, bound: int, low: int) -> str:
-    """What of the claim does not follow from the proved bound."""
+    """The part of the claim that does not follow from the proved bound, in words; "" if all does."""
     if not shows_optimal(bound, low):
         return f"the proofs show a bound of {low}, not {bound}"
     if status == "optimal" and (cost is None or not shows_optimal(cost, low)):
@@ -233,7 +232,7 @@ def _claims(status: str, cost: int | None, bound: int, low: int) -> str:
 def _bounds(
     problem: AssignmentProblem, proofs: list[dict[str, Any]], cost: int | None = None
 ) -> tuple[int, str]:
-    """(what the proofs show of all branches, what is wrong with one of them)."""
+    """(bound proved for all branches, error in one of the proofs)."""
     branches, all_of_them = parts(problem)
     if any(p["kind"] == "solvers" for p in proofs):
         if len(proofs) != 1 or cost is None:
@@ -254,7 +253,7 @@ def _bounds(
 
 
 def _shown(problem: AssignmentProblem, branch: Part, proof: dict[str, Any]) -> tuple[int, str]:
-    """(what the proof of one branch shows, what is wrong with it)."""
+    """(bound proved for one branch, error in its proof)."""
     instance = arrays(problem, branch)
     if proof["kind"] == "layers":
         return least_cost(instance, int(proof["limit"]), _Origins(proof))
@@ -275,7 +274,7 @@ def _no_chain_below(
     rules = settler(problem, branch, instance)
     if rules.ahead is None:
         return 0, "too many tasks for listing chains"
-    # from the bound on less is listed than by the search; twice as much is another problem
+    # below the bound fewer chains exist than the search enumerated; twice as many means another problem
     most = 2 * min(nodes, CHAINS_MAX) + 1_000
     found = chains_below(instance, bound, rules.judge, most, ahead=rules.ahead)
     if found.moves is not None:
@@ -286,7 +285,7 @@ def _no_chain_below(
 
 
 class _Origins(Sequence[np.ndarray]):
-    """The origins layer by layer: a layer is unpacked when the checker comes to it, in order."""
+    """The origins by layer: each layer is unpacked when the checker reaches it, in order."""
 
     def __init__(self, proof: dict[str, Any]) -> None:
         self._sizes = [int(size) for size in proof["sizes"]]
@@ -314,7 +313,7 @@ class _Origins(Sequence[np.ndarray]):
 
 
 def _problem(data: Any) -> AssignmentProblem:
-    """The problem of a certificate; BadInput with the field that is of another kind."""
+    """The problem of a certificate; BadInput with the field of the wrong type."""
     if not isinstance(data, dict):
         raise BadInput("does not fit", item="problem", expected="an object")
     tables = ("travel_ms", "distance_mm", "energy_mj")

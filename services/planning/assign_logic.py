@@ -1,4 +1,4 @@
-"""How formulas are made: as a solver's terms, or at once as true or false where every value is known."""
+"""Construction of formulas: as a solver's terms, or evaluated directly where all values are known."""
 
 from __future__ import annotations
 
@@ -7,38 +7,38 @@ from typing import Any, Protocol
 
 
 class Logic(Protocol):
-    """What formulas are made with; sums and comparisons are Python's own operators."""
+    """Operations for constructing formulas; sums and comparisons are Python's own operators."""
 
     def number(self, name: str) -> Any:
-        """The whole number of this name."""
+        """The integer variable of this name."""
 
     def truth(self, name: str) -> Any:
-        """The truth value of this name."""
+        """The Boolean variable of this name."""
 
     def each(self, formulas: Sequence[Any]) -> Any:
-        """All of them hold."""
+        """All of these formulas hold."""
 
     def some(self, formulas: Sequence[Any]) -> Any:
         """At least one of these formulas holds."""
 
     def one(self, formulas: Sequence[Any]) -> Any:
-        """Exactly one of them holds."""
+        """Exactly one of these formulas holds."""
 
     def few(self, formulas: Sequence[Any]) -> Any:
         """At most one of these formulas holds."""
 
     def follows(self, premise: Any, formula: Any) -> Any:
-        """The formula holds if the premise does."""
+        """The premise implies the formula."""
 
     def differ(self, numbers: Sequence[Any]) -> Any:
-        """No two of these numbers are alike."""
+        """These numbers are pairwise different."""
 
     def laps(self, name: str, wait: Any, lap_ms: int) -> Any:
-        """A number of laps of this length that may make up a wait."""
+        """A number of laps of lap_ms [ms] that may make up a wait."""
 
 
 class Known:
-    """Formulas of values that are known: each is true or false. KeyError for a name without a value."""
+    """Formulas over known values, evaluated at once. KeyError for a name without a value."""
 
     def __init__(self, numbers: Mapping[str, int], truths: Mapping[str, bool]) -> None:
         self._numbers, self._truths = numbers, truths

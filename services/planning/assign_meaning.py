@@ -1,10 +1,10 @@
 """A problem's constraints as formulas over the times of its tasks, named in the user's terms.
 
-Written from the meaning of the operators on composites, on purpose without the constraint rows
-that the searches and checkers use: schedules and clashes are judged by these, on the values of a schedule or
-by z3 (`assign_logic`). Variables: `s<task>` start, `e<task>` end [ms], `o<task>` place in the order of
+Written from the meaning of the operators on composites, deliberately without the constraint rows that
+searches and checkers use: schedules and conflicts are judged by these, on the values of a schedule or by z3
+(`assign_logic`). Variables: `s<task>` start, `e<task>` end [ms], `o<task>` position in the order of
 assignment, `c<k>_<v>` choice k is flown by vehicle v, `f<j>_<k>_<v>` vehicle v flies choice k directly after
-choice j, `laps<k>_<v>` how often it loiters before.
+choice j, `laps<k>_<v>` number of its laps before.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from cratous.spec.assignment.search import TIME, AssignmentProblem
 
 @dataclass(frozen=True)
 class Named:
-    """A constraint of the user's: its words, and what it says in each branch (by number)."""
+    """A constraint of the user: its words, and its formulas as (branch number, formula)."""
 
     text: str
     formulas: tuple[tuple[int, Any], ...]
@@ -40,20 +40,21 @@ def end(logic: Logic, task: int) -> Any:
 
 
 def place(logic: Logic, task: int) -> Any:
-    """The place of a task in the order of assignment."""
+    """The position of a task in the order of assignment."""
     return logic.number(f"o{task}")
 
 
 Said = list[tuple[str, Any, int]]
-"""(words, formula, the task that it is about)."""
+"""(words, formula, task concerned)."""
 
 
 def meaning(
     logic: Logic, term: algebra.Term, semantics: str = TIME, done: Iterable[int] = ()
 ) -> list[tuple[str, Any]]:
-    """The constraints of a term without `+`, as pairs (words, formula); each timing constrains its own tasks alone.
+    """The constraints of a term without `+`, as pairs (words, formula); each timing constrains its own tasks
+    only.
 
-    done: tasks that are flown; what was said of them is past.
+    done: tasks already flown, whose constraints are omitted.
     """
     found: Said = []
     _say(logic, term, semantics == TIME, found)
@@ -62,7 +63,7 @@ def meaning(
 
 
 def past(logic: Logic, problem: AssignmentProblem) -> list[Any]:
-    """The times and places of the tasks that are flown."""
+    """The times and positions of the tasks already flown."""
     said: list[Any] = []
     for number, (task, begun, ended) in enumerate(problem.done):
         said += [start(logic, task) == begun, end(logic, task) == ended]
@@ -71,7 +72,7 @@ def past(logic: Logic, problem: AssignmentProblem) -> list[Any]:
 
 
 def _say(logic: Logic, term: algebra.Term, timed: bool, found: Said) -> tuple[int, ...]:
-    """Add what a term says; the tasks that no timing inside it bounds."""
+    """Append the constraints of a term; returns its tasks without a timing inside it."""
     if isinstance(term, algebra.Atom):
         free: tuple[int, ...] = (term.task,)
     else:
@@ -126,7 +127,7 @@ def _in_order(
 def _since(
     logic: Logic, op: str, group: Iterable[int], task: int
 ) -> tuple[Callable[[int], Any], Callable[[int], Any]]:
-    """Starts at least, and ends at most, so long after the latest end or the earliest start."""
+    """Formulas for a start at least, and an end at most, t after the latest end or the earliest start."""
     if op == algebra.SEQUENTIAL:
         return (
             lambda t: logic.each([start(logic, task) >= end(logic, a) + t for a in group]),
@@ -151,7 +152,7 @@ def constraints(logic: Logic, problem: AssignmentProblem) -> tuple[list[Named], 
 
 
 def windows(logic: Logic, problem: AssignmentProblem, branch: Part) -> Iterator[tuple[str, Any]]:
-    """What releases and due times say of the tasks of a branch, as (words, formula)."""
+    """The release and due times of a branch's tasks, as (words, formula)."""
     for task, at in problem.release_ms:
         if task in branch.tasks:
             yield f"task {task} is released at {at} ms", start(logic, task) >= at
@@ -170,17 +171,17 @@ def choice(logic: Logic, k: int, v: int) -> Any:
 
 
 def chosen(k: int, v: int) -> str:
-    """The name of: choice number k is flown by vehicle number v."""
+    """Name of the variable: choice number k is flown by vehicle number v."""
     return f"c{k}_{v}"
 
 
 def flown_after(j: int, k: int, v: int) -> str:
-    """The name of: vehicle number v flies choice k directly after choice j; j past the last: first."""
+    """Name of the variable: vehicle number v flies choice k directly after choice j; j past the last: first."""
     return f"f{j}_{k}_{v}"
 
 
 def flights(logic: Logic, problem: AssignmentProblem, branch: Part) -> list[Any]:
-    """What vehicles can fly in a branch: every task once, in chains, with travel and waiting."""
+    """The feasible flights of a branch: every task once, in chains, with travel and waiting."""
     p, said = problem, past(logic, problem)
     last = len(p.choices)
     able = [
@@ -241,7 +242,7 @@ def _can_wait(logic: Logic, p: AssignmentProblem, k: int, v: int, wait: Any) -> 
 
 
 def costs_less(logic: Logic, problem: AssignmentProblem, branch: Part, limit: int) -> list[Any]:
-    """The cost of a branch's schedule is below the limit; for costs of ends alone."""
+    """The cost of a branch's schedule is below the limit; for costs of end times only."""
     p = problem
     latest, said = logic.number("latest"), []
     lasts = [logic.number(f"last{v}") for v in range(len(p.vehicles))]

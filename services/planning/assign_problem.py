@@ -1,9 +1,9 @@
-"""Reading an assignment problem: is it sound, what are its branches, what are they as arrays.
+"""Validation of an assignment problem, its branches, and their arrays.
 
-Every mistake is named (BadInput with the item); nothing is repaired. A branch (one choice of every
-`+`) is *plain* if its rows bound starts from below and single ends from above and waits are free;
-then its arrays (`core.assignment.instance`) say all of it. Of any other they say less: what costs
-less than a bound of the arrays costs less in the branch.
+Every error is named (BadInput with the item); nothing is repaired. A branch (one choice of every `+`) is
+*plain* if its rows bound starts from below and single ends from above, and waits are free; then its arrays
+(`core.assignment.instance`) express it exactly. For any other they are a relaxation: their bound is a lower
+bound of the branch.
 """
 
 from __future__ import annotations
@@ -33,14 +33,17 @@ from cratous.spec.assignment.search import ORDER, TIME, AssignmentProblem, Rows
 from cratous.spec.errors import BadInput
 
 BRANCHES_MAX = 4096
-"""So many ways to choose among alternatives are looked at, the first ones."""
+"""Most resolutions of the alternatives examined, the first ones."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """One branch. term: without `+`; tasks: those still to do; rows: about them; orders: so many of
-    the rows, the first, are order alone; choices: indices of the problem's choices of its tasks;
-    done: (task, start, end) of what is flown."""
+    """One branch.
+
+    term: without `+`; tasks: those still to do; rows: their constraints; orders: number of leading rows that
+    are order only; choices: indices of the problem's choices for its tasks; done: (task, start, end) of flown
+    tasks.
+    """
 
     term: algebra.Term
     tasks: tuple[int, ...]
@@ -52,7 +55,7 @@ class Part:
 
 
 def check(problem: AssignmentProblem) -> None:
-    """Raise BadInput for a problem that means nothing: sizes, ids, numbers, eligibility."""
+    """Raise BadInput for an invalid problem: sizes, ids, numbers, eligibility."""
     p = problem
     _refuse(not p.vehicles, "there is no vehicle", "vehicles", "at least one", "none")
     _refuse(not p.choices, "there is no task to do", "choices", "at least one", "none")
@@ -101,7 +104,7 @@ def check(problem: AssignmentProblem) -> None:
 
 
 def _done(p: AssignmentProblem) -> None:
-    """Refuse flown tasks that are to be flown, run backwards, or begin after vehicles set off."""
+    """Reject flown tasks that are still to do, end before they begin, or begin after vehicles depart."""
     _twice([task for task, _, _ in p.done], "done")
     for task, start, end in p.done:
         _refuse(task in p.tasks, "a task is flown and to be flown", "done", "one of both", task)
@@ -116,7 +119,7 @@ def _done(p: AssignmentProblem) -> None:
 
 
 def _timeless(p: AssignmentProblem) -> None:
-    """Refuse what lets a vehicle do two tasks at one instant: which comes first would be open."""
+    """Reject two tasks at the same instant for one vehicle, whose order would be undetermined."""
     for v, table in enumerate(p.travel_ms):
         for a, choice in enumerate(p.choices):
             if choice.duration_ms > 0 or p.vehicles[v] not in choice.vehicles:
@@ -145,7 +148,7 @@ def _range(p: AssignmentProblem) -> None:
 
 
 def term_of(problem: AssignmentProblem) -> algebra.Term:
-    """The relations as a term; AlgebraError for a text that is none, BadInput if a task is lost."""
+    """The relations as a term; AlgebraError for invalid text, BadInput if a task is missing."""
     known = (*(task for task, _, _ in problem.done), *problem.tasks)
     if not problem.relations.strip():
         return algebra.parallel_of((*known, *sorted(problem.unable)))
@@ -163,8 +166,8 @@ def term_of(problem: AssignmentProblem) -> algebra.Term:
 def parts(problem: AssignmentProblem) -> tuple[tuple[Part, ...], bool]:
     """The branches that some vehicles can do, and whether these are all of them.
 
-    BadInput if a task that no vehicle can do stands in every branch; none are left if what is flown
-    stands in no branch.
+    BadInput if every branch contains a task that no vehicle can do; empty if no branch contains the flown
+    tasks.
     """
     term, made = term_of(problem), []
     able = {c.task_id for c in problem.choices if c.vehicles}
@@ -197,7 +200,7 @@ def parts(problem: AssignmentProblem) -> tuple[tuple[Part, ...], bool]:
 
 
 def not_all_of(term: algebra.Term) -> str:
-    """A note that not all branches of a term were searched; empty if all were."""
+    """A note that not all branches of a term were searched; "" if all were."""
     count = algebra_meaning.count_branches(term)
     if count <= BRANCHES_MAX:
         return ""
@@ -207,7 +210,7 @@ def not_all_of(term: algebra.Term) -> str:
 def _rows(
     problem: AssignmentProblem, term: algebra.Term, flown: set[int]
 ) -> tuple[tuple[constraint_rows.Row, ...], int]:
-    """The rows about tasks still to do, those of order first, and how many these are."""
+    """The rows about tasks still to do, order rows first, and the number of those."""
     times = {task: (start, end) for task, start, end in problem.done}
     order = algebra_meaning.rows(untimed(term))
     timing = algebra_meaning.rows(term)[len(order) :]
@@ -228,9 +231,9 @@ def untimed(term: algebra.Term) -> algebra.Term:
 def _without(
     row: constraint_rows.Row, times: Mapping[int, tuple[int, int]], binds: bool
 ) -> tuple[constraint_rows.Row, ...]:
-    """What a row says once some of its group are flown; no task to come starts before those did.
+    """A row once some tasks of its group are flown; no remaining task starts before those did.
 
-    binds: a row of order binds times too; else it is met by what is flown.
+    binds: an order row binds times too; otherwise flown tasks satisfy it.
     """
     gone = [times[task] for task in row.group if task in times]
     left = tuple(task for task in row.group if task not in times)
@@ -274,12 +277,12 @@ def _windows(problem: AssignmentProblem, tasks: Sequence[int]) -> tuple[constrai
 
 
 def binding(problem: AssignmentProblem, part: Part) -> tuple[constraint_rows.Row, ...]:
-    """The rows that bind times: in semantics `order` those of order alone do not."""
+    """The rows that bind times: with semantics `order`, pure order rows do not."""
     return part.rows[part.orders :] if problem.semantics == ORDER else part.rows
 
 
 def arrays(problem: AssignmentProblem, part: Part) -> Instance:
-    """The arrays of a branch: all of it if `is_exact`, else what is left without some rules."""
+    """The arrays of a branch: exact if `is_exact`, else a relaxation."""
     p, picked = problem, part.choices
     index = [*picked, len(p.choices)]
     shape = (len(p.vehicles), len(index), len(picked))
@@ -315,7 +318,7 @@ def arrays(problem: AssignmentProblem, part: Part) -> Instance:
 
 
 def is_exact(problem: AssignmentProblem, part: Part) -> bool:
-    """Whether the arrays say all of the branch."""
+    """Whether the arrays express the branch exactly."""
     lagged = any(
         row.kind in (constraint_rows.AFTER_END, constraint_rows.AFTER_START)
         for row in part.rows[part.orders :]
@@ -324,7 +327,7 @@ def is_exact(problem: AssignmentProblem, part: Part) -> bool:
 
 
 def settler(problem: AssignmentProblem, part: Part, made: Instance) -> Settler:
-    """What settles the times of moves in a branch whose arrays do not say all of it."""
+    """The settler that computes times in a branch whose arrays are not exact."""
     laps = tuple((problem.choices[k].lap_ms, problem.choices[k].lap_max_ms) for k in part.choices)
     ahead = look_ahead(made) if len(part.tasks) <= TASKS_MAX else None
     return Settler(made, ahead, part.tasks, binding(problem, part), laps, part.done)

@@ -1,4 +1,4 @@
-"""Replaying a solution: every leg, row, option and order, by the proved kernels, in integers."""
+"""Replay of a solution: every leg, row, option and order, by the proved kernels, in integers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cratous.spec.errors import BadInput
 
 
 def replayed(problem: AssignmentProblem, steps: Sequence[Step]) -> int:
-    """The cost of the solution; BadInput with the reason if it is none."""
+    """The cost of the solution; BadInput with the reason if it is invalid."""
     branch = branch_of(problem, steps)
     chains: dict[int, list[Step]] = {v: [] for v in problem.vehicles}
     for step in steps:
@@ -42,7 +42,7 @@ def replayed(problem: AssignmentProblem, steps: Sequence[Step]) -> int:
 def _times(
     problem: AssignmentProblem, steps: Sequence[Step]
 ) -> tuple[dict[int, int], dict[int, int]]:
-    """Starts and ends per task, of those that are flown as well."""
+    """Starts and ends by task, flown ones included."""
     starts = {task: start for task, start, _ in problem.done}
     ends = {task: end for task, _, end in problem.done}
     starts.update((step.task_id, step.start_ms) for step in steps)
@@ -51,7 +51,7 @@ def _times(
 
 
 def branch_of(problem: AssignmentProblem, steps: Sequence[Step]) -> Part:
-    """The branch with these tasks whose rows hold; else a branch with these tasks."""
+    """The branch with these tasks whose rows hold; else any branch with these tasks."""
     done = {step.task_id for step in steps}
     if len(done) < len(steps):
         raise _wrong("a task is done twice")
@@ -68,7 +68,7 @@ def branch_of(problem: AssignmentProblem, steps: Sequence[Step]) -> Part:
 def _legs(
     problem: AssignmentProblem, v: int, chain: Sequence[Step]
 ) -> list[tuple[int, int, int, int, int]]:
-    """(travel, start, end, duration, what the leg costs) of one vehicle's tasks."""
+    """(travel, start, end, duration, cost of the leg) for each of a vehicle's tasks."""
     legs, at, free = [], len(problem.choices), 0
     for step in chain:
         k, choice = _choice(problem, step)

@@ -1,4 +1,5 @@
-"""What z3, and cvc5 beside it, say of a problem: is a schedule right, can it be better, what clashes.
+"""Checks by z3, and cvc5 in addition: whether a schedule is valid, whether it can be improved, which
+constraints conflict.
 
 z3's effort is counted (`rlimit`), not timed, so an answer does not depend on the machine.
 """
@@ -29,7 +30,7 @@ from cratous.services.planning.assign_replay import branch_of
 from cratous.spec.assignment.search import AssignmentProblem, Step
 
 EFFORT = 60_000_000
-"""z3's resource limit for one question, about 15 s."""
+"""z3's resource limit for one query, about 15 s."""
 SECOND_MS = 60_000
 
 
@@ -57,8 +58,9 @@ _Z3 = _Terms()
 
 
 def schedule_holds(problem: AssignmentProblem, steps: Sequence[Step]) -> tuple[bool, str]:
-    """Whether z3 finds the schedule right by the problem's own constraints; the words of the first
-    constraint that is not."""
+    """Whether z3 finds the schedule valid by the problem's own constraints; else the words of the first
+    violated one.
+    """
     branch = branch_of(problem, steps)
     times: list[Any] = []
     for number, step in enumerate(steps):
@@ -78,7 +80,7 @@ def schedule_holds(problem: AssignmentProblem, steps: Sequence[Step]) -> tuple[b
     for text, formula in (*said, *windows(_Z3, problem, branch)):
         if _ask([*times, z3.Not(formula)]) != z3.unsat:
             return False, text
-    # the choices that are not taken are flown by nobody, so they need not be spoken of
+    # choices that are not taken are flown by no vehicle and can be omitted
     taken = {(step.task_id, step.option_id) for step in steps}
     few = [k for k in branch.choices if _name(problem, k) in taken]
     if _ask([*times, *flights(_Z3, problem, replace(branch, choices=tuple(few)))]) != z3.sat:
@@ -99,7 +101,7 @@ def _ask(formulas: Sequence[Any], effort: int = EFFORT) -> Any:
 
 
 def none_below(problem: AssignmentProblem, limit: int) -> tuple[bool, str]:
-    """Whether z3 and cvc5 both show that nothing costs less than the limit, and what they said."""
+    """Whether z3 and cvc5 both prove that nothing costs less than the limit, and their answers."""
     said, gone = [], [task for task, _, _ in problem.done]
     for number, branch in enumerate(parts(problem)[0]):
         formulas = [
@@ -117,14 +119,14 @@ def none_below(problem: AssignmentProblem, limit: int) -> tuple[bool, str]:
 
 
 def _cvc5(formulas: Sequence[Any]) -> str:
-    """sat, unsat or unknown by cvc5 on the SMT-LIB text, or `not installed`."""
+    """cvc5's answer on the SMT-LIB text: sat, unsat or unknown; or `not installed`."""
     try:
         import cvc5
     except ImportError:
         return "not installed"
     writer = z3.Solver()
     for formula in formulas:
-        # cardinalities are z3's own: sums of ones and zeros say the same
+        # cardinality constraints are specific to z3: sums of ones and zeros are equivalent
         writer.add(_plain(formula))
     solver = cvc5.Solver()
     solver.setOption("tlimit-per", str(SECOND_MS))
@@ -151,10 +153,10 @@ def _plain(formula: Any) -> Any:
 
 
 def why_infeasible(problem: AssignmentProblem) -> tuple[tuple[str, ...], bool]:
-    """A smallest set of constraints that contradict each other, in words, and whether that is sure.
+    """A minimal set of conflicting constraints, in words, and whether that is certain.
 
-    Empty and sure: a plan exists. Smallest: without any one of them there is one. The flights
-    (travel, durations, eligibility) are taken as they are.
+    Empty and certain: a plan exists. Minimal: without any one of them there is one. The flights (travel,
+    durations, eligibility) are fixed.
     """
     check(problem)
     named, branches = constraints(_Z3, problem)
@@ -179,7 +181,7 @@ def why_infeasible(problem: AssignmentProblem) -> tuple[tuple[str, ...], bool]:
 def _clash(
     problem: AssignmentProblem, named: Sequence[Named], branches: Sequence[Part]
 ) -> tuple[Any, set[str]]:
-    """z3's answer to whether there is a plan, and the words of a clash if there is none."""
+    """z3's answer whether there is a plan, and the words of the conflicting constraints if there is none."""
     core: set[str] = set()
     for number, branch in enumerate(branches):
         solver = z3.SolverFor("QF_LIA")

@@ -1,8 +1,8 @@
-"""Assignment problems as published in JSON: two forms, read into `AssignmentProblem`.
+"""Published JSON assignment problems in two forms, read into `AssignmentProblem`.
 
-*Chains* (`process_algebra`, `travel_ms`, `start_cost_ms`): one option for each task, one speed.
-*Cost matrix* (`task_relationships`, `cost_matrix`): rows (vehicle, task, option, task, option, ms)
-as the message AssignmentCostMatrix has them; from task 0, option 0 means from the start.
+*Chains* (`process_algebra`, `travel_ms`, `start_cost_ms`): one option per task, one speed. *Cost matrix*
+(`task_relationships`, `cost_matrix`): rows (vehicle, task, option, task, option, ms) as in the message
+AssignmentCostMatrix; task 0, option 0 is the vehicle's start.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class _Leg(NamedTuple):
 
 
 def read(data: Any, semantics: str, cost: Cost = MINMAX, name: str = "") -> AssignmentProblem:
-    """The problem of one JSON object; BadInput for one that is none, with the item."""
+    """The problem of one JSON object; BadInput with the item for an invalid one."""
     given = data if isinstance(data, dict) else {}
     form = _matrix if "cost_matrix" in given else _chains
     found = form(data, semantics, cost, name or str(given.get("name", "")))
@@ -76,7 +76,7 @@ def read(data: Any, semantics: str, cost: Cost = MINMAX, name: str = "") -> Assi
 
 
 def rows_of(value: Any, item: str) -> tuple[Rows, ...]:
-    """Tables of numbers, one for each vehicle; what the numbers are is left to `check`."""
+    """Tables of numbers, one per vehicle; `check` validates the numbers."""
     return tuple(
         tuple(tuple(_listed(row, f"{item}[{v}][{a}]")) for a, row in enumerate(table))
         for v, table in (
@@ -92,7 +92,7 @@ def _listed(value: Any, item: str) -> Sequence[Any]:
 
 
 def _taken(kind: type[T], data: Any, item: str = "") -> T:
-    """The fields of a kind; others are of no concern. BadInput for one that is missing or wrong."""
+    """The fields of a kind; others are ignored. BadInput for a missing or invalid one."""
     wanted = kind._fields  # type: ignore[attr-defined]
     shown = ", ".join(wanted)
     if not isinstance(data, dict):
@@ -171,7 +171,7 @@ def _matrix(data: Any, semantics: str, cost: Cost, name: str) -> AssignmentProbl
 
 
 def _composition(task: int, text: str, listed: set[int]) -> None:
-    """A task's composition has to be a choice of one of its options."""
+    """Check that a task's composition is a choice of one of its options; BadInput otherwise."""
     item = f"composition of task {task}"
     term = algebra.parse(text, where=item)
     flat = isinstance(term, algebra.Atom) or (

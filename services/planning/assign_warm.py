@@ -1,4 +1,4 @@
-"""Have the searches of the assignment in machine code, by little problems."""
+"""Compile the assignment searches to machine code, on small problems."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _LOOPS = (anneal, rebuild, descend, time_chains, expand, rehash, closed)
 
 
 def read() -> None:
-    """Load the machine code of an assignment whose sequences hold in time, if all of it is kept."""
+    """Load the cached machine code of an assignment with time semantics, if all of it is available."""
     if all(is_kept(loop) for loop in _LOOPS):
         warm_search(simple_instance(TIME))
         warm_refutation(wide_instance(TIME))
@@ -34,7 +34,7 @@ def read() -> None:
 
 @functools.cache
 def warm() -> None:
-    """Have everything compiled, so that no limit of time is spent on that."""
+    """Compile everything, so that no time limit is spent on that."""
     for semantics in (TIME, ORDER):
         warm_search(simple_instance(semantics))
         if semantics == ORDER:
@@ -44,7 +44,7 @@ def warm() -> None:
 
 
 def warm_search(i: Instance) -> None:
-    """First leaves, what improves them, lists of chains, and bounds."""
+    """Compile first leaves, improvement, chain enumeration and bounds."""
     _, moves = greedy(i)
     assert moves is not None
     improve(i, moves, 1, 1)
@@ -55,7 +55,7 @@ def warm_search(i: Instance) -> None:
 
 
 def warm_refutation(i: Instance) -> None:
-    """The search for anything that costs less, its table when it grows, and the check of what it says."""
+    """Compile the exact refutation, the growth of its table, and the check of its result."""
     refute(i, 9, 1)
     table, whole = np.full(16, -1, np.int64), np.empty(0, np.int64)
     machine_for(i, rehash)(np.empty((0, 1), np.int64), 0, table, whole, i.vehicles)
@@ -63,7 +63,7 @@ def warm_refutation(i: Instance) -> None:
 
 
 def warm_passes(i: Instance) -> None:
-    """What goes over all tasks and moves once, which is compiled where they are very many."""
+    """Compile the passes over all tasks and moves, which are compiled for very large problems."""
     order = [np.zeros(i.tasks, np.int64) for _ in range(3)]
     machine_for(i, leaf)(*order, i)
     machine_for(i, bound)(first_state(i), i, look_ahead(i))

@@ -1,4 +1,4 @@
-"""A schedule held against what its problem means, on its own numbers: no solver is needed where it is right."""
+"""Evaluation of a schedule against its problem's meaning, on its own values: a valid one needs no solver."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from cratous.spec.assignment.search import AssignmentProblem, Step
 
 
 def witnessed(problem: AssignmentProblem, steps: Sequence[Step]) -> bool:
-    """Whether the schedule, flown by each vehicle in the order of its steps, is all that the constraints say.
+    """Whether the schedule, with each vehicle flying its steps in order, satisfies all constraints.
 
-    True is sure: every formula holds of these values. False says only that these values do not show it.
+    True is certain: every formula holds for these values. False only means that these values do not show it.
     """
     branch = branch_of(problem, steps)
     taken = [_choice(problem, branch, step) for step in steps]
@@ -34,12 +34,12 @@ def witnessed(problem: AssignmentProblem, steps: Sequence[Step]) -> bool:
         said = [f for _, f in meaning(logic, branch.term, problem.semantics, gone)]
         said += [f for _, f in windows(logic, problem, branch)]
         return all(said) and all(flights(logic, problem, few))
-    except KeyError:  # a formula speaks of what is not in the schedule
+    except KeyError:  # a formula concerns something outside the schedule
         return False
 
 
 def _choice(problem: AssignmentProblem, branch: Part, step: Step) -> int | None:
-    """The number of the one choice that a step takes; None if it is not one, or another vehicle's."""
+    """The index of the single choice that a step takes; None if it is ambiguous or of another vehicle."""
     able = [
         k for k in branch.choices
         if (problem.choices[k].task_id, problem.choices[k].option_id) == (step.task_id, step.option_id)
@@ -50,7 +50,7 @@ def _choice(problem: AssignmentProblem, branch: Part, step: Step) -> int | None:
 
 
 def _numbers(problem: AssignmentProblem, steps: Sequence[Step]) -> dict[str, int]:
-    """Starts, ends and places of the tasks of the schedule and of those that are flown."""
+    """Starts, ends and positions of the tasks of the schedule and of the flown ones."""
     found: dict[str, int] = {}
     past = len(problem.done)
     for number, (task, begun, ended) in enumerate(problem.done):
@@ -62,7 +62,7 @@ def _numbers(problem: AssignmentProblem, steps: Sequence[Step]) -> dict[str, int
 
 
 def _truths(problem: AssignmentProblem, few: Part, steps: Sequence[Step]) -> dict[str, bool]:
-    """Who flies what after what: each vehicle its steps one after the other, and nothing else."""
+    """The flight variables: each vehicle flies its steps in order, and nothing else."""
     last = len(problem.choices)
     vehicles = range(len(problem.vehicles))
     found = {chosen(k, v): False for k in few.choices for v in vehicles}

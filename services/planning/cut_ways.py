@@ -1,4 +1,6 @@
-"""Of a path that zones cut, the parts outside of them with room to turn, joined by ways around the zones."""
+"""The flyable parts of a path cut by zones: those outside with room to turn, joined by routes around the
+zones.
+"""
 
 from __future__ import annotations
 
@@ -16,25 +18,25 @@ from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.plan import Pose
 
 STEP_M = 20.0
-"""A path is cut at places so far apart; a part ends up to so much before it has to."""
+"""A path is divided at this distance [m]; a part ends at most this much early."""
 BEGINNINGS = 4
-"""So many parts are tried as the first one where not all can be reached from it."""
+"""Number of parts tried as the first one if not all can be reached from it."""
 
 
 class Cut(NamedTuple):
-    """The parts that are flown, as one path; and the zones that cut it. No points: nothing can be flown."""
+    """The flown parts as one path, and the zones that cut it. No points: nothing can be flown."""
 
     points: tuple[Position, ...]
     zones: tuple[Zone, ...]
 
     @property
     def start(self) -> Pose:
-        """Where the path begins."""
+        """Pose at the beginning of the path."""
         return _pose(self.points[0], self.points[1], at_end=False)
 
     @property
     def end(self) -> Pose:
-        """Where the path ends."""
+        """Pose at the end of the path."""
         return _pose(self.points[-2], self.points[-1], at_end=True)
 
 
@@ -44,9 +46,10 @@ def cut(
     roadmaps: Sequence[Roadmap],
     in_order: bool,
 ) -> Cut:
-    """What can be flown of some paths that zones cut, one after the other or the nearest part next.
+    """The flyable parts of paths that zones cut, in order, or always the nearest next. Parts without a route
+    to them are left out.
 
-    Parts that no way was found to are left out. radius_m: turn radius [m].
+    radius_m: turn radius [m].
     """
     zones = roadmaps[0].zones
     pieces, cutting = list[Piece](), dict[int, Zone]()
@@ -76,7 +79,7 @@ def _joined(
     roadmaps: Sequence[Roadmap],
     in_order: bool,
 ) -> tuple[list[Piece], tuple[Position, ...]]:
-    """The pieces that can be reached one from the other, and the path over them."""
+    """The pieces that can be reached one from the other, and the path along them."""
     kept, left = [pieces[first]], [piece for k, piece in enumerate(pieces) if k != first]
     points = list(pieces[first].points)
     while left:
@@ -99,7 +102,7 @@ def _joined(
 def _free(
     path: Sequence[Position], radius_m: float, zones: Sequence[Zone]
 ) -> tuple[list[Piece], list[Zone]]:
-    """The parts of a path outside of the zones, and the zones that cut it."""
+    """The parts of a path outside the zones, and the zones that cut it."""
     if first_bad_leg(path, zones) is None:
         whole = _with_room(list(path), radius_m, ())
         return ([whole] if whole else []), []
@@ -117,7 +120,7 @@ def _free(
 
 
 def _fine(path: Sequence[Position]) -> list[Position]:
-    """The path with points no more than STEP_M apart."""
+    """The path with points at most STEP_M apart."""
     found = [path[0]]
     for p, q in pairwise(path):
         count = max(1, math.ceil(math.hypot(q.north_m - p.north_m, q.east_m - p.east_m) / STEP_M))
@@ -130,7 +133,7 @@ def _fine(path: Sequence[Position]) -> list[Position]:
 
 
 def _with_room(points: list[Position], radius_m: float, zones: Sequence[Zone]) -> Piece | None:
-    """The part between the outermost places at which a full turn keeps the zones; None if there is none."""
+    """The part between the outermost points at which a full turn keeps the zones; None if there is none."""
     kept = [p for k, p in enumerate(points) if k == 0 or p[:2] != points[k - 1][:2]]
     first, last = 0, len(kept) - 1
     while first < last and not _turns(
@@ -150,7 +153,7 @@ def _with_room(points: list[Position], radius_m: float, zones: Sequence[Zone]) -
 
 
 def _turns(pose: Pose, radius_m: float, zones: Sequence[Zone]) -> bool:
-    """Whether a full turn to one of the sides keeps the zones."""
+    """Whether a full turn to either side keeps the zones."""
     return any(
         first_bad_leg(circle(pose, radius_m, clockwise), zones) is None
         for clockwise in (True, False)

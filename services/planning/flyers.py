@@ -1,4 +1,4 @@
-"""Classes of vehicles that fly alike, and ways: paths of a task before they are checked."""
+"""Classes of vehicles with the same flight performance, and task paths before they are checked."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from cratous.spec.mission import Camera, Position, Task, Vehicle, Zone
 from cratous.spec.mission.plan import Pose
 
 BANK_RESERVE = 1.1
-"""Planned turns are this much wider than the tightest ones, so that the autopilot can correct."""
+"""Planned turns are wider than the tightest ones by this factor, so that the autopilot can correct."""
 HEADING_STEP_DEG = 20
 MOMENT_MS = 1_000
-"""How long a pass over a point lasts if the task asks for no dwell [ms]."""
+"""Duration of a pass over a point if the task requires no dwell [ms]."""
 
 
 class Flyer(NamedTuple):
-    """A class of vehicles that fly alike."""
+    """A class of vehicles with the same flight performance and cameras."""
 
     speed_m_s: float
     radius_m: float
@@ -31,9 +31,8 @@ class Flyer(NamedTuple):
 class Way(NamedTuple):
     """A path of a task before it is checked, or none and the reason.
 
-    coverage: the fraction of what has to be seen that the camera sees, None: not asked.
-    elevation_rad, azimuth_rad: where the camera has to point; None: the task does not say.
-    zones: what they forbid of the path was cut from it.
+    coverage: fraction covered by the camera, None if coverage is not required. elevation_rad, azimuth_rad:
+    camera direction; None: not specified. zones: those that cut parts from the path.
     """
 
     label: str
@@ -49,13 +48,13 @@ class Way(NamedTuple):
 
 
 def no_way(label: str, reason: str) -> Way:
-    """A way that was thought of and is not flown."""
+    """A path that is not flown, with the reason."""
     nowhere = Pose(0.0, 0.0, 0.0, 0.0)
     return Way(label, nowhere, nowhere, (), 0, None, reason)
 
 
 def flyer_of(vehicle: Vehicle) -> Flyer:
-    """The class of a vehicle; it cruises at `cruise_alt_m`."""
+    """The class of a vehicle; its altitude is `cruise_alt_m`."""
     radius = BANK_RESERVE * turn_radius_m(vehicle.speed_m_s, vehicle.max_bank_rad)
     alt = vehicle.cruise_alt_m
     return Flyer(vehicle.speed_m_s, radius, alt, vehicle.max_climb_m_s, vehicle.cameras)
@@ -67,14 +66,14 @@ def flight_ms(length_m: float, speed_m_s: float) -> int:
 
 
 def camera_for(task: Task, cameras: Sequence[Camera]) -> Camera | None:
-    """The widest camera that sees the wanted wavelength."""
+    """The widest camera for the required wavelength; None if there is none."""
     fit = [c for c in cameras if "AllAny" in (task.wavelength, c.wavelength)]
     fit += [c for c in cameras if c.wavelength == task.wavelength and c not in fit]
     return max(fit, key=lambda c: c.hfov_rad, default=None)
 
 
 def straight(label: str, middle: Pose, duration_ms: int, speed_m_s: float) -> Way:
-    """A straight pass with a pose in its middle."""
+    """A straight pass centred on a pose."""
     half = speed_m_s * duration_ms / 2000
     start, end = pose_after(middle, 0, -half, 1.0), pose_after(middle, 0, half, 1.0)
     points = (start_point(start), start_point(middle), start_point(end))

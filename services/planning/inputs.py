@@ -1,4 +1,4 @@
-"""One planning request in the mission frame, and what the pure stages compute from it, each once.
+"""One planning request in the mission frame, and the results of the pure stages, each computed once.
 
 Messages carry degrees and costs; here are the exact poses, polylines and found routes.
 """
@@ -26,18 +26,18 @@ from cratous.spec.mission.plan import Pose
 
 WAYS_AT_ONCE = 4096
 WAYS_AHEAD_MOST = 200_000
-"""So many ways are found before anybody asks for them: about 100 MB."""
+"""Most routes found in advance: about 100 MB."""
 Offers = tuple[tuple[Option, ...], tuple[Dropped, ...]]
-"""The options of a task, and what is not offered of it."""
+"""The options of a task, and the dropped ones."""
 
 
 @dataclass
 class Inputs:
-    """A mission from given poses at an instant [ms], with what has been flown of it.
+    """A mission from given poses at an instant [ms], with the tasks already flown.
 
-    flying: the poses are where the vehicles are, not where a user has put them; absent: the vehicles
-    that take no part, with the reasons; undone: tasks that have ended undone, with the reasons; begun:
-    tasks that have been begun and are not ended.
+    flying: the poses are actual positions in flight, not the user's input; absent: vehicles that take no
+    part, with the reasons; undone: tasks that ended undone, with the reasons; begun: tasks that have begun
+    but not ended.
     """
 
     mission: Mission
@@ -51,9 +51,9 @@ class Inputs:
     _taken: dict[int, Offers] = field(default_factory=dict, compare=False, repr=False)
 
     def take_over(self, earlier: Inputs) -> None:
-        """Options that were made for an earlier request, and ways between them, are not made anew, where all that they
-        depend on is the same: task, who flies and who drives, and how, zones, terrain. Where the vehicles are does not
-        count."""
+        """Reuse options and routes of an earlier request where all that they depend on is the same: task,
+        vehicles and their performance, zones, terrain; not the vehicles' positions.
+        """
         made: Mapping[int, Offers] = {**earlier._taken, **earlier.__dict__.get("_by_task", {})}
         if not made or earlier._surroundings != self._surroundings:
             return
@@ -64,15 +64,15 @@ class Inputs:
         known = {pose for option in options for pose in (option.start, option.end)}
         self.finder.take_over(
             earlier.finder, known
-        )  # and nothing of other tasks: it would grow for ever
+        )  # not those of other tasks: they would accumulate
 
     def make_options(self, task_id: int) -> None:
-        """Have the options of one task made before anybody asks for them."""
+        """Compute the options of one task in advance."""
         if task_id not in self._taken:
             self._taken[task_id] = expand(self.mission, [self.mission.task(task_id)], self.zones)
 
     def find_ways(self) -> Iterator[None]:
-        """Find how long ways between options take, some at a time, before anybody asks for them: all, if not too many."""
+        """Compute travel times between options in advance, a block at a time, up to WAYS_AHEAD_MOST routes."""
         left = WAYS_AHEAD_MOST
         for index, vehicle in enumerate(self.mission.vehicles):
             mine = [k for k, option in enumerate(self.options) if vehicle.id in option.vehicles]
@@ -87,12 +87,12 @@ class Inputs:
 
     @property
     def _surroundings(self) -> tuple[object, tuple[Zone, ...], float]:
-        """What options depend on beside their task."""
+        """What options depend on besides their task."""
         flyers = [(one.id, drives(one), flyer_of(one)) for one in self.mission.vehicles]
         return flyers, self.zones, self.mission.frame.terrain_m
 
     def check_starts(self) -> None:
-        """BadInput if a user has put a vehicle where it may not be."""
+        """BadInput if the user placed a vehicle where it may not be."""
         if not self.flying:
             stages.check_starts(self.mission, self.starts, self.zones)
 
@@ -102,7 +102,7 @@ class Inputs:
 
     @cached_property
     def resolved(self) -> tuple[tuple[Branch, ...], bool]:
-        """The branches that were found, and whether these are all there are."""
+        """The branches found, and whether these are all of them."""
         return stages.branches_of(self.mission, self.fixed)
 
     @property
@@ -111,7 +111,7 @@ class Inputs:
 
     @property
     def all_branches(self) -> bool:
-        """False if there were more ways to resolve `+` than were looked at here."""
+        """False if there are more resolutions of `+` than were examined here."""
         return self.resolved[1]
 
     @cached_property
@@ -121,7 +121,7 @@ class Inputs:
 
     @cached_property
     def wanted(self) -> tuple[int, ...]:
-        """The tasks of any branch that are not yet flown and have not ended undone, by id."""
+        """Ids of the tasks of any branch that are not flown and have not ended undone."""
         done = {f.task_id for f in self.fixed} | self.undone.keys()
         if not self.all_branches:
             return tuple(sorted(set(tasks(self.term)) - done))
@@ -164,7 +164,7 @@ class Inputs:
             for row in branch.rows:
                 if row.kind == AFTER_END:
                     earlier[row.i] |= set(row.group)
-            # all predecessors of predecessors; a task's own are complete after as many rounds
+            # transitive closure, reached after as many rounds as there are tasks
             for _ in branch.tasks:
                 for task in branch.tasks:
                     for before in tuple(earlier[task]):
@@ -180,7 +180,7 @@ class Inputs:
 
     @cached_property
     def finder(self) -> Routes:
-        """Routes of the mission's vehicles, between no ends yet."""
+        """Routes of the mission's vehicles, not yet bound to options."""
         return Routes(self.mission, self.starts, (), self.zones, self.flying)
 
     @cached_property
@@ -189,5 +189,5 @@ class Inputs:
         return self.finder.between(self.options)
 
     def problem(self, travel_ms: Callable[[int, int, int], int | None]) -> AssignmentProblem:
-        """The assignment problem with travel times from elsewhere (the cost matrix)."""
+        """The assignment problem with external travel times (the cost matrix)."""
         return problem_of(self.mission, self.term, self.options, travel_ms, self.fixed, self.now_ms)

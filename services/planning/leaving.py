@@ -1,10 +1,10 @@
-"""The shortest level way out of zones that a vehicle is in, or into keep-ins that it is outside of.
+"""The shortest level way out of keep-out zones that contain a vehicle, or into keep-in zones that do not.
 
-A zone can appear over a vehicle. A turn and a straight way lead out first, at the altitude it is at, also
-where a climb would be shorter. To a line, a turn until straight towards it and then straight on is the
-shortest way of all that turn no tighter, and who leaves a convex keep-out crosses the line of one of its
-edges, so of these, two for each edge, one is the shortest. Of all other zones, and of several, it is the
-shortest found of these, of turns towards corners, and of `EVEN` headings more.
+A zone can appear around a vehicle. The way is a turn followed by a straight line, at the present altitude,
+even where a climb would be shorter. To reach a line, turning until straight towards it and then flying
+straight is the shortest path of this turn radius, and leaving a convex keep-out zone crosses the line of one
+of its edges; so one of these paths, two per edge, is the shortest. For all other zones, and for several, it
+is the shortest found among these, turns towards corners, and `EVEN` further headings.
 """
 
 from __future__ import annotations
@@ -22,20 +22,21 @@ from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.plan import Pose
 
 EVEN = 24
-"""So many headings are tried besides those across edges and to corners."""
+"""Number of evenly spread headings tried besides those across edges and to corners."""
 CORNERS_MOST = 200
-"""Of so many corners all together these are; of more the even headings alone."""
+"""Above this total number of corners, only the even headings are tried."""
 ARC_STEP_RAD = math.radians(5)
-"""A turn is flown in legs of this angle at most."""
+"""Largest angle of a leg in a turn [rad]."""
 OUT_M = 0.5
-"""A crossing of an edge is passed by this much [m]."""
+"""Distance flown beyond the crossing of an edge [m]."""
 CLEAR_M = (MARGIN_M + 2.0, 2.0)
-"""So far the way goes on behind the edge, where there is room [m]."""
+"""How far the way continues beyond the edge, where there is room [m]."""
 
 
 class WayOut(NamedTuple):
-    """points: from where the vehicle is to where other routes begin; end: the pose there; inside_m: length
-    until it is out; length_m: of all of it."""
+    """points: from the vehicle's position to where other routes begin; end: the pose there; inside_m: length
+    inside the zones [m]; length_m: total length [m].
+    """
 
     points: tuple[Position, ...]
     end: Pose
@@ -44,7 +45,7 @@ class WayOut(NamedTuple):
 
 
 class _Turn(NamedTuple):
-    """A pose after a turn, its arc [m] and the points on it."""
+    """A pose after a turn, its arc length [m] and the points on it."""
 
     pose: Pose
     arc_m: float
@@ -52,14 +53,16 @@ class _Turn(NamedTuple):
 
 
 def entered(at: Position, zones: Sequence[Zone]) -> tuple[Zone, ...]:
-    """The zones that a position breaks."""
+    """The zones that a position violates."""
     return tuple(zone for zone in zones if first_bad_leg((at,), (zone,)) is not None)
 
 
 def way_out(pose: Pose, radius_m: float, zones: Sequence[Zone]) -> WayOut | None:
-    """The shortest level way found out of all zones that the pose breaks, which keeps the others; one with
-    room to turn behind it goes before any without. None where it breaks none or no way out was found.
-    zones: without padding; radius_m: of turns [m]."""
+    """The shortest level way found out of all zones that the pose violates, without entering others; ways
+    with room to turn behind them take precedence. None if it violates none or no way out was found.
+
+    zones: without padding; radius_m: turn radius [m].
+    """
     left = entered(start_point(pose), zones)
     if not left:
         return None
@@ -68,10 +71,10 @@ def way_out(pose: Pose, radius_m: float, zones: Sequence[Zone]) -> WayOut | None
     for order, turn in enumerate(_turns(pose, radius_m, left, kept)):
         straight_m = _straight_m(turn.pose, left)
         if straight_m is not None:
-            # to the centimetre: what is as long is chosen by the order, not by rounding
+            # rounded to centimetres: equal lengths are ordered by heading, not by rounding errors
             found.append((round(turn.arc_m + straight_m, 2), order, straight_m, turn))
     found.sort(key=lambda one: one[:2])
-    # first of all ways with room to turn behind them: a gap between zones leads nowhere
+    # ways with room to turn behind them first: a gap between zones leads nowhere
     for room, (inside_m, _, straight_m, turn) in itertools.product((True, False), found):
         for clear_m in CLEAR_M:
             out, end = (
@@ -89,7 +92,7 @@ def way_out(pose: Pose, radius_m: float, zones: Sequence[Zone]) -> WayOut | None
 
 
 def _turns_on(pose: Pose, radius_m: float, zones: Sequence[Zone]) -> bool:
-    """Whether a quarter turn to one side at least keeps the zones."""
+    """Whether a quarter turn to at least one side keeps the zones."""
     arcs = (
         [
             start_point(pose_after(pose, kind, k * ARC_STEP_RAD * radius_m, radius_m))
@@ -103,7 +106,7 @@ def _turns_on(pose: Pose, radius_m: float, zones: Sequence[Zone]) -> bool:
 def _turns(
     pose: Pose, radius_m: float, left: Sequence[Zone], kept: Sequence[Zone]
 ) -> Iterator[_Turn]:
-    """Turns to all headings, on either side, none farther than the zones to keep, or the way out, allow."""
+    """Turns to all headings, on either side, each ended by a zone to keep or by the way out."""
     for kind in (RIGHT, LEFT):
         sign = 1 if kind == RIGHT else -1
         angles = sorted(
@@ -131,8 +134,9 @@ def _turns(
 
 
 def _headings(pose: Pose, radius_m: float, left: Sequence[Zone]) -> Iterator[float]:
-    """Headings across the edges of zones, to their corners from the turn, and evenly spread. radius_m: of a
-    turn to the right, below 0 to the left."""
+    """Headings across the edges of zones, from the turn to their corners, and evenly spread. radius_m: of a
+    turn to the right, negative to the left.
+    """
     centre_n = pose.north_m - radius_m * math.sin(pose.heading_rad)
     centre_e = pose.east_m + radius_m * math.cos(pose.heading_rad)
     yield pose.heading_rad
@@ -147,14 +151,16 @@ def _headings(pose: Pose, radius_m: float, left: Sequence[Zone]) -> Iterator[flo
             along = math.atan2(e2 - e, n2 - n)
             yield along + math.pi / 2
             yield along - math.pi / 2
-            # along the tangent of the turn that passes the corner
+            # along the tangent of the turn through the corner
             n, e = n - centre_n, e - centre_e
             ahead_m = math.sqrt(max(0.0, n * n + e * e - radius_m * radius_m))
             yield math.atan2(e, n) + math.atan2(radius_m, ahead_m)
 
 
 def _straight_m(pose: Pose, left: Sequence[Zone]) -> float | None:
-    """How far straight on a pose is out of all these zones, 0 where it is; None if it never is."""
+    """Straight distance from a pose to where it is out of all these zones [m], 0 if it is already; None if
+    never.
+    """
     if first_bad_leg((start_point(pose),), left) is None:
         return 0.0
     for crossing_m in sorted(_crossings_m(pose, left)):
@@ -165,7 +171,7 @@ def _straight_m(pose: Pose, left: Sequence[Zone]) -> float | None:
 
 
 def _crossings_m(pose: Pose, zones: Sequence[Zone]) -> Iterator[float]:
-    """How far straight on lie the lines' crossings with the edges of zones."""
+    """Straight distances to the crossings with the zones' edges [m]."""
     north, east = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
     for zone in zones:
         beside = [

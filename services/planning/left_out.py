@@ -1,4 +1,4 @@
-"""The best part of a mission, assigned and certified; and why each task that it leaves out cannot be done."""
+"""The best partial assignment of a mission, with certificate, and why each left-out task cannot be done."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from cratous.spec.errors import NoPlan
 from cratous.spec.mission.plan import ORDER, TIME, LeftOut, Remedy
 
 MORE = 100
-"""Further questions for finding reasons."""
+"""Further queries for finding reasons."""
 TOLD_MAX = 3
-"""So many constraints that clash are told of a task."""
+"""Most conflicting constraints reported per task."""
 
 
 class NothingDone(NoPlan):
-    """Nothing of a mission can be done. of: why, of each task of which it is told apart."""
+    """Nothing of a mission can be done. of: reasons by task, where they are known separately."""
 
     def __init__(self, reasons: tuple[str, ...], of: Mapping[int, str]) -> None:
         self.of = dict(of)
@@ -37,10 +37,10 @@ def assign_part(
     unable: Mapping[int, str],
     remedies: Callable[[int], tuple[Remedy, ...]],
 ) -> Found:
-    """The best assignment of the part that leaves out least; none, with why each task is left out, if nothing
+    """The best assignment of the part that leaves out least; none, with the reason for each task, if nothing
     can be done.
 
-    unable: why no vehicle can do a task at all; remedies: what would have to change so that one could.
+    unable: why no vehicle can do a task at all; remedies: changes that would let some vehicle do it.
     """
     chosen = all_of.choose()
     terms = [only(all_of.branches[k], kept) for k, kept in chosen.parts]
@@ -59,7 +59,7 @@ def assign_part(
 
 
 def _nothing(all_of: Parts, unable: Mapping[int, str]) -> tuple[LeftOut, ...]:
-    """Why each task of any branch cannot be done, where none can; remedies are not sought."""
+    """Why each task of any branch cannot be done, if none can; without remedies."""
     found: dict[int, LeftOut] = {}
     for k, branch in enumerate(all_of.branches):
         if not found.keys() >= set(tasks(branch)) - all_of.flown:
@@ -70,7 +70,7 @@ def _nothing(all_of: Parts, unable: Mapping[int, str]) -> tuple[LeftOut, ...]:
 
 
 def _other_choices(all_of: Parts, part: Part, unable: Mapping[int, str]) -> tuple[LeftOut, ...]:
-    """Why no other operand of a `+` is done, where nothing of that `+` is; remedies are not sought."""
+    """Why the other operands of a `+` are not done, if nothing of that `+` is; without remedies."""
     k, kept = part
     told = set(tasks(all_of.branches[k]))
     found: dict[int, LeftOut] = {}
@@ -91,7 +91,7 @@ def _numbered(found: Assignment, made: AssignmentProblem, whole: AssignmentProbl
 
 
 class _Reasons:
-    """Why the tasks that a part leaves out cannot be done beside it."""
+    """Why the tasks that a part leaves out cannot be done in addition to it."""
 
     def __init__(
         self,
@@ -101,15 +101,16 @@ class _Reasons:
         remedies: Callable[[int], tuple[Remedy, ...]],
         chosen: bool = True,
     ) -> None:
-        """chosen: the part is of the branch that was chosen; else of another one, of which it may lack
-        what could be done."""
+        """chosen: the part is of the chosen branch; otherwise of another one, which may contain tasks that
+        could be done.
+        """
         self.remedies, self.chosen = remedies, chosen
         self.all_of, self.part, self.unable = all_of, part, unable
         self.branch = all_of.branches[part[0]]
         self.limit = all_of.asked + MORE
 
     def all(self) -> tuple[LeftOut, ...]:
-        """A reason for each; what waits for another one is told with that."""
+        """The reason for each; tasks that wait for another one are listed with it."""
         left = self.all_of.left(self.part)
         waits = {task: self._awaited(task) for task in left if task in self.all_of.able}
         found = []
@@ -127,7 +128,7 @@ class _Reasons:
         return tuple(found)
 
     def _awaited(self, task: int) -> tuple[int, ...]:
-        """The tasks left out that a task would have to wait for."""
+        """The left-out tasks that a task would have to wait for."""
         kept = self.part[1]
         found: dict[int, None] = {}
         for row in rows(self.branch):
@@ -140,7 +141,9 @@ class _Reasons:
         return f"it must wait for what is not done: {row.text}"
 
     def _clash(self, task: int, waiting: Iterable[int]) -> LeftOut:
-        """A task that has no schedule beside those that are planned, and which of these are to blame."""
+        """A task without a schedule in addition to the planned tasks, and the planned tasks in conflict with
+        it.
+        """
         all_of, (k, kept) = self.all_of, self.part
         want = kept | all_of.needed(k, task)
         if not self.chosen and all_of.asked < self.limit and all_of.ask((k, want)):
@@ -163,7 +166,7 @@ class _Reasons:
             why = "there is no way from task to task"
         if instead:
             why = f"not beside {_names(instead)}: {why}"
-            # the part without them has a schedule, or the clash would not be the smallest one found
+            # without them there is a schedule, or the conflict would not be minimal
             without = Remedy((TIME,), f"without {_names(instead)}", tasks=instead)
             remedies = (*remedies, without)
         return LeftOut(task, why, tuple(waiting), instead, remedies)
@@ -174,7 +177,7 @@ def _names(numbers: tuple[int, ...]) -> str:
 
 
 def _chain(waits: Mapping[int, tuple[int, ...]], task: int) -> set[int]:
-    """All that a task waits for, what these wait for included."""
+    """All tasks that a task waits for, transitively."""
     found: set[int] = set()
     todo = list(waits.get(task, ()))
     while todo:

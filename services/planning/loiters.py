@@ -1,10 +1,9 @@
-"""The loiters of an assignment: where each vehicle waits, from when to when, so that all relations hold.
+"""The loiters of an assignment: where and when each vehicle waits so that all relations hold.
 
-Who does what in which order is given, with an instant before which each task does not start. The
-times are the best schedule of these chains under the relations (`core.assignment.earliest_times`, by the proved
-kernel `raised`); it is taken only if the proved checker accepts it (`replayed`: legs, laps, order,
-timing). Before a task a vehicle waits none or whole laps of a circle at its start. Times in ms after
-mission start.
+Given are the assignment, its order, and an earliest start for each task. The times are the best schedule of
+these chains under the relations (`core.assignment.earliest_times`, by the proved kernel `raised`); it is used
+only if the proved checker accepts it (`replayed`: legs, laps, order, timing). Before a task a vehicle waits
+not at all or in whole laps of a circle at the task's start. Times in ms after mission start.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ from cratous.spec.mission.plan import Hold
 
 
 class Given(NamedTuple):
-    """One task of an assignment: not_before_ms is the earliest start that was assigned, or 0."""
+    """One task of an assignment. not_before_ms: assigned earliest start, or 0."""
 
     vehicle_id: int
     task_id: int
@@ -37,7 +36,7 @@ class Given(NamedTuple):
 
 
 class Loiter(NamedTuple):
-    """A vehicle waits before a task: `hold` from the arrival to the start of the task [ms]."""
+    """A vehicle waits before a task: on `hold` from its arrival to the start of the task [ms]."""
 
     vehicle_id: int
     task_id: int
@@ -53,8 +52,9 @@ class Loiter(NamedTuple):
 
 
 def schedule(problem: AssignmentProblem, given: Sequence[Given]) -> tuple[Step, ...]:
-    """The times of an assignment. NoPlan with the constraint that cannot be kept; BadInput for
-    what is no assignment of the problem."""
+    """The times of an assignment. NoPlan with the constraint that cannot be met; BadInput for an invalid
+    assignment.
+    """
     done = [item.task_id for item in given]
     index = {(c.task_id, c.option_id): k for k, c in enumerate(problem.choices)}
     for k, item in enumerate(given):
@@ -97,7 +97,7 @@ def _timed(
     given: Sequence[Given],
     index: dict[tuple[int, int], int],
 ) -> tuple[Step, ...] | str:
-    """The steps at their best times under the rows of a branch, or what cannot be kept."""
+    """The steps at their best times under the rows of a branch, or the constraint that cannot be met."""
     instance = arrays(problem, part)
     place = {k: o for o, k in enumerate(part.choices)}
     moves = [
@@ -137,7 +137,7 @@ def _timed(
 def loiters_of(
     steps: Sequence[Step], options: Sequence[Option], zones: Sequence[Zone]
 ) -> tuple[Loiter, ...]:
-    """The loiters of a schedule, in the order of their beginning. NoPlan where there is no room."""
+    """The loiters of a schedule, in order of their beginning. NoPlan where there is no room."""
     by_id = {(option.task_id, option.option_id): option for option in options}
     made = []
     for step in steps:

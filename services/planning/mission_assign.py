@@ -1,8 +1,8 @@
-"""A mission's assignment: its problem, solved and certified, and checked once more by z3.
+"""A mission's assignment: its problem, solved and certified, and checked again by z3.
 
-The problem is in the mission's own ids; the result in indices of its vehicles and options. What is
-returned has passed the proved checker (`replayed`) and z3 on the mission's constraints, and its
-certificate has been checked; a plan is called optimal only by that.
+The problem uses the mission's ids; the result uses indices of its vehicles and options. A returned result has
+passed the proved checker (`replayed`) and z3 on the mission's constraints, and its certificate has been
+checked; a plan is called optimal only on that basis.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ from cratous.spec.mission import Mission, Vehicle
 from cratous.spec.mission.plan import InPart, LeftOut
 
 NODES = 1_000_000
-"""Nodes of a mission's search where it gives no limit, some seconds at most."""
+"""Search nodes of a mission without a limit of its own, a few seconds at most."""
 WIDTH = 50_000
-"""States kept of a layer."""
+"""States kept per layer."""
 COSTS = {
     "MINMAX": MINMAX,
     "CUMULATIVE": CUMULATIVE,
@@ -44,14 +44,15 @@ COSTS = {
     "ENERGY": Cost(0, 0, 0, 1),
 }
 Travel = Callable[[int, int, int], int | None]
-"""(vehicle, option before or START, option) -> time on the way [ms], None if there is none."""
+"""(vehicle, option before or START, option) -> travel time [ms], None if there is no route."""
 
 
 @dataclass(frozen=True)
 class Found:
     """The assignment with its certificate; or none, with the reasons.
 
-    left_out: tasks that are asked for and not in it; sure: no more can be done, as far as was searched.
+    left_out: requested tasks that it does not contain; sure: whether, as far as was searched, no more can be
+    done.
     """
 
     assignment: Assignment | None
@@ -69,7 +70,7 @@ def problem_of(
     fixed: Sequence[Fixed] = (),
     now_ms: int = 0,
 ) -> AssignmentProblem:
-    """The assignment problem of what a mission still has to do."""
+    """The assignment problem for the remaining tasks of a mission."""
     masks = {task.id: task.eligible for task in mission.tasks}
     ids = tuple(vehicle.id for vehicle in mission.vehicles)
     choices = tuple(
@@ -115,7 +116,7 @@ def problem_of(
 
 
 def power_w(vehicle: Vehicle) -> float:
-    """What a vehicle draws in flight [W]; BadInput if the mission does not say."""
+    """Power consumption of a vehicle in flight [W]; BadInput if the mission does not give it."""
     if vehicle.power_w is None:
         raise BadInput(
             "the cost ENERGY needs what each vehicle draws in flight",
@@ -127,7 +128,7 @@ def power_w(vehicle: Vehicle) -> float:
 
 
 def _per_ms(rows: Rows, options: Sequence[Option], rates: Sequence[float]) -> Rows:
-    """Ways with the tasks that they lead to, in units of a rate per millisecond: m/s gives mm, W gives mJ."""
+    """Travel plus task, in units of a rate per millisecond: m/s gives mm, W gives mJ."""
     return tuple(
         tuple(
             None if ms is None else round((ms + o.duration_ms) * rate)
@@ -138,15 +139,17 @@ def _per_ms(rows: Rows, options: Sequence[Option], rates: Sequence[float]) -> Ro
 
 
 def limits_of(mission: Mission) -> Limits:
-    """How far to search. Nodes, not seconds: a plan may not depend on how fast a machine is."""
+    """Search limits of a mission, in nodes rather than seconds: a plan must not depend on the machine's
+    speed.
+    """
     nodes = NODES if mission.node_limit is None else mission.node_limit
     return Limits(nodes=nodes, gap=mission.gap, width=WIDTH)
 
 
 def assign(problem: AssignmentProblem, limits: Limits, *, tell: bool = True) -> Found:
-    """The best assignment within the limits. BadInput for a problem that means nothing.
+    """The best assignment within the limits. BadInput for an invalid problem.
 
-    tell: if there is none, with the reasons, which take far longer to find than that there is none.
+    tell: if there is none, find the reasons, which takes far longer than finding that there is none.
     """
     found = solve(problem, limits)
     if found.cost is None:
@@ -178,7 +181,7 @@ def indexed(problem: AssignmentProblem, solution: Solution, digest: str) -> Assi
 
 
 def parts_in(options: Sequence[Option], assignment: Assignment | None) -> Iterator[InPart]:
-    """What an assignment does in part, by task."""
+    """The tasks that an assignment does in part, by task id."""
     placed = () if assignment is None else assignment.placed
     for option in sorted((options[one.candidate] for one in placed), key=lambda o: o.task_id):
         if option.part is not None:

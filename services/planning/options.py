@@ -1,8 +1,8 @@
-"""The ways to fly each task: paths, end poses and durations per class of vehicles.
+"""The options of each task: paths, end poses and durations per class of vehicles.
 
-Vehicles of one class have the same speed, turn radius, altitude, climb and cameras, so they share
-options. An option that the zones, the camera or the eligibility forbid is dropped, with the
-reason kept for the user.
+Vehicles of one class have the same speed, turn radius, altitude, climb rate and cameras, so they share
+options. An option that the zones, the camera or the eligibility forbid is dropped, with the reason kept for
+the user.
 """
 
 from __future__ import annotations
@@ -50,15 +50,15 @@ SEEN = {
     TaskKind.PATTERN_SEARCH: "the area",
 }
 CUT = (TaskKind.LINE_SEARCH, *AREAS)
-"""Of these a part is offered where zones forbid the whole."""
+"""Kinds of tasks of which a part is offered where zones forbid the whole."""
 ALIKE = 0.01
-"""Of ways over a part those are offered that do no less of the task than this below the most."""
+"""Partial options are offered if their coverage is within this of the largest."""
 HOLD_FACTORS = (2.0, 1.5, 1.2, 1.0)
-"""Largest hold circles that are tried at a start pose, in turn radii."""
+"""Hold radii tried at a start pose, largest first, in turn radii."""
 
 
 class HoldRoom(NamedTuple):
-    """On which side of a start pose there is room to hold, up to which radius."""
+    """A side of a start pose with room to hold, and the largest radius there [m]."""
 
     clockwise: bool
     radius_m: float
@@ -66,8 +66,9 @@ class HoldRoom(NamedTuple):
 
 @dataclass(frozen=True)
 class Option:
-    """One way to fly one task, for the vehicles named. Times in ms; coverage None: not asked; part: which
-    part of the task it does, None: all of it."""
+    """One way to fly one task, for the vehicles named. Times in ms; coverage None: not required; part: the
+    part of the task that it does, None: all of it.
+    """
 
     task_id: int
     option_id: int
@@ -86,12 +87,12 @@ class Option:
 
     @property
     def lap_ms(self) -> int:
-        """The shortest lap of a hold at the start pose."""
+        """Duration of the shortest lap of a hold at the start pose [ms]."""
         return math.ceil(2000 * math.pi * self.flyer.radius_m / self.flyer.speed_m_s)
 
     @property
     def lap_max_ms(self) -> int:
-        """The longest lap that there is room for; 0 if there is no room to hold."""
+        """Duration of the longest lap that there is room for [ms]; 0 if there is no room to hold."""
         widest = max((room.radius_m for room in self.holds), default=0.0)
         return max(math.floor(2000 * math.pi * widest / self.flyer.speed_m_s), self.lap_ms) * bool(
             self.holds
@@ -115,7 +116,7 @@ def expand(
 ) -> tuple[tuple[Option, ...], tuple[Dropped, ...]]:
     """All options of the tasks for the mission's vehicles, and those dropped.
 
-    in_part: also options over a part of a task, where there is none over all of it.
+    in_part: also options over a part of a task, if there is none over all of it.
     """
     classes: dict[Flyer, list[int]] = {}
     driving = tuple(vehicle.id for vehicle in mission.vehicles if drives(vehicle))
@@ -186,9 +187,10 @@ def _options(
 def parts_of(
     task: Task, may: Mapping[Flyer, tuple[int, ...]], zones: Sequence[Zone], terrain_m: float
 ) -> list[Option]:
-    """Ways over what zones leave of a line or an area; none that do less than others by more than ALIKE of it.
+    """Paths over what zones leave of a line or an area; those that cover less than the best by more than
+    ALIKE are omitted.
 
-    may: who may do the task, by class.
+    may: eligible vehicles, by class.
     """
     found = []
     for flyer, able in may.items() if task.kind in CUT and zones else ():
@@ -204,7 +206,7 @@ def parts_of(
             else area_parts(task, flyer, camera, maps, terrain_m)
         )
         for way in ways:
-            # a way that no zone cuts is refused for another reason
+            # a path that no zone cuts was rejected for another reason
             if not way.zones or not way.coverage or first_bad_leg(way.points, zones) is not None:
                 continue
             found.append(
@@ -219,7 +221,7 @@ def parts_of(
 
 
 def _part(task: Task, way: Way, flyer: Flyer, zones: Sequence[Zone]) -> InPart | None:
-    """Which part of a task a way does; None if it sees enough to serve it."""
+    """The part of a task that a path does; None if its coverage suffices for the whole."""
     assert way.coverage is not None
     if camera_for(task, flyer.cameras) is not None and way.coverage >= ENOUGH:
         return None
@@ -235,7 +237,7 @@ def _part(task: Task, way: Way, flyer: Flyer, zones: Sequence[Zone]) -> InPart |
 
 
 def unfit(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float) -> str:
-    """Why a class of vehicles cannot do a search at all, or nothing."""
+    """Why a class of vehicles cannot do a search at all; "" if it can."""
     if task.kind not in SEARCHES:
         return ""
     needs = task.views or task.gsd_m or task.kind in AREAS or task.wavelength != "AllAny"
@@ -273,11 +275,11 @@ def _ways(
 
 
 def hold_rooms(pose: Pose, radius_m: float, zones: Sequence[Zone]) -> tuple[HoldRoom, ...]:
-    """On which sides of a pose a hold circle obeys the zones, and how wide it may be.
+    """The sides of a pose on which a hold circle keeps the zones, and its largest radius.
 
-    The circle that is flown in the end is narrower and is checked again (`stages.hold_of`).
+    The circle flown in the end is smaller and is checked again (`stages.hold_of`).
     """
-    if not zones:  # no circles to draw, and no machine code to load for them
+    if not zones:  # no circles to compute, and no machine code to load
         return tuple(HoldRoom(clockwise, HOLD_FACTORS[0] * radius_m) for clockwise in (True, False))
     rooms = []
     for clockwise in (True, False):

@@ -1,10 +1,10 @@
-"""What of a mission can be done where not all of it can: the part that leaves out least.
+"""The part of a mission that leaves out least, where not all of it can be done.
 
-Less is left out of two parts where fewer tasks of the highest priority are, then of the next, and so
-on; then where more tasks are done; then where it costs less. What may be done without what is
-left out is the algebra's to say (`spec.algebra.partial`). The search keeps to parts without a conflict: a
-smallest set of tasks without a schedule, found by leaving out one after the other. What it finds is
-assigned, certified and checked as any plan is.
+Of two parts, the better one leaves out fewer tasks of the highest priority, then of the next, and so on; then
+has more tasks; then costs less. The algebra defines what may be done without the left-out tasks
+(`spec.algebra.partial`). The search is limited to parts without a conflict: a minimal set of tasks without a
+schedule, found by leaving out one task after the other. Its result is assigned, certified and checked like
+any plan.
 """
 
 from __future__ import annotations
@@ -24,21 +24,22 @@ from cratous.spec.assignment.search import AssignmentProblem, Rows, Solution
 from cratous.spec.constraint_rows import AFTER_END, AFTER_START
 
 PROBES = 20_000
-"""Nodes per question whether some tasks have a schedule."""
+"""Nodes per query whether some tasks have a schedule."""
 ASKED_MAX = 400
-"""So many such questions are asked; then tasks are added one by one, by priority."""
+"""Most such queries; after that tasks are added one by one, by priority."""
 ALIKE_MAX = 8
-"""So many parts that leave out the same are compared by cost."""
+"""Most parts with equal omissions that are compared by cost."""
 
 Part = tuple[int, frozenset[int]]
-"""A branch of the relations by number, and its tasks that are done or to be done."""
+"""A branch of the relations by index, and its tasks that are done or to be done."""
 Rank = tuple[tuple[int, ...], int]
 
 
 @dataclass(frozen=True)
 class Chosen:
-    """What to do. parts: alike in what they leave out; sure: nothing leaves out less, as far as the
-    questions were decided."""
+    """The choice. parts: equal in what they leave out; sure: no part leaves out less, as far as the queries
+    were decided.
+    """
 
     parts: tuple[Part, ...]
     sure: bool
@@ -46,8 +47,9 @@ class Chosen:
 
 @dataclass
 class Parts:
-    """The parts of a problem's relations. priority: of tasks, higher goes first; begun: tasks that no order
-    holds back any more."""
+    """The parts of a problem's relations. priority: by task, higher takes precedence; begun: tasks no longer
+    held back by any order.
+    """
 
     problem: AssignmentProblem
     priority: Mapping[int, int]
@@ -60,7 +62,7 @@ class Parts:
     def __post_init__(self) -> None:
         self.flown = frozenset(task for task, _, _ in self.problem.done)
         self.sure = not not_all_of(term_of(self.problem))
-        # what has been flown is done, whatever became of that which it followed
+        # a flown task counts as done, whatever became of its predecessors
         self.begun |= self.flown
         able = {choice.task_id for choice in self.problem.choices if choice.vehicles}
         self.able = frozenset(able | self.flown)
@@ -69,7 +71,7 @@ class Parts:
         self.levels = sorted(set(self.priority.values()), reverse=True)
 
     def kept(self, k: int, out: Set[int] = frozenset()) -> frozenset[int]:
-        """The largest part of a branch without some tasks."""
+        """The largest part of a branch without the tasks in `out`."""
         return largest_part(self.branches[k], self.able - out, self.begun)
 
     def left(self, part: Part) -> tuple[int, ...]:
@@ -77,7 +79,7 @@ class Parts:
         return tuple(task for task in tasks(self.branches[part[0]]) if task not in part[1])
 
     def rank(self, part: Part) -> Rank:
-        """How much a part leaves out, by priority; then more tasks go first."""
+        """Sort key: number of left-out tasks by priority, then more tasks first."""
         out = [self.priority.get(task, 0) for task in self.left(part)]
         return tuple(out.count(level) for level in self.levels), -len(part[1])
 
@@ -86,12 +88,12 @@ class Parts:
         return restricted(self.problem, [_term(self.branches[part[0]], part[1])])
 
     def solve(self, part: Part) -> Solution:
-        """A first schedule of a part, or whether there is none."""
+        """A first schedule of a part, or the result that there is none."""
         asked = self.question(part)
         return search(asked, Limits(nodes=PROBES, gap=1.0), *parts(asked))
 
     def ask(self, part: Part) -> bool | None:
-        """Whether a part has a schedule; None if that is not decided."""
+        """Whether a part has a schedule; None if undecided."""
         if part[1] == self.flown:
             return True
         if part not in self._known:
@@ -145,7 +147,7 @@ class Parts:
         return Chosen(tuple(part for part in found if part[1] > self.flown), self.sure)
 
     def _one_by_one(self, k: int) -> Part:
-        """A part of a branch to which no task can be added, the higher priorities first."""
+        """A part of a branch to which no task can be added, built by priority."""
         kept, whole = self.flown, self.kept(k)
         for task in sorted(whole - kept, key=lambda t: (-self.priority.get(t, 0), t)):
             trial = kept | self.needed(k, task)
@@ -154,7 +156,7 @@ class Parts:
         return k, kept
 
     def needed(self, k: int, task: int) -> frozenset[int]:
-        """A task of a branch with all that has to be done for it."""
+        """A task of a branch and all tasks that must be done for it."""
         found, todo = set(self.flown), [task]
         order = [row for row in rows(self.branches[k]) if row.kind in (AFTER_END, AFTER_START)]
         while todo:
@@ -177,7 +179,7 @@ def _term(branch: Term, kept: Set[int]) -> Term:
 
 
 def restricted(problem: AssignmentProblem, terms: list[Term]) -> AssignmentProblem:
-    """The problem of just these branches, with the choices of their tasks."""
+    """The problem restricted to these branches and the choices of their tasks."""
     wanted = {task for term in terms for task in tasks(term)}
     kept = [k for k, choice in enumerate(problem.choices) if choice.task_id in wanted]
     start = len(problem.choices)
@@ -200,9 +202,9 @@ def restricted(problem: AssignmentProblem, terms: list[Term]) -> AssignmentProbl
 
 
 def part_problem(problem: AssignmentProblem, planned: Set[int]) -> AssignmentProblem:
-    """The problem of a part that others have chosen: these tasks and those that are flown.
+    """The problem of a part chosen by others: these tasks and the flown ones.
 
-    The problem itself if they are no part of it, so that this is told as for any plan.
+    The problem itself if they do not form a part, so that this is reported as for any plan.
     """
     kept = planned | {task for task, _, _ in problem.done}
     if any(set(tasks(branch)) == kept for branch in _branches(problem)):

@@ -1,4 +1,4 @@
-"""Ways along a line, past or around a point, through a point, and round a loiter."""
+"""Paths along a line, past or around a point, through a point, and of a loiter."""
 
 from __future__ import annotations
 
@@ -27,20 +27,20 @@ from cratous.spec.mission.plan import Pose
 
 LOITER_ENTRIES = 8
 LAPS_MAX = 10_000
-"""Laps of a loiter: each is planned point by point, so their number costs memory."""
+"""Most laps of a loiter: each is planned point by point, which costs memory."""
 TILT = 0.95
-"""Looks that are not straight down are tilted by this share of the gimbal's reach."""
+"""Oblique views are tilted by this share of the gimbal's range."""
 STRAIGHT_DOWN_RAD = math.radians(-85)
-"""A camera that can be tilted to here sees what is below it."""
+"""A camera with this lowest elevation or below counts as looking straight down."""
 VIEWS_MOST = 16
-"""More directions of view than these are not offered, so that options stay few."""
+"""Most directions of view offered, to limit the number of options."""
 STANDOFF_MARGIN_M = 25.0
-"""How much farther than the standoff a pass is planned, so that a wobble stays outside."""
+"""Distance added to the standoff in planning, as a margin for tracking errors [m]."""
 SIDES = {"any": (RIGHT, LEFT), "clockwise": (RIGHT,), "counter_clockwise": (LEFT,)}
 
 
 def views_of(task: Task) -> tuple[View | None, ...]:
-    """All views that will do; None alone: any."""
+    """All acceptable views; (None,) means any."""
     return (task.view, *task.views)
 
 
@@ -51,9 +51,9 @@ def line_ways(
     terrain_m: float,
     roadmaps: Sequence[Roadmap] | None = None,
 ) -> Iterator[Way]:
-    """Both directions of a line for each wanted view, offset to where that view looks at it.
+    """Both directions of a line for each wanted view, offset so that the view looks at it.
 
-    roadmaps: those ways that cover the line are cut where their zones forbid it, and what is left is joined.
+    roadmaps: if given, paths that cover the line are cut where zones forbid them, and the rest is joined.
     """
     views = tilted(task, camera) or views_of(task)
     for number, view in enumerate(views[:VIEWS_MOST], 1):
@@ -78,7 +78,7 @@ def _cut(
     terrain_m: float,
     roadmaps: Sequence[Roadmap],
 ) -> Way:
-    """A way along a line without what the zones forbid of it; its coverage is then that of the whole line."""
+    """A path along a line without the parts that zones forbid; its coverage is that of the whole line."""
     if way.coverage is not None and way.coverage < ENOUGH:
         return way
     left = cut([way.points], flyer.radius_m, roadmaps, in_order=True)
@@ -94,11 +94,11 @@ def _cut(
 
 
 def tilted(task: Task, camera: Camera | None) -> tuple[View, ...]:
-    """Looks to both sides, ahead and back, for a camera that cannot look straight down.
+    """Views to both sides, ahead and back, for a camera that cannot look straight down.
 
-    Only where no view is asked for; such a camera needs one, since a look at what is below it turns with
-    every wobble. A look ahead or back follows the line itself, so it loses nothing in bends that are
-    narrower than a side look is far.
+    Only if no view is required; such a camera needs one, since a look straight below would swing with every
+    disturbance. A view ahead or back follows the line itself, so it loses nothing in bends narrower than the
+    distance of a side view.
     """
     if camera is None or views_of(task) != (None,) or camera.min_elevation_rad <= STRAIGHT_DOWN_RAD:
         return ()
@@ -120,7 +120,7 @@ def _looking(way: Way, camera: Camera | None, view: View | None) -> Way:
 
 
 def must_fly_ways(task: Task, flyer: Flyer) -> Iterator[Way]:
-    """Straight through the point, from every side."""
+    """Straight passes through the point, from all directions."""
     point = _at_altitude(task.points[0], flyer)
     for degrees in range(0, 360, HEADING_STEP_DEG):
         pose = Pose(*point, math.radians(degrees))
@@ -143,7 +143,7 @@ def point_ways(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float
     for view, look, heading, label in _aims(task):
         away = view_distance_m(view, flyer.alt_m - terrain_m)
         if task.standoff_m > 0 and away < task.standoff_m + STANDOFF_MARGIN_M:
-            # the standoff goes before the tilt of a view: farther away, in the view's direction
+            # the standoff overrides the tilt of a view: farther away, in the view's direction
             away = task.standoff_m + STANDOFF_MARGIN_M
             if view is not None:
                 view = replace(view, elevation_rad=-math.atan2(flyer.alt_m - terrain_m, away))
@@ -168,7 +168,7 @@ def point_ways(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float
 
 
 def _apart(loiter: Loiter, task: Task) -> Loiter:
-    """A loiter around the point itself, at least the standoff distance and its margin away."""
+    """A loiter around the point itself, at least the standoff distance plus margin away."""
     least = task.standoff_m + STANDOFF_MARGIN_M
     if task.standoff_m <= 0 or loiter.shape != "circular" or loiter.radius_m >= least:
         return loiter
@@ -177,7 +177,7 @@ def _apart(loiter: Loiter, task: Task) -> Loiter:
 
 
 def _aims(task: Task) -> Iterator[tuple[View | None, float, float, str]]:
-    """View, direction of the look, heading and name of each pass [rad]; a bounded number."""
+    """View, look direction, heading [rad] and name of each pass; a bounded number."""
     every = range(0, 360, HEADING_STEP_DEG)
     views = views_of(task)[:VIEWS_MOST]
     only = views[0]
@@ -213,7 +213,9 @@ def _aims(task: Task) -> Iterator[tuple[View | None, float, float, str]]:
 def _checked(
     way: Way, task: Task, view: View | None, camera: Camera | None, terrain_m: float
 ) -> Way:
-    """The way with the share of the dwell that the camera sees the point, and its standoff kept."""
+    """The path with the share of the dwell during which the camera sees the point; rejected if it violates
+    the standoff.
+    """
     if way.reason:
         return way
     nearest_m = _nearest_m(way.points, task.points[0])
@@ -229,7 +231,7 @@ def _checked(
 
 
 def _nearest_m(points: tuple[Position, ...], target: Position) -> float:
-    """Least horizontal distance of a polyline from a point [m]."""
+    """Smallest horizontal distance of a polyline from a point [m]."""
     best = math.inf
     for p, q in pairwise(points):
         n, e = q.north_m - p.north_m, q.east_m - p.east_m

@@ -1,7 +1,8 @@
-"""Why no plan exists, in the user's terms: rows that clash.
+"""Why no plan exists, in the user's terms: conflicting constraint rows.
 
-What has no vehicle at all is said by `without_vehicles`. Of the rows a smallest set is sought that contradict each other (deletion filter: without any one
-of them there is a plan). A latest end is reported with the earliest end that the task can reach.
+Tasks without any able vehicle are reported by `without_vehicles`. A minimal set of conflicting rows is sought
+(deletion filter: without any one of them there is a plan). A latest end is reported with the earliest end
+that the task can reach.
 """
 
 from __future__ import annotations
@@ -16,16 +17,16 @@ from cratous.spec.assignment.search import MINMAX, AssignmentProblem, Solution
 from cratous.spec.constraint_rows import NOT_AFTER, NOT_BEFORE, WITHIN_END, WITHIN_START, Row
 
 PROBES = 20_000
-"""Nodes per question asked of the search while looking for reasons."""
+"""Search nodes per query while looking for reasons."""
 ROWS_MAX = 60
-"""So many rows are tried one by one; of more only the upper bounds are."""
+"""Up to this many rows are tried one by one; otherwise only the upper bounds."""
 UPPER = (WITHIN_END, WITHIN_START, NOT_AFTER)
 Question = tuple[bool | None, int | None]
-"""(whether there is a schedule, None if that is not decided; the latest end of what was found)."""
+"""(whether there is a schedule, None if undecided; latest end found)."""
 
 
 class _Rows:
-    """Questions about a problem with some of its rows only; rows are known by number."""
+    """Queries about a problem with only some of its rows."""
 
     def __init__(self, problem: AssignmentProblem) -> None:
         self.problem = replace(problem, cost=MINMAX)
@@ -36,7 +37,7 @@ class _Rows:
             self.rows.update(dict.fromkeys(row for row in bound if _says(row)))
 
     def ask(self, keep: Iterable[Row], end: Row | None = None) -> tuple[bool | None, Solution]:
-        """Whether there is a schedule under these rows, and with that latest end."""
+        """Whether there is a schedule under these rows and, if given, with that latest end."""
         kept = set(keep)
         branches = [self._with(part, kept, end) for part in self.branches]
         found = search(self.problem, Limits(nodes=PROBES, gap=1.0), branches, self.complete)
@@ -57,10 +58,10 @@ class _Rows:
         return replace(part, rows=tuple(rows), orders=sum(first for first, _ in said))
 
     def earliest_end(self, task: int, keep: Sequence[Row]) -> tuple[int | None, bool]:
-        """The earliest end of one task under these rows; and whether that is sure.
+        """The earliest end of one task under these rows [ms], and whether that is certain.
 
-        Just below what was found is asked first, since most often that is the earliest; then in
-        steps twice as wide each time something earlier is found, and at last by halving.
+        The search starts just below the end that was found, since that is often the earliest; the step is
+        doubled with each success, and finally the interval is halved.
         """
         yes, found = self.ask(keep)
         if not yes:
@@ -86,13 +87,13 @@ def _end(found: Solution, task: int) -> int | None:
 
 
 def is_wayless(problem: AssignmentProblem) -> bool:
-    """Whether not even without any constraint on times there is a schedule."""
+    """Whether there is no schedule even without any time constraint."""
     questions = _Rows(problem)
     return not questions.rows or questions.ask([])[0] is False
 
 
 def timing_reasons(problem: AssignmentProblem, found: Solution) -> tuple[str, ...]:
-    """Which rows clash, and what is left open if that is not certain."""
+    """The conflicting rows, and what remains open if that is not certain."""
     questions = _Rows(problem)
     certain = found.status == "infeasible"
     none = f"no schedule was found in {found.nodes} search nodes"
@@ -124,7 +125,7 @@ def timing_reasons(problem: AssignmentProblem, found: Solution) -> tuple[str, ..
 
 
 def _sentence(questions: _Rows, row: Row, keep: Sequence[Row]) -> str:
-    """What a latest end demands, and the earliest that its task can reach without it."""
+    """The requirement of a latest end, and the earliest end that its task can reach without it."""
     best, sure = questions.earliest_end(row.i, [other for other in keep if other is not row])
     got = "no schedule was found"
     if best is not None:

@@ -1,8 +1,8 @@
-"""What would have to change so that a task that is left out could be done: smallest sets, each tried.
+"""Remedies for a left-out task: minimal sets of changes that would make it possible, each tried.
 
-For a task that no vehicle can do or reach, the options are made anew without a zone, for vehicles that it does not
-name, and without two of these where one is not enough. What is found so is computed, not guessed; what cannot
-be tried here (a vehicle that was lost, less wind, another window) is named and said not to have been.
+For a task that no vehicle can do or reach, the options are recomputed without a zone, for vehicles that are
+not eligible, and with two such changes where one does not suffice. These remedies are computed; those that
+cannot be tried here (a lost vehicle, less wind, another time window) are listed and marked as untried.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from cratous.spec.mission import AREAS, Zone
 from cratous.spec.mission.plan import ELIGIBILITY, VEHICLE, WIND, ZONE, Remedy
 
 ZONES_MOST = 8
-"""So many zones are taken away, one after the other and by twos."""
+"""Most zones removed, singly and in pairs."""
 
 
 class _Change(NamedTuple):
-    """One thing that would be otherwise: a zone away, or all vehicles eligible."""
+    """One change: a zone removed, or all vehicles eligible."""
 
     kind: str
     zone: Zone | None
@@ -35,9 +35,9 @@ class _Change(NamedTuple):
 def remedies_of(inputs: Inputs, task_id: int) -> tuple[Remedy, ...]:
     """The smallest sets of changes with which some vehicle could do and reach a task, as far as is known."""
     if task_id in inputs.undone:
-        return ()  # it has been begun and given up: nothing brings it back
+        return ()  # it was begun and given up: no change brings it back
     singles = list(_changes(inputs, task_id))
-    # ways over an area take long to make: two changes at once are not tried there
+    # paths over an area are slow to compute: pairs of changes are not tried
     for size in (1,) if inputs.mission.task(task_id).kind in AREAS else (1, 2):
         found = [
             _remedy(inputs, task_id, changes, able)
@@ -58,7 +58,7 @@ def _changes(inputs: Inputs, task_id: int) -> Iterator[_Change]:
 
 
 def _able(inputs: Inputs, task_id: int, changes: tuple[_Change, ...]) -> tuple[int, ...]:
-    """The vehicles that could do the whole task from where they are, with these changes."""
+    """The vehicles that could do the whole task from their positions, with these changes."""
     gone = {change.zone.id for change in changes if change.zone is not None}
     zones = tuple(zone for zone in inputs.zones if zone.id not in gone)
     task = inputs.mission.task(task_id)

@@ -1,4 +1,4 @@
-"""Ways between tasks: travel times for the assignment, polylines for the plan. Each found once."""
+"""Routes between tasks: travel times for the assignment, polylines for the plan. Each is computed once."""
 
 from __future__ import annotations
 
@@ -22,27 +22,27 @@ from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.mission.plan import Pose
 
 Ends = tuple[Pose, Flyer, Pose]
-"""What a route depends on: where it begins, the class of the vehicle, where it ends."""
+"""What a route depends on: start pose, vehicle class, end pose."""
 
 
 class Ending(Protocol):
-    """An option, or anything else with a pose to go to and one to leave from."""
+    """An option, or anything else with a pose to arrive at and one to depart from."""
 
     @property
     def start(self) -> Pose:
-        """Where a way to it ends."""
+        """End pose of a route to it."""
 
     @property
     def end(self) -> Pose:
-        """Where a way from it begins."""
+        """Start pose of a route from it."""
 
 
 class Routes:
     """Routes of a mission's vehicles from their starts and from option to option.
 
-    Vehicles are indices into `mission.vehicles`, options indices into `options`; from START means
-    from where the vehicle is. In flight (`flying`) a route from inside a zone begins with the shortest
-    level way out that was found.
+    Vehicles are indices into `mission.vehicles`, options indices into `options`; START means the vehicle's
+    position. In flight (`flying`) a route from inside a zone begins with the shortest level way out that was
+    found.
     """
 
     def __init__(
@@ -63,13 +63,13 @@ class Routes:
         self._times: dict[Ends, int | None] = {}
 
     def between(self, options: Sequence[Ending]) -> Routes:
-        """The same routes between other ends; what either finds, both have."""
+        """The same routes between other ends; both share one cache."""
         other = copy(self)
         other.options = options
         return other
 
     def take_over(self, earlier: Routes, known: Collection[Pose]) -> None:
-        """What was found between these poses, among the same zones by the same vehicles."""
+        """Reuse times found between these poses, among the same zones by the same vehicles."""
         if self._times or earlier.flying != self.flying:
             return
         self._maps.update(earlier._maps)
@@ -89,10 +89,10 @@ class Routes:
         return self._found[key]
 
     def over(self, vehicle: int, before: int, to: int, points: Sequence[Position]) -> Route:
-        """The route over the places that somebody else has found, or none and why it is no route here.
+        """The route through the points of another planner, or none with the reason.
 
-        They have to end where the route does and to keep between its altitudes; the climb is spread evenly.
-        Legs between them are put to the proved kernels as those of any route.
+        They must end where the route does and stay between its altitudes; the climb is spread evenly. The
+        proved kernels check the legs between them as those of any route.
         """
         start, flyer, end = self._ends(vehicle, before, to)
         vias, why = inner(start, end, points)
@@ -111,11 +111,13 @@ class Routes:
         return self._maps[radius_m]
 
     def kept_clear(self, radius_m: float) -> tuple[Zone, ...]:
-        """The zones with the margin for tracking that routes of a turn radius keep where there is room."""
+        """The zones with the tracking margin that routes of a turn radius keep where there is room."""
         return self._roadmaps(radius_m)[0].zones
 
     def _way_out(self, start: Pose, radius_m: float) -> WayOut | None:
-        """How a route comes out of zones that it begins in, None if it is in none or may not."""
+        """The way out of the zones in which a route begins; None if it begins in none, or on the ground
+        before flight.
+        """
         if not self.flying:
             return None
         if (start, radius_m) not in self._out:
@@ -141,7 +143,7 @@ class Routes:
         return found
 
     def prepare(self, vehicle: int, pairs: Iterable[tuple[int, int]]) -> None:
-        """Find the times of many (before, to) at once, each pair of poses of a class once."""
+        """Compute the travel times of many (before, to) pairs at once, each pair of poses of a class once."""
         wanted = dict.fromkeys(self._ends(vehicle, *pair) for pair in pairs)
         left = [key for key in wanted if key not in self._times]
         flyer = self.flyers[vehicle]
@@ -150,8 +152,9 @@ class Routes:
             self._times.update((key, None) for key in left if key not in set(flat))
             left = flat
         around = len(left) > coming.MANY_WAYS and self._lead_around(left)
-        if len(left) > coming.MANY_WAYS:
-            coming.ready(coming.AROUND if around else coming.ROUTES)
+        kind = coming.AROUND if around else coming.ROUTES
+        if len(left) > coming.WORTH_WAITING[kind]:
+            coming.ready(kind)
         for roadmap in self._roadmaps(flyer.radius_m):
             if not left:
                 return
@@ -173,7 +176,7 @@ class Routes:
         self._times.update((key, None) for key in left)
 
     def _lead_around(self, ways: Sequence[Ends]) -> bool:
-        """Whether many of these ways are expected to lead around zones."""
+        """Whether many of these routes are expected to lead around zones."""
         starts, ends = (np.array([key[k][:2] for key in ways], float) for k in (0, 2))
         return many_detours(starts, ends, self.zones)
 
@@ -186,5 +189,5 @@ class Routes:
 
 
 def _slope(flyer: Flyer) -> float:
-    """Metres of climb per metre flown; any, where a vehicle only flies level."""
+    """Metres of climb per metre flown; infinite for a vehicle that only flies level."""
     return flyer.max_climb_m_s / flyer.speed_m_s if flyer.max_climb_m_s > 0 else math.inf

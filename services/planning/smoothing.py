@@ -1,8 +1,8 @@
-"""From a line to a path that an aircraft can fly and from which the camera covers the line.
+"""From a line to a flyable path from which the camera covers the line.
 
-The line is low-passed, moved to where the wanted view looks at it, and flown as Dubins pieces
-between poses on it, so that every candidate is flyable whatever the line does. Of the candidates,
-from the smoothest to the closest, the shortest that still covers the line is taken.
+The line is low-pass filtered, moved to where the wanted view looks at it, and flown as Dubins paths between
+poses on it, so that every candidate is flyable. Of the candidates, from the smoothest to the closest, the
+first that covers the line is taken.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 ENOUGH = 0.99
 """Fraction of a line that has to be covered."""
 MARGIN = 0.9
-"""Planning sees only this part of the field of view, so that a wobble in flight costs nothing."""
+"""Planning uses this part of the field of view only, as a margin for tracking errors."""
 COLLINEAR_M = 1e-3
-"""A point this close to the leg between its neighbours is no corner [m]."""
+"""A point this close to the leg between its neighbours is not a corner [m]."""
 WIDTHS = (6.0, 4.5, 3.5, 2.5, 1.75, 1.25, 0.8, 0.5, 0.25, 0.0)
-"""Widths of the low pass that are tried, in turn radii."""
+"""Widths of the low-pass filter that are tried, in turn radii."""
 
 
 class LinePath(NamedTuple):
@@ -40,7 +40,7 @@ class LinePath(NamedTuple):
 
 
 def low_pass(points: np.ndarray, width_m: float, step_m: float) -> np.ndarray:
-    """Points convolved with a Gaussian of standard deviation width_m / 2; ends stay in place."""
+    """Points convolved with a Gaussian of standard deviation width_m / 2; the ends stay in place."""
     import numpy as np
 
     sigma = width_m / 2 / step_m
@@ -70,7 +70,7 @@ def offset(
 
 
 def headings_of(points: np.ndarray) -> np.ndarray:
-    """Heading along a polyline at each of its points."""
+    """Heading along a polyline at each of its points [rad]."""
     import numpy as np
 
     steps = np.gradient(points, axis=0)
@@ -80,9 +80,9 @@ def headings_of(points: np.ndarray) -> np.ndarray:
 def fly(
     track: np.ndarray, radius_m: float, alt_m: float, step_m: float
 ) -> tuple[Pose, Pose, tuple[Position, ...], float]:
-    """Dubins pieces along a track: end poses, polyline, its length.
+    """Dubins paths along a track: end poses, polyline, its length [m].
 
-    A knot that would need a loop is left out in favour of one further on, where that is shorter.
+    A pose that would require a loop is skipped in favour of a later one where that is shorter.
     """
     headings = headings_of(track)
     stride = max(1, round(1.2 * radius_m / step_m))
@@ -119,7 +119,7 @@ def without_collinear(points: list[Position]) -> tuple[Position, ...]:
 def line_path(
     task: Task, camera: Camera | None, radius_m: float, alt_m: float, terrain_m: float
 ) -> LinePath:
-    """The shortest path found along the line that covers it; the best covering one otherwise.
+    """The first candidate that covers the line; otherwise the one with the best coverage.
 
     Without a camera the line itself is flown as closely as the turn radius allows.
     """

@@ -1,8 +1,8 @@
-"""Waypoints as far apart as an autopilot needs them that flies by waypoints alone.
+"""Waypoints spaced as far apart as needed by an autopilot that flies by waypoints only.
 
-Who turns short counts a waypoint as reached from two turn radii away where the next one is nearer than one
-radius, so along dense waypoints it cuts every bend. What is left out moves the path by no more than is said,
-and each leg that comes of it is held against the zones by `leg_ok`.
+An autopilot that turns short counts a waypoint as reached from two turn radii away, so with waypoints closer
+than one radius it cuts every bend. Omitting waypoints moves the path by at most a stated distance, and each
+resulting leg is checked against the zones by `leg_ok`.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from cratous.core.kernel import Vec2
 from cratous.spec.mission import Position, Zone
 
 TOLERANCE = 0.2
-"""How far a path may be moved by leaving out waypoints, in turn radii."""
+"""How far omitted waypoints may move a path, in turn radii."""
 
 
 def spaced(
     points: Sequence[Position], least_m: float, off_m: float, zones: Sequence[Zone]
 ) -> tuple[Position, ...]:
-    """A path with fewer points: its ends, and of the others those that are needed.
+    """A path with fewer points: its ends, and those of the others that are needed.
 
-    A point nearer than least_m to the one before it that stays, or to the end, is left out, unless that
-    would leave a point farther than off_m from its new leg or above or below it, or the leg would not obey
-    the zones (without padding).
+    A point closer than least_m to the previous kept point, or to the end, is omitted, unless a point would
+    then be farther than off_m from its new leg or above or below it, or the leg would violate the zones
+    (without padding).
     """
     last, kept = len(points) - 1, [0]
 
@@ -51,12 +51,12 @@ def spaced(
 
 
 def near(p: Position, q: Position, least_m: float) -> bool:
-    """True iff two points are nearer than least_m to each other, on the ground."""
+    """Whether two points are closer than least_m [m] horizontally."""
     return edge_against(_flat(p), _flat(q), _flat(q), least_m) not in (AT, FARTHER)
 
 
 def _along(point: Position, p: Position, q: Position, off_m: float) -> bool:
-    """True iff a point is no farther than off_m beside a leg, and neither above nor below both of its ends."""
+    """Whether a point is within off_m of a leg horizontally, and within the altitude range of its ends."""
     beside = edge_against(_flat(point), _flat(p), _flat(q), off_m)
     level = edge_against(_height(point), _height(p), _height(q), 0.0)
     return FARTHER not in (beside, level)

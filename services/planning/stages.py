@@ -1,6 +1,6 @@
 """The stages of planning as pure functions: check, expand, route, assign, build.
 
-The bus services of this package call these; each stage's result is plain data.
+The planning services call these; each stage's result is plain data.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ from cratous.spec.mission import Mission, Zone, asked
 from cratous.spec.mission.plan import Hold, Plan, PlanItem, Pose
 
 BRANCH_LIMIT = 64
-"""So many ways to resolve `+` are looked at for which ways between tasks are needed at all."""
+"""Most resolutions of `+` examined to determine which routes between tasks are needed."""
 
 
 def start_poses(mission: Mission, given: Mapping[int, Pose] | None = None) -> dict[int, Pose]:
-    """Where each vehicle plans from: the given poses, else the mission's start poses."""
+    """Start pose of each vehicle: the given one, else the mission's."""
     poses = {v.id: Pose(*v.position, v.heading_rad) for v in mission.vehicles}
     poses.update(given or {})
     return poses
 
 
 def check_starts(mission: Mission, starts: Mapping[int, Pose], zones: Sequence[Zone]) -> None:
-    """BadInput if a vehicle starts inside a keep-out or outside of a keep-in."""
+    """BadInput if a vehicle starts inside a keep-out or outside a keep-in zone."""
     for k, vehicle in enumerate(mission.vehicles):
         bad = first_bad_leg((start_point(starts[vehicle.id]),), zones)
         if bad is not None:
@@ -50,7 +50,7 @@ def check_starts(mission: Mission, starts: Mapping[int, Pose], zones: Sequence[Z
 
 
 def term_of(mission: Mission) -> algebra.Term:
-    """The mission's relations as a term; every task in any order if there are none."""
+    """The mission's relations as a term; all tasks in any order if there are none. NoPlan without tasks."""
     term = asked.term_of(mission)
     if term is None:
         raise NoPlan(("the mission has no tasks",))
@@ -69,7 +69,7 @@ def fixed_tasks(done: Iterable[Any]) -> tuple[Fixed, ...]:
 
 
 def branches_of(mission: Mission, fixed: Sequence[Fixed]) -> tuple[tuple[Branch, ...], bool]:
-    """The branches that agree with what is already done, and whether these are all of them."""
+    """The branches that contain all flown tasks, and whether all branches were examined."""
     term = term_of(mission)
     done = {f.task_id for f in fixed}
     made = []
@@ -85,7 +85,9 @@ def branches_of(mission: Mission, fixed: Sequence[Fixed]) -> tuple[tuple[Branch,
 
 
 def hold_of(option: Option, wait_ms: int, zones: Sequence[Zone]) -> Hold | None:
-    """A holding circle at the option's start whose laps take exactly wait_ms [ms] and stay clear of the zones."""
+    """A holding circle at the option's start whose laps take exactly wait_ms [ms] and keep the zones; None if
+    there is none.
+    """
     pose, speed = option.start, option.flyer.speed_m_s
     for laps in range(wait_ms // option.lap_ms, 0, -1):
         radius = speed * wait_ms / 1000 / (2 * math.pi * laps)
@@ -166,7 +168,7 @@ def build(
 
 
 def nothing_left(mission: Mission, branches: Sequence[Branch], fixed: Sequence[Fixed]) -> Plan:
-    """The plan when every task has been flown; NoPlan if what was flown fits no branch."""
+    """The plan when every task has been flown; NoPlan if the flown tasks fit no branch."""
     if not branches:
         raise NoPlan(("what has been flown fits no branch of the relations",))
     first, last = branches[0], max((f.end_ms for f in fixed), default=0)

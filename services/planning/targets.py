@@ -1,4 +1,4 @@
-"""Where the camera has to look while a task is flown, as its option was planned."""
+"""Where the camera looks while a task is flown, consistent with its planned option."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from cratous.spec.mission import AREAS, Camera, Position, Task, TaskKind, View
 
 
 class Angles(NamedTuple):
-    """The view for which an option was made [rad]; elevation None: none was."""
+    """The view for which an option was made [rad]; elevation None: no view."""
 
     elevation_rad: float | None
     azimuth_rad: float
 
 
 def chosen_view(task: Task, made_for: Angles) -> View | None:
-    """The wanted view for which the option was made: of several, the one with its angles."""
+    """The wanted view for which the option was made: of several, the one closest to its angles."""
     if made_for.elevation_rad is None or not task.views:
         return task.view
     return _nearest(made_for.elevation_rad, made_for.azimuth_rad, (task.view, *task.views))
 
 
 def flown_view(task: Task, made_for: Angles, cameras: Sequence[Camera]) -> View | None:
-    """As `chosen_view`; where the task asks for none, the one that the option has brought itself."""
+    """As `chosen_view`; if the task requires no view, the one chosen by the planner for the option."""
     asked = chosen_view(task, made_for)
     if open_view(task):
         return brought_view(task, *made_for)
@@ -39,7 +39,7 @@ def flown_view(task: Task, made_for: Angles, cameras: Sequence[Camera]) -> View 
 
 
 def _nearest(elevation_rad: float, azimuth_rad: float, views: Iterable[View | None]) -> View | None:
-    """The view with these angles; no view at all is one straight down."""
+    """The view closest to these angles; None counts as straight down."""
 
     def off(view: View | None) -> float:
         if view is None:
@@ -58,9 +58,11 @@ def target_from(
     cameras: Sequence[Camera],
     terrain_m: float,
 ) -> Position | None:
-    """The ground point to look at from a place: of a line the one nearest to where the flown option's view
-    looks, as planning has it; the point; or, over an area, below the aircraft or where the view looks.
-    None for a task that looks at nothing."""
+    """The ground point to look at from a place; None for a task that looks at nothing.
+
+    For a line: its point nearest to where the view of the flown option looks, as in planning; for a point:
+    the point; over an area: below the aircraft or where the view looks.
+    """
     if not task.points:
         return None
     height_m = here.alt_m - terrain_m

@@ -1,4 +1,4 @@
-"""A route over places that somebody else has found: made flyable, and each leg put to the proved kernels."""
+"""A route through the points of another planner: made flyable, and each leg checked by the proved kernels."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.plan import Pose
 
 NEAR_M = 50.0
-"""A place this near to an end of the route is that end [m]."""
+"""A point this close to an end of the route counts as that end [m]."""
 APART = 2.0
-"""Places are thinned out to this many turn radii where the way stays the same."""
+"""Spacing to which points are thinned out where the path stays the same, in turn radii."""
 LEVEL_M = 1.0
-"""Altitudes may lie this much above or below both ends [m]."""
+"""Tolerance of altitudes above or below both ends [m]."""
 
 Heading = Callable[[float, float], float]
 _HEADINGS: tuple[Heading, ...] = (
@@ -26,18 +26,18 @@ _HEADINGS: tuple[Heading, ...] = (
     lambda a, b: a,
     lambda a, b: b,
 )
-"""At a place: halfway between the legs, along the one to it, along the one from it."""
+"""Heading at a point: halfway between its legs, along the leg to it, or along the leg from it."""
 
 
 class Flown(NamedTuple):
-    """How a vehicle flies: turn radius [m], steepest climb (metres per metre flown)."""
+    """Flight performance: turn radius [m], steepest climb (metres per metre flown)."""
 
     radius_m: float
     slope: float
 
 
 def inner(start: Pose, end: Pose, points: Sequence[Position]) -> tuple[list[Position], str]:
-    """The places between start and end, and why they are none of a route between these."""
+    """The points between start and end, and why they do not form a route between these; "" if they do."""
     a, b = Position(*start[:3]), Position(*end[:3])
     if not points:
         return [], "it has no places"
@@ -56,7 +56,7 @@ def inner(start: Pose, end: Pose, points: Sequence[Position]) -> tuple[list[Posi
 def joined(
     start: Pose, end: Pose, vias: Sequence[Position], flown: Flown, zones: tuple[Zone, ...]
 ) -> Route:
-    """The flyable route over these places, in order, that obeys the zones; or none and why."""
+    """The flyable route through these points, in order, that keeps the zones; or none and the reason."""
     places = [Position(*start[:3]), *_climbing(start, end, vias), Position(*end[:3])]
     off_m = TOLERANCE * flown.radius_m
     places = list(spaced(places, APART * flown.radius_m, off_m, zones))
@@ -69,7 +69,7 @@ def joined(
 
 
 def _links(poses: Sequence[Pose], flown: Flown, roadmap: Roadmap) -> Route:
-    """From pose to pose, each by the shortest turns that the zones allow."""
+    """From pose to pose, each by the shortest route that the zones allow."""
     path, metres = [Position(*poses[0][:3])], 0.0
     for k in range(1, len(poses)):
         link = route(poses[k - 1], poses[k], flown.radius_m, roadmap, flown.slope)
@@ -88,7 +88,7 @@ def _poses(start: Pose, end: Pose, places: Sequence[Position], heading: Heading)
 
 
 def _climbing(start: Pose, end: Pose, vias: Sequence[Position]) -> list[Position]:
-    """The same places, the climb spread evenly over the way."""
+    """The points with the climb spread evenly along the path."""
     places = [Position(*start[:3]), *vias, Position(*end[:3])]
     run = [0.0]
     for k in range(1, len(places)):

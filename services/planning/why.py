@@ -1,7 +1,7 @@
-"""Why a task is given to this vehicle and not to that one: what the plan would cost with each other vehicle.
+"""What a plan would cost if another vehicle did a task.
 
-For each vehicle the same problem is solved anew with the task for it alone; of a plan that leaves tasks
-out, the problem of what is planned.
+For each vehicle the problem is solved again with the task restricted to it; for a partial plan, the problem
+of the planned tasks.
 """
 
 from __future__ import annotations
@@ -21,8 +21,9 @@ from cratous.spec.mission.plan import Plan, left_out_of
 
 
 class Instead(NamedTuple):
-    """What it would mean to give a task to a vehicle. cost: of the whole plan, None if there is none;
-    reason: why not, empty if it could be; sure: nothing cheaper, as far as is proved."""
+    """The effect of giving a task to a vehicle. cost: of the whole plan, None if there is none; reason: why
+    not, "" if possible; sure: whether the cost is proved minimal, or the absence of a plan certain.
+    """
 
     vehicle: int
     cost: int | None
@@ -31,7 +32,7 @@ class Instead(NamedTuple):
 
 
 def why(mission: Mission, plan: Plan, task: int, absent: dict[int, str]) -> tuple[Instead, ...]:
-    """For each vehicle of a mission what the plan would cost if it did the task; none if it is left out.
+    """For each vehicle of a mission, the cost of the plan if it did the task; empty if the task is left out.
 
     BadInput if the mission has no such task, or another choice of the relations is planned.
     """
@@ -54,7 +55,7 @@ def why(mission: Mission, plan: Plan, task: int, absent: dict[int, str]) -> tupl
 def _with(
     mission: Mission, problem: AssignmentProblem, inputs: Inputs, task: int, vehicle: int
 ) -> Instead:
-    """The plan with a task for one vehicle alone."""
+    """The result with a task restricted to one vehicle."""
     choices = tuple(
         choice
         if choice.task_id != task

@@ -1,6 +1,6 @@
-"""Why a wanted task has no vehicle: nobody can fly it, or nobody can reach it.
+"""Why a wanted task has no vehicle: no vehicle can fly it, or none can reach it.
 
-Said of all that planning begins with, before any search.
+Determined from the inputs of planning, before any search.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def _named(inputs: Inputs, task_id: int) -> str:
 
 
 def without_options(inputs: Inputs) -> dict[int, str]:
-    """What keeps the vehicles from each wanted task that none can fly."""
+    """For each wanted task that no vehicle can fly, what prevents the vehicles."""
     reasons = {}
     for task_id in inputs.wanted:
         if any(option.task_id == task_id for option in inputs.options):
@@ -57,7 +57,9 @@ def without_options(inputs: Inputs) -> dict[int, str]:
 
 
 def without_routes(inputs: Inputs) -> dict[int, str]:
-    """What keeps the vehicles from each wanted task that none can reach, from its start or another task."""
+    """For each wanted task that no vehicle can reach, from its start or another task, what prevents the
+    vehicles.
+    """
     reasons = {}
     options, routes = inputs.options, inputs.routes
     for task_id in inputs.wanted:
@@ -85,7 +87,7 @@ def without_routes(inputs: Inputs) -> dict[int, str]:
 
 
 def _not_there_yet(inputs: Inputs, task_id: int) -> bool:
-    """Whether of the vehicles that may do a task none takes part, and one joins later."""
+    """Whether none of a task's eligible vehicles takes part yet, and one joins later."""
     eligible = inputs.mission.task(task_id).eligible
     here = any(not eligible or vehicle.id in eligible for vehicle in inputs.mission.vehicles)
     return not here and any(

@@ -1,4 +1,4 @@
-"""Zones as the planner uses them: with a margin for tracking, and rings of via points around."""
+"""Zones as the planner uses them: with a tracking margin, and rings of via points around them."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from cratous.spec.errors import BadInput
 from cratous.spec.mission import Zone, ZoneKind
 
 MARGIN_M = 20.0
-"""Distance that routes keep from zones where there is room, so that a wobble stays outside."""
+"""Distance that routes keep from zones where there is room, as a margin for tracking errors [m]."""
 RINGS = (0.15, 0.6, 1.2, 2.5)
 """Distances of the rings of via points from the zones, in turn radii."""
 
 
 def roadmaps(zones: Sequence[Zone], radius_m: float) -> tuple[Roadmap, ...]:
-    """Roadmaps to try one after the other: with the tracking margin, then without."""
+    """Roadmaps to try in order: with the tracking margin, then without."""
     hard = hard_zones(zones)
     if not hard:
         return (Roadmap(()),)
@@ -39,7 +39,7 @@ def _widened(zone: Zone, by_m: float) -> Zone:
 
 
 def _ring(zones: Sequence[Zone], distance_m: float) -> tuple[tuple[float, float], ...]:
-    """Corners of the zones' offset outlines: outside of keep-outs, inside of keep-ins."""
+    """Corners of the zones' offset outlines: outside keep-outs, inside keep-ins."""
     from shapely import MultiPolygon, Polygon
 
     points: list[tuple[float, float]] = []

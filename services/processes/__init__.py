@@ -1,1 +1,1 @@
-"""`cratous run --processes`: a mission flown by simulator, UxAS and ICAROUS in processes of their own."""
+"""`cratous run --processes`: a mission flown by separate simulator, UxAS and ICAROUS processes."""

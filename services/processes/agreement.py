@@ -1,4 +1,4 @@
-"""Whether the assignment that UxAS tells is that of the plan that was checked."""
+"""Comparison of the assignment reported by UxAS with the checked plan."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from cratous.core.authority.timeliness import in_time
 from cratous.spec.mission.plan import Plan
 
 ROUNDED_MS = 500
-"""The plan of UxAS is made from degrees in another frame: its times may be off by this [ms]."""
+"""UxAS plans from degrees in another frame, so its times may differ by this much [ms]."""
 
 
 def agrees(plan: Plan, summary: Any) -> str:
-    """What a TaskAssignmentSummary has otherwise than the plan, in words; empty if nothing."""
+    """The first difference between a TaskAssignmentSummary and the plan, in words; "" if they agree."""
     said: dict[int, list[Any]] = {}
     for one in summary.TaskList:
         said.setdefault(one.AssignedVehicle, []).append(one)

@@ -1,10 +1,11 @@
-"""AMASE as the simulator of a flight: it is met at its port, given the mission's aircraft, and met again when lost.
+"""AMASE as the simulator of a flight: connected at its port, given the mission's aircraft, and reconnected
+when lost.
 
-UxAS speaks with AMASE through here. AMASE's clock cannot be stopped over the network, so nothing of AMASE counts
-before the flight begins: then the mission's aircraft are taken out of AMASE, whatever it had loaded, put in where they
-are to be, and commanded, all at once. When the connection ends, AMASE is begun anew or its clock goes back, the same is
-done with the states that were told last, and the time of the flight goes on from there. A connection that stands while
-nothing comes over it has ended as well: nobody says so when a machine or the way to it is gone.
+UxAS communicates with AMASE through here. AMASE's clock cannot be stopped over the network, so its states are
+ignored before the flight begins: then the mission's aircraft are removed from AMASE, whatever it had loaded,
+inserted at their start positions, and commanded, all at once. When the connection ends, AMASE is restarted or
+its clock goes back, the same is done with the last known states, and flight time continues from there. A
+connection without data counts as ended too, since the loss of a machine or of the network is not signalled.
 """
 
 from __future__ import annotations
@@ -34,22 +35,26 @@ from cratous.spec.errors import BadInput, CratousError
 from cratous.spec.mission import Mission
 
 ANSWERS_S = 10.0
-"""How long AMASE may take to let us in at first [s]."""
+"""Time limit for the first connection to AMASE [s]."""
 RETURNS_S = 120.0
-"""How long AMASE may be away before the flight ends [s], from its last state until states of all aircraft come again."""
+"""Longest absence of AMASE before the flight ends, from its last state until states of all aircraft arrive
+again [s].
+"""
 SILENT_S = 10.0
-"""AMASE that does not tell states of all aircraft of the mission for so long [s] is lost, and connected to anew."""
+"""AMASE counts as lost, and is reconnected, if states of all the mission's aircraft are missing for this long
+[s].
+"""
 FIRST_MS = 500
-"""The time of the first states of a flight: AMASE tells them so often."""
+"""Time of the first states of a flight [ms]: AMASE's interval of states."""
 LIMITS = Limits(waiting_bytes=64 << 20)
 SCHEME = "amase://"
 COMMANDS = ("MissionCommand", "VehicleActionCommand")
 NEEDED = ("SessionStatus", "AirVehicleState")
-"""What is read of AMASE: it passes on whatever other clients send, of kinds that are not known here, too."""
+"""Messages read from AMASE; it also forwards other clients' messages, of kinds unknown here."""
 
 
 class AmaseLost(CratousError):
-    """AMASE is away, or does not do what a flight needs."""
+    """AMASE is unavailable, or does not do what the flight requires."""
 
     exit_code = 3
 
@@ -73,16 +78,16 @@ def amase_address(text: str) -> Address:
 
 
 class Amase:
-    """The connection to an AMASE that runs, and the port at which UxAS finds it; close it when done."""
+    """The connection to a running AMASE, and the port for UxAS. Close it when done."""
 
     def __init__(self, where: Address, tell: Callable[[str], None]) -> None:
-        """Connect; BadInput if nobody answers."""
+        """Connect; BadInput if there is no answer."""
         self.where, self._tell = where, tell
         self._port = TcpPort(where, server=False, limits=LIMITS)
         loopback = address("tcp://127.0.0.1:0", ("tcp",), free=True)
         self._uxas = TcpPort(loopback, server=True, limits=LIMITS)
         self.port = self._uxas.bound[1]
-        """Where UxAS finds AMASE, on this machine."""
+        """Port at which UxAS finds AMASE, on this machine."""
         self._phase = Phase.APART
         self._told: dict[int, tuple[Any, Any]] = {}
         self._last: dict[int, Any] = {}
@@ -96,7 +101,7 @@ class Amase:
         self._now_s = self._news_s = time.monotonic()
         self._gone = ""
         self.met_again: list[str] = []
-        """What is to be said of each time that AMASE was lost and met again."""
+        """A report of each loss and return of AMASE."""
         try:
             self._answered()
         except BaseException:
@@ -105,16 +110,16 @@ class Amase:
 
     @property
     def name(self) -> str:
-        """As the user names it."""
+        """Its address in the user's form."""
         return f"{SCHEME}{self.where.text.removeprefix('tcp://')}"
 
     @property
     def flies(self) -> bool:
-        """Whether states of all aircraft have come since they were put in."""
+        """Whether states of all aircraft have arrived since they were inserted."""
         return self._phase is Phase.FLYING
 
     def close(self) -> None:
-        """Let go of AMASE and UxAS."""
+        """Close the connections to AMASE and UxAS."""
         self._port.close()
         self._uxas.close()
 
@@ -137,7 +142,7 @@ class Amase:
     # the flight -----------------------------------------------------------------------------------
 
     def begin(self, mission: Mission, told: Told) -> None:
-        """The flight begins: the aircraft of the mission are put in where it says, with what was commanded so far."""
+        """Begin the flight: insert the mission's aircraft at their start positions, with the commands so far."""
         plane = Projection(mission.frame)
         for vehicle, made, state in zip(
             mission.vehicles, told.configurations, told.states, strict=True
@@ -152,12 +157,14 @@ class Amase:
         self._lost("")
 
     def step(self, now_s: float) -> tuple[list[Any], int]:
-        """What the flight hears of its simulator, and how many messages came; AmaseLost if it cannot go on."""
+        """Process input. Returns what the flight receives from its simulator, and the number of messages;
+        AmaseLost if the flight cannot continue.
+        """
         heard: list[Any] = []
         self._now_s = now_s
         asked, told = self._uxas.step(now_s), self._port.step(now_s)
         if self._uxas.peers:
-            self._uxas.shut()  # nobody else commands through here
+            self._uxas.shut()  # no other client may command through here
         for incoming in asked:
             heard += self._commanded(_body(incoming, "UxAS"))
         if self._port.peers:
@@ -184,7 +191,7 @@ class Amase:
         return "has not told states of all aircraft of the mission"
 
     def _commanded(self, body: Any) -> list[Any]:
-        """A message of UxAS: a command is passed on, and kept for when AMASE has to be told it again."""
+        """A message of UxAS: a command is forwarded, and kept for a restart of AMASE."""
         if type(body).__name__ not in COMMANDS:
             return []
         standing = self._standing.setdefault(body.VehicleID, Standing())
@@ -195,17 +202,17 @@ class Amase:
 
     def _back(self) -> None:
         if not self._was_there:
-            # a process that stands still is connected to as well: it answers by its first message
+            # even a stopped process accepts connections: it counts as back with its first message
             self._was_there, self._news_s = True, self._now_s
 
     def _silent(self) -> None:
-        """Nothing has come for too long: what was said over that connection may never arrive, so there is another."""
+        """AMASE has been silent for too long: reconnect, since messages on that connection may never arrive."""
         self._port.redial("silent")
         self._lost(f"it has not told states of all aircraft of the mission for {SILENT_S:g} s")
         self._was_there, self._news_s = False, self._now_s
 
     def _lost(self, why: str) -> None:
-        """Discard AMASE's state; why: how the connection was lost, empty at the start of the flight."""
+        """Discard AMASE's state. why: how the connection was lost, "" at the start of the flight."""
         if self._phase is Phase.FLYING:
             at = f"at {self._flown_ms / 1000:.1f} s"
             self._tell(f"{self.name} is lost {at}: {why}; waiting {RETURNS_S:g} s for it")
@@ -217,7 +224,7 @@ class Amase:
             self._clearing()
 
     def _clearing(self) -> None:
-        """Whatever AMASE has of our aircraft is taken out: a state of one that comes then is of those put in."""
+        """Remove the mission's aircraft from AMASE, so that states arriving later are of those inserted."""
         self._phase, self._clear, self._instant = Phase.CLEARING, 0, {}
         self._newest_ms = 0
         self._remove()
@@ -235,7 +242,7 @@ class Amase:
     # what AMASE tells -----------------------------------------------------------------------------
 
     def _answers(self) -> list[Any]:
-        """The first message since it was lost; what else is on its way over the old connection counts no more."""
+        """The first message since the loss; data still in transit on the old connection is ignored."""
         if self._told and self._port.peers:
             if self._flown_ms:
                 self._tell(f"{self.name} answers again")
@@ -253,7 +260,7 @@ class Amase:
         if kind != "AirVehicleState" or not body.Time:
             return []
         if body.ID not in self._told:
-            if self._phase is Phase.CLEARING:  # it says so in each of its instants
+            if self._phase is Phase.CLEARING:  # reported at each of its instants
                 return []
             raise AmaseLost(
                 f"{self.name} has an aircraft {body.ID}, which the mission has not; "
@@ -268,7 +275,7 @@ class Amase:
         return self._state(body) if self._phase is Phase.FLYING else []
 
     def _tick(self, body: Any) -> list[Any]:
-        """AMASE tells its time, before the states of that time."""
+        """Process AMASE's time, which precedes the states of that time."""
         if not lasted(self._newest_ms, body.ScenarioTime, 0):
             self._newest_ms = 0
             self._lost("its clock has gone back")
@@ -277,7 +284,7 @@ class Amase:
         if self._phase is not Phase.FLYING:
             self._news_s = self._now_s
         if self._phase is Phase.CLEARING:
-            # the first instant may have begun before it was told to; its scenario may put them in later
+            # the first instant may have begun before the removal, and its scenario may insert them later
             if self._clear and not self._instant:
                 self._placing()
             elif self._instant:
@@ -287,7 +294,7 @@ class Amase:
         return []
 
     def _placed(self) -> list[Any]:
-        """All aircraft are there: the time of the flight goes on by how far they have come since."""
+        """All aircraft are inserted: flight time continues by the time that they have flown since."""
         came_s = max(_flown_s(self._last[n], state) for n, state in self._instant.items())
         first = not self._flown_ms
         time_ms = self._flown_ms + (FIRST_MS if first else max(1, round(1000 * came_s)))
@@ -299,7 +306,7 @@ class Amase:
         return [one for _, body in sorted(self._instant.items()) for one in self._state(body)]
 
     def _state(self, body: Any) -> list[Any]:
-        """A state in the time of the flight, for UxAS and the log."""
+        """A state in flight time, for UxAS and the log."""
         wrong = without_numbers(body)
         if wrong:
             raise AmaseLost(f"{self.name} tells a {wrong} of aircraft {body.ID} that is no number")
@@ -318,7 +325,7 @@ class Amase:
 
 
 def _flown_s(before: Any, after: Any) -> float:
-    """How long an aircraft has flown from where it was put, by its speed [s]; 0 if it stands."""
+    """Time of flight from the insertion point, from an aircraft's speed [s]; 0 if it does not move."""
     here, there = before.Location, after.Location
     north = math.radians(there.Latitude - here.Latitude)
     east = math.radians(there.Longitude - here.Longitude) * math.cos(math.radians(here.Latitude))
@@ -331,7 +338,7 @@ def _framed(body: Any) -> bytes:
 
 
 def _body(incoming: Incoming, name: str, kinds: tuple[str, ...] = ()) -> Any:
-    """The object of a message; None if it is of another kind than the named ones."""
+    """The object of a message; None if its kind is not among the given ones."""
     try:
         message = wire.parse(incoming.parts[0])
         if kinds and message.descriptor.rpartition(".")[2] not in kinds:

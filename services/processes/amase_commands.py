@@ -1,11 +1,12 @@
-"""What AMASE has to be told otherwise than the standard says, or again when it is begun anew.
+"""Deviations of AMASE from the standard, and commands to repeat after its restart.
 
-- GoToWaypointAction by a VehicleActionCommand: it flies straight on for ever. The mission command is sent again, from
-  that waypoint on.
-- An aircraft that leaves its waypoints keeps its vertical speed in a loiter, for ever. A flight director that levels it
-  is sent before, as a command of its own: of two actions in one command AMASE does the first.
-- A camera of which it is not said how many pixels an image has: its footprints are no numbers. It gets as many as its
-  proportions ask for.
+- GoToWaypointAction in a VehicleActionCommand: it flies straight on forever. The mission command is
+  sent again, from that waypoint on.
+- An aircraft that leaves its waypoints keeps its vertical speed in a loiter, forever. A flight director
+  command that levels it is sent first, separately: of two actions in one command AMASE executes only the
+  first.
+- A camera without a resolution gets footprints that are not numbers. It is given a resolution of its
+  aspect ratio.
 """
 
 from __future__ import annotations
@@ -19,11 +20,11 @@ from cratous.spec.mission import Vehicle
 STEERS = ("FlightDirectorAction", "LoiterAction", "GoToWaypointAction")
 
 PIXELS = 1600
-"""How many an image is wide of which that is not said."""
+"""Image width assumed where none is configured [pixels]."""
 
 
 def with_pixels(configuration: Any, vehicle: Vehicle) -> Any:
-    """The configuration of a vehicle with the proportions of each camera's image."""
+    """The configuration of a vehicle with the resolution of each camera, by its aspect ratio."""
     aspects, parts = iter(vehicle.cameras), []
     for part in configuration.PayloadConfigurationList:
         if type(part).__name__ == "CameraConfiguration":
@@ -38,7 +39,7 @@ def with_pixels(configuration: Any, vehicle: Vehicle) -> Any:
 
 
 def without_numbers(state: Any) -> str:
-    """Which field of a state that says where an aircraft is and how it flies is no number; empty if all are."""
+    """The first position or velocity field of a state that is not finite; "" if all are finite."""
     at = state.Location
     told = {
         **{name: getattr(at, name) for name in ("Latitude", "Longitude", "Altitude")},
@@ -48,7 +49,7 @@ def without_numbers(state: Any) -> str:
 
 
 def seen(payload: Any) -> Any:
-    """The state of a payload without a footprint that is no place: nothing is known to be seen then."""
+    """The state of a payload, with its footprint removed if that is not finite."""
     corners = getattr(payload, "Footprint", ())
     if all(isfinite(c.Latitude) and isfinite(c.Longitude) for c in corners):
         return payload
@@ -56,7 +57,9 @@ def seen(payload: Any) -> Any:
 
 
 class Standing:
-    """What a vehicle was commanded last: its mission, what steers it away from that, and each payload."""
+    """The commands in force of a vehicle: its mission, what steers it away from that, and those of its
+    payloads.
+    """
 
     def __init__(self) -> None:
         self.mission: Any = None
@@ -64,14 +67,16 @@ class Standing:
         self.others: dict[str, Any] = {}
 
     def again(self, state: Any) -> list[Any]:
-        """All that holds still, for an AMASE that knows nothing of it; state: the last one that was told."""
+        """The commands in force, for a restarted AMASE. state: the last one received."""
         mission = [] if self.mission is None else [from_waypoint(self.mission, state)]
         return [*mission, *self.steers, *self.others.values()]
 
 
 def for_amase(body: Any, standing: Standing, state: Any) -> list[Any]:
-    """What is sent for a MissionCommand or VehicleActionCommand, which is kept in `standing`; state: the vehicle's
-    last one, None if none was told."""
+    """What is sent for a MissionCommand or VehicleActionCommand, which is recorded in `standing`.
+
+    state: the vehicle's last one, None if none was received.
+    """
     if type(body).__name__ == "MissionCommand":
         standing.mission, standing.steers = body, []
         return [body]
@@ -94,7 +99,7 @@ def for_amase(body: Any, standing: Standing, state: Any) -> list[Any]:
 
 
 def level(body: Any, loiter: Any, state: Any) -> Any:
-    """The command to fly on at the altitude of a loiter, neither climbing nor descending."""
+    """The command to fly level at the altitude of a loiter."""
     action = lmcp.new(
         "FlightDirectorAction",
         Speed=loiter.Airspeed,
@@ -107,7 +112,7 @@ def level(body: Any, loiter: Any, state: Any) -> Any:
 
 
 def from_waypoint(mission: Any, state: Any) -> Any:
-    """A mission command that starts at the waypoint to which the vehicle was last sent."""
+    """A mission command that starts at the waypoint to which the vehicle was last flying."""
     if state is None or state.CurrentWaypoint not in _numbers(mission):
         return mission
     return mission.copy(FirstWaypoint=state.CurrentWaypoint)

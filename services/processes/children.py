@@ -1,4 +1,4 @@
-"""Processes of the product that are started, watched and ended by their pids."""
+"""Subprocesses of the program: started, monitored and ended by pid."""
 
 from __future__ import annotations
 
@@ -21,13 +21,14 @@ from cratous.services.results.undisturbed import undisturbed
 from cratous.spec.errors import CratousError
 
 GRACE_S = 5.0
-"""How long a process has to end after SIGTERM before it gets SIGKILL [s]."""
+"""Time between SIGTERM and SIGKILL [s]."""
 LAST_LINES = 8
 
 
 class ProcessEnded(CratousError):
-    """A process of the flight has ended before its time. name: which; code: its exit code, below 0 the
-    signal that ended it; lines: the last that it said."""
+    """A process of the flight has ended prematurely. name: of the process; code: exit code, negative for a
+    signal; lines: its last output lines.
+    """
 
     exit_code = 3
 
@@ -36,7 +37,7 @@ class ProcessEnded(CratousError):
         super().__init__(f"{self.told()}; its last lines: {' | '.join(lines) or 'none'}")
 
     def told(self) -> str:
-        """Which process ended, and its exit code or signal."""
+        """The process that ended, and its exit code or signal, in words."""
         how = f"exit code {self.code}"
         if self.code not in range(256):
             how = f"signal {signal.Signals(-self.code).name}"
@@ -50,17 +51,18 @@ def free_port() -> int:
 
 
 class Children:
-    """The processes of one flight; leaving the context ends all that still run. logs: what each says, as
-    NAME.txt; work: their present folder."""
+    """The processes of one flight; leaving the context ends all that still run. logs: folder for their
+    output, as NAME.txt; work: their working directory.
+    """
 
     def __init__(self, logs: Path, work: Path) -> None:
         self._logs, self._work = logs, work
         place = str(Path(cratous.__file__).absolute().parents[1])
         paths = [place, *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
         self._environment = {
-            **without_keys(os.environ),  # whoever has a key of the bridge is given it, see `start`
+            **without_keys(os.environ),  # bridge keys are passed explicitly, see `start`
             "PYTHONUNBUFFERED": "1",
-            # the same program, whatever the present folder
+            # the same program in any working directory
             "PYTHONPATH": os.pathsep.join(path for path in paths if path),
             ENDS_WITH: str(os.getpid()),
         }
@@ -75,7 +77,7 @@ class Children:
         _error: BaseException | None,
         _trace: TracebackType | None,
     ) -> None:
-        with undisturbed():  # asked to end twice, it leaves no process behind
+        with undisturbed():  # a second interrupt must not leave processes behind
             self.end()
 
     def start(
@@ -85,8 +87,9 @@ class Children:
         may_stand: bool = False,
         private: Mapping[str, str] = MappingProxyType({}),
     ) -> int:
-        """Start `cratous` with arguments; returns the pid. may_stand: it may be stopped when this process is killed;
-        private: variables of its environment that no other one has."""
+        """Start `cratous` with arguments; returns the pid. may_stand: it may be stopped (SIGSTOP) when this
+        process is killed; private: environment variables for this process only.
+        """
         environment = {**self._environment, **private}
         environment[ENDS_WITH] += AT_ONCE * may_stand
         with (self._logs / f"{name}.txt").open("wb") as said:
@@ -97,7 +100,7 @@ class Children:
                 stdout=said,
                 stderr=subprocess.STDOUT,
                 env=environment,
-                # Ctrl-C reaches this command alone, which then ends them in order
+                # Ctrl-C reaches only this command, which then ends them in order
                 start_new_session=True,
             )
         self.running[name] = child
@@ -108,7 +111,7 @@ class Children:
         return (self._logs / f"{name}.txt").read_text(encoding="utf-8", errors="replace")
 
     def watch(self) -> None:
-        """ProcessEnded if one of them runs no more."""
+        """ProcessEnded if one of them has ended."""
         for name, child in self.running.items():
             code = child.poll()
             if code is not None:
@@ -122,7 +125,7 @@ class Children:
                 child.send_signal(number)
 
     def end(self) -> dict[str, int]:
-        """SIGTERM to all, SIGKILL to those that have not ended in time; the exit codes."""
+        """Send SIGTERM to all, SIGKILL to those that do not end in time. Returns the exit codes."""
         for child in reversed(self.running.values()):
             if child.poll() is None:
                 child.terminate()

@@ -1,4 +1,6 @@
-"""What of a mission cannot be flown by processes: refused before anything starts, with the field's name."""
+"""Mission features that separate processes do not support: refused before anything starts, with the field's
+name.
+"""
 
 from __future__ import annotations
 
@@ -19,13 +21,14 @@ from cratous.spec.mission import FaultySimulation, Mission, TaskKind
 
 COSTS = ("MINMAX", "CUMULATIVE")
 UNSAID = frozenset({"protected", "power_w", "camera_id", "cruise_m", "notes"})
-"""Fields that no message has, or that the reader fills in: they change nothing of the flight."""
+"""Fields without a message, or filled in by the reader, that do not affect the flight."""
 
 
 def told_of(mission: Mission, original: bool = False) -> Told:
-    """The messages of a mission; BadInput, which names the field, for what they or the processes cannot do.
+    """The messages of a mission; BadInput, which names the field, for what messages or processes do not
+    support.
 
-    original: ICAROUS is behind clients of the original's, which others start.
+    original: ICAROUS runs behind clients of the original's, which the user starts.
     """
     for item, wrong, what, expected in _asked(mission, original):
         if wrong:
@@ -48,7 +51,7 @@ def told_of(mission: Mission, original: bool = False) -> Told:
 
 
 def refuse_for_amase(mission: Mission) -> None:
-    """BadInput for what AMASE cannot be made to do over the network; it names the field."""
+    """BadInput for what AMASE cannot be commanded to do over the network; it names the field."""
     asked = [
         (f"vehicles[{k}].min_speed_m_s", not one.min_speed_m_s, "an aircraft that can hover")
         for k, one in enumerate(mission.vehicles)
@@ -68,7 +71,7 @@ def refuse_for_amase(mission: Mission) -> None:
 
 
 def _asked(mission: Mission, original: bool) -> Iterator[tuple[str, bool, str, str]]:
-    """Field, whether it asks for too much, what it asks for, and what would do."""
+    """Field, whether it is unsupported, what it requests, and what is supported."""
     alone = not mission.instances
     yield "vehicles", alone, "no vehicle has an ICAROUS instance", "a protected vehicle"
     changes = mission.changes
@@ -103,7 +106,7 @@ def _asked(mission: Mission, original: bool) -> Iterator[tuple[str, bool, str, s
 
 
 def _differences(mission: Mission, told: Told) -> Iterator[tuple[str, Any, Any]]:
-    """Fields of vehicles, zones and tasks that do not come back when the messages are read again."""
+    """Fields of vehicles, zones and tasks that change when the messages are read back."""
     places, notes = Places(mission.frame), list[str]()
 
     def sent(body: Any) -> Sent:

@@ -1,4 +1,4 @@
-"""The direct links of the ICAROUS processes of a flight with each other: where, and the keys that are made for them."""
+"""Direct links between the ICAROUS processes of a flight: address and keys."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cratous.spec.errors import BadInput
 
 
 class DirectLinks(NamedTuple):
-    """where: the group; keys: of all vehicles, which each of their processes has."""
+    """where: the multicast group; keys: of all vehicles, given to each of their processes."""
 
     where: Address
     keys: Keys
@@ -26,13 +26,14 @@ class DirectLinks(NamedTuple):
 
     @property
     def private(self) -> dict[str, str]:
-        """The variables that only these processes have."""
+        """Environment variables for these processes only."""
         return self.keys.environment(DIRECT_VARIABLE)
 
 
 def direct_links(where: Address, instances: Collection[int]) -> DirectLinks:
-    """The links of these vehicles, with new keys; BadInput for no group, one that cannot be joined, too many vehicles,
-    or one vehicle alone."""
+    """The links of these vehicles, with new keys; BadInput for an address that cannot be joined, too many
+    vehicles, or a single one.
+    """
     if len(instances) not in range(2, MOST_VEHICLES + 1):
         raise BadInput(
             "direct links are between vehicles that ICAROUS protects",
@@ -41,5 +42,5 @@ def direct_links(where: Address, instances: Collection[int]) -> DirectLinks:
             got=str(len(instances)),
         )
     with closing(MulticastPort(where, lambda *_: None)):
-        pass  # before anything is started
+        pass  # checked before anything is started
     return DirectLinks(where, new_keys(instances))

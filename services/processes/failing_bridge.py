@@ -1,8 +1,8 @@
-"""The bridge of a flight in processes over connections that fail: between each ICAROUS and UxAS, in flight time.
+"""A bridge with injected faults for a flight in processes: between each ICAROUS and UxAS, in flight time.
 
-Each ICAROUS connects here, and what it and UxAS say in v2 goes through packet by packet, by the same faults as in one
-process (`bridge.faults`); who forges modes has no key (`forging`). The handshake is left alone. A peer that does not take
-what it is sent in time ends its connection.
+Each ICAROUS connects here; its and UxAS's v2 packets are forwarded one by one, with the same faults as in a
+single process (`bridge.faults`); forged modes are made without a key (`forging`). The handshake is not
+affected. A peer that does not accept data in time loses its connection.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from cratous.spec.mission.bridge_faults import BridgeFaults
 HOST = "127.0.0.1"
 READ = 65536
 MOST_UNSENT = 1 << 20
-"""Bytes that a peer may be behind."""
+"""Most unsent bytes of a peer."""
 GREETING = {Direction.DOWN: 2, Direction.UP: 1}
-"""So many lines of the handshake of v2 go each way."""
+"""Number of v2 handshake lines in each direction."""
 
 
 class _Half:
-    """One direction of one connection: what comes from one socket, and goes to the other."""
+    """One direction of a connection, from one socket to the other."""
 
     def __init__(self, way: FailingWay, direction: Direction, forger: Forger) -> None:
         self.way, self._forger, self._up = way, forger, direction is Direction.UP
@@ -35,7 +35,7 @@ class _Half:
         self._part, self.unsent = b"", b""
 
     def come(self, data: bytes, now_ms: int) -> None:
-        """Bytes from the one side: the lines of the handshake go on as they are, then each packet by itself."""
+        """Process received bytes: handshake lines are forwarded unchanged, then each packet separately."""
         *lines, self._part = (self._part + data).split(b"\n")
         for line in lines:
             if self._greeting:
@@ -44,19 +44,19 @@ class _Half:
             else:
                 self._forger.hears(line + b"\n", self._up)
                 self.way.take(line + b"\n", now_ms)
-        if len(self._part) > READ:  # no line of the protocol is so long
+        if len(self._part) > READ:  # longer than any line of the protocol
             self.way.take(self._part, now_ms)
             self._part = b""
 
     def forge(self) -> None:
-        """A forged mode line that arrives now, if there is one."""
+        """Send the forged mode line that is due, if there is one."""
         line = self.way.forged()
         if line and not self._greeting:
             self.unsent += self._forger.packet(line)
 
 
 class _Connection:
-    """An ICAROUS and the end of UxAS that was opened for it."""
+    """The connection of an ICAROUS, and the one to UxAS opened for it."""
 
     def __init__(
         self,
@@ -75,7 +75,9 @@ class _Connection:
             one.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
     def step(self, now_ms: int, forges: bool) -> int:
-        """What has come and what is due; how many bytes came. forges: it is time for an exchange."""
+        """Forward what has arrived and is due. Returns the number of bytes received. forges: an exchange is
+        due.
+        """
         count = 0
         for source, half, sink in self._halves:
             with suppress(BlockingIOError):
@@ -111,17 +113,17 @@ class _Connection:
             return 0
 
     def close(self) -> None:
-        """Both ends are told that it has ended."""
+        """Close both sides."""
         self.open = False
         for source, _, _ in self._halves:
             source.close()
 
 
 class FailingBridge:
-    """Listens for the ICAROUS of each vehicle, at `ports`, and takes it to UxAS; `step` does what is to be done."""
+    """Listens for each vehicle's ICAROUS at `ports` and forwards to UxAS; call `step` regularly."""
 
     def __init__(self, faults: BridgeFaults, vehicles: Sequence[int], heartbeat_ms: int) -> None:
-        """heartbeat_ms: of the mission, in each of which are two exchanges."""
+        """heartbeat_ms: of the mission; there are two exchanges in each."""
         self._faults, self._exchange_ms = faults, heartbeat_ms // 2
         self._far = (HOST, 0)
         self._listeners = {vid: socket.create_server((HOST, 0)) for vid in vehicles}
@@ -143,9 +145,10 @@ class FailingBridge:
         self._far = (HOST, port)
 
     def step(self, now_ms: int, flies: bool = True) -> int:
-        """What has come goes through; how many bytes that was. now_ms: time of the flight; flies: it runs.
+        """Forward what has arrived; returns the number of bytes. now_ms: flight time; flies: whether the
+        clock runs.
 
-        Before it runs no connection is cut: the clock waits for all to be there.
+        Before it runs no connection is cut: the clock waits for all processes to connect.
         """
         broken = flies and self._faults.is_cut(now_ms)
         for vid, listener in self._listeners.items():
@@ -171,7 +174,7 @@ class FailingBridge:
             return
         try:
             far = socket.create_connection(self._far, timeout=5.0)
-        except OSError:  # UxAS is not there yet: it is tried again
+        except OSError:  # UxAS is not listening yet: the peer retries
             near.close()
             return
         draw = random.Random(f"{self._faults.seed} {vid} forger {self._opened_count}")

@@ -1,4 +1,4 @@
-"""What the processes are given, as files: the scenario of the simulator, the configuration and messages of UxAS."""
+"""Input files of the processes: the simulator's scenario, and configuration and messages of UxAS."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from cratous.spec.mission import LivePlanningMission, Mission
 
 SCENARIO = "scenario.xml"
 SETS_OUT_S = 0.45
-"""When all aircraft are there [s]: just before the simulator tells states for the first time."""
+"""When all aircraft are present [s]: just before the simulator's first states."""
 LINGERS_S = 600.0
-"""The scenario goes on for so long after the mission's limit, which the command watches itself."""
+"""The scenario continues for this long after the mission's limit, which the command itself monitors [s]."""
 STARTS_S = 900
-"""How long UxAS and the ICAROUS instances wait for each other: all check the proofs first."""
+"""How long UxAS and the ICAROUS instances wait for each other, since all check the proofs first [s]."""
 TO_RECORDER = (
     "afrl.cmasi.AutomationResponse",
     "afrl.cmasi.MissionCommand",
@@ -37,13 +37,13 @@ TO_SIMULATOR = ("afrl.cmasi.MissionCommand", "afrl.cmasi.VehicleActionCommand")
 
 
 ORIGINAL_PORT = 5557
-"""Where the original's clients look for UxAS, on this machine."""
+"""Port at which the original's clients connect to UxAS, on this machine."""
 CLIENTS_S = 300
-"""How long UxAS waits for them."""
+"""How long UxAS waits for them [s]."""
 
 
 class Ports(NamedTuple):
-    """Ports of loopback: of the simulator, of UxAS for whoever records, and for the ICAROUS instances."""
+    """Loopback ports: of the simulator, of UxAS for the recorder, and for the ICAROUS instances."""
 
     simulator: int
     recorder: int
@@ -51,27 +51,28 @@ class Ports(NamedTuple):
 
 
 def write_scenario(mission: Mission, told: Told, folder: Path) -> Path:
-    """The scenario of the simulator: vehicles and traffic, each from when it is there."""
+    """Write the simulator's scenario: vehicles and traffic with the times at which they appear."""
     duration_s = mission.simulation.limit_ms / 1000 + LINGERS_S
     return _written(folder / SCENARIO, scenario_text(mission, told, duration_s, SETS_OUT_S))
 
 
 def write_messages(told: Told, folder: Path) -> Path:
-    """All messages that UxAS is sent, in one file, in order."""
+    """Write all messages sent to UxAS to one file, in order."""
     return _written(folder / MESSAGES, messages_text(told))
 
 
 def write_configuration(
     mission: Mission, instances: Sequence[int], ports: Ports, folder: Path, original: bool = False
 ) -> Path:
-    """The configuration of UxAS: bridges, the services of planning, a waypoint manager a vehicle, ICAROUS.
+    """Write the configuration of UxAS: bridges, planning services, a waypoint manager per vehicle, ICAROUS.
 
-    original: ICAROUS is behind clients of the original's, which have no keys; else both ends authenticate each other.
+    original: ICAROUS runs behind clients of the original's, without keys; otherwise both ends authenticate
+    each other.
     """
     communication = {
         "Address": f"tcp://127.0.0.1:{ports.icarous}",
         "Timeout_s": str(STARTS_S),
-        # a way that was left is joined again where it was left: nothing is skipped
+        # an interrupted route is rejoined where it was left, so nothing is skipped
         "DeviationAllowed": "0",
         "DeviationOrigin": "path",
     }
@@ -91,7 +92,7 @@ def write_configuration(
         communication["UseUxasRoutePlanner"] = "true"
     bridges = (
         _bridge(ports.simulator, "FALSE", TO_SIMULATOR)
-        # a recorder that does not read loses nothing in silence: its connection ends; nobody else says anything
+        # a slow recorder loses its connection instead of messages; only one client may connect
         + _bridge(ports.recorder, "TRUE", TO_RECORDER, ' WhenFull="Close" MaxConnections="1"')
     )
     clock = ("Test_SimulationTime",)

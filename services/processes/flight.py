@@ -1,8 +1,7 @@
-"""The flight in processes: starts them in order, lets the clock go, watches, and ends them all.
+"""The flight in processes: starts them in order, starts the clock, monitors them, and ends them all.
 
-Nothing flies before UxAS has made the plan that was checked and the simulator has its commands: the
-simulator's clock stands from its first states until then.
-"""
+The clock of the simulator is stopped from its first states until UxAS has made the checked plan and the simulator has
+its commands."""
 
 from __future__ import annotations
 
@@ -41,26 +40,28 @@ from cratous.spec.mission.plan import Plan, in_part_of
 Tell = Callable[[str], None]
 SIMULATOR, UXAS = "simulator", "uxas"
 STARTS_S = 600.0
-"""How long the start of all processes may take [s]; all of them check the proofs first."""
+"""Time limit for starting all processes, which check the proofs first [s]."""
 SILENCE_S = 60.0
-"""A simulator that tells no state for so long [s] while its clock runs is taken to be stuck; and UxAS, which tells
-each heartbeat of an ICAROUS instance, if it says nothing."""
+"""A simulator whose clock runs counts as stuck without a state for this long [s]; so does UxAS without a message,
+since it reports each heartbeat of an ICAROUS instance."""
 PROGRESS_MS = 10_000
 LIMITS = Limits(waiting_bytes=64 << 20)
 LOOK_S = 0.2
-"""However much comes, the processes are looked at so often [s]."""
+"""Longest interval between checks of the processes, whatever the load [s]."""
 
 
 class Stuck(CratousError):
-    """A process runs, but what has to come from it does not."""
+    """A process runs, but its expected output does not arrive."""
 
     exit_code = 3
 
 
 class Flying(NamedTuple):
-    """How a flight in processes is set up. path: of the mission, for ICAROUS; digest: of that mission, the
-    hash of its report; folder: for what they are given and what they say; rate: times real time; original: ICAROUS is behind
-    clients of the original's, which others start; amase: what flies in place of our simulator; direct: links of ICAROUS."""
+    """Setup of a flight in processes.
+
+    path: of the mission, for ICAROUS; digest: hash of that mission in the report; folder: for input files and output;
+    rate: multiple of real time; original: ICAROUS runs behind clients of the original's, started by the user; amase:
+    replaces our simulator; direct: links between the ICAROUS processes."""
 
     path: Path
     digest: str
@@ -74,7 +75,7 @@ class Flying(NamedTuple):
 
 
 class Ended(NamedTuple):
-    """outcome: of the mission, empty if that is not known; why: what went wrong; pids and ports, by name."""
+    """outcome: of the mission, "" if unknown; why: what went wrong; pids, ports: by name."""
 
     outcome: str
     why: str
@@ -83,10 +84,9 @@ class Ended(NamedTuple):
 
 
 def fly(mission: Mission, plan: Plan, told: Told, recorder: Recorder, how: Flying) -> Ended:
-    """Fly a plan in processes of their own and record it; see the module.
+    """Fly a plan in separate processes and record it; see the module.
 
-    ProcessEnded, Stuck or NoPlan if it does not come to a flight; what happens later is in the answer.
-    """
+    ProcessEnded, Stuck or NoPlan if the flight does not start; later failures are in the result."""
     with (
         TemporaryDirectory(prefix="cratous-") as work,
         Children(how.folder, Path(work)) as children,
@@ -100,7 +100,7 @@ def fly(mission: Mission, plan: Plan, told: Told, recorder: Recorder, how: Flyin
 
 
 class _Flight:
-    """The processes, the two connections of the recorder, and what has come over them."""
+    """The processes, the recorder's two connections, and what was received over them."""
 
     def __init__(
         self,
@@ -128,13 +128,13 @@ class _Flight:
         self.stood: set[str] = set()
         self.failing: FailingBridge | None = None
         self.stands = False
-        # of this flight alone, and of each ICAROUS its own: a stranger cannot be one of them, nor one another
+        # unique to this flight and to each ICAROUS: no other process can impersonate one
         self.keys = Keys({}) if how.original else new_keys(mission.instances)
 
     # the start ------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """All processes, in order; then the plan is made, checked, commanded, and the clock runs."""
+        """Start all processes in order; then the plan is made, checked and commanded, and the clock starts."""
         how, mission = self.how, self.mission
         write_messages(self.told, how.folder)
         if how.amase is not None:
@@ -151,7 +151,7 @@ class _Flight:
         self._start(UXAS, "uxas", "-cfgPath", str(cfg.resolve()), *unproved, keys=self.keys)
         how.tell(f"ports of 127.0.0.1: {_words(ports)}")
         self.uxas = self._connect(ports.recorder)
-        # UxAS waits for its ICAROUS instances before it sends anything: nothing goes by unheard
+        # UxAS waits for its ICAROUS instances before it sends anything, so nothing is missed
         self._wait("UxAS", lambda: self.uxas is not None and self.uxas.peers == 1)
         if how.original:
             who = ", then ".join(map(str, instances))
@@ -181,7 +181,7 @@ class _Flight:
         self._wait("AMASE to fly the aircraft (its clock has to run)", self._all_there)
 
     def _doors(self, instances: list[int]) -> dict[int, int]:
-        """By vehicle, the port at which its ICAROUS finds UxAS: through a bridge that fails, if that is asked for."""
+        """The port for each vehicle's ICAROUS: UxAS's, or that of the bridge with injected faults."""
         simulation = self.mission.simulation
         if not isinstance(simulation, FaultySimulation):
             return dict.fromkeys(instances, self.ports.icarous)
@@ -191,7 +191,7 @@ class _Flight:
         return self.failing.ports
 
     def _fail(self) -> int:
-        """What goes over a bridge that fails, and whether ICAROUS stands still now; how many bytes went."""
+        """Run the bridge with injected faults, and stop or continue ICAROUS; returns the number of bytes forwarded."""
         simulation, now_ms = self.mission.simulation, self.recorder.now_ms
         if self.failing is None or not isinstance(simulation, FaultySimulation):
             return 0
@@ -236,7 +236,7 @@ class _Flight:
         return self.there >= {v.id for v in self.mission.vehicles}
 
     def _planned(self) -> bool:
-        """Whether UxAS has answered; NoPlan or Stuck if it does not fly the plan that was checked."""
+        """Whether UxAS has answered; NoPlan, or Stuck if its plan differs from the checked one."""
         response = [b for b in self.heard if type(b).__name__ == "AutomationResponse"]
         if not response:
             return False
@@ -259,7 +259,7 @@ class _Flight:
         self._turn()
 
     def _wait(self, what: str, done: Callable[[], bool]) -> None:
-        """Until something is so; Stuck if that takes too long, ProcessEnded if one of them ends."""
+        """Wait for a condition; Stuck on timeout, ProcessEnded if a process ends."""
         until_s = time.monotonic() + STARTS_S
         self.how.tell(f"\rwaiting for {what}")
         while not done():
@@ -270,7 +270,7 @@ class _Flight:
     # what comes -----------------------------------------------------------------------------------
 
     def _turn(self) -> None:
-        """Everything that has come, and a look at the processes."""
+        """Process everything received, and check the processes."""
         now_s, arrived = time.monotonic(), 0
         for name, port, take in (
             (UXAS, self.uxas, self._from_uxas),
@@ -298,7 +298,7 @@ class _Flight:
             time.sleep(0.002)
 
     def _cut(self, name: str) -> None:
-        """A connection has ended, and what was said meanwhile is lost: ProcessEnded if that is why, or Stuck."""
+        """A connection has closed and data was lost: ProcessEnded if a process has ended, else Stuck."""
         until_s = time.monotonic() + GRACE_S
         while not is_due(until_s, time.monotonic()):
             self.children.watch()
@@ -309,7 +309,7 @@ class _Flight:
         kind = type(body).__name__
         if kind == "MissionCommand":
             self.commanded.add(body.VehicleID)
-        # the scenario's own states, which are told as well, bear no time
+        # states from the scenario file have no time
         if kind != "AirVehicleState" or not body.Time:
             return
         self.there.add(body.ID)
@@ -335,7 +335,7 @@ class _Flight:
     # the flight -----------------------------------------------------------------------------------
 
     def run(self) -> Ended:
-        """Until UxAS says that all tasks have ended, or the limit, or a process ends."""
+        """Fly until UxAS reports that all tasks have ended, the limit is reached, or a process ends."""
         asked = {item.task_id for item in self.plan.items}
         outcome, why, say_ms = "", "", 0
         self.news_s = dict.fromkeys((SIMULATOR, UXAS), time.monotonic())
@@ -344,7 +344,7 @@ class _Flight:
                 self._turn()
                 now_ms = self.recorder.now_ms
                 if self.how.amase is not None and not self.how.amase.flies:
-                    # it is waited for, so long as it may be away; UxAS's clock stands meanwhile
+                    # an absent AMASE is waited for; UxAS's clock stands meanwhile
                     self.news_s = dict.fromkeys(self.news_s, time.monotonic())
                 for name, news_s in self.news_s.items():
                     if is_due(news_s + SILENCE_S, time.monotonic()):
@@ -353,10 +353,10 @@ class _Flight:
                     say_ms = now_ms + PROGRESS_MS
                     self.how.tell(f"\r{now_ms / 1000:7.1f} s of flight: flying")
                 outcome = self._outcome(asked, is_due(self.mission.simulation.limit_ms, now_ms))
-            self.children.watch()  # a flight of which a process has ended meanwhile is not whole
+            self.children.watch()  # a flight in which a process has ended is incomplete
         except (ProcessEnded, Stuck, AmaseLost) as error:
             outcome, why = "", str(error)
-        # of a flight that was cut off nothing is said that nobody has seen
+        # after an aborted flight no task is reported as failed
         for task in sorted(asked - self.complete) if outcome else ():
             self._failed(task, outcome)
         self.recorder.end(outcome)
@@ -364,7 +364,7 @@ class _Flight:
         return Ended(outcome, why, pids, self.ports._asdict())
 
     def _outcome(self, asked: set[int], late: bool) -> str:
-        """How the mission has ended, empty while it has not."""
+        """How the mission has ended, "" while it has not."""
         left = asked - self.complete
         if left <= self.failed.keys() and not self.away:
             in_part = asked & {one.task_id for one in in_part_of(self.plan)}
@@ -372,13 +372,13 @@ class _Flight:
         return "limit" if late else ""
 
     def _failed(self, task: int, why: str) -> None:
-        """A task that UxAS has not said to be complete."""
+        """Record a task that UxAS has not reported as complete."""
         vehicle = next(item.vehicle_id for item in self.plan.items if item.task_id == task)
         text = f"not served when the flight ended ({why})"
         self.recorder.failed(task, vehicle, self.failed.get(task, text))
 
     def close(self) -> None:
-        """Let go of the connections, and of who was made to stand still: it has to end."""
+        """Close the connections, and continue stopped processes so that they can end."""
         if self.stands:
             self.children.signalled("icarous_", signal.SIGCONT)
         if self.failing is not None:

@@ -1,4 +1,4 @@
-"""Packets that somebody puts into a connection of v2 who hears it and has no key of it."""
+"""Packets injected into a v2 connection by an attacker who can listen but has no key."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from collections import deque
 from cratous.bridge.text_protocol.sealed import Seal
 
 KEPT = 256
-"""So many packets that went by are kept to be sent again."""
+"""Number of recorded packets kept for replay."""
 
 
 _HEAD = re.compile(rb"([0-9]{1,18}),([0-9]{1,18}),[0-9]{1,18},([0-9]{1,18}),")
 
 
 class Forger:
-    """Forges packets on one connection towards UxAS; which ones is drawn from `draw`."""
+    """Forges packets towards UxAS on one connection; `draw` selects them."""
 
     def __init__(self, vehicle_id: int, draw: random.Random) -> None:
         self._vehicle_id, self._draw = vehicle_id, draw
@@ -25,7 +25,7 @@ class Forger:
         self._last = (0, 0, 0)
 
     def hears(self, packet: bytes, up: bool) -> None:
-        """A packet goes by. up: it is of ICAROUS."""
+        """Record a packet. up: sent by ICAROUS."""
         head = _HEAD.match(packet)
         if head is None:
             return
@@ -35,8 +35,9 @@ class Forger:
             self._last = sequence, time_ms, acknowledged
 
     def packet(self, line: bytes) -> bytes:
-        """A forged packet: one of either direction repeated, or the line as ICAROUS's next packet, with valid numbers
-        and checksum but another key."""
+        """A forged packet: a replay of either direction, or the line as ICAROUS's next packet with valid
+        numbers and checksum but another key.
+        """
         if self._heard and self._draw.random() < 1 / 2:
             return self._draw.choice(self._heard)
         sequence, time_ms, acknowledged = self._last

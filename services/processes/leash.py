@@ -1,4 +1,4 @@
-"""A process that another one has started for itself ends with that one, even if that is killed."""
+"""Lets a process end with the parent that started it, even if the parent is killed."""
 
 from __future__ import annotations
 
@@ -8,15 +8,17 @@ import signal
 import sys
 
 ENDS_WITH = "CRATOUS_ENDS_WITH"
-"""The variable of the environment that names the pid of the parent whose end is this process's too."""
+"""Environment variable with the pid of the parent with which this process ends."""
 AT_ONCE = " KILL"
-"""What stands behind that pid for a process that may be stopped then: SIGTERM would wait until it goes on."""
+"""Suffix of that pid for a process that may be stopped: SIGTERM would be pending until it continues."""
 _PR_SET_PDEATHSIG = 1
 
 
 def end_with_parent() -> None:
-    """If `ENDS_WITH` asks for it, have Linux send SIGTERM, or SIGKILL, when the parent ends; SystemExit if it has already."""
-    asked = os.environ.pop(ENDS_WITH, "")  # it is of this process alone
+    """If `ENDS_WITH` is set, have Linux send SIGTERM or SIGKILL when the parent ends; SystemExit if it has
+    ended already.
+    """
+    asked = os.environ.pop(ENDS_WITH, "")  # for this process only
     parent = asked.removesuffix(AT_ONCE)
     if not parent or sys.platform != "linux":
         return

@@ -1,8 +1,8 @@
-"""The log of a flight in processes: what the simulator tells is the truth, what UxAS's bus tells is the rest.
+"""The log of a flight in processes: the simulator provides the truth, UxAS's bus everything else.
 
-Times are those of the mission: 0 is the first state that the simulator tells, before which nothing flies. A
-state is logged when the next one is known, so that `TruthState` has the velocity that leads there: between
-two states, half a second apart, an aircraft is taken to fly straight.
+Times are mission times: 0 is the simulator's first state, before which nothing flies. A state is logged when
+the next one is known, so that `TruthState` has the velocity that leads there: between two states, half a
+second apart, straight flight is assumed.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from cratous.spec.mission import Mission, Position
 from cratous.spec.mission.plan import Plan
 
 HELD = 10
-"""So many of the newest instants wait for what UxAS says of them, which may come late."""
+"""Number of recent instants held back for late messages from UxAS."""
 SIMULATION, UXAS, RECORDER = "simulation", "uxas", "recorder"
 TIMES = ("Time", "TimeTaskActivated", "TimeTaskCompleted")
-"""Fields of messages of the bus that are times of the simulator."""
+"""Message fields with times of the simulator."""
 OF_TIME = frozenset(
     {"TaskActive", "TaskComplete", "GateState", "AuthorityChange", "Heartbeat", "BridgeStatus",
      "ModeRefused", "CommandDropped"}
 )  # fmt: skip
 """The messages with such fields."""
 AT_CHANGE = {"ICAROUS": ("Suspended", "ICAROUS has the vehicle"), "UxAS": ("Active", "handed back")}
-"""The phase of a task, and a note, when its vehicle is taken or handed back."""
+"""Task phase and note at a takeover and at a handback."""
 
 
 @dataclass
@@ -62,13 +62,13 @@ class Recorder:
 
     @property
     def now_ms(self) -> int:
-        """The time of the newest state, after the mission's start."""
+        """Mission time of the newest state [ms]."""
         return self._instants[-1].time_ms if self._instants else 0
 
     # what comes -----------------------------------------------------------------------------------
 
     def state(self, body: Any) -> None:
-        """An AirVehicleState; that of a new time makes the instant before it whole."""
+        """Record an AirVehicleState; one of a new time completes the previous instant."""
         if self._zero_ms is None:
             self._zero_ms = int(body.Time)
         time_ms = int(body.Time) - self._zero_ms
@@ -85,7 +85,7 @@ class Recorder:
         self._say(plan_accepted(self.now_ms, plan, frozenset()))
 
     def heard(self, body: Any) -> None:
-        """A message of UxAS's bus."""
+        """Record a message of UxAS's bus."""
         kind = type(body).__name__
         if kind in OF_TIME and self._zero_ms is not None:
             zero_ms = self._zero_ms
@@ -103,11 +103,11 @@ class Recorder:
             self._authority(body)
 
     def failed(self, task: int, vehicle: int, why: str) -> None:
-        """UxAS has said that a task ends undone, or it has not been ended."""
+        """Record a task that ended undone or did not end."""
         self._ended(vehicle, task, "Failed", why)
 
     def end(self, outcome: str) -> None:
-        """The end of the mission at the newest instant; without an outcome the log just stops."""
+        """End the mission at the newest instant; without an outcome the log just stops."""
         self._told_ms = self.now_ms
         if outcome:
             self._say(mission_end(self.now_ms, outcome))
@@ -118,13 +118,13 @@ class Recorder:
     # what is logged -------------------------------------------------------------------------------
 
     def _authority(self, body: Any) -> None:
-        """A takeover suspends the task of its vehicle, a handback ends that."""
+        """A takeover suspends the vehicle's task, a handback resumes it."""
         if body.VehicleID in self._doing:
             vehicle = body.VehicleID
             self._progress(vehicle, self._doing[vehicle], *AT_CHANGE[body.Owner.name])
 
     def _ended(self, vehicle: int, task: int, phase: str, note: str) -> None:
-        """A task has ended; the vehicle may be doing the next one already."""
+        """A task has ended; the vehicle may already be flying the next one."""
         self._progress(vehicle, task, phase, note)
         if self._doing.get(vehicle) == task:
             del self._doing[vehicle]
@@ -143,18 +143,20 @@ class Recorder:
         )
 
     def _say(self, body: Any) -> None:
-        """Something of UxAS's bus, at the newest time that was told there."""
+        """Queue a message of UxAS's bus, at the newest time received there."""
         self._stream.append((self._told_ms, body))
 
     def _named(self, vehicle: int, payload: Any) -> Any:
-        """A camera's state with the id that the mission has for it, which is that of its gimbal."""
+        """A camera's state with the mission's id for it, that of its gimbal."""
         number = self._cameras.get((vehicle, payload.PayloadID))
         if number is None or type(payload).__name__ != "CameraState":
             return payload
         return payload.copy(PayloadID=number)
 
     def _log(self, now: Instant, following: Instant | None) -> None:
-        """An instant, with the velocity to the following one, and what was said until then; None: all."""
+        """Log an instant with the velocity to the following one, and the messages until then; None: all
+        messages.
+        """
         self._bus.now_ms = now_ms = now.time_ms
         for vehicle, body in sorted(now.states.items()):
             after, span_ms = None, 0
@@ -171,7 +173,7 @@ class Recorder:
         self._bus.run()
 
     def _air(self, body: Any, after: Any, span_ms: int) -> AirState:
-        """Where it is and the velocity that leads to its next state; at its last, that which it tells."""
+        """Position, and the velocity that leads to the next state; for the last state, its own velocity."""
         here = self.place(body)
         if after is None or not span_ms:
             heading = math.radians(body.Course)
@@ -182,10 +184,10 @@ class Recorder:
         return AirState(here, math.atan2(east, north), math.hypot(north, east) / span_s, climb)
 
     def place(self, body: Any) -> Position:
-        """Where a state says that its aircraft is, in the mission's frame."""
+        """The position in a state, in the mission's frame."""
         at = body.Location
         return Position(*self._plane.to_local(at.Latitude, at.Longitude), float(at.Altitude))
 
 
 _OURS = ("TaskProgress", "PlanAccepted", "MissionEnd")
-"""What is not said on UxAS's bus, but follows from what is said there."""
+"""Messages derived from UxAS's bus, not published there."""

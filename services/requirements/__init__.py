@@ -1,4 +1,5 @@
-"""Requirements over time: formulas and their language, C2PO, FRET, samples of traces, evaluation, lint.
+"""Temporal requirements: formulas, their language, C2PO and FRET import, sampling of traces,
+evaluation, lint.
 
-Nothing here imports the planner or the prover; verdicts are decided by the kernels of `core.requirements`.
+Nothing here imports the planner or the prover; the kernels of `core.requirements` decide verdicts.
 """

@@ -1,8 +1,9 @@
-"""Numbers that are calculated from signals, as FRET's requirements have them in comparisons: `+ - * /`, the absolute
-value, sines, cosines, roots, and what a number was at the sample before; in definitions also Lustre's `->`, `pre`, `if`.
+"""Computed signals, as in comparisons of FRET requirements: `+ - * /`, absolute value, sines,
+cosines, roots, and values at the previous sample; in definitions also Lustre's `->`, `pre`, `if`.
 
-Such a number is a signal of its own, whose name says how it is made. It is calculated in doubles at each sample, and is
-unknown where anything that it is made of is; so are a quotient by zero and the root of a negative number.
+A computed number is a signal of its own, named by its expression. It is computed in doubles at each
+sample and is unknown if any operand is unknown; so are quotients by zero and roots of negative
+numbers.
 """
 
 from __future__ import annotations
@@ -35,13 +36,15 @@ TWO: dict[str, Callable[[float, float], float]] = {
 
 @dataclass(frozen=True)
 class Term:
-    """A number that is calculated. text: as FRET writes it, which is its name; unit: of the number; whole: it is an
-    integer; kind: of `ONE`, `TWO`, or
+    """A computed number. text: its expression in FRET's notation, which is its name; unit: of the
+    number; whole: it is an integer; kind: one of `ONE`, `TWO`, or
 
-    PRE: the first side at the first sample, then what the second was at the sample before; BEFORE: the same, unknown at
-    the first sample; BEGINS: the first side at the first sample, then the second; CHOICE: by the first side, a truth
-    value (1 or 0), the second or the third; NAMED: its side, which may look at this one at the sample before by its name; QUANTITY: its side, in the unit;
-    REACHES, NOT, AND, OR: truth values, for a choice."""
+    PRE: at the first sample the first side, then the previous value of the second; BEFORE: the
+    same, but unknown at the first sample; BEGINS: the first side at the first sample, then the
+    second; CHOICE: the second or third side, selected by the first, a truth value (1 or 0); NAMED:
+    its side, which may refer to this term's previous value by its name; QUANTITY: its side, in the
+    unit; REACHES, NOT, AND, OR: truth values, for a choice.
+    """
 
     kind: str
     sides: tuple[Side, ...]
@@ -51,7 +54,7 @@ class Term:
 
 
 Side = str | float | Term
-"""A signal, a number in its unit, or what is calculated."""
+"""A signal's name, a number in its unit, or a computed number."""
 
 
 def terms(one: Side) -> Iterator[Term]:
@@ -63,7 +66,7 @@ def terms(one: Side) -> Iterator[Term]:
 
 
 class Made(Protocol):
-    """A signal, or what may be one."""
+    """A signal, recorded or computed."""
 
     @property
     def made(self) -> Term | None:
@@ -71,7 +74,7 @@ class Made(Protocol):
 
 
 def sources(names: Iterable[str], signals: Mapping[str, Made]) -> set[str]:
-    """The signals of a trace that these are, or are made of."""
+    """The recorded signals among these, and those from which the computed ones are derived."""
     found: set[str] = set()
     for name in names:
         made = signals[name].made
@@ -85,7 +88,7 @@ def sources(names: Iterable[str], signals: Mapping[str, Made]) -> set[str]:
 
 
 class Calculated:
-    """The calculated signals among some, sample by sample."""
+    """The computed signals among some, evaluated sample by sample."""
 
     def __init__(self, names: Iterable[str], signals: Mapping[str, Made]) -> None:
         made = {name: signals[name].made for name in sorted(names)}
@@ -94,7 +97,7 @@ class Calculated:
         self._is_first = True
 
     def row(self, values: Values) -> dict[str, float | None]:
-        """The values of a sample, with those that are calculated from them and from the sample before."""
+        """The values of a sample, extended by those computed from them and from the previous sample."""
         found = dict(values)
         if not self.made:
             return found
@@ -136,7 +139,7 @@ class Calculated:
 
 
 def _joined(sides: list[float | None], is_and: bool) -> float | None:
-    """1 or 0 of truth values; one that decides does so whatever is unknown."""
+    """Conjunction or disjunction of truth values, as 1 or 0; a deciding side decides even if others are unknown."""
     decides = 0.0 if is_and else 1.0
     if decides in sides:
         return decides
@@ -156,7 +159,7 @@ def _calculated(kind: str, sides: list[float]) -> float:
 def _of(side: Side, values: Values, done: Values) -> float | None:
     if isinstance(side, Term):
         value = done[side.text]
-    elif isinstance(side, str):  # what is calculated under a name is looked at by it
+    elif isinstance(side, str):  # a computed number is referred to by its name
         value = done[side] if side in done else values.get(side)
     else:
         value = side

@@ -1,4 +1,4 @@
-"""At how many samples a requirement asked something: where what it depends on is not so it asks nothing."""
+"""Counts the samples at which a requirement `a implies b` applies, that is, at which its condition a holds."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from cratous.services.requirements.specification import Requirement, Specificati
 
 
 def depends_on(one: Requirement) -> Formula | None:
-    """For `a implies b` the condition a; for any other form none."""
+    """For `a implies b` the condition a; None for any other form."""
     formula = one.formula
     if isinstance(formula, Join) and not formula.is_and and isinstance(formula.phi, Not):
         return formula.phi.phi
@@ -17,7 +17,7 @@ def depends_on(one: Requirement) -> Formula | None:
 
 
 def with_asked(spec: Specification) -> Specification:
-    """The same requirements, and behind them what each of them depends on, under its name."""
+    """The same requirements, followed by the condition of each that has one, under the requirement's name."""
     asked = [
         Requirement(one.name, "", antecedent)
         for one in spec.requirements

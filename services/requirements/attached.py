@@ -1,7 +1,7 @@
-"""The messages of a running system, from the port where it tells them: a TCP or ZeroMQ bridge of UxAS, or AMASE.
+"""Messages of a running system, received from its port: a TCP or ZeroMQ bridge of UxAS, or AMASE.
 
-Nothing is sent, and what comes is taken at once, so that the peer never waits. Times are those of arrival,
-[ms] since the first connection, on a clock that does not go back.
+Nothing is sent, and input is read at once, so that the peer never waits. Times are arrival times
+[ms] since the first connection, on a monotonic clock.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from cratous.services.logs.files import entry_of
 from cratous.spec.errors import BadInput
 
 POLL_S = 0.1
-"""So often it is looked whether to end."""
+"""Interval for checking whether to end [s]."""
 
 
 class Attached:
@@ -38,7 +38,7 @@ class Attached:
         self.seq = 0
 
     def now_ms(self) -> int:
-        """The time since the first connection, 0 before."""
+        """Time since the first connection [ms], 0 before."""
         return 0 if self._begun_s is None else int((time.monotonic() - self._begun_s) * 1000)
 
     def messages(self, wait_s: float, until: Callable[[int], bool]) -> Iterator[Entry]:
@@ -65,7 +65,7 @@ class Attached:
             self._port.close()
 
     def left(self) -> list[str]:
-        """What goes on after the watch, in words: nothing."""
+        """What remains running after the watch, in words: nothing."""
         return []
 
     def _sleep(self) -> None:

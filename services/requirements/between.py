@@ -1,10 +1,13 @@
-"""What a requirement asks between samples, where a signal has a greatest rate: a comparison that is so at a sample counts as
-so only if it is with as much to spare as the signal may change until half way to the next sample, else it is unknown.
+"""Requirements between samples, for signals with a maximum rate: a comparison that holds at a
+sample counts as true only with a margin of the signal's maximum change within half a sampling gap,
+otherwise as unknown.
 
-A comparison that is not so at a sample is not so there, whatever is between. In a formula this is `x >= c and (x >= c + d
-or unknown)` where the requirement needs x >= c to be so, and `x >= c or (x >= c - d and unknown)` where it needs it not to be.
-Of an instant near a sample the bounds of time are others too: so `until` has to be false with a gap more on either side where it
-must not be so, and where it begins later its left side has to be so with the right one, until which there is half a gap.
+A comparison that is false at a sample is false there, whatever lies between. Where the requirement
+needs x >= c to be true, the formula becomes `x >= c and (x >= c + d or unknown)`; where it needs it
+to be false, `x >= c or (x >= c - d and unknown)`. Instants near a sample also shift the time
+bounds: where it must not hold, `until` has to be false with bounds widened by one gap on either
+side; with a lower bound above 0, its left side also has to hold at the sample of its right side, up
+to which there is half a gap.
 """
 
 from __future__ import annotations
@@ -33,16 +36,17 @@ SECOND = 10**9
 
 
 class NoBound(Exception):
-    """Nothing says how fast what is calculated of these may change; the reason in words."""
+    """No bound on the rate of change of a computed number is known; the reason in words."""
 
 
 def between(formula: Formula, signals: dict[str, Signal], gap_ns: int) -> Formula | None:
-    """What is to hold at samples that are gap_ns apart at most, so that the formula holds between them too; None where no
-    signal of it has a rate. Signals that it needs are added. Raises NoBound."""
+    """The formula to check at samples at most gap_ns apart so that the original holds between them
+    too; None if none of its signals has a rate. Adds the signals that it needs. Raises NoBound.
+    """
     made = _Made(signals, gap_ns)
     needed: dict[int, Formula] = {}
     not_needed: dict[int, Formula] = {}
-    """Of each part, where the requirement needs it to be so, and where it needs it not to be."""
+    """For each part: its form where it must be true, and its form where it must be false."""
     for part in parts(formula):
         mine = id(part)
         if isinstance(part, Reaches):
@@ -76,7 +80,7 @@ def _of_two(part: Join | Bounded, phi: Formula, psi: Formula) -> Formula:
 
 
 def _begun(part: Bounded, found: Formula) -> Formula:
-    """Where it begins later: it is so of the instants near the sample only if phi is still so with psi."""
+    """With a lower bound above 0: true near the sample only if phi also holds at the sample of psi."""
     if found is part or not isinstance(found, Bounded) or not part.low or found.phi == TRUE:
         return found
     both = replace(found, psi=Join(found.phi, found.psi, True))
@@ -84,7 +88,7 @@ def _begun(part: Bounded, found: Formula) -> Formula:
 
 
 def _widened(part: Bounded, found: Formula, gap_ns: int) -> Formula:
-    """An instant within half a gap of the sample sees what is near samples up to a gap outside of the sample's bounds."""
+    """Widen the time bounds: an instant within half a gap of the sample reaches samples up to a gap beyond them."""
     if found is part or not isinstance(found, Bounded):
         return found
     low, high = max(0, part.low - gap_ns), min(MAX_TIME, part.high + gap_ns)
@@ -93,13 +97,13 @@ def _widened(part: Bounded, found: Formula, gap_ns: int) -> Formula:
 
 
 class _Made:
-    """Comparisons with something to spare."""
+    """Rewrites comparisons with a margin."""
 
     def __init__(self, signals: dict[str, Signal], gap_ns: int) -> None:
         self.signals, self.half_ns = signals, Fraction(gap_ns, 2)
 
     def compared(self, one: Reaches) -> tuple[Formula, Formula]:
-        """A comparison where it has to be so, and where it has not."""
+        """A comparison where it must be true, and where it must be false."""
         spare = _change(one.left, self.signals, self.half_ns)
         spare += _change(one.right, self.signals, self.half_ns)
         if not spare:
@@ -109,7 +113,7 @@ class _Made:
         return Join(one, surely, True), Join(one, surely_not, False)
 
     def _shifted(self, one: Reaches, by: Fraction) -> Reaches:
-        """Left reaches right and so much more; rounded away from what would be too little."""
+        """The comparison with its margin increased by `by`, rounded so that it is not too small."""
         left, right = one.left, one.right
         if not isinstance(right, str):
             return Reaches(left, _rounded(Fraction(right) + by, by))
@@ -124,7 +128,7 @@ class _Made:
 
 
 def _rounded(value: Fraction, towards: Fraction) -> float:
-    """The double that is no nearer to zero change than the number."""
+    """The value rounded to a double, up if `towards` is positive, otherwise down."""
     found = float(value)
     if Fraction(found) == value:
         return found
@@ -132,7 +136,7 @@ def _rounded(value: Fraction, towards: Fraction) -> float:
 
 
 def _change(side: Side, signals: Mapping[str, Signal], half_ns: Fraction) -> Fraction:
-    """By how much a side may have changed from what it was at the nearest sample, in its unit."""
+    """Maximum change of a side since the nearest sample, in its unit."""
     if isinstance(side, str):
         signal = signals[side]
         if signal.made is not None:
@@ -153,7 +157,7 @@ def _change(side: Side, signals: Mapping[str, Signal], half_ns: Fraction) -> Fra
 
 
 def _number(side: Side) -> Fraction:
-    """The number that a side is; 0 of one that is none."""
+    """The number that a side is; 0 for a signal."""
     if isinstance(side, Term):
         return _number(side.sides[0]) if side.kind == QUANTITY else Fraction(0)
     return Fraction(0) if isinstance(side, str) else Fraction(side)

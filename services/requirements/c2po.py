@@ -1,8 +1,9 @@
-"""Import of requirements in C2PO, the language of R2U2: the part that both have. Grammar: `c2po.lark`.
+"""Import of requirements in C2PO, the language of R2U2: the common subset. Grammar: `c2po.lark`.
 
-A time unit is one sample. Mission-time logic counts phi of `phi U[a,b] psi` from the lower bound on only, so
-it is read as `F[a,a](phi U[0,b-a] psi)`. What C2PO has beyond (structures, sets, definitions, arithmetic,
-contracts, since from a lower bound above 0) is refused, one requirement at a time.
+A time unit is one sample. Mission-time logic evaluates phi of `phi U[a,b] psi` only from the lower
+bound on, so it is read as `F[a,a](phi U[0,b-a] psi)`. Other features of C2PO (structures, sets,
+definitions, arithmetic, contracts, since with a lower bound above 0) are refused, one requirement
+at a time.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ ONE_SIDED: dict[str, Callable[[formulas.Formula, int, int], formulas.Formula]] =
 
 
 def read(text: str, where: str = "C2PO") -> specification.Specification:
-    """The requirements of a text. Raises BadInput for one that has none, or declares a signal twice."""
+    """The requirements of a text. Raises BadInput if there is none, or if a signal is declared twice."""
     at_most(len(text.encode()), CONFIG_BYTES, "the requirements are too long", where)
     text = re.sub(r"--[^\n]*", lambda m: " " * len(m.group()), text)
     types: dict[str, str] = {}
@@ -57,7 +58,7 @@ def read(text: str, where: str = "C2PO") -> specification.Specification:
 
 
 def _pieces(text: str, start: int, end: int) -> Iterator[tuple[int, str]]:
-    """(offset, text) of what semicolons end; what stands behind the last one too."""
+    """(offset, text) of each statement ended by a semicolon, and of the text after the last one."""
     for piece in text[start:end].split(";"):
         if piece.strip():
             yield start + len(piece) - len(piece.lstrip()), piece.strip()
@@ -68,7 +69,7 @@ def _declare(text: str, start: int, end: int, types: dict[str, str], where: str)
     for _, piece in _pieces(text, start, end):
         found = DECLARED.fullmatch(piece)
         if not found:
-            continue  # of another type: what uses it is not read
+            continue  # of another type: requirements that use it are refused
         for name in re.split(r"\s*,\s*", found.group(1)):
             if name in types:
                 raise BadInput("a signal is declared twice", where=where, item=name)
@@ -117,7 +118,7 @@ def _formula(piece: str, types: dict[str, str]) -> tuple[str, formulas.Formula]:
 
 def _build(tree: Any, types: dict[str, str]) -> tuple[str, formulas.Formula]:
     made: list[Any] = []
-    for node in tree.iter_subtrees():  # parts before the whole
+    for node in tree.iter_subtrees():  # children before parents
         node.made = _made(node, types)
         made.append(node)
     result: tuple[str, formulas.Formula] = tree.made
@@ -185,7 +186,7 @@ def _two_sided(
     phi: formulas.Formula, operator: Any, bounds: tuple[int, int], psi: formulas.Formula
 ) -> formulas.Formula:
     low, high = bounds
-    if operator in ("R", "T"):  # the duals
+    if operator in ("R", "T"):  # by duality
         phi, psi = formulas.Not(phi), formulas.Not(psi)
     if operator in ("U", "R"):
         made: formulas.Formula = formulas.Bounded(phi, psi, 0, high - low, False)

@@ -14,14 +14,14 @@ Cells = dict[str, str]
 
 
 class TraceOfChanges(BadInput):
-    """The file lists changes of signals (`@time ...`) in place of samples."""
+    """The file lists changes of signals (`@time ...`) instead of samples."""
 
 
 def samples(file: Path) -> Iterator[tuple[int, Sample]]:
-    """(line, sample) of each row; an empty cell is None. Plain or gzipped.
+    """(line, sample) of each row; an empty cell is None. The file may be gzipped.
 
-    Raises BadInput with line and column's name for a cell that is no number, a row of another length, and a
-    first line that does not name each column once; TraceOfChanges.
+    Raises BadInput with line and column name for a cell that is no number, a row of another length,
+    and a first line that does not name each column once; TraceOfChanges.
     """
     for where, cells in rows_of(file):
         row = {name: _number(cell, where, name) for name, cell in cells.items()}
@@ -29,7 +29,7 @@ def samples(file: Path) -> Iterator[tuple[int, Sample]]:
 
 
 def rows_of(file: Path) -> Iterator[tuple[str, Cells]]:
-    """(`file:line`, cells by column) of each row. Raises as `samples` does, but for what cells say."""
+    """(`file:line`, cells by column) of each row. Raises as `samples` does, except for the content of cells."""
     names: list[str] = []
     for number, line in lines_of(file):
         where = f"{file}:{number}"

@@ -1,8 +1,10 @@
-"""Evaluation of a formula sample by sample: queues between operators, in which proved kernels decide.
+"""Evaluation of a formula sample by sample: queues between operators, with proved kernels for each
+decision.
 
-Every operator takes the verdicts of its parts in the order of the samples and gives its own in that order,
-each at the first sample that decides it. The cost of a sample is constant on average at any horizon: the
-oldest waiting sample is asked first, and where it waits all wait (`requirements_until_waits_in_order`).
+Every operator receives the verdicts of its parts in sample order and returns its own in that order,
+each at the first sample that decides it. The amortised cost of a sample is constant for any
+horizon: the oldest waiting sample is decided first, and while it waits all others wait
+(`requirements_until_waits_in_order`).
 """
 
 from __future__ import annotations
@@ -30,13 +32,13 @@ from cratous.services.requirements.to_blame import Part, Parts
 from cratous.spec.errors import BadInput
 
 Decided = list[tuple[int, int]]
-"""Verdicts with the time of the sample that each is of, in order."""
+"""Verdicts in order, each with the time of its sample."""
 FALSE, UNKNOWN, TRUE, WAITS = range(4)
 NEVER = -(2**62)
 
 
 def in_order(time: int, last: int) -> int:
-    """The time of a sample; BadInput unless it is later than that of the one before, and none is beyond MAX_TIME."""
+    """The time of a sample; BadInput unless it is later than the previous one and at most MAX_TIME."""
     if not last < time <= MAX_TIME:
         raise BadInput(
             "a sample is out of order",
@@ -48,7 +50,7 @@ def in_order(time: int, last: int) -> int:
 
 
 class TooManyWait(BadInput):
-    """More samples wait for a verdict than were allowed for: the trace is denser than was declared."""
+    """More samples wait for a verdict than declared: the trace is denser than its declared period."""
 
 
 class _Leaf:
@@ -61,13 +63,13 @@ class _Leaf:
         self.numbers = tuple(0.0 if isinstance(side, str) else side for side in sides)
 
     def verdict(self, values: Mapping[str, float | None]) -> int:
-        """At a sample with these values."""
+        """The verdict at a sample with these values."""
         if self.constant is not None:
             return self.constant
         name, other = self.names
         left = values.get(name) if name is not None else self.numbers[0]
         right = values.get(other) if other is not None else self.numbers[1]
-        # what is missing, no number or infinite is not known
+        # missing and non-finite values are unknown
         if left is None or right is None or not (isfinite(left) and isfinite(right)):
             return UNKNOWN
         return TRUE if reaches(left, right) else FALSE
@@ -90,7 +92,7 @@ class _Join:
         self.join, self.alone = (both, FALSE) if formula.is_and else (either, TRUE)
         self.waiting: tuple[deque[tuple[int, int]], ...] = (deque(), deque())
         self.behind = [0, 0]
-        """Of each side, how many verdicts come that are not needed any more."""
+        """For each side, the number of coming verdicts that are no longer needed."""
 
     def take(self, side: int, got: Decided) -> Decided:
         skipped = min(self.behind[side], len(got))
@@ -123,9 +125,9 @@ class _Paired:
     def __init__(self, formula: Bounded) -> None:
         self.low, self.high = formula.low, formula.high
         self.is_late = formula.past and formula.low > 0
-        """Samples grow old in it, while it gives as many verdicts as it takes."""
+        """It returns as many verdicts as it receives, with a delay while samples age."""
         self.phi = formula.phi.verdict if isinstance(formula.phi, Always) else None
-        """Of a constant, which waits for nothing: then only verdicts of psi come."""
+        """The verdict of a constant phi, which needs no queue: only verdicts of psi arrive."""
         self.waiting: tuple[deque[tuple[int, int]], ...] = (deque(), deque())
 
     def take(self, side: int, got: Decided) -> Decided:
@@ -164,7 +166,7 @@ class _Until(_Paired):
         return out
 
     def _take_all(self, phi: int, got: Decided) -> Decided:
-        """As `step` of each, where phi is always the same: there is no queue but that of the undecided."""
+        """The same as repeated `step` for a constant phi: only the queue of undecided samples is needed."""
         out: Decided = []
         undecided, times, low, high = self.undecided, self.times, self.low, self.high
         for time, psi in got:
@@ -209,7 +211,7 @@ class _Since(_Paired):
         super().__init__(formula)
         self.found, self.broken = since.Found(NEVER - 1, NEVER - 1), since.Broken(NEVER, NEVER)
         self.young: deque[tuple[int, int]] = deque()
-        """Samples that are not old enough yet, with their psi."""
+        """Samples that are not old enough yet, with their verdict of psi."""
 
     def step(self, time: int, phi: int, psi: int, out: Decided) -> None:
         if self.low:
@@ -229,8 +231,8 @@ class _Since(_Paired):
 class Evaluation:
     """One formula over one trace.
 
-    most: how many samples may wait in any one queue; a sample that makes it more raises TooManyWait. blames:
-    whether it is kept which parts are to blame for the first violation (`blamed`).
+    most: maximum number of samples waiting in any one queue; beyond it TooManyWait is raised.
+    blames: record which parts cause the first violation (`blamed`).
     """
 
     def __init__(self, formula: Formula, most: int = 1_000_000, blames: bool = False) -> None:
@@ -260,14 +262,14 @@ class Evaluation:
             self.parents[places[id(part.phi)]].append((mine, 0))
             self.parents[places[id(part.psi)]].append((mine, 1))
         self.pending: list[list[tuple[int, Decided]]] = [[] for _ in self.nodes]
-        """For each node what its parts have decided at this sample: which side, and the verdicts."""
+        """For each node the verdicts that its parts decided at this sample: (side, verdicts)."""
         self.parts = Parts(formula, places) if blames else None
         self._blaming = self.parts
         last = len(self.nodes) - 1
         self.order = [
             (place, node, type(node) is _Leaf, self.parents[place])
             for place, node in enumerate(self.nodes)
-            # a constant that nobody waits for has nothing to say
+            # skip constants that no operator reads
             if self.parents[place] or place == last
         ]
         self.timeless = self._timeless()
@@ -277,35 +279,35 @@ class Evaluation:
         }  # fmt: skip
         self.is_timeless = last in self.timeless
         self.within = sorted(within)
-        """What has no time and is read by that alone."""
+        """Timeless nodes inside the formula, read by timeless nodes only."""
         self.order_of_same = [
-            # what has no time keeps its verdict, so nothing is told to it
+            # a timeless node keeps its verdict, so none is passed to it
             (place, node, is_leaf, [one for one in read_by if one[0] not in self.timeless])
             for place, node, is_leaf, read_by in self.order
             if place not in within
         ]
         self.verdicts = [WAITS for _ in self.nodes]
-        """Of what has no time, the verdict at the last sample."""
+        """For timeless nodes, the verdict at the last sample."""
 
     def _timeless(self) -> set[int]:
-        """The places of what is decided at each sample from that sample alone."""
+        """The places of nodes whose verdict at a sample depends on that sample alone."""
         timed = {place for place, node in enumerate(self.nodes) if isinstance(node, _Paired)}
-        for place in range(len(self.nodes)):  # parts stand before the whole
+        for place in range(len(self.nodes)):  # children before parents
             if place in timed:
                 timed.update(parent for parent, _ in self.parents[place])
         return {place for place, _, _, _ in self.order if place not in timed}
 
     def sample(self, time: int, values: Mapping[str, float | None], same: bool = False) -> Decided:
-        """The verdicts that this sample decides: (time of the sample that each is of, 0, 1 or 2).
+        """The verdicts that this sample decides: (time of the verdict's sample, 0, 1 or 2).
 
-        time: later than that of the sample before, in time units; values: of the signals; None, what is not
-        finite and a signal that is not there are unknown; same: what the formula reads of them is as it was at
-        the sample before. Raises BadInput for a time that is not later.
+        time: later than that of the previous sample, in time units; values: of the signals; None,
+        non-finite and missing signals are unknown; same: the values that the formula reads are
+        unchanged since the previous sample. Raises BadInput for a time that is not later.
         """
         self.last = in_order(time, self.last)
         if same and self.is_timeless:
             return [(time, self.verdicts[-1])]
-        # parts stand before the whole, so that one pass brings every verdict to the top
+        # children before parents, so that one pass brings every verdict to the root
         got: Decided = []
         pending, verdicts, timeless = self.pending, self.verdicts, self.timeless
         taken: list[tuple[int, Decided]] = []
@@ -345,7 +347,7 @@ class Evaluation:
         return got
 
     def _taken(self, node: Any, rows: list[tuple[int, Decided]], time: int) -> Decided:
-        """What a node makes of what its parts have decided."""
+        """The verdicts that a node derives from those of its parts."""
         found: Decided = []
         for side, got in rows:
             found += node.take(side, got)
@@ -353,7 +355,7 @@ class Evaluation:
         return found
 
     def _bounded(self, node: Any, time: int) -> None:
-        """Asked where a node has given less than it took, so that more may wait, or may let samples grow old."""
+        """Raise TooManyWait if too many samples wait in a node or are not old enough yet."""
         if node.size > self.most:
             raise TooManyWait(
                 "more samples wait for a verdict than were allowed for",
@@ -364,5 +366,5 @@ class Evaluation:
 
     @property
     def blamed(self) -> tuple[Part, ...]:
-        """The parts that are to blame for the first violation; none if there is none, or `blames` is not set."""
+        """The parts that cause the first violation; empty if there is none, or `blames` is not set."""
         return self.parts.found if self.parts else ()

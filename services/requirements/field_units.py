@@ -1,4 +1,4 @@
-"""The unit that the message models state for a field, in the names that requirements use."""
+"""Units of message fields according to the message models, in the unit names of requirements."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def is_known(message: str) -> bool:
 
 
 def unit_of(message: str, path: str) -> str:
-    """The unit of a field, by a path of names from a message type; "" where the models do not say.
+    """The unit of a field, by a path of names from a message type; "" if the models have none.
 
     Raises BadInput for a path that a known type does not have.
     """
@@ -35,7 +35,7 @@ def unit_of(message: str, path: str) -> str:
 
 
 def refuse_no_word(message: str, path: str, word: str, item: str) -> None:
-    """BadInput if the models say that a field is never this word."""
+    """BadInput if, by the models, a field never has this enumeration value."""
     field = _field(message, path)
     if field is None or field.kind == "string":
         return
@@ -52,11 +52,11 @@ def _field(message: str, path: str) -> model.Field | None:
     try:
         series, name = model.resolve(message)
     except BadInput:
-        return None  # a type that only the log knows
+        return None  # a type known only to the log
     field: model.Field | None = None
     for part in path.split("."):
         if part.isdecimal():
-            continue  # of a list
+            continue  # an index into a list
         fields = _fields(series, name)
         field = fields.get(part)
         if field is None:
@@ -65,7 +65,7 @@ def _field(message: str, path: str) -> model.Field | None:
                 expected=", ".join(fields) or "nothing below it", got=part,
             )  # fmt: skip
         if field.kind == "any":
-            return None  # what the message bears there, it alone says
+            return None  # the type of its content is known only at run time
         series, _, name = field.type.partition("/") if field.kind == "struct" else ("", "", "")
     return field
 

@@ -1,7 +1,9 @@
-"""Formulas of bounded metric temporal logic over named signals. Semantics: `spec.requirements.operators`.
+"""Formulas of bounded metric temporal logic over named signals. Semantics:
+`spec.requirements.operators`.
 
-Times are integers of one unit that the trace chooses: milliseconds, or one a sample. Other operators are made
-of these: `F phi = true U phi`, `G phi = not F not phi`, `once = true S`, `historically = not once not`.
+Times are integers in one unit chosen by the trace: milliseconds, or one per sample. Other operators
+are derived: `F phi = true U phi`, `G phi = not F not phi`, `once = true S`, `historically = not
+once not`.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ from typing import TypeAlias
 from cratous.spec.errors import BadInput
 
 MAX_TIME = 2**60
-"""Bounds and time stamps lie within this, so that no sum leaves 62 bits."""
+"""Limit of bounds and time stamps, so that no sum exceeds 62 bits."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +27,7 @@ class Always:
 
 @dataclass(frozen=True)
 class Reaches:
-    """Left is at least right; each the name of a signal, or a number, in one unit."""
+    """Left >= right; each is the name of a signal or a number, both in one unit."""
 
     left: str | float
     right: str | float
@@ -73,7 +75,7 @@ TRUE, FALSE = Always(2), Always(0)
 
 
 def compared(left: str | float, relation: str, right: str | float) -> Formula:
-    """A comparison: `>= <= > < == !=`."""
+    """A comparison with one of `>= <= > < == !=`."""
     above, below = Reaches(left, right), Reaches(right, left)
     made: dict[str, Formula] = {
         ">=": above,
@@ -87,22 +89,22 @@ def compared(left: str | float, relation: str, right: str | float) -> Formula:
 
 
 def eventually(phi: Formula, low: int, high: int) -> Formula:
-    """Phi at some sample between low and high ahead."""
+    """Phi holds at some sample between low and high time units ahead."""
     return Bounded(TRUE, phi, low, high, False)
 
 
 def globally(phi: Formula, low: int, high: int) -> Formula:
-    """Phi at every sample between low and high ahead."""
+    """Phi holds at every sample between low and high time units ahead."""
     return Not(eventually(Not(phi), low, high))
 
 
 def once(phi: Formula, low: int, high: int) -> Formula:
-    """Phi at some sample between low and high ago."""
+    """Phi held at some sample between low and high time units ago."""
     return Bounded(TRUE, phi, low, high, True)
 
 
 def historically(phi: Formula, low: int, high: int) -> Formula:
-    """Phi at every sample between low and high ago."""
+    """Phi held at every sample between low and high time units ago."""
     return Not(once(Not(phi), low, high))
 
 
@@ -112,12 +114,12 @@ def implies(phi: Formula, psi: Formula) -> Formula:
 
 
 def iff(phi: Formula, psi: Formula) -> Formula:
-    """Phi exactly where psi."""
+    """Phi if and only if psi."""
     return Join(implies(phi, psi), implies(psi, phi), True)
 
 
 def parts(formula: Formula) -> Iterator[Formula]:
-    """Every distinct part once, parts before the whole; without recursion, so depth is no matter."""
+    """Every distinct part once, children before parents; iterative, so the depth is not limited."""
     done: set[int] = set()
     todo: list[tuple[Formula, bool]] = [(formula, False)]
     while todo:
@@ -142,7 +144,7 @@ def children(formula: Formula) -> tuple[Formula, ...]:
 
 
 def same(one: Formula, other: Formula) -> bool:
-    """Are two formulas written alike? Without recursion, and each pair of parts is looked at once."""
+    """Whether two formulas are structurally equal. Iterative; each pair of parts is compared once."""
     done: set[tuple[int, int]] = set()
     todo = [(one, other)]
     while todo:
@@ -157,13 +159,13 @@ def same(one: Formula, other: Formula) -> bool:
 
 
 def _head(formula: Formula) -> tuple[object, ...]:
-    """All of a formula but its parts."""
+    """A node without its children, as a comparable tuple."""
     of = {k: v for k, v in vars(formula).items() if k not in ("phi", "psi")}
     return type(formula), *sorted(of.items())
 
 
 def horizon(formula: Formula) -> int:
-    """How long after a sample the formula is decided there at the latest, in time units."""
+    """Maximum time after a sample at which the formula is decided there, in time units."""
     return _horizons(formula)[id(formula)]
 
 
@@ -177,7 +179,7 @@ def _horizons(formula: Formula) -> dict[int, int]:
 
 
 def waiting(formula: Formula, period: int) -> int:
-    """The most samples that any queue of the evaluation holds, if samples are at least `period` apart."""
+    """Maximum length of any queue of the evaluation, if samples are at least `period` apart."""
     longest, found = _horizons(formula), 0
     for part in parts(formula):
         old = part.low if isinstance(part, Bounded) and part.past else 0

@@ -1,9 +1,10 @@
-"""Import of requirements from FRET: its export in JSON, `{"requirements": [...], "variables": [...]}` or the first alone.
+"""Import of FRET requirements: its JSON export, `{"requirements": [...], "variables": [...]}` or
+only the list.
 
-Where samples are counted, a requirement is what its formulas say: those that look ahead first, as they tell which
-sample is to blame, then those that look back, then its sentence. Where samples have times it is its sentence: the
-formulas have lost the unit of their bounds, so one is taken only if it has none. What cannot be said is refused with
-the requirement, its formula and the place in it.
+If samples are counted, a requirement is read from its formulas: future-time ones first, since they
+tell which sample violates it, then past-time ones, then its sentence. If samples have times, the
+sentence is read: formulas do not contain the unit of their bounds, so one is used only if it has no
+bounds. What cannot be read is refused with the requirement, its formula and the position in it.
 """
 
 from __future__ import annotations
@@ -35,12 +36,12 @@ CLOCK = re.compile(
     r"\b(?:within|for|after)\s+([0-9.eE+-]+\s*(?:(?:micro|milli)?(?:sec|second)s?|minutes?|hours?))\b",
     re.IGNORECASE,
 )
-"""A duration that is no number of ticks."""
+"""A duration in clock time instead of ticks."""
 DEFINED = re.compile(r"-?[0-9]+(\.[0-9]+)?([eE][-+]?[0-9]+)?")
-"""A definition that is a number; `1/3` is for its author's tool to divide."""
+"""A definition that is a number; quotients such as `1/3` are refused."""
 PROBABLY = re.compile(r"\bwith\s+probability\b", re.IGNORECASE)
 UNFORMED = "<b><i>"
-"""FRET puts into these what it has taken over from a sentence as it stood, without reading it."""
+"""Marks text that FRET copied from a sentence without parsing it."""
 BOOLS = ("boolean", "bool")
 WHOLE = ("integer", "int", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
 REALS = ("double", "single", "float", "real")
@@ -48,8 +49,9 @@ REALS = ("double", "single", "float", "real")
 
 @dataclass(frozen=True)
 class Export:
-    """requirements: as they stand in the file, with an id each; variables: the kind of those that have one, and what
-    its author defines."""
+    """requirements: as in the file, each with an id; variables: declared signals with their type;
+    and the definitions by the export's author.
+    """
 
     where: str
     requirements: tuple[Mapping[str, Any], ...]
@@ -58,9 +60,10 @@ class Export:
 
 
 def read(text: str, where: str = "FRET") -> Specification:
-    """The requirements of an export over samples that are counted; its variables are the columns of the trace.
+    """The requirements of an export over counted samples; its variables are the columns of the
+    trace.
 
-    Raises BadInput for a text that is no export, and for one of whose requirements none is told.
+    Raises BadInput for a text that is no export, or if no requirement can be read.
     """
     export = read_export(text, where)
     names = with_definitions(Names(export.variables, export.defined, counted=True))
@@ -71,7 +74,7 @@ def read(text: str, where: str = "FRET") -> Specification:
 
 
 def read_export(text: str, where: str) -> Export:
-    """What stands in an export. Raises BadInput for what is none, and for an id that is given twice."""
+    """The content of an export. Raises BadInput for an invalid file, and for an id that occurs twice."""
     data = json_of(text, where)
     if isinstance(data, list):
         data = {"requirements": data}
@@ -101,7 +104,7 @@ def _rows(data: Mapping[str, Any], key: str, where: str) -> list[Mapping[str, An
 def _variables(
     rows: Iterable[Mapping[str, Any]], where: str
 ) -> tuple[dict[str, Signal], dict[str, Meaning]]:
-    """Of each name its kind, and its definition; what FRET knows of a model's ports has no use, and is passed over."""
+    """Signals by name with their type, and definitions by name; data on model ports are ignored."""
     signals: dict[str, Signal] = {}
     defined: dict[str, Meaning] = {}
     for one in rows:
@@ -115,7 +118,7 @@ def _variables(
         before = defined.get(name, signals.get(name))
         now = meaning if meaning is not None else Signal(kind or "")
         if before is not None and before != now:
-            # of one component this, of another that: which is meant in a trace nobody knows
+            # declared differently by two components: ambiguous for a trace
             now = Unread("the export declares this variable in two ways")
         signals.pop(name, None)
         if isinstance(now, Signal):
@@ -131,8 +134,8 @@ def _kind(of: Any) -> str | None:
 
 
 def _definition(one: Mapping[str, Any]) -> Meaning | None:
-    """What a variable is by its author's definition; None where it has none."""
-    if one.get("idType") in ("Input", "Output"):  # FRET keeps what it was defined as before, unused
+    """The author's definition of a variable; None if it has none."""
+    if one.get("idType") in ("Input", "Output"):  # FRET keeps a former definition, which is unused
         return None
     if one.get("idType") == "Function":
         return Unread("this is a function")
@@ -155,7 +158,7 @@ def _definition(one: Mapping[str, Any]) -> Meaning | None:
 
 
 def requirement(row: Mapping[str, Any], names: Names, where: str, *, timed: bool) -> Requirement:
-    """One requirement of an export, or why it is not read. timed: as for `fretish_read.asked`."""
+    """One requirement of an export, or the reason why it is not read. timed: as for `fretish_read.asked`."""
     name, sentence = str(row["reqid"]), " ".join(str(row.get(SENTENCE) or "").split())
     said = row.get("semantics")
     formulas = {k: str(v) for k, v in said.items() if v} if isinstance(said, dict) else {}
@@ -183,7 +186,7 @@ def requirement(row: Mapping[str, Any], names: Names, where: str, *, timed: bool
 
 
 def _left_out(sentence: str, formulas: Mapping[str, str], timed: bool) -> Wrong | None:
-    """What the formulas of a requirement do not say of it, so that they may not be read for it."""
+    """Reason why the formulas do not express the whole requirement and must not be used; None if they do."""
     if (found := PROBABLY.search(sentence)) or formulas.get("probability") == "bound":
         return Wrong("probabilities are not read", found.start() if found else 0)
     if not timed and (clock := CLOCK.search(sentence)):
@@ -193,7 +196,7 @@ def _left_out(sentence: str, formulas: Mapping[str, str], timed: bool) -> Wrong 
 
 
 def _ways(timed: bool) -> list[tuple[str, Kind | None]]:
-    """In which order the texts of a requirement are tried."""
+    """The order in which the texts of a requirement are tried."""
     counted = not timed
     ahead = [(key, Kind(True, counted, False)) for key in AHEAD]
     back = [(key, Kind(False, counted, False)) for key in BACK]

@@ -1,8 +1,9 @@
-"""Variables of FRET's that are defined by a formula over others, at the same sample or, where samples are counted, the
-one before: conditions, and what is calculated.
+"""FRET variables defined by a formula over others, at the same sample or, if samples are counted,
+the previous one: conditions and computed numbers.
 
-Grammar: `fret_definition.lark`. A definition that comes back to itself, but for a number that looks at itself at the
-sample before, and one of another kind than its variable is not read: a requirement that needs it says why.
+Grammar: `fret_definition.lark`. A cyclic definition is not read, except for a number that refers to
+its own previous value; nor is one whose type differs from its variable's. A requirement that needs
+such a variable states why it is not read.
 """
 
 from __future__ import annotations
@@ -31,18 +32,18 @@ if TYPE_CHECKING:
 
 NOT_READ = "this variable is defined by a formula that is not read"
 MOST = 2000
-"""Variables that a definition may come to, each as often as it stands there, with those that it is made of."""
+"""Maximum size of a definition: variables in it with those of their definitions, repetitions counted."""
 
 
 def with_definitions(names: Names) -> Names:
-    """The same names, with what the definitions that can be read over them say."""
+    """The same names, with the meaning of every definition that can be read."""
     bound, size = dict(names.bound), dict[str, int]()
     left = {name: one for name, one in bound.items() if isinstance(one, Defined)}
     trees = {name: _tree(one) for name, one in left.items()}
     inside = {name: _names_in(name, tree) for name, tree in trees.items()}
     while left:
         known = replace(names, bound=bound)
-        # what another definition says is told once that is read
+        # a definition is resolved once all definitions that it uses are
         ready = {n: one for n, one in left.items() if left.keys().isdisjoint(inside[n])}
         if not ready:
             said = "this variable is defined by itself"
@@ -62,7 +63,7 @@ def with_definitions(names: Names) -> Names:
 
 
 def _tree(one: Defined) -> Any:
-    """The tree of a definition, or why there is none."""
+    """The syntax tree of a definition, or the reason why there is none."""
     try:
         tree = tree_of(_parser(), one.text, "definitions", is_number=not one.is_bool)
         begun(tree)
@@ -72,7 +73,7 @@ def _tree(one: Defined) -> Any:
 
 
 def _names_in(own: str, tree: Any) -> list[str]:
-    """The variables of a definition; without itself if it looks at itself under `pre` alone."""
+    """The variables in a definition; without itself if it occurs only under `pre`."""
     if isinstance(tree, Wrong):
         return []
     kinds = ("truth", "name")
@@ -81,17 +82,17 @@ def _names_in(own: str, tree: Any) -> list[str]:
 
 
 def _unread(no: Wrong) -> Unread:
-    # of one that is defined by another the reason of that is enough
+    # the reason of the definition that it depends on is enough
     return Unread(no.what if no.what.startswith(NOT_READ) else f"{NOT_READ}: {no.what}")
 
 
 def _meaning(name: str, one: Defined, tree: Any, names: Names) -> Meaning:
     recursive = any(name == str(n.children[0]) for n in tree.iter_subtrees() if n.data == "name")
-    if recursive:  # at the sample before it is a number of its name
+    if recursive:  # at the previous sample it is a number of that name
         signals = {**names.signals, name: Signal("float")}
         names = replace(names, signals=signals, bound={**names.bound, name: name})
     try:
-        for node in tree.iter_subtrees():  # parts before the whole
+        for node in tree.iter_subtrees():  # children before parents
             if node.data != "start":
                 got = [getattr(child, "made", child) for child in node.children]
                 kind = str(node.data)

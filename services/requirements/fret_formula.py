@@ -1,8 +1,9 @@
-"""A formula of FRET's export as a requirement that is asked of every sample. Grammar: `fret.lark`.
+"""A formula of FRET's export as a requirement on every sample. Grammar: `fret.lark`.
 
-FRET asks a formula once: of the first sample where it looks ahead (`ft`), of the last where it looks back
-(`pt`). So `G phi`, `LAST V phi` and `H phi` are phi of every sample, and what else looks ahead is asked of the first
-sample alone. Operators without a bound may look back; ahead they are refused, as no sample decides them.
+FRET evaluates a formula once: at the first sample if it is future-time (`ft`), at the last if
+past-time (`pt`). So `G phi`, `LAST V phi` and `H phi` require phi at every sample, and any other
+future-time formula applies to the first sample only. Unbounded operators are accepted in past time;
+in future time they are refused, as no sample decides them.
 """
 
 from __future__ import annotations
@@ -23,8 +24,10 @@ FIRST = formulas.Not(EARLIER)
 
 
 class Kind(NamedTuple):
-    """ahead: the formula is asked of the first sample, else of the last; counted: a bound is a number of samples,
-    else samples bear times, and bounds and the sample before are refused; next: X may be in it."""
+    """ahead: the formula is evaluated at the first sample, otherwise at the last; counted: a bound
+    is a number of samples, otherwise samples have times, and bounds and the previous sample are
+    refused; next: X is allowed.
+    """
 
     ahead: bool
     counted: bool
@@ -32,17 +35,17 @@ class Kind(NamedTuple):
 
 
 def asked(text: str, names: Names, kind: Kind) -> formulas.Formula:
-    """The requirement that a formula is; Wrong, with the place, for what cannot be said."""
+    """The requirement that a formula expresses; Wrong, with the position, if it cannot be expressed."""
     tree = tree_of(_parser(), text, "FRET's formulas")
-    for node in tree.iter_subtrees():  # parts before the whole
+    for node in tree.iter_subtrees():  # children before parents
         node.made = _made(node, names, kind)
-    if tree.children[0].data == "constant":  # what FRET gives where it has no formula
+    if tree.children[0].data == "constant":  # FRET's output where it has no formula
         raise Wrong("the formula says nothing of any sample", 0, got=text)
     return _top(tree.children[0], kind)
 
 
 def _top(tree: Any, kind: Kind) -> formulas.Formula:
-    """Of a formula that is asked once, what is asked of each sample."""
+    """The per-sample requirement for a formula that FRET evaluates once."""
     todo, found = [tree], []
     while todo:
         node = todo.pop()
@@ -60,7 +63,7 @@ def _top(tree: Any, kind: Kind) -> formulas.Formula:
 
 
 def _edge(kind: Kind, turns: Any, begins: Any) -> formulas.Formula | None:
-    """Of `G ((!c & X c) -> X phi) & (c -> phi)`: phi of each sample at which c has become true."""
+    """For `G ((!c & X c) -> X phi) & (c -> phi)`: phi at each sample at which c becomes true; otherwise None."""
     inner = _under(turns, kind)
     if inner is None or not (inner.data == begins.data == "implies") or not kind.counted:
         return None
@@ -80,12 +83,12 @@ def _edge(kind: Kind, turns: Any, begins: Any) -> formulas.Formula | None:
 
 
 def became(c: formulas.Formula) -> formulas.Formula:
-    """C holds, and at the sample before it did not, or there is none; where samples are counted."""
+    """c holds but did not at the previous sample, or there is none; only for counted samples."""
     return formulas.Join(c, formulas.Not(formulas.once(c, 1, 1)), True)
 
 
 def _under(node: Any, kind: Kind) -> Any:
-    """The part that is asked of every sample; None where the formula is no such one."""
+    """The part that has to hold at every sample; None if the formula has no such form."""
     if node.data == "unary" and len(node.children) == 2:
         return node.children[1] if node.children[0] == ("G" if kind.ahead else "H") else None
     if node.data == "binary" and len(node.children) == 3 and kind.ahead:
@@ -103,7 +106,7 @@ def _sure(made: Any) -> formulas.Formula:
 
 
 def _made(node: Any, names: Names, kind: Kind) -> Any:
-    """The formula of a node, or why there is none, which matters only where it is needed."""
+    """The formula of a node, or the reason why there is none, raised only if the node is used."""
     got = [getattr(child, "made", child) for child in node.children]
     if node.data == "either" and _is_more(kind, *node.children):
         return got[0]
@@ -117,7 +120,7 @@ def _made(node: Any, names: Names, kind: Kind) -> Any:
 
 
 def _is_more(kind: Kind, some: Any, whole: Any) -> bool:
-    """Of `G[0,5] phi | G phi`: the second says more than the first, so the first is what both say."""
+    """For `G[0,5] phi | G phi`: the second implies the first, so the disjunction equals the first."""
     inner = _under(whole, kind)
     if inner is None or isinstance(some.made, Wrong) or isinstance(inner.made, Wrong):
         return False
@@ -164,7 +167,7 @@ def _unary(got: list[Any], kind: Kind) -> formulas.Formula:
     if operator in ("X", "Y", "Z"):
         if len(got) > 2:
             raise Wrong("one sample on has no bounds", at, got=str(operator))
-        # there is one before, and there is none: of samples with times too
+        # with or without a previous sample: also valid for samples with times
         if operator == "Y" and phi == formulas.TRUE:
             return EARLIER
         if operator == "Z" and phi == formulas.FALSE:

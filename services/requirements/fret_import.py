@@ -1,10 +1,11 @@
-"""What a file of requirements takes from FRET: its export, with what its variables are here, and its sentences.
+"""Imports of FRET in a requirements file: exports, with a mapping of their variables, and FRETish
+sentences.
 
     fret "export.json" only ALT-1, ALT-2 with alt is altitude_1, floor is 90 m
     requirement ALT-3: fretish "Whenever armed the system shall within 5 seconds satisfy alt >= 90.0"
 
-A variable that `with` does not name is the signal of its name; a number that the export gives it stays one, in the
-unit of what it is compared with.
+A variable not named in `with` is the signal of the same name; a number defined in the export stays
+one, in the unit of what it is compared with.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from cratous.spec.files.text_file import text_of
 
 
 def of_sentence(token: Any, names: Names) -> Formula:
-    """The requirement of a sentence in quotes; Wrong, with the place in the file, for what is not read."""
+    """The requirement of a sentence in quotes; Wrong, with the position in the file, if it cannot be read."""
     try:
         return fretish_read.asked(_text(token), names, timed=True)
     except Wrong as no:
@@ -35,15 +36,16 @@ def of_sentence(token: Any, names: Names) -> Formula:
 
 
 Files = Path | Mapping[str, str]
-"""Where the files lie that a file of requirements imports: a folder, or their texts by name."""
+"""Where imported files are found: a folder, or their texts by name."""
 
 
 def imported(
     item: Any, known: Names, files: Files | None, folder: str = ""
 ) -> Iterator[Requirement]:
-    """The requirements that an import names, or all of the export; one that is not read says why.
+    """The requirements that an import names, or all of the export; one that is not read states why.
 
-    known: the signals; folder: of the file with the import, from that of `files`. Raises Wrong for what is not in the export, BadInput for a file that is none.
+    known: the signals; folder: that of the importing file, relative to `files`. Raises Wrong for
+    ids that are not in the export, BadInput for an invalid file.
     """
     token = item.children[1]
     if files is None:
@@ -62,7 +64,7 @@ def imported(
 
 
 def _export(files: Files, name: str) -> tuple[str, str]:
-    """(text of an export, where it lies)."""
+    """(text of an export, its location)."""
     if not isinstance(files, Path):
         if name not in files:
             known = ", ".join(list(files)[:8]) or "none is there"
@@ -95,7 +97,7 @@ def _text(token: Any) -> str:
 
 
 def quantity(number: Any, unit: Any = "1") -> Quantity:
-    """A number with its unit, as it is written; Wrong for one that is too long."""
+    """A number with its unit, as written; Wrong if it is too long."""
     mantissa, _, exponent = str(number).lower().partition("e")
     if len(mantissa) > DIGITS or len(exponent) > 4 or abs(int(exponent or "0")) > DIGITS:
         raise Wrong("the number is too long", number.start_pos, f"up to {DIGITS} digits")
@@ -103,7 +105,7 @@ def quantity(number: Any, unit: Any = "1") -> Quantity:
 
 
 def unit_at(token: Any) -> str:
-    """The unit of a token in its one form; Wrong for what is none."""
+    """The canonical unit of a token; Wrong if it is no unit."""
     try:
         return of_text(str(token))
     except NoUnit as no:

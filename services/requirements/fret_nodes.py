@@ -1,6 +1,7 @@
-"""What FRET's formulas and its structured English say without time: what joins conditions, comparisons, and numbers that
-are calculated, each in one unit. What has no clear meaning is refused: quotients of whole numbers, most functions.
-What only definitions have, Lustre's `->`, `pre` and `if`, `fret_streams` makes.
+"""The timeless part of FRET's formulas and structured English: Boolean operators, comparisons, and
+computed numbers with units. Ambiguous expressions are refused: quotients of integers, most
+functions. Operators that occur only in definitions, Lustre's `->`, `pre` and `if`, are in
+`fret_streams`.
 """
 
 from __future__ import annotations
@@ -27,9 +28,9 @@ if TYPE_CHECKING:
     from lark import Lark
 
 LONGEST = 2000
-"""Characters of what is calculated."""
+"""Maximum length of a computed expression, in characters."""
 RADIANS = math.pi / 180
-"""Of a degree."""
+"""Radians per degree."""
 SIGNS = {"plus": "+", "minus": "-", "times": "*", "over": "/"}
 FUNCTIONS = {
     "absReal": 1,
@@ -41,19 +42,20 @@ FUNCTIONS = {
     "cos": 1,
     "sqrt": 1,
 }
-"""Those that are read, and how many arguments they have."""
+"""Supported functions with their number of arguments."""
 STREAMS = {"begins": (), "choice": (0,), "before": ()}
-"""Nodes of definitions that are numbers or truth values as the place where they stand asks; which parts are always truth
-values."""
+"""Nodes of definitions that are numeric or Boolean depending on their context, with the positions
+of their parts that are always Boolean.
+"""
 NOT_SURE = "of a quotient of whole numbers it is not sure whether it is one"
 NUMBERS = ("number", "quantity", "given", "negative", *SIGNS)
 CALCULATING = ("compare", "negative", *SIGNS)
-"""Nodes whose children are numbers, or in a comparison truth values."""
+"""Nodes whose children are numbers or, in a comparison, truth values."""
 PLAIN = {"truth": "name", "constant": "word"}
 
 
 def settled(tree: Any, is_number: bool = False) -> None:
-    """Say of each name and constant below the whole whether it is a number or a truth value there; Wrong where the other stands."""
+    """Mark each name and constant in the tree as numeric or Boolean; Wrong where the other kind is needed."""
     todo = [(tree, is_number)]
     while todo:
         node, wanted = todo.pop()
@@ -69,7 +71,7 @@ def settled(tree: Any, is_number: bool = False) -> None:
 
 
 def settle(child: Any, numeric: bool, above: str = "") -> None:
-    """Say of a node below one of a kind that it is a number, or a truth value; Wrong where it is none."""
+    """Mark a child of a node of kind `above` as numeric or Boolean; Wrong where it is of the other kind."""
     if numeric and str(child.data) in PLAIN:
         child.data = PLAIN[str(child.data)]
     kind = str(child.data)
@@ -83,7 +85,7 @@ def settle(child: Any, numeric: bool, above: str = "") -> None:
 
 
 def _is_calculating(node: Any, but: str = "") -> bool:
-    """Whether the children of a node are numbers; but: of this kind it does not count."""
+    """Whether the children of a node are numbers; nodes of kind `but` do not count."""
     kind = str(node.data)
     if kind == "call":
         return str(node.children[0]) != "preBool"
@@ -91,9 +93,10 @@ def _is_calculating(node: Any, but: str = "") -> bool:
 
 
 def tree_of(parser: Lark, text: str, language: str, is_number: bool = False) -> Any:
-    """The tree of a text, in which names and constants are numbers where numbers stand; Wrong for what is none.
+    """The tree of a text, with names and constants marked as numeric where needed; Wrong for a
+    syntax error.
 
-    is_number: the whole is a number.
+    is_number: the whole text is a number.
     """
     tree = parsed(parser, text, language)
     settled(tree, is_number)
@@ -101,7 +104,7 @@ def tree_of(parser: Lark, text: str, language: str, is_number: bool = False) -> 
 
 
 def term(kind: str, got: list[Any], names: Names, at: int) -> Any:
-    """What a node without time, at this place of its text, is made of its children; None for a kind that has time."""
+    """The value of a timeless node at offset `at`, from those of its children; None for a temporal kind."""
     if kind in JOINED:
         return JOINED[kind](*got)
     if kind == "truth":
@@ -131,13 +134,15 @@ JOINED: dict[str, Callable[..., formulas.Formula]] = {
 
 
 class _Numbers:
-    """What is calculated at a place of the text."""
+    """Builds computed numbers at an offset of the text."""
 
     def __init__(self, names: Names, at: int) -> None:
         self.names, self.at = names, at
 
     def made(self, kind: str, got: list[Any]) -> Any:
-        """The value of an arithmetic node: a quantity if no signal occurs in it, else a term. None if the node is of no numeric kind."""
+        """The value of an arithmetic node: a quantity if no signal occurs in it, else a term. None
+        if the node is of no numeric kind.
+        """
         if kind == "call":
             return self._called(got[0], got[1:])
         if kind == "negative":
@@ -170,7 +175,7 @@ class _Numbers:
         return self._term(PRE, (begins, one), f"{name}({said},{text})", unit, whole)
 
     def _real(self, name: str, one: Any) -> Term:
-        """A sine or cosine, of what has no unit or is in radians; a root, of what has even powers of units."""
+        """A sine or cosine of a dimensionless number or radians, or a root of even powers of units."""
         said, unit = (
             (repr(float(one.value)), one.unit) if isinstance(one, Quantity) else self._said(one)[:2]
         )
@@ -192,7 +197,7 @@ class _Numbers:
         return self._term(name, (side,), f"{name}({said})", unit and "1", False)
 
     def _before(self, first: Any, phi: Any) -> formulas.Formula:
-        """Phi at the sample before, and at the first sample a constant."""
+        """Phi at the previous sample; at the first sample the constant `first`."""
         if first == formulas.FALSE:
             return formulas.once(phi, 1, 1)
         if first == formulas.TRUE:
@@ -209,7 +214,7 @@ class _Numbers:
         if isinstance(left, Quantity) and isinstance(right, Quantity):
             return self._folded(sign, left, right)
         unit = self._unit(sign, left, right)
-        # of a sum a number is in the unit of the other side; a factor has its own
+        # in a sum a number takes the unit of the other side; a factor has its own
         (one, said), (other, also) = (self._side(s, unit if sign in "+-" else None) for s in sides)
         whole = all(self._is_whole(side) for side in sides)
         if whole and sign == "/":
@@ -217,7 +222,7 @@ class _Numbers:
         return self._term(sign, (one, other), f"({said} {sign} {also})", unit, whole)
 
     def _unit(self, sign: str, left: Any, right: Any) -> str:
-        """The unit of what is calculated of two sides."""
+        """The unit of the result of an operation on two sides."""
         one, other = (
             side.unit if isinstance(side, Quantity) else self._said(side)[1]
             for side in (left, right)
@@ -250,7 +255,7 @@ class _Numbers:
         return side, self.names.signals[side].unit, self.names.signals[side].kind == "int"
 
     def _side(self, side: Any, unit: str | None) -> tuple[Side, str]:
-        """(A side, its text) beside what is in a unit; None: beside anything, so that a number keeps its own."""
+        """(A side, its text) for use with `unit`; None: with any, so that a number keeps its own."""
         if isinstance(side, Quantity):
             value = value_in(side, side.unit if unit is None else unit, self.at)
             if unit is None and side.unit not in NONE:
@@ -263,7 +268,7 @@ class _Numbers:
         return side, text
 
     def _folded(self, sign: str, left: Quantity, right: Quantity) -> Quantity:
-        """What is calculated of two numbers, exactly."""
+        """The exact result of an operation on two numbers."""
         a, b, unit = left.value, right.value, left.unit
         if sign == "/":
             is_sure = self.names.real or not (self._is_whole(left) and self._is_whole(right))
@@ -288,7 +293,7 @@ class _Numbers:
         return Term(kind, sides, self._short(text), unit, whole)
 
     def _short(self, text: str) -> str:
-        """A text that is not too long to be kept; Wrong for one that is."""
+        """The text, unless it is too long; then Wrong."""
         if len(text) > LONGEST:
             raise self._wrong("what is calculated is too long", f"{LONGEST} characters")
         return text

@@ -1,5 +1,6 @@
-"""What FRET's definitions say of the samples before, in Lustre, where samples are counted: `a -> b`, `pre a`,
-`if c then a else b`, of numbers and of truth values. A `pre` has to have a value at the first sample: one before `->`.
+"""Previous-sample operators of FRET definitions, in Lustre, for counted samples: `a -> b`, `pre a`,
+`if c then a else b`, on numbers and truth values. A `pre` needs a value at the first sample: by
+`->`.
 """
 
 from __future__ import annotations
@@ -26,8 +27,9 @@ from cratous.services.requirements.units import Quantity
 
 
 def stream(node: Any, got: list[Any], names: Names) -> Any:
-    """What a node of `STREAMS` is, a formula or a term; Wrong where samples are not counted, for parts of two kinds, and
-    for what is too long."""
+    """The formula or term of a node of `STREAMS`; Wrong if samples are not counted, if its parts
+    are of different kinds, or if it is too long.
+    """
     at = int(node.meta.start_pos)
     if not names.counted:
         raise Wrong("samples have times, so none is the one before", at)
@@ -89,9 +91,9 @@ def _is_whole(side: Any, names: Names) -> bool:
 
 
 def truth_side(phi: Formula, names: Names, at: int) -> Side:
-    """What a formula over this sample and the one before is as a side: 1 where it holds, 0 where it does not."""
+    """A formula over this sample and the previous one as a numeric side: 1 where it holds, otherwise 0."""
     made: dict[int, Side] = {}
-    for one in formulas.parts(phi):  # parts before the whole
+    for one in formulas.parts(phi):  # children before parents
         below = [made[id(child)] for child in formulas.children(one)]
         made[id(one)] = _side(one, below, names, at)
     return made[id(phi)]
@@ -124,7 +126,7 @@ def _joined(kind: str, sides: list[Side], sign: str, at: int) -> Side:
 
 
 def _calculated(side: str | float, names: Names) -> Side:
-    """A side of a comparison; of what is calculated its term."""
+    """A side of a comparison, with a computed signal replaced by its term."""
     made = names.signals[side].made if isinstance(side, str) else None
     return side if made is None else made
 
@@ -134,14 +136,14 @@ def _said(side: Side) -> str:
 
 
 def named(name: str, term: Term) -> Term:
-    """A number that looks at itself at the sample before, by its name."""
+    """A term that refers to its own previous value by its name."""
     return Term(NAMED, (term,), name, term.unit, term.whole)
 
 
 def begun(tree: Any) -> None:
-    """Wrong where a `pre` has no value at the first sample."""
+    """Wrong if a `pre` has no value at the first sample."""
     late: dict[int, bool] = {}
-    for node in tree.iter_subtrees():  # parts before the whole
+    for node in tree.iter_subtrees():  # children before parents
         below = [late[id(child)] for child in node.children if hasattr(child, "data")]
         kind = str(node.data)
         if (kind == "before" and any(below)) or (kind in ("begins", "start") and below[0]):

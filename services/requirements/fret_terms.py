@@ -1,7 +1,8 @@
-"""What FRET's formulas and its structured English share: variables, numbers, comparisons, and how a text is parsed.
+"""Common parts of FRET's formulas and structured English: variables, numbers, comparisons, and
+parsing.
 
-FRET has no units: a number is in the unit of the signal that it is compared with. What a variable of FRET's is
-here, `Names` says; one that it does not have is refused.
+FRET has no units: a number is in the unit of the signal that it is compared with. `Names` gives the
+meaning of FRET's variables; undeclared variables are refused.
 """
 
 from __future__ import annotations
@@ -25,13 +26,13 @@ if TYPE_CHECKING:
 NESTED = 200
 CALLS = ("^", "mod")
 EVER = formulas.MAX_TIME
-"""The bound of what has none: no two samples are so far apart."""
+"""Bound of operators without one: larger than any time between two samples."""
 EARLIER = formulas.once(formulas.TRUE, 1, EVER)
-"""There is a sample before."""
+"""There is a previous sample."""
 
 
 class Wrong(Exception):
-    """What cannot be read, and where in its text: an offset."""
+    """Text that cannot be read, with the reason and the offset."""
 
     def __init__(self, what: str, offset: int, expected: str = "", got: str = "") -> None:
         self.what, self.offset, self.expected, self.got = what, offset, expected, got[:60]
@@ -40,31 +41,32 @@ class Wrong(Exception):
 
 @dataclass(frozen=True)
 class Unread:
-    """A variable that its author defines by what is not read; why: in words."""
+    """A variable whose definition is not read; why: in words."""
 
     why: str
 
 
 @dataclass(frozen=True)
 class Defined(Unread):
-    """One that is defined by a formula, which may be read; is_bool: the variable is a truth value."""
+    """A variable defined by a formula, which may be readable; is_bool: the variable is a truth value."""
 
     text: str
     is_bool: bool
 
 
 Meaning = str | Quantity | bool | Unread | Term | formulas.Formula
-"""What a variable is: a signal of this name, a number with its unit (none: that of the other side), a constant, or what
-its definition says."""
+"""Meaning of a variable: a signal of this name, a number with its unit (none: that of the other
+side), a constant, or its definition.
+"""
 TRUTHS = (formulas.Always, formulas.Reaches, formulas.Not, formulas.Join, formulas.Bounded)
 
 
 @dataclass(frozen=True)
 class Names:
-    """Signals by name, and what else a variable is; a variable that is called as a signal is this signal.
+    """Signals by name, and the meaning of other variables; an unbound variable is the signal of its name.
 
-    What is calculated becomes a signal more. counted: samples are counted, so one is the one before; real: numbers are
-    those of mathematics, so that a quotient of whole ones is one.
+    Computed numbers are added as signals. counted: samples are counted, so each has a previous one;
+    real: numbers are real, so that quotients of integers are allowed.
     """
 
     signals: dict[str, Signal]
@@ -73,7 +75,7 @@ class Names:
     real: bool = False
 
     def of(self, token: Any) -> Meaning:
-        """The declared variable of a token; Wrong if it is undeclared."""
+        """The meaning of the declared variable of a token; Wrong if it is undeclared."""
         name = str(token)
         found = self.bound.get(name, name)
         if isinstance(found, Unread):
@@ -96,7 +98,7 @@ class Names:
         raise Wrong("this variable is no truth value", token.start_pos, "a bool", str(token))
 
     def compared(self, left: Any, relation: Any, right: Any) -> formulas.Formula:
-        """A comparison of two sides: of truth values whether they are equal, else of numbers."""
+        """A comparison of two sides: equality of truth values, otherwise of numbers."""
         at = relation.start_pos
         truths = [isinstance(s, (bool, *TRUTHS)) or self._kind(s) == "bool" for s in (left, right)]
         if any(truths):
@@ -126,7 +128,7 @@ class Names:
 
     @staticmethod
     def refuse_units(units: Sequence[str], at: int) -> None:
-        """Wrong where two signals that are compared have not one unit."""
+        """Wrong if two compared signals have different units."""
         if len(set(units)) < 2:
             return
         one, other = units
@@ -152,7 +154,9 @@ def _truth(side: Any) -> formulas.Formula:
 
 
 def value_in(number: Quantity, unit: str, at: int) -> float:
-    """A number in a unit, in which one without a unit is already; Wrong, with the place, where it is none."""
+    """The value of a number in a unit; one without unit is already in it. Wrong, with the position,
+    if impossible.
+    """
     if number.unit and (not unit or dimension(number.unit) != dimension(unit)):
         raise Wrong("units that do not fit", at, _expected(unit), number.unit)
     try:
@@ -162,7 +166,7 @@ def value_in(number: Quantity, unit: str, at: int) -> float:
 
 
 def number(text: str, at: int = 0) -> Quantity:
-    """A number as FRET writes it; Wrong for one that is too long or too large."""
+    """A number in FRET's notation; Wrong if it is too long or too large."""
     mantissa, _, exponent = text.lower().partition("e")
     if len(mantissa) > DIGITS or len(exponent) > 4 or abs(int(exponent or "0")) > DIGITS:
         raise Wrong("the number is too long", at, f"up to {DIGITS} digits")
@@ -170,7 +174,7 @@ def number(text: str, at: int = 0) -> Quantity:
 
 
 def parsed(parser: Lark, text: str, language: str) -> Any:
-    """The tree of a text; Wrong, with the place, for what is outside of its grammar."""
+    """The syntax tree of a text; Wrong, with the position, for a syntax error."""
     from lark.exceptions import UnexpectedCharacters, UnexpectedInput
 
     depth = 0
@@ -196,7 +200,7 @@ def parsed(parser: Lark, text: str, language: str) -> Any:
 
 
 def grammar(name: str) -> Lark:
-    """The parser of a grammar beside this module."""
+    """The parser of a grammar file in this package."""
     from lark import Lark
 
     text = Path(__file__).with_name(name).read_text(encoding="utf-8")

@@ -1,9 +1,9 @@
-"""Requirements in FRETish, the structured English of FRET (NASA): those whose form it has.
+"""Writes requirements in FRETish, the structured English of FRET (NASA), where they have that form.
 
-A requirement is asked of every sample. So `c implies eventually within 5 s r` is `Whenever c the system shall within 5
-seconds satisfy r`: FRET's `whenever` asks at each instant at which c holds (`when`, of each beginning), `within` means by
-then at the latest, `for` all the time until then. FRETish has no units and nothing that is unknown: numbers are
-in the units of their signals.
+A requirement applies to every sample. So `c implies eventually within 5 s r` is `Whenever c the
+system shall within 5 seconds satisfy r`: FRET's `whenever` applies at each instant at which c holds
+(`when`, at each beginning), `within` means no later than, `for` throughout. FRETish has no units
+and no unknown values: numbers are in the units of their signals.
 """
 
 from __future__ import annotations
@@ -17,26 +17,26 @@ from cratous.services.requirements.specification import Specification
 SYSTEM = "the system"
 UNITS = ((3_600_000_000_000, "hours"), (60_000_000_000, "minutes"), (1_000_000_000, "seconds"),
          (1_000_000, "milliseconds"), (1000, "microseconds"))  # fmt: skip
-"""The greatest is taken of which there is a whole number; FRETish counts in no finer one."""
+"""The largest unit that gives an integer is used; FRETish has no finer one."""
 WORDS = re.compile(
     r"after|always|and|at|before|during|eventually|except|false|for|hours?|if|immediately|in|is|(micro|milli)?(sec|second)s?|"
     r"minutes?|mode?|never|next|not|only|or|satisfy|shall|the|then|ticks?|timepoint|true|unless|until|upon|when|whenever|"
     r"where|while|within|xor",
     re.IGNORECASE,
 )
-"""FRETish's own: no signal can be called so."""
+"""Reserved words of FRETish: no signal can have these names."""
 SAID = {*ONE, *TWO, PRE}
-"""What is calculated in a sentence."""
+"""Kinds of computed numbers that a sentence can contain."""
 DEEPEST, LONGEST = 200, 10_000
-"""Levels and characters of a condition or a response, so that no formula makes one without end."""
+"""Maximum nesting levels and characters of a condition or response."""
 
 
 class NoForm(Exception):
-    """A formula that FRETish cannot say, or this module does not; the reason in words."""
+    """A formula that cannot be written in FRETish, or not by this module; the reason in words."""
 
 
 def sentence(formula: Formula, spec: Specification) -> str:
-    """The sentence of a requirement; NoForm with the reason where there is none."""
+    """The sentence of a requirement; NoForm with the reason if there is none."""
     if isinstance(formula, Join) and not formula.is_and and isinstance(formula.phi, Not):
         condition, asked = _said(formula.phi.phi, spec), formula.psi
         when, plain = f"Whenever {condition} {SYSTEM}", "immediately"
@@ -55,7 +55,7 @@ def sentence(formula: Formula, spec: Specification) -> str:
     else:
         timing, response = plain, asked
     if plain == "always" and timing != plain:
-        # FRETish without a condition asks once, at the beginning
+        # FRETish without a condition applies once, at the beginning
         when = f"Whenever true {SYSTEM}"
     return f"{when} shall {timing} satisfy {_said(response, spec)}"
 
@@ -72,10 +72,10 @@ def _time(timed: Bounded, spec: Specification) -> str:
 
 
 def _said(formula: Formula, spec: Specification, level: int = 0) -> str:
-    """A condition without time; level: it stands within so many others."""
+    """A timeless condition; level: its nesting depth."""
     if level > DEEPEST:
         raise NoForm(f"it is nested more than {DEEPEST} levels deep")
-    # of `!x > 3` nobody knows what is negated
+    # `!x > 3` would be ambiguous
     while isinstance(formula, Not) and isinstance(formula.phi, Not):
         formula = formula.phi.phi
     if isinstance(formula, Always):
@@ -99,14 +99,14 @@ def _said(formula: Formula, spec: Specification, level: int = 0) -> str:
 def _compared(left: str | float, relation: str, right: str | float, spec: Specification) -> str:
     if _is_truth(left, spec):
         return _side(left, spec)
-    if isinstance(left, float):  # FRETish has the signal first, as people do
+    if isinstance(left, float):  # FRETish puts the signal first
         turned = {">=": "<=", "<": ">"}[relation]
         return f"{_side(right, spec)} {turned} {_side(left, spec)}"
     return f"{_side(left, spec)} {relation} {_side(right, spec)}"
 
 
 def _side(side: str | float, spec: Specification) -> str:
-    """A signal, or a number, whose exponent has no leading zeros."""
+    """A signal or a number, whose exponent has no leading zeros."""
     if not isinstance(side, str):
         return re.sub(r"e([-+])0+", r"e\1", repr(side))
     for name in sources([side], spec.signals):

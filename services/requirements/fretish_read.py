@@ -1,8 +1,9 @@
-"""Requirements from FRETish, the structured English of FRET: of the form that `fretish` has, and some more.
+"""Reads requirements in FRETish, the structured English of FRET: the forms that `fretish` writes,
+and others.
 
-Grammar: `fretish.lark`. FRET asks what follows `whenever` of each sample at which the condition holds; after `when`,
-`if`, `upon`, `where` and `unless` of each at which it has become so; without a condition once, of the first sample. Times
-are exact; without times of their own samples are counted, and a tick is one.
+Grammar: `fretish.lark`. A response after `whenever` applies at each sample at which the condition
+holds; after `when`, `if`, `upon`, `where` and `unless` at each at which it becomes true; without a
+condition once, at the first sample. Times are exact; if samples are counted, a tick is one sample.
 """
 
 from __future__ import annotations
@@ -27,16 +28,16 @@ if TYPE_CHECKING:
     from lark import Lark
 
 NS = {"micro": 1000, "milli": 10**6, "s": 10**9, "m": 60 * 10**9, "h": 3600 * 10**9}
-"""Nanoseconds of a unit, by how its name begins."""
+"""Nanoseconds per time unit, by the beginning of its name."""
 
 
 def asked(text: str, names: Names, timed: bool) -> Formula:
-    """The requirement of a sentence, as it is asked of each sample; Wrong for what cannot be said.
+    """The per-sample requirement of a sentence; Wrong if it cannot be expressed.
 
-    timed: samples bear times [ns]; else they are counted.
+    timed: samples have times [ns]; otherwise they are counted.
     """
     tree = tree_of(_parser(), text, "FRETish")
-    for node in tree.iter_subtrees():  # parts before the whole
+    for node in tree.iter_subtrees():  # children before parents
         kind = str(node.data)
         if kind == "duration":
             node.made = _duration(timed, *node.children)
@@ -57,7 +58,7 @@ PARTS = {
 
 
 class _Sentence:
-    """scope, condition: None where there is none; each: the condition is asked at each sample; timing: its word."""
+    """scope, condition: None if absent; each: the condition applies at each sample; timing: its keyword."""
 
     def __init__(self, tree: Any, names: Names, timed: bool) -> None:
         self.timed = timed
@@ -85,7 +86,7 @@ class _Sentence:
         self.condition = Not(phi.made) if negated else phi.made
 
     def asked(self, r: Formula) -> Formula:
-        """What is asked of each sample, where r is the response."""
+        """The per-sample requirement, with response r."""
         if self.timing == "never":
             self.timing, r = "always", Not(r)
         if self.scope is not None:
@@ -110,7 +111,7 @@ class _Sentence:
         raise Wrong(what, self.at, "always, never or immediately; immediately after whenever")
 
     def _trigger(self) -> Formula:
-        """The samples from which on the response is asked for."""
+        """The samples at which the response becomes due."""
         if self.condition is None:
             return FIRST
         return self.condition if self.each else self._became(self.condition)
@@ -122,14 +123,14 @@ class _Sentence:
         return became(phi)
 
     def _until(self, stop: Formula) -> Formula:
-        """The samples that come before the stop, from a trigger on."""
+        """The samples before the stop condition, from a trigger on."""
         none = Not(stop)
         if self.condition is None:
             return formulas.historically(none, 0, EVER)
         return Bounded(none, Join(none, self._trigger(), True), 0, EVER, True)
 
     def _by(self, r: Formula) -> Formula:
-        """The response in its time, from the sample of a trigger on."""
+        """The response within its timing, counted from a trigger."""
         if self.timing == "immediately":
             return r
         if self.timing == "within":

@@ -1,9 +1,11 @@
-"""Files of requirements that others include: where their texts lie, what their parameters are, and within what bounds.
+"""Includes of requirements files: where their texts are found, their parameters, and limits on
+nesting.
 
     include "common/link.req" as link_1 with vehicle is 1, limit is 2 s
     include "link" as link_2 only UP with vehicle is 2
 
-A name that ends with `.req` is a file, by its path from the file that includes it; any other is a library of the product.
+A name that ends with `.req` is a file, by its path relative to the including file; any other is a
+library of the product.
 """
 
 from __future__ import annotations
@@ -26,9 +28,9 @@ from cratous.spec.files.text_file import text_of
 SUFFIX, LIBRARY = ".req", "library "
 FOLDER = Path(__file__).with_name("library")
 DEEPEST, MOST = 8, 50
-"""Files that include each other in turn, and in all."""
+"""Maximum nesting of includes, and maximum number of included files."""
 Value = Quantity | str
-"""Of a parameter: a number with its unit, or the digits of an id."""
+"""Value of a parameter: a number with its unit, or the digits of an id."""
 
 
 def libraries() -> list[str]:
@@ -37,7 +39,7 @@ def libraries() -> list[str]:
 
 
 def library_text(name: str) -> str:
-    """The text of one; BadInput where there is none of this name."""
+    """The text of a library; BadInput if there is none of this name."""
     if name not in libraries():
         expected = f"{', '.join(libraries())}, or a file *{SUFFIX}"
         raise BadInput("there is no such library", item=name[:60], expected=expected)
@@ -46,8 +48,9 @@ def library_text(name: str) -> str:
 
 @dataclass
 class Reach:
-    """What one file of requirements may take from others. chain: the files that include each other, the first is
-    called ""; taken: how many there are; size: their characters."""
+    """What one requirements file may still include. chain: the files from the first (named "") to
+    this one; taken: number of files so far; size: their characters.
+    """
 
     files: Files | None
     chain: tuple[str, ...] = ("",)
@@ -55,20 +58,21 @@ class Reach:
 
     @property
     def folder(self) -> str:
-        """Where the file lies, from the folder of the first."""
+        """The folder of the file, relative to that of the first."""
         return posixpath.dirname(self.chain[-1])
 
     @property
     def where(self) -> str:
-        """The file, for messages."""
+        """The file's name for messages."""
         name, folder = self.chain[-1], getattr(self.files, "folder", self.files)
         if isinstance(folder, Path) and not name.startswith(LIBRARY):
             return str(folder / name)
         return name
 
     def include(self, token: Any) -> tuple[Reach, str]:
-        """(what the included file may take, its text). Raises Wrong for what is included in itself, too deep, too
-        many, too long or no file of requirements; BadInput for a file that is not there."""
+        """(state for the included file, its text). Raises Wrong for recursive includes, exceeded
+        limits and names that are no requirements files; BadInput for a missing file.
+        """
         said, at = str(token).strip('"'), token.start_pos
         if self.files is None:
             raise Wrong("a text that lies in no folder imports nothing", at)
@@ -105,23 +109,24 @@ class Reach:
 
 
 def text_at(folder: Path, name: str) -> str:
-    """The text of an included file, by its path from a folder, or of a library."""
+    """The text of an included file, by its path relative to a folder, or of a library."""
     if name.startswith(LIBRARY):
         return library_text(name.removeprefix(LIBRARY))
     return text_of(folder / name, CONFIG_BYTES, "requirements that are included")
 
 
 class Parameters:
-    """The parameters of one file, with the values that are given or that it says itself."""
+    """The parameters of one file, with values from the include or from their defaults."""
 
     def __init__(self, given: Mapping[str, tuple[Value, Any]], is_open: bool = False) -> None:
-        """given: by name the value, and the place where it stands; is_open: what has none is taken to be 1, as the file
-        is only looked at."""
+        """given: values by name, with the position of each; is_open: parameters without a value are
+        taken as 1, for a file that is only inspected.
+        """
         self.given, self.is_open = given, is_open
         self.values: dict[str, Value] = {}
 
     def declare(self, item: Any) -> None:
-        """A parameter; Wrong where it has no value, or one of another kind."""
+        """Declare a parameter; Wrong if it has no value, or one of another kind."""
         name, kind = item.children[0], item.children[1]
         if str(name) in self.values or "." in str(name):
             raise Wrong("a parameter is declared twice, or has no plain name", name.start_pos)
@@ -137,14 +142,14 @@ class Parameters:
         self.values[str(name)] = _fitting(value, kind, at)
 
     def refuse_others(self) -> None:
-        """Wrong for a value of what is no parameter."""
+        """Wrong for a given value without a declared parameter."""
         for name, (_, at) in self.given.items():
             if name not in self.values:
                 known = ", ".join(self.values) or "it has none"
                 raise Wrong("the file has no such parameter", at.start_pos, known, name)
 
     def of(self, token: Any) -> Value:
-        """The value of `$name`; Wrong for what is no parameter."""
+        """The value of `$name`; Wrong if there is no such parameter."""
         name = str(token)[1:]
         if name not in self.values:
             known = ", ".join(f"${one}" for one in self.values) or "there is none"
@@ -152,14 +157,14 @@ class Parameters:
         return self.values[name]
 
     def number(self, token: Any) -> Quantity:
-        """The same, where a number with a unit stands."""
+        """The value of `$name` where a number with a unit is needed."""
         value = self.of(token)
         if isinstance(value, str):
             raise Wrong("an id is no number", token.start_pos, "a parameter with a unit", value)
         return value
 
     def put_in(self, text: str) -> str:
-        """A text with the values of the parameters that it names."""
+        """A text with its parameter names replaced by their values."""
         return re.sub(r"\$([A-Za-z_][A-Za-z0-9_]*)", self._said, text)
 
     def _said(self, found: re.Match[str]) -> str:
@@ -170,7 +175,7 @@ class Parameters:
 
 
 def given_of(item: Any, parameters: Parameters) -> dict[str, tuple[Value, Any]]:
-    """The values that an include gives, by name; Wrong for one that is given twice."""
+    """The values that an include gives, by name; Wrong if one is given twice."""
     found: dict[str, tuple[Value, Any]] = {}
     for one in item:
         name, what = one.children

@@ -1,8 +1,8 @@
-"""The product's language of requirements: metric temporal logic over named signals with units.
+"""The product's requirements language: metric temporal logic over named signals with units.
 
-Grammar: `language.lark`. Times are nanoseconds; a number is taken exactly and turned into the unit of the
-signal that it is compared with; of what is calculated the unit is calculated too. What does not fit (another
-dimension, a signal that is not declared, a name given twice) is refused with its line, its column and a caret.
+Grammar: `language.lark`. Times are nanoseconds; numbers are exact and are converted to the unit of
+the signal they are compared with; units of computed numbers are derived. Errors (another dimension,
+an undeclared signal, a duplicate name) are refused with line, column and a caret.
 """
 
 from __future__ import annotations
@@ -65,11 +65,11 @@ ONE_SIDED: dict[str, Callable[[Formula, int, int], Formula]] = {
 def read(
     text: str, where: str = "requirements", files: Files | None = None, is_open: bool = False
 ) -> Specification:
-    """The requirements of a text. Raises NotRead, with a caret, for what is outside of the language.
+    """The requirements of a text. Raises NotRead, with a caret, for invalid text.
 
-    files: where files that it imports lie; None: it may import none. Of these a requirement that is not read
-    stands among the others, and says why. is_open: parameters that have no value are taken to be 1, of a file that
-    others include and that is only looked at.
+    files: where imported files are found; None: imports are refused. An imported requirement that
+    is not read stays in the list with the reason. is_open: parameters without a value are taken as
+    1, for a file that is meant to be included and is only inspected.
     """
     at_most(len(text.encode()), CONFIG_BYTES, "the requirements are too long", where)
     shared = _Shared()
@@ -85,7 +85,7 @@ def read(
 
 
 def _read(text: str, where: str, reader: _Reader) -> _Reader:
-    """Take all that a file says; NotRead with the place in this file."""
+    """Read all statements of a file; NotRead with the position in this file."""
     try:
         refuse_deep(text)
         reader.take(text, parsed(text))
@@ -105,7 +105,7 @@ def _refused(no: Wrong, text: str, where: str, name: str = "") -> NotRead:
 
 
 class _Shared:
-    """What a file and all that it includes say together; signals by their names in the file."""
+    """State shared by a file and all its includes; signals by their names in the file."""
 
     def __init__(self) -> None:
         self.signals: dict[str, Signal] = {}
@@ -114,7 +114,7 @@ class _Shared:
         self.begins_with_all = False
 
     def used(self, own: set[str]) -> dict[str, Signal]:
-        """The signals but those of included files that no requirement uses."""
+        """The signals without those of included files that no requirement uses."""
         read = {
             name
             for one in self.requirements
@@ -126,7 +126,7 @@ class _Shared:
 
 
 class _Reader:
-    """One file. prefix: of its names; given: the values of its parameters."""
+    """Reader of one file. prefix: of its names; given: the values of its parameters."""
 
     def __init__(
         self,
@@ -140,13 +140,13 @@ class _Reader:
         self.signals = shared.signals
         self.parameters = Parameters(given or {}, is_open)
         self.visible: dict[str, str] = {}
-        """What it may call a signal, and the signal's name."""
+        """Signal names by the names that this file uses for them."""
         self.own: set[str] = set()
         self.wrong: list[tuple[str, Wrong]] = []
-        """Requirements that do not fit, by id, and why."""
+        """Invalid requirements by id, with the reason."""
 
     def take(self, text: str, tree: Any) -> None:
-        """All that the file says."""
+        """Read all statements of the file."""
         self.text = text
         items: dict[str, list[Any]] = {}
         for item in tree.children:
@@ -156,7 +156,7 @@ class _Reader:
         self.parameters.refuse_others()
         for n, item in enumerate(items.get("trace", ())):
             self._trace(item, again=n > 0)
-        # signals may be declared after what uses them
+        # signals may be declared after their use
         for item in items.get("signal", ()):
             self._signal(item)
         for item in items.get("include", ()):
@@ -233,7 +233,7 @@ class _Reader:
             self.own.add(full)
 
     def _rate(self, node: Any, unit: str) -> Fraction:
-        """By how much a signal of a unit changes in a second."""
+        """Maximum change of a signal of a unit per second."""
         at = node.children[0]
         given = self.parameters.number(at) if node.data == "given" else quantity(*node.children)
         try:
@@ -281,7 +281,7 @@ class _Reader:
         settle(tree, False)
         settled(tree)
         made: Formula = FALSE
-        for node in tree.iter_subtrees():  # parts before the whole
+        for node in tree.iter_subtrees():  # children before parents
             made = node.made = self._made(node, names)
         return made
 
@@ -338,7 +338,7 @@ class _Reader:
         return low, high
 
     def _known(self, token: Any, wanted: str) -> str:
-        """The name of a signal in all files, by what this file calls it."""
+        """The global name of a signal, by the name that this file uses."""
         full = self.visible.get(str(token), "")
         found = self.signals.get(full)
         if found is None or (found.kind == "bool") != (wanted == "bool"):
@@ -362,7 +362,7 @@ class _Reader:
         return compared(one, str(relation), other)
 
     def _origin(self, token: Any) -> tuple[str, tuple[tuple[str, str], ...], str]:
-        """The message type, what its fields must be, and the field, of `TYPE[FIELD=VALUE].FIELD`."""
+        """The message type, the required field values, and the field of `TYPE[FIELD=VALUE].FIELD`."""
         message, _, rest = str(token).partition("[")
         inside, _, field = rest.partition("].")
         chosen = []

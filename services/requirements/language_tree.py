@@ -1,4 +1,4 @@
-"""The text of a file of requirements as a tree, by `language.lark`; what is outside of the grammar is refused in words."""
+"""Parses a requirements file into a tree by `language.lark`; syntax errors are explained in words."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NESTED = 200
 
 
 def refuse_deep(text: str) -> None:
-    """Wrong for parentheses within too many others."""
+    """Wrong if parentheses are nested too deeply."""
     depth = 0
     for found in re.finditer(r'"[^"\n]*"|#[^\n]*|[()]', text):
         depth += {"(": 1, ")": -1}.get(found.group(), 0)
@@ -25,7 +25,7 @@ def refuse_deep(text: str) -> None:
 
 
 def parsed(text: str) -> Any:
-    """The tree of a text; Wrong, with the place, for what is outside of the grammar."""
+    """The tree of a text; Wrong, with the position, for a syntax error."""
     from lark.exceptions import UnexpectedCharacters, UnexpectedInput
 
     try:

@@ -1,9 +1,9 @@
-"""What is odd about requirements before any trace is there: asked of z3, with bounded effort.
+"""Static checks of requirements, without a trace: asked of z3, with bounded effort.
 
-A formula is written out over the samples of a trace that has them a period apart, in its middle, with every
-signal free at each: unsatisfiable, valid, an antecedent that never happens, two that say the same. What is
-too long for that, or not decided, is said to be not looked into, never to be in order. What is calculated is free as well,
-whatever it is made of, so that what is said holds, and more could be odd.
+A formula is unrolled over the samples of a trace with a fixed period, far from both ends, with
+every signal free at each sample: unsatisfiable, valid, never-true antecedent, equivalent
+requirements. What is too long for that, or undecided, is reported as unchecked, never as correct.
+Computed signals are free too, so reported findings are right, but some may be missed.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class _TooLong(Exception):
 
 
 def lint(spec: Specification) -> list[Remark]:
-    """Everything odd about a file of requirements, in its order."""
+    """All findings on a requirements file, in its order."""
     read = [(one, one.formula) for one in spec.requirements if not isinstance(one.formula, NotRead)]
     read_in = {name for _, formula in read for name in formulas.signals(formula)}
     used = sources(read_in, spec.signals)
@@ -119,7 +119,7 @@ def _impossible(term: Any) -> bool | None:
 
 
 class _Asked:
-    """Formulas written out over samples a period apart; sample 0 is the one that they are about."""
+    """Unrolls formulas over samples one period apart; sample 0 is the one at which they are evaluated."""
 
     def __init__(self, period: int) -> None:
         self.period = max(1, period)
@@ -128,8 +128,8 @@ class _Asked:
         self.kept: list[formulas.Formula] = []
 
     def term(self, formula: formulas.Formula) -> Any:
-        """The formula at sample 0; _TooLong where it needs too many terms."""
-        self.kept.append(formula)  # so that no id is given twice
+        """The formula at sample 0; raises _TooLong if it needs too many terms."""
+        self.kept.append(formula)  # keeps ids unique
         todo: list[tuple[formulas.Formula, int]] = [(formula, 0)]
         while todo:
             part, at = todo[-1]

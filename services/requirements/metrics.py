@@ -1,4 +1,4 @@
-"""What a watch has found so far, as Prometheus reads it: text, which `metrics_server` serves."""
+"""The current results of a watch as Prometheus text, which `metrics_server` serves."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The metrics of a watch over HTTP, on this machine alone."""
+"""Serves the metrics of a watch over HTTP, on the loopback interface only."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ KIND = "text/plain; version=0.0.4; charset=utf-8"
 
 @contextmanager
 def served(port: int, text: Callable[[], str]) -> Iterator[int]:
-    """Serve the text at http://127.0.0.1:PORT/metrics in here; gives the port (0 takes a free one)."""
+    """Serve the text at http://127.0.0.1:PORT/metrics inside the block; yields the port (0 takes a free one)."""
 
     async def metrics(_: Request) -> Response:
         return Response(text(), headers={"Content-Type": KIND})

@@ -1,4 +1,4 @@
-"""What came of one requirement over a trace, and how near its comparisons came to their bounds."""
+"""The result of one requirement over a trace, and how close its comparisons came to their bounds."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ TOLD_BY = "as told by an unauthenticated source"
 
 @dataclass
 class Outcome:
-    """One requirement over a trace. Instants: numbers of samples, or times [ns]; -1 where there is none.
+    """One requirement over a trace. Instants: sample numbers, or times [ns]; -1 if there is none.
 
-    undecided: samples whose verdict needs more than the trace has; decided_at: when the first violation was
-    known; whole: nothing of the trace is known to be missing; until: the last sample; lacks: why nothing holds, apart
-    from a flight that was cut off there; unauthenticated: of what it was held against nothing says who said it;
-    margins: of each comparison; blamed: the parts of the
-    formula that are to blame for the first violation.
+    undecided: samples whose verdict needs more than the trace has; decided_at: when the first
+    violation became known; whole: the trace is not known to be incomplete; until: the last sample;
+    lacks: why nothing holds, apart from a missing end; stops: how the log ends in that case;
+    unauthenticated: some values came from unauthenticated sources; margins: one per comparison;
+    blamed: the parts of the formula that cause the first violation.
     """
 
     requirement: Requirement
@@ -38,6 +38,7 @@ class Outcome:
     whole: bool = True
     until: int = -1
     lacks: str = ""
+    stops: str = "the flight was cut off"
     unauthenticated: bool = False
     margins: list[Margin] = field(default_factory=list)
     blamed: tuple[Part, ...] = ()
@@ -49,17 +50,18 @@ class Outcome:
 
     @property
     def verdict(self) -> str:
-        """violated, unknown, undecided, or holds: the last only where every sample is decided."""
+        """violated, unknown, undecided, or holds: the last only if there is a sample and all are decided."""
         if self.violated:
             return "violated"
-        if self.unknown or not self.whole:
+        if self.unknown or not self.whole or not (self.holds or self.undecided):
             return "unknown"
-        return "undecided" if self.undecided or not self.holds else "holds"
+        return "undecided" if self.undecided else "holds"
 
     @property
     def so_far(self) -> str:
-        """Until when it was looked at, and what of it was so, where nothing was violated or unknown and the trace is not
-        whole; else nothing."""
+        """For an incomplete trace without violated or unknown samples: until when it was checked
+        and what held, in words; otherwise empty.
+        """
         if self.whole or self.violated or self.unknown or self.until < 0:
             return ""
         until = f"until {self.until / 1e9:g} s"
@@ -68,13 +70,13 @@ class Outcome:
             undecided = f"; {self.holds} samples hold and {self.undecided} are undecided"
         if self.lacks:
             return f"violated at no sample {until}, but {self.lacks}, so nothing holds{undecided}"
-        why = f"{until}, where the flight was cut off; what came after is unseen{undecided}"
-        # what looks back alone is decided at each sample by what was flown
+        why = f"{until}, where {self.stops}; what came after is unseen{undecided}"
+        # past-time formulas are decided at each sample by what was flown
         at_each = not undecided and not self.horizon
         return f"held at each sample {why}" if at_each else f"holds so far, {why}"
 
     def add(self, sample: int, verdict: int, now: int) -> None:
-        """A verdict more, decided by the sample `now`."""
+        """Add a verdict, decided by the sample `now`."""
         if verdict == TRUE:
             self.holds += 1
         elif verdict == FALSE:
@@ -88,7 +90,7 @@ class Outcome:
 
 @dataclass
 class Margin:
-    """How near a comparison came to its bound: least and greatest left - right, where it was known.
+    """How close a comparison came to its bound: least and greatest left - right, where known.
 
     unit: of both sides; at, greatest_at: instants.
     """
@@ -114,7 +116,7 @@ class Margin:
 
 
 def margins_of(formula: Formula, spec: Specification) -> list[Margin]:
-    """One for each comparison of numbers, whichever side is written first."""
+    """One per comparison of numbers, whichever side is written first."""
     found: dict[frozenset[str | float], Margin] = {}
     for part in parts(formula):
         if isinstance(part, Reaches):

@@ -1,7 +1,8 @@
-"""Files of requirements with all that they import, as texts: what a report keeps, so that it can be judged again.
+"""Requirements files with everything they import, as texts: kept in a report so that it can be
+judged again.
 
-A file is read once. From then on its text is what counts, wherever it goes; what it includes, and exports of FRET that it names,
-go with it.
+A file is read once; from then on its stored text applies. Included files and FRET exports are
+stored with it.
 """
 
 from __future__ import annotations
@@ -30,18 +31,18 @@ from cratous.spec.files.text_file import text_of
 
 MOST_FILES = 50
 TAKEN = re.compile("G[1-5]")
-"""Ids that a report has already."""
+"""Ids already used by a report."""
 
 
 class OwnFile(NamedTuple):
-    """One file. name: as it was given, never with a folder of one machine; imports: what it includes and takes, by name."""
+    """One file. name: as given, never an absolute path; imports: included files and exports, by name."""
 
     name: str
     text: str
     imports: tuple[tuple[str, str], ...] = ()
 
     def data(self) -> dict[str, Any]:
-        """As a report keeps it."""
+        """The form in which a report stores it."""
         imports = [
             {"file": name, "sha256": digest(text), "text": text} for name, text in self.imports
         ]
@@ -50,7 +51,7 @@ class OwnFile(NamedTuple):
 
     @property
     def named(self) -> dict[str, Any]:
-        """The names and digests alone."""
+        """Only the names and digests."""
         parts = [{"file": name, "sha256": digest(text)} for name, text in self.imports]
         return {"file": self.name, "sha256": digest(self.text), "imports": parts}
 
@@ -65,7 +66,7 @@ class OwnFile(NamedTuple):
 
 
 class _Gathered(dict[str, str]):
-    """The texts of files in a folder, each read when it is first asked for."""
+    """The texts of files in a folder, each read at first access."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -90,7 +91,7 @@ def _is_unicode(name: str) -> bool:
 
 
 class _Taken(dict[str, str]):
-    """Texts by name, and which of them were asked for."""
+    """Texts by name, recording which were accessed."""
 
     def __init__(self, texts: Iterable[tuple[str, str]]) -> None:
         super().__init__(texts)
@@ -102,14 +103,15 @@ class _Taken(dict[str, str]):
 
 
 def digest(text: str) -> str:
-    """SHA-256 of a text as a file has it; UnicodeEncodeError for one that no file has."""
+    """SHA-256 of a text as stored in a file; UnicodeEncodeError if it cannot be encoded."""
     return sha256(text.encode()).hexdigest()
 
 
 def own_file(path: Path, name: str) -> OwnFile:
-    """Read a file of requirements of the product's language with all that it imports; name: how it is called.
+    """Read a requirements file of the product's language with all its imports; name: its display
+    name.
 
-    BadInput for what is none, or what no log of a flight can be held against.
+    BadInput for an invalid file, or one that no flight log can be checked against.
     """
     if path.suffix != ".req":
         raise BadInput("these requirements count samples", where=str(path), expected="a file *.req")
@@ -126,7 +128,7 @@ def own_file(path: Path, name: str) -> OwnFile:
 
 
 def refuse_clashes(files: Iterable[OwnFile]) -> None:
-    """BadInput where two files have one name, two requirements one id, or one is called as a guarantee."""
+    """BadInput if two files have one name, two requirements one id, or one has the id of a guarantee."""
     names: set[str] = set()
     ids: dict[str, str] = {}
     for number, file in enumerate(files, 1):
@@ -149,7 +151,7 @@ def refuse_clashes(files: Iterable[OwnFile]) -> None:
 
 
 def files_of(data: Any) -> tuple[OwnFile, ...]:
-    """The files that a report keeps; BadInput for what is no such list, or has another digest than its text."""
+    """The files that a report stores; BadInput for an invalid list, or a digest that differs from its text."""
     try:
         found = [(one, tuple(one["imports"])) for one in data]
         texts = [part for one, imports in found for part in (one, *imports)]
@@ -179,7 +181,7 @@ def files_of(data: Any) -> tuple[OwnFile, ...]:
 
 
 def other_libraries(files: Iterable[OwnFile]) -> list[str]:
-    """The libraries of the product that these include with another text than this version has, in words."""
+    """Libraries of the product included with a text that differs from this version's, in words."""
     shipped, found = libraries(), []
     for file in files:
         for name, text in file.imports:
@@ -191,6 +193,6 @@ def other_libraries(files: Iterable[OwnFile]) -> list[str]:
 
 
 def line_of(text: str, name: str) -> int | None:
-    """The line on which a requirement begins; None for one that is imported."""
+    """The line on which a requirement begins; None if it is imported."""
     found = re.search(rf"^[ \t]*requirement[ \t]+{re.escape(name)}(?![\w.-])", text, re.MULTILINE)
     return None if found is None else text.count("\n", 0, found.start()) + 1

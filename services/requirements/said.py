@@ -1,4 +1,4 @@
-"""A part of a formula in the words of the language of requirements, for people."""
+"""A part of a formula as text in the requirements language."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from cratous.services.requirements.to_blame import Part
 
 DEEPEST, LONGEST, HELD = 5, 300, 2
 LOOSE = ("and", "or", "implies", "until", "since", "within", "from")
-"""In a part that has one of these, one may doubt how strongly it binds."""
+"""Operators with unobvious precedence: parts that contain one get parentheses."""
 UNKNOWN = form.Always(1)
 UNITS = ((60 * 10**9, "min"), (10**9, "s"), (10**6, "ms"), (1000, "us"), (1, "ns"))
 
 
 def said(formula: form.Formula, spec: Specification, level: int = 0) -> str:
-    """The text of a formula; what is too deep or too long is `...`."""
+    """The text of a formula; parts that are too deep or too long become `...`."""
     if level > DEEPEST:
         return "..."
     while isinstance(formula, form.Not) and isinstance(formula.phi, form.Not):
@@ -26,7 +26,7 @@ def said(formula: form.Formula, spec: Specification, level: int = 0) -> str:
 
 
 def facts(parts: Sequence[Part], spec: Specification) -> list[str]:
-    """What was so of the parts that are to blame, each as a formula that held."""
+    """The parts that cause a violation, each as a formula that held."""
     texts = (said(part if verdict == HELD else form.Not(part), spec) for part, verdict in parts)
     return list(dict.fromkeys(texts))
 
@@ -42,7 +42,7 @@ def _said(formula: form.Formula, spec: Specification, level: int) -> str:
         return _timed(formula, spec, level, always=False)
     if isinstance(formula, form.Join):
         if isinstance(formula.psi, form.Join) and formula.psi.psi == UNKNOWN:
-            return said(formula.phi, spec, level)  # with something to spare, as it was asked
+            return said(formula.phi, spec, level)  # rewritten with a margin: print the original
         left, word = formula.phi, "and" if formula.is_and else "or"
         if not formula.is_and and isinstance(left, form.Not):
             left, word = left.phi, "implies"
@@ -58,7 +58,7 @@ def _said(formula: form.Formula, spec: Specification, level: int) -> str:
 
 
 def _is_earlier(one: form.Formula) -> bool:
-    """There is a sample before, as FRET's import says it."""
+    """Whether this is the formula for "there is a previous sample" of FRET's import."""
     return isinstance(one, form.Bounded) and form.same(one, form.once(form.TRUE, 1, form.MAX_TIME))
 
 
@@ -84,7 +84,7 @@ def _window(one: form.Bounded, spec: Specification) -> str:
 
 
 def _time(time: int, spec: Specification) -> str:
-    if time == form.MAX_TIME:  # the bound of what has none
+    if time == form.MAX_TIME:  # the bound of operators without one
         return "all time"
     if not spec.timed:
         return f"{time} samples"
@@ -96,7 +96,7 @@ def _compared(one: form.Reaches, relation: str, spec: Specification) -> str:
     if _is_truth(one, spec):
         return str(one.left)
     left, right = one.left, one.right
-    if not isinstance(left, str):  # the signal first, as people do
+    if not isinstance(left, str):  # put the signal first
         left, right, relation = right, left, {">=": "<=", "<": ">"}[relation]
     unit = spec.signals[str(left)].unit
     number = "" if isinstance(right, str) or unit in ("", "1") else f" {unit}"

@@ -1,4 +1,4 @@
-"""What a file of requirements says, in whichever language: signals, requirements, and why some are not read."""
+"""Content of a requirements file in any language: signals, requirements, and why some are not read."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cratous.spec.errors import BadInput
 
 
 class NotRead(BadInput):
-    """A requirement that is outside of the language."""
+    """A requirement that cannot be read."""
 
     def __init__(
         self,
@@ -25,15 +25,15 @@ class NotRead(BadInput):
     ) -> None:
         self._caret = caret
         self.problems: tuple[NotRead, ...] = ()
-        """All that do not fit in its file, this one the first; none where it is the only one that is known."""
+        """All problems of its file, this one first; empty if this is the only one known."""
         super().__init__(what, where=where, item=item, expected=expected, got=got)
 
     def caret(self) -> str:
-        """The line of the requirement (a window of it if it is long), and ^ below the place."""
+        """The line of the requirement (a window of it if it is long), and ^ below the position."""
         return self._caret
 
     def data(self) -> dict[str, str]:
-        """As for every `BadInput`, and the caret."""
+        """As for every `BadInput`, with the caret."""
         return {**super().data(), "caret": self._caret}
 
 
@@ -41,8 +41,9 @@ class NotRead(BadInput):
 class Requirement:
     """One requirement of a file. name: its own, else its number; formula: or why it is not read.
 
-    title, severity, source: as its author states them, empty where he does not; between: what is judged at samples in place
-    of the formula, so that it holds between them too (`requirements.between`), where a signal of it has a rate.
+    title, severity, source: as stated by its author, empty if not; between: formula evaluated at
+    samples instead, so that the requirement holds between them too (`requirements.between`), if a
+    signal has a rate.
     """
 
     name: str
@@ -55,7 +56,7 @@ class Requirement:
 
     @property
     def judged(self) -> Formula:
-        """What is judged at each sample. Raises NotRead."""
+        """The formula evaluated at each sample. Raises NotRead."""
         if isinstance(self.formula, NotRead):
             raise self.formula
         return self.formula if self.between is None else self.between
@@ -63,12 +64,12 @@ class Requirement:
 
 @dataclass(frozen=True)
 class Signal:
-    """A signal. kind: bool, int or float; unit: "" where the language has none.
+    """A signal. kind: bool, int or float; unit: "" if the language has none.
 
-    message, field: the message type and the field that give it in a log, with what the message's other
-    fields must be; hold_ns: how long a value counts after its sample (0: at its sample alone); made: of what it is
-    calculated, None: it stands in the trace; word: it is whether the field is this word; rate: by how much it changes in a
-    second at most, in its unit, 0 where nothing is said of it.
+    message, field: the message type and field that give it in a log, with required values of other
+    fields; hold_ns: how long a value is valid after its sample (0: at its sample only); made: term
+    from which it is computed, None: recorded in the trace; word: the signal tells whether the field
+    has this value; rate: maximum change per second, in its unit, 0 if not given.
     """
 
     kind: str
@@ -86,9 +87,10 @@ class Signal:
 class Specification:
     """The requirements of a file in order, and its signals by name.
 
-    timed: samples bear times, and bounds are times [ns]; else both count samples. gap_ns: samples that
-    are further apart leave unknown what lies between them; 0: nothing is said of it. period_ns: of the
-    samples, for the lint; 0: not told. begins_with_all: the first sample is that at which every signal has had a value.
+    timed: samples have times, and bounds are times [ns]; otherwise both count samples. gap_ns:
+    samples further apart leave the time between them unknown; 0: not given. period_ns: sampling
+    period, for the lint; 0: not given. begins_with_all: the first sample is that at which every
+    signal has had a value.
     """
 
     signals: dict[str, Signal]
@@ -100,7 +102,7 @@ class Specification:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What of a trace these requirements do not look at, in words."""
+        """What these requirements do not check in a trace, in words."""
         if not self.timed or self.gap_ns:
             return ()
         return ("no gap is stated (trace every ... gap ...): time without samples goes unnoticed",)
@@ -112,7 +114,7 @@ class Specification:
 
 
 def caret_of(text: str, offset: int) -> tuple[int, int, str]:
-    """(line, column) from 1 of an offset, and a window of the line with ^ below the place."""
+    """(line, column), from 1, of an offset, and a window of the line with ^ below the position."""
     line = text.count("\n", 0, offset) + 1
     column = offset - (text.rfind("\n", 0, offset) + 1)
     shown = text.split("\n")[line - 1]

@@ -1,8 +1,9 @@
-"""The messages that lines of a CRATOUS bridge amount to, from a tap on it: positions, authority, heartbeats, commands.
+"""Messages reconstructed from bridge lines, by a tap on a CRATOUS bridge: positions, authority,
+heartbeats, commands.
 
-They are those that a log has of them, with the fields that the lines tell: what a line does not tell is not there, and never
-taken for zero. A SETMOD tells who is said to have the vehicle; whether that is so the gate knows. Times are those at which a
-line passed, [ms] since the first connection.
+They equal those of a log, with the fields that the lines contain: missing fields are absent, never
+zero. A SETMOD states who should have the vehicle; only the gate knows whether that is so. Times are
+those at which a line passed, [ms] since the first connection.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ from cratous.spec.errors import BadInput
 
 POLL_S = 0.1
 REST_S = 1.0
-"""So long what has come before the end is looked at."""
+"""How long lines received before the end are still processed [s]."""
 STATE = ("ID", "Time", "Groundspeed", "Course", "VerticalSpeed")
 FIELDS: dict[str, tuple[str, ...]] = {
     "afrl.cmasi.AirVehicleState": (
@@ -58,12 +59,12 @@ FIELDS: dict[str, tuple[str, ...]] = {
     ),
     "cratous.BridgeStatus": ("VehicleID", "Alive", "Note"),
 }
-"""What lines can tell, by the type of the message."""
+"""Fields that lines contain, by message type."""
 Body = tuple[str, dict[str, Any]]
 
 
 def refuse_untold(wanted: Mapping[str, Signal]) -> None:
-    """BadInput for a signal that no line of the bridge tells."""
+    """BadInput for a signal that no line of the bridge contains."""
     for name, signal in wanted.items():
         mine = (t for t in FIELDS if t == signal.message or t.endswith(f".{signal.message}"))
         topic = next(mine, "")
@@ -93,13 +94,13 @@ class Tapped:
         self._epochs: dict[int, int | None] = {}
         self._beats: dict[int, int] = {}
         self._own: set[int] = set()
-        """Whose own positions were told: what others are told of them is the same, later."""
+        """Vehicles whose own positions were received: positions sent to others repeat them later."""
         self._told: set[int] = set()
         self._begun_ns: int | None = None
         self.seq = 0
 
     def left(self) -> list[str]:
-        """What goes on after the watch, in words."""
+        """What remains running after the watch, in words."""
         count, pid = len(self._heard), self._tap.process.pid
         if not (count and self._tap.stands):
             return []
@@ -107,14 +108,14 @@ class Tapped:
         return [f"tap: {what} on through process {pid}, until the two ends end it"]
 
     def now_ms(self) -> int:
-        """The time since the first connection, 0 before."""
+        """Time since the first connection [ms], 0 before."""
         return 0 if self._begun_ns is None else self._since(time.monotonic_ns())
 
     def _since(self, time_ns: int) -> int:
         return 0 if self._begun_ns is None else max(0, (time_ns - self._begun_ns) // 10**6)
 
     def messages(self, wait_s: float, until: Callable[[int], bool]) -> Iterator[Entry]:
-        """The messages until `until(ms)` says so; BadInput where nobody connects for wait_s seconds."""
+        """The messages until `until(ms)` is true; BadInput if nobody connects within wait_s seconds."""
         given_up_s, stands = time.monotonic() + wait_s, True
         try:
             while not until(self.now_ms()):
@@ -134,17 +135,17 @@ class Tapped:
             self._tap.close()
 
     def _wait(self, stands: bool) -> bool:
-        """Wait a moment for the relay, if it stands; whether something is there."""
+        """Wait briefly for the relay, if it is running; returns whether data are available."""
         poll = zmq.Poller()
         for handle, flags in self._tap.handles() if stands else ():
             poll.register(handle, flags)
         return bool(poll.poll(int(POLL_S * 1000)))
 
     def _rest(self, end_ns: int) -> Iterator[Entry]:
-        """What has passed before the end, or that it is too much to be looked at still."""
+        """What has passed before the end; a fault is reported if it is too much to be processed."""
         given_up_s = time.monotonic() + REST_S
         while True:
-            # the relay may be a moment behind
+            # the relay may lag slightly
             comes, records = self._wait(True), list(self._tap.step())
             if not records and not (comes and self._tap.stands):
                 return

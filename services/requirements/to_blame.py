@@ -1,7 +1,9 @@
-"""Which parts of a violated formula are to blame: being as they were, they violate it at that sample, whatever the rest.
+"""Which parts of a violated formula cause the violation: their verdicts violate it, whatever the
+others.
 
-A formula is looked into as far as not, and, or reach: `a and b` is false by those of a and b that are, `a implies b` by a,
-which holds, and b, which does not. A comparison and what has a time are parts that are not looked into.
+Not, and, or are examined recursively: `a and b` is violated by those of a and b that are false, `a
+implies b` by a, which holds, and b, which does not. Comparisons and temporal parts are not examined
+further.
 """
 
 from __future__ import annotations
@@ -18,15 +20,15 @@ Part = tuple[Formula, int]
 
 
 class Parts:
-    """The verdicts of the parts at the samples at which the whole is not decided yet."""
+    """The verdicts of the parts at samples at which the whole formula is still undecided."""
 
     def __init__(self, formula: Formula, places: Mapping[int, int]) -> None:
-        """places: of each part by its id, the last that of the whole."""
+        """places: index of each part by its id, the last that of the whole formula."""
         self.formula, self.places = formula, places
         self.kept: list[dict[int, int] | None] = [None] * len(places)
         self.found: tuple[Part, ...] = ()
         self.through = NEVER
-        """The last sample at which the whole is decided."""
+        """The last sample at which the whole formula is decided."""
         todo = [formula]
         while todo:
             one = todo.pop()
@@ -35,7 +37,9 @@ class Parts:
                 todo += children(one) if isinstance(one, Not | Join) else ()
 
     def all_decided(self, now: int, out: Sequence[tuple[int, int]]) -> bool:
-        """Whether with the verdicts of the whole that came now nothing waits, and none is a violation."""
+        """Whether the new verdicts decide everything up to now without a violation; then the parts
+        are discarded.
+        """
         if not out or out[-1][0] != now or FALSE in [verdict for _, verdict in out]:
             return False
         self.through = now
@@ -47,20 +51,20 @@ class Parts:
     def taken(
         self, parts: Sequence[tuple[int, Sequence[tuple[int, int]]]], out: Sequence[tuple[int, int]]
     ) -> bool:
-        """What a sample has decided: of the parts by place, and of the whole. True as long as no violation was."""
+        """Record the verdicts of a sample: of parts by place, and of the whole. True while nothing is violated."""
         for place, got in parts:
             self.take(place, got)
         return self.decided(out)
 
     def take(self, place: int, got: Sequence[tuple[int, int]]) -> None:
-        """Verdicts of the part at a place; where the whole is decided already they are not kept."""
+        """Record verdicts of the part at a place, except where the whole formula is decided already."""
         if (known := self.kept[place]) is not None:
             for time, verdict in got:
                 if time > self.through:
                     known[time] = verdict
 
     def decided(self, out: Sequence[tuple[int, int]]) -> bool:
-        """The whole is decided at these samples. True as long as none was violated."""
+        """The whole formula is decided at these samples. True while none is violated."""
         for time, verdict in out:
             if verdict == FALSE:
                 self.found = tuple(why(self.formula, partial(self._verdict, time)))
@@ -76,8 +80,9 @@ class Parts:
 
 
 def why(formula: Formula, verdict_of: Callable[[Formula], int | None]) -> list[Part]:
-    """The parts that are to blame at a sample at which the formula is violated; verdict_of: of a part there, None where
-    it is not known yet."""
+    """The parts that cause the violation at a sample; verdict_of: verdict of a part there, None if
+    not known yet.
+    """
     found: list[Part] = []
     todo, seen = [formula], set()
     while todo:

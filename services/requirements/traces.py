@@ -1,7 +1,9 @@
-"""The rows of a trace with times: a CSV file with a column `time_s`, or a message log of any format.
+"""The rows of a trace with times: a CSV file with a column `time_s`, or a message log of any
+format.
 
-In a log a signal is a field of messages of one type, as `AirVehicleState[ID=1].Location.Altitude` says;
-messages of one instant are one row. In CSV an empty cell brings no value.
+In a log a signal is a field of messages of one type, as in
+`AirVehicleState[ID=1].Location.Altitude`; messages with equal times form one row. In CSV an empty
+cell gives no value.
 """
 
 from __future__ import annotations
@@ -29,20 +31,20 @@ TIME = "time_s"
 
 
 ToldBy = Callable[[str, Iterable[str], int], None]
-"""Is told the source of a message, the signals that it gives and its time [ns]: `Sampling.told_by`."""
+"""Callback with the source of a message, its signals and its time [ns]: `Sampling.told_by`."""
 
 
 def rows(
     trace: Path, spec: Specification, names: Iterable[str], told_by: ToldBy | None = None
 ) -> Iterator[Row]:
-    """The rows of a trace; BadInput with the place for what is none."""
+    """The rows of a trace; BadInput with the position for an invalid file."""
     if _is_csv(trace):
         return _of_csv(trace, {name: spec.signals[name] for name in sorted(names)})
     return _of_log(trace, wanted_of(spec, names), told_by)
 
 
 def doubts(trace: Path) -> list[str]:
-    """What keeps a log from being whole: `open`, `lost`; BadInput where it is not what its writer left."""
+    """Why a log is incomplete: `open`, `lost`; BadInput if it was altered after writing."""
     return [] if _is_csv(trace) else doubts_of_log(trace)
 
 
@@ -57,7 +59,7 @@ def _of_csv(trace: Path, wanted: Mapping[str, Signal]) -> Iterator[Row]:
                 raise BadInput("a signal has no column", where=str(trace), item=name)
         row = {name: _cell(cells, name, where) for name in wanted if cells[name]}
         for name, value in row.items():
-            # what is no number at all is for the sampling to say
+            # non-finite values are handled by the sampling
             if wanted[name].kind == "bool" and isfinite(value) and value not in (0.0, 1.0):
                 got = cells[name][:40]
                 raise BadInput(
@@ -87,7 +89,7 @@ def _time(text: str, where: str) -> int:
 
 
 def wanted_of(spec: Specification, names: Iterable[str]) -> dict[str, Signal]:
-    """The signals of these names, for messages; BadInput for one that no message gives or in another unit."""
+    """The signals of these names, for messages; BadInput if one has no message field, or in another unit."""
     wanted = {name: spec.signals[name] for name in sorted(names)}
     for name, signal in wanted.items():
         if not signal.message:
@@ -106,7 +108,7 @@ def _of_log(trace: Path, wanted: Mapping[str, Signal], told_by: ToldBy | None) -
     source = open_log(trace)
     known = {topic.topic for topic in source.topics()}
     for name, signal in wanted.items():
-        # one that the models have may just never come: then its requirements are unknown
+        # a type that the models have may never occur: its requirements are unknown then
         if not is_known(signal.message) and not any(_is(one, signal.message) for one in known):
             got = ", ".join(sorted(topic.rpartition(".")[2] for topic in known))
             raise BadInput(
@@ -122,9 +124,10 @@ def rows_of_messages(
     unread: Callable[[Entry], None] | None = None,
     told_by: ToldBy | None = None,
 ) -> Iterator[Row]:
-    """The rows of messages in the order of their times; those of one instant are one row.
+    """The rows of messages in time order; messages with equal times form one row.
 
-    unread: is told of a message that cannot be decoded or has no such fields, and it is left out; without it BadInput is raised.
+    unread: called for a message that cannot be decoded or lacks the fields, which is then omitted;
+    without it BadInput is raised.
     """
     for time_ms, parts in groupby(
         _of_messages(entries, wanted, unread, told_by), key=itemgetter(0)
@@ -141,7 +144,7 @@ def _of_messages(
     unread: Callable[[Entry], None] | None,
     told_by: ToldBy | None,
 ) -> Iterator[tuple[int, Mapping[str, float | None]]]:
-    """The time [ms] of each message that has a signal, and what it has."""
+    """The time [ms] of each message that has a signal, and its values."""
     for entry in entries:
         mine = {n: s for n, s in wanted.items() if _is(entry.topic, s.message)}
         if not mine:
@@ -169,7 +172,7 @@ def _is(topic: str, wanted: str) -> bool:
 
 
 def _at(data: Any, path: str, entry: Entry) -> Any:
-    """The field; None where a list is shorter, or what stands in it is of a type without the field."""
+    """The value of a field; None if a list is too short, or its element is of a type without the field."""
     listed = False
     for part in path.split("."):
         if isinstance(data, list) and part.isdecimal():

@@ -1,6 +1,8 @@
-"""Units that a requirement may name, each an exact multiple of the SI unit of its dimension, and products of them.
+"""Units of requirements, each an exact multiple of the SI unit of its dimension, and products of
+them.
 
-A product is written without spaces, as `m^2`, `m*kn` or `J/m^2`; what stands behind a `/` divides alone.
+A product is written without spaces, as `m^2`, `m*kn` or `J/m^2`; a `/` divides by the next unit
+only.
 """
 
 from __future__ import annotations
@@ -11,7 +13,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 
-# the degree is a unit of its own dimension: radians are no rational multiple of it
+# the degree has a dimension of its own: it is no rational multiple of the radian
 UNITS: dict[str, tuple[str, Fraction]] = {
     "1": ("number", Fraction(1)),
     "%": ("number", Fraction(1, 100)),
@@ -46,21 +48,21 @@ UNITS: dict[str, tuple[str, Fraction]] = {
 BASES = ("length", "time", "angle", "angle in radians", "energy", "voltage", "temperature")
 MADE = {"speed": ("m", "s"), "acceleration": ("m", "s^2"), "angular rate": ("deg", "s"),
         "angular rate in radians": ("rad", "s"), "rate": ("1", "s")}  # fmt: skip
-"""Dimensions that are quotients: of which units."""
+"""Dimensions that are quotients: (numerator unit, denominator unit)."""
 NONE = ("", "1")
-"""Of a number that has none, and of one where the language has no units."""
+"""Unit of dimensionless numbers, and of numbers in languages without units."""
 HIGHEST = 9
-"""Power of a unit."""
+"""Maximum power of a unit."""
 PART = re.compile(r"([A-Za-z%]+|1)(?:\^([0-9]+))?")
 
 
 class NoUnit(ValueError):
-    """What is calculated has no unit, or none that can be said; the reason in words."""
+    """A computed number has no unit, or none that can be written; the reason in words."""
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number with the name of its unit; text: as it is written."""
+    """A number with the name of its unit; text: as written."""
 
     value: Fraction
     unit: str
@@ -68,7 +70,7 @@ class Quantity:
 
 
 def dimension(unit: str) -> str:
-    """The dimension of a unit, as `length`; of one without a name of its own as `length^2/time`."""
+    """The dimension of a unit, as `length`; without a name of its own as `length^2/time`."""
     if unit in UNITS:
         return UNITS[unit][0]
     powers: dict[str, int] = {}
@@ -91,7 +93,7 @@ def in_unit(quantity: Quantity, unit: str) -> Fraction:
 
 @cache
 def factor(unit: str) -> Fraction:
-    """How much it is in SI units of its dimension."""
+    """Size of a unit in the SI unit of its dimension."""
     if unit in UNITS:
         return UNITS[unit][1]
     found = Fraction(1)
@@ -101,12 +103,12 @@ def factor(unit: str) -> Fraction:
 
 
 def of_text(text: str) -> str:
-    """A unit as it is written, in the one form that it has; NoUnit for what is none."""
+    """The canonical form of a unit; NoUnit if the text is none."""
     return text if text in UNITS else _text(_powers(text))
 
 
 def product(one: str, other: str, sign: str = "*") -> str:
-    """The unit of a product, or with `/` of a quotient; NoUnit where there is none."""
+    """The unit of a product or, with `/`, of a quotient; NoUnit if there is none."""
     if other in NONE and (sign == "/" or one not in NONE):
         return one or other
     if one in NONE and (sign == "*" or other in NONE):
@@ -120,7 +122,7 @@ def product(one: str, other: str, sign: str = "*") -> str:
 
 
 def root(unit: str) -> str:
-    """The unit of a square root; NoUnit where there is none."""
+    """The unit of a square root; NoUnit if there is none."""
     if unit in NONE:
         return unit
     powers = _powers(unit)
@@ -144,7 +146,7 @@ def _raised(name: str, power: int) -> str:
 
 @cache
 def _powers(unit: str) -> Mapping[str, int]:
-    """The powers of the units that are no quotients, of a unit; NoUnit for what is none."""
+    """The powers of the elementary units of a unit; NoUnit if it is none."""
     found: dict[str, int] = {}
     sign = 1
     for part in re.split(r"([*/])", "1/s" if unit == "Hz" else unit):
@@ -163,7 +165,7 @@ def _powers(unit: str) -> Mapping[str, int]:
 
 
 def _bases(name: str) -> Mapping[str, int]:
-    """The bases of the dimension of a unit that is no quotient."""
+    """The dimension's base dimensions, of a unit that is no quotient."""
     base = UNITS[name][0]
     if base in BASES:
         return {base: 1}
@@ -174,7 +176,7 @@ def _bases(name: str) -> Mapping[str, int]:
 
 
 def _powers_of(over: Mapping[str, int], under: Mapping[str, int]) -> dict[str, int]:
-    """The bases of a quotient of products of units that are no quotients."""
+    """The base dimensions of a quotient of products of elementary units."""
     found: dict[str, int] = {}
     for units, sign in ((over, 1), (under, -1)):
         for unit, times in units.items():

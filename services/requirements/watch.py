@@ -1,6 +1,6 @@
-"""A trace held against requirements: what is violated, unknown, or not decided when the trace ends.
+"""Checks a trace against requirements: what is violated, unknown, or undecided when the trace ends.
 
-Samples are numbered from 0 where the language counts them, and bear times where it has times [ns].
+Samples are numbered from 0 if the language counts them, otherwise they have times [ns].
 """
 
 from __future__ import annotations
@@ -26,34 +26,36 @@ from cratous.spec.errors import BadInput
 
 @dataclass(frozen=True)
 class Watched:
-    """The outcome of each requirement, and what is wrong with the samples."""
+    """The outcome of each requirement, and the faults of the samples."""
 
     outcomes: tuple[Outcome, ...]
     findings: tuple[Finding, ...]
     untested: tuple[str, ...] | None = None
-    """Requirements of the form `a implies b` where a was so at no sample; None: that was not looked at."""
+    """Requirements `a implies b` for which a held at no sample; None: not determined."""
 
 
 class Watch:
-    """Requirements of a specification over rows as they come.
+    """Evaluates the requirements of a specification on incoming rows.
 
-    verdicts: takes a line `id:t,T`, `F` or `?` (unknown) for each verdict as it is decided. Raises BadInput
-    for a requirement that is not read.
+    verdicts: receives a line `id:t,T`, `F` or `?` (unknown) for each verdict as it is decided.
+    Raises BadInput for a requirement that is not read.
     """
 
     def __init__(self, spec: Specification, verdicts: list[str] | None = None) -> None:
         self.spec, self.verdicts = spec, verdicts
         self.count, self.last = 0, -1
         self.told = len(spec.requirements)
-        """Of so many requirements the verdicts are written down."""
+        """Number of requirements whose verdicts are listed."""
         self.needed: set[str] = set()
         names: set[str] = set()
         self._watched: list[tuple[Outcome, Evaluation]] = []
         self._reading: dict[str, list[int]] = {}
-        """Of each signal the requirements that read it, by their number."""
+        """For each signal the numbers of the requirements that read it."""
         self._row: Sample = {}
         self.news: list[tuple[str, Outcome]] = []
-        """What was so for the first time: a requirement is `violated` at a sample, or `unknown`; who reads it empties it."""
+        """First occurrences: requirements that became `violated` at a sample, or `unknown`; emptied
+        by the reader.
+        """
         for one in spec.requirements:
             judged = one.judged
             read = signals(judged)
@@ -74,20 +76,20 @@ class Watch:
         return [outcome for outcome, _ in self._watched]
 
     def is_unauthenticated(self, outcome: Outcome) -> bool:
-        """Whether it was held against values from a source that nothing authenticates."""
+        """Whether it was evaluated on values from an unauthenticated source."""
         told, formula = self.sampling.unauthenticated, outcome.requirement.formula
         if not told or isinstance(formula, NotRead):
             return False
         return bool(told & sources(signals(formula), self.spec.signals))
 
     def rows(self, rows: Iterable[Row]) -> Iterator[int]:
-        """Take rows with times; the time [ns] of each sample that is taken."""
+        """Process rows with times; yields the time [ns] of each sample made."""
         for time, row in self.sampling.samples(rows):
             self._sample(time, self._calculated.row(row))
             yield time
 
     def sample(self, time: int, row: Sample) -> None:
-        """Take one sample more, of the signals that are in the trace."""
+        """Process one more sample of the recorded signals."""
         self._sample(time, self._calculated.row(row))
 
     def _sample(self, time: int, row: Sample) -> None:
@@ -110,13 +112,13 @@ class Watch:
         self.count += 1
 
     def _changed(self, row: Sample) -> set[int]:
-        """The numbers of the requirements of which a signal is not as it was at the sample before."""
+        """The numbers of the requirements with a signal that differs from the previous sample."""
         before, self._row = self._row, dict(row)
         if not before:
             return set(range(len(self._watched)))
         found: set[int] = set()
         for name, reading in self._reading.items():
-            # what is no number differs from itself
+            # NaN differs from itself
             if row.get(name) != before.get(name):
                 found.update(reading)
         return found
@@ -128,8 +130,9 @@ class Watch:
             self.news.append((event, outcome))
 
     def all(self, samples: Iterable[tuple[int, Sample]]) -> None:
-        """Take all samples of a trace that has ended, of which none was taken yet: over whole columns where that is
-        sooner (`whole`), with the same outcome."""
+        """Process all samples of a finished trace, none of which was processed yet: by columns
+        where that is faster (`whole`), with the same outcome.
+        """
         whole = ((time, self._calculated.row(row)) for time, row in samples)
         taken, kept = iter(whole), Columns(self._names)
         if self.verdicts is None:
@@ -146,21 +149,24 @@ class Watch:
             self._sample(time, row)
 
     def result(self) -> Watched:
-        """What can be said where the trace ends here."""
+        """The result if the trace ends here."""
         for outcome in self.outcomes:
             outcome.undecided = self.count - outcome.holds - outcome.violated - outcome.unknown
             outcome.whole = self.sampling.is_whole and self.sampling.has_begun
             outcome.until, outcome.lacks = self.last, self.sampling.lacks
+            outcome.stops = self.sampling.stops
             outcome.unauthenticated = self.is_unauthenticated(outcome)
         findings = tuple(self.sampling.findings) if self.spec.timed else ()
         return Watched(tuple(self.outcomes), findings)
 
 
 def watch(spec: Specification, trace: Path, verdicts: list[str] | None = None) -> Watched:
-    """The outcome of each requirement over a trace: a CSV file, for a timed specification also a log.
+    """The outcome of each requirement over a trace: a CSV file, for a timed specification also a
+    log.
 
-    verdicts: as for `Watch`. A cell that is empty or no finite number is unknown. Raises BadInput for a
-    requirement that is not read, a signal that the trace cannot have, and a bool that is neither 0 nor 1.
+    verdicts: as for `Watch`. An empty or non-finite cell is unknown. Raises BadInput for a
+    requirement that is not read, a signal that the trace cannot have, and a bool that is neither 0
+    nor 1.
     """
     watching = Watch(with_asked(spec), verdicts)
     watching.told = len(spec.requirements)

@@ -1,7 +1,8 @@
-"""A trace that has ended, formula by formula over whole columns: the same verdicts as sample by sample.
+"""Evaluates a finished trace formula by formula over whole columns: the same verdicts as sample by
+sample.
 
-The loops are those of `core.requirements.whole_trace`, in machine code where there is enough to do for that; else
-the samples are taken one by one (`watch.Watch.sample`).
+The loops are those of `core.requirements.whole_trace`, as machine code where the work is large
+enough; otherwise the samples are processed one by one (`watch.Watch.sample`).
 """
 
 from __future__ import annotations
@@ -30,14 +31,14 @@ if TYPE_CHECKING:
     from cratous.services.requirements.outcome import Margin, Outcome
 
 MOST = 1_000_000
-"""Samples that are kept; also how many may wait in a queue where they are taken one by one."""
+"""Maximum number of samples stored; also the maximum queue length when processed one by one."""
 KEPT, WORTH = 100_000, 2_000_000
-"""Operators times samples from which on loops are compiled: whose machine code is kept, and any."""
+"""Operators times samples from which loops are compiled: with cached machine code, and without."""
 NAN = float("nan")
 
 
 class Columns:
-    """Samples by column, as they come. times: of each; values: by signal, NaN where it has none."""
+    """Samples stored by column. times: of each; values: by signal, NaN if it has none."""
 
     def __init__(self, names: Iterable[str]) -> None:
         self.times = array("q")
@@ -45,7 +46,7 @@ class Columns:
         self.last = -MAX_TIME - 1
 
     def add(self, time: int, row: Sample) -> None:
-        """A sample more. Raises BadInput for a time that is not later, as `Evaluation.sample` does."""
+        """Add a sample. Raises BadInput for a time that is not later, as `Evaluation.sample` does."""
         self.last = in_order(time, self.last)
         self.times.append(time)
         for name, column in self.values.items():
@@ -53,26 +54,25 @@ class Columns:
             column.append(NAN if value is None else value)
 
     def samples(self) -> Iterable[tuple[int, Sample]]:
-        """The samples one by one; what has no value is NaN."""
+        """The samples one by one; missing values are NaN."""
         for k, time in enumerate(self.times):
             yield time, {name: column[k] for name, column in self.values.items()}
 
 
 def is_worth(formulas: Iterable[Formula], samples: int) -> bool:
-    """Whether machine code evaluates this number of samples sooner than the interpreter does."""
+    """Whether machine code evaluates this number of samples faster than the interpreter."""
     work = sum(1 for formula in formulas for _ in parts(formula)) * samples
     if not KEPT < work <= WORTH:
         return work > WORTH
     from cratous.core.readings.machine.compiled import is_kept
     from cratous.core.requirements import whole_trace as loops
 
-    return all(
-        map(is_kept, (loops.reached, loops.not_of, loops.joined, loops.until_of, loops.since_of))
-    )
+    used = (loops.reached, loops.not_of, loops.joined, loops.until_of, loops.since_of)
+    return all(is_kept(loop) for loop in used)
 
 
 class Whole:
-    """Formulas over columns that are complete."""
+    """Evaluates formulas over complete columns."""
 
     def __init__(self, columns: Columns) -> None:
         import numpy as np
@@ -83,9 +83,9 @@ class Whole:
         self.at_once = np.arange(self.count)
 
     def fill(self, outcome: Outcome, formula: Formula) -> None:
-        """Count the verdicts of a formula, and measure its margins, into an outcome that has none yet."""
+        """Fill an empty outcome with a formula's verdict counts and margins."""
         found = self._parts(formula)
-        verdict, known = found[id(formula)]  # as `core.requirements.whole_trace` has them
+        verdict, known = found[id(formula)]  # in the form of `core.requirements.whole_trace`
         decided = known < self.count
         for name, word in (("holds", TRUE), ("violated", FALSE)):
             setattr(outcome, name, int(((verdict == word) & decided).sum()))

@@ -1,1 +1,1 @@
-"""The results folder of a run: whose files are in it, and how it changes as a whole."""
+"""The results folder of a run: which files belong to CRATOUS, and its atomic replacement."""

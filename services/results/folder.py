@@ -1,4 +1,4 @@
-"""The results folder of a run: whole or not at all, and other files that are in it stay."""
+"""The results folder of a run: replaced as a whole or not at all; the user's other files in it are kept."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ from cratous.spec.errors import BadInput
 
 
 def _nobody(_text: str) -> None:
-    """Report nothing."""
+    """Discard progress messages."""
 
 
 @contextmanager
 def results_folder(target: Path, tell: Tell = _nobody) -> Iterator[Path]:
-    """A fresh folder that takes the place of the results at `target` if all goes well, else vanishes.
+    """A new folder that replaces the results at `target` on success, and is removed otherwise.
 
-    BadInput before anything is done if the target cannot be replaced later. Files there that we did
-    not write stay; if one of them is in the way only at the end, the new results are kept beside
-    it, and the error names where.
+    BadInput, before anything is done, if the target cannot be replaced later. Files there that
+    CRATOUS did not write are kept; if one of them causes a conflict only at the end, the new
+    results are kept beside it, and the error says where.
     """
     place = _resolved(target)
     made = [folder for folder in place.parents if not folder.exists()]
@@ -74,7 +74,7 @@ def results_folder(target: Path, tell: Tell = _nobody) -> Iterator[Path]:
 
 
 def _resolved(target: Path) -> Path:
-    """Where the results end up: links are followed, so that a link stays one."""
+    """The final location of the results: symbolic links are resolved, so that a link is kept."""
     try:
         place = target.resolve()
     except (OSError, RuntimeError):
@@ -96,7 +96,7 @@ def _resolved(target: Path) -> Path:
 
 
 class _Run:
-    """The hidden folder of one run: what it fills, and what it says to those who find it."""
+    """The hidden folder of one run: new results, and the record for recovery."""
 
     def __init__(self, place: Path) -> None:
         self.place = place
@@ -112,7 +112,7 @@ class _Run:
             raise
 
     def put_in_place(self, tell: Tell) -> None:
-        """Exchange the new results for the old ones; signals wait until it is done."""
+        """Exchange new and old results; signals are deferred meanwhile."""
         text = manifest_text(self.filling, sorted(entry.name for entry in self.filling.iterdir()))
         (self.filling / MANIFEST_NAME).write_text(text, encoding="utf-8")
         for entry in self.filling.iterdir():
@@ -130,7 +130,7 @@ class _Run:
             self._stays = False
 
     def close(self) -> None:
-        """Remove the hidden folder, unless something is in it that is nowhere else."""
+        """Remove the hidden folder, unless it contains something that exists nowhere else."""
         if not self._stays:
             remove(self.space.path)
         self.space.release()

@@ -1,4 +1,4 @@
-"""Which files of a folder are results of a version that wrote no manifest, by their content."""
+"""Identifies results of versions without a manifest, by content."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from cratous.services.results.names import (
 
 
 def former_files(folder: Path) -> set[str]:
-    """The files that were written together with the report in a folder; empty without a report."""
+    """The files of a folder that were written together with its report; empty without a report."""
     report = _json(folder / REPORT_NAME)
     if report.get("format") != FORMAT or not isinstance(report.get("mission_hash"), str):
         return set()
@@ -55,7 +55,7 @@ def _json(path: Path) -> dict[str, Any]:
 
 
 def _flown(path: Path) -> str:
-    """The mission that a CRATOUS log was recorded for."""
+    """The mission for which a CRATOUS log was recorded."""
     if path.is_symlink() or not path.is_file():
         return ""
     try:

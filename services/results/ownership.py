@@ -1,7 +1,7 @@
-"""Which files of a results folder are ours: those that the run wrote, as it wrote them.
+"""Identifies the files of a results folder that a run wrote and that are unchanged.
 
-`manifest.json` names them with their digests. Without a manifest (results of an earlier version)
-those are ours that belong to a `report.json` of ours by their content.
+`manifest.json` lists them with their digests. Without a manifest (results of an earlier version),
+files are ours if they match a `report.json` of ours by content.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ LARGEST_MANIFEST = 1_000_000
 
 @dataclass(frozen=True)
 class Holding:
-    """What is in a folder. ours: written by us and unchanged; foreign: anything else.
+    """Content of a folder. ours: written by CRATOUS and unchanged; foreign: anything else.
 
-    blocking: what keeps the folder from being replaced, each with the reason.
+    blocking: what prevents replacing the folder, with reasons.
     """
 
     ours: frozenset[str]
@@ -33,7 +33,7 @@ class Holding:
 
 
 def look(folder: Path) -> Holding:
-    """Which entries of a folder were written by us, and which were not."""
+    """Classify the entries of a folder."""
     there = sorted(entry.name for entry in folder.iterdir())
     written = read_manifest(folder)
     if written is not None:
@@ -82,7 +82,7 @@ def read_manifest(folder: Path) -> dict[str, str] | None:
 
 
 def digest_of(path: Path) -> str:
-    """SHA-256 of a file in hexadecimal; empty for what is no plain file."""
+    """SHA-256 of a file in hexadecimal; empty if it is no regular file."""
     if not is_plain(path):
         return ""
     with path.open("rb") as stream:
@@ -90,7 +90,7 @@ def digest_of(path: Path) -> str:
 
 
 def is_plain(path: Path) -> bool:
-    """A file, and no link to one."""
+    """Whether it is a regular file, not a symbolic link."""
     try:
         return stat.S_ISREG(path.lstat().st_mode)
     except OSError:

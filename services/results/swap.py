@@ -1,9 +1,9 @@
-"""How new results take the place of old ones, and what is done about a process killed meanwhile.
+"""Replaces old results by new ones atomically, and recovers after a killed process.
 
-The hidden folder of a run holds `filling`, then `ready`; the exchange with the target is one system
-call (two renames where the file system cannot exchange), after which the former folder is `old`.
-Other files of the user are linked into the new folder before the exchange, folders are moved after.
-At any moment the old or the new results stand at the target, or the next run brings them there.
+The hidden folder of a run contains `filling`, then `ready`; the exchange with the target is one
+system call (two renames if the file system cannot exchange), after which the former folder is
+`old`. Other files of the user are linked into the new folder before the exchange, folders are moved
+afterwards. At any time the old or the new results are at the target, or the next run restores them.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def refuse_foreign(place: Path, target: Path) -> None:
 
 
 def install(space: Path, place: Path) -> None:
-    """Put what is ready in its place; what was there is then in `old`."""
+    """Move the `ready` folder to its place; what was there becomes `old`."""
     ready, old = space / READY, space / OLD
     if not os.path.lexists(place):
         os.rename(ready, place)
@@ -63,7 +63,7 @@ def install(space: Path, place: Path) -> None:
     mode = stat.S_IMODE(place.stat().st_mode)
     for name in look(place).foreign:
         if is_plain(place / name):
-            with suppress(OSError, NotImplementedError):  # moved after the exchange, then
+            with suppress(OSError, NotImplementedError):  # otherwise moved after the exchange
                 os.link(place / name, ready / name, follow_symlinks=False)
     if exchange(ready, place):
         os.rename(ready, old)
@@ -75,7 +75,7 @@ def install(space: Path, place: Path) -> None:
 
 
 def clear(space: Path, place: Path, tell: Tell) -> None:
-    """Bring what is not ours from the old folder to the new one, and remove the rest."""
+    """Move foreign files from the old folder to the new one, and remove the rest."""
     old = space / OLD
     if not old.exists():
         return
@@ -86,7 +86,7 @@ def clear(space: Path, place: Path, tell: Tell) -> None:
             os.rename(here, there)
         elif os.path.samestat(here.lstat(), there.lstat()):
             here.unlink()
-    # what tells that the others are ours goes last
+    # the manifest and report, which identify the others as ours, are removed last
     for name in sorted(found.ours, key=lambda n: (n == MANIFEST_NAME, n == REPORT_NAME)):
         (old / name).unlink()
     if any(old.iterdir()):
@@ -98,8 +98,8 @@ def clear(space: Path, place: Path, tell: Tell) -> None:
 
 
 def keep(space: Path, place: Path, error: Exception, tell: Tell) -> None:
-    """Results that could not take their place are kept under another name, which the error says."""
-    if not _is_new(space):  # they are in place, and something of the old is not cleared away
+    """Keep results that could not be installed under another name, stated in the error."""
+    if not _is_new(space):  # installed, but some of the old results could not be removed
         tell(
             f"{place}: the results are in place, but not all of the former folder is cleared away "
             f"({error}); the rest is in {space}, and the next run here will try again"
@@ -132,7 +132,7 @@ def _free(place: Path, word: str) -> Path:
 
 
 def recover(parent: Path, tell: Tell) -> None:
-    """Finish or undo what killed runs left beside their targets in a folder."""
+    """Complete or undo what killed runs left beside their targets in a folder."""
     for space, handle in dead(parent, RUN):
         try:
             _recover(space, tell)
@@ -176,7 +176,7 @@ def _journal(space: Path) -> dict[str, object]:
 
 
 def _is_new(space: Path) -> bool:
-    """Whether what is `ready` are the new results; after the exchange it is what they replaced."""
+    """Whether `ready` contains the new results; after the exchange it contains the replaced ones."""
     ready = space / READY
     return ready.exists() and ready.stat().st_ino == _journal(space)["inode"]
 
@@ -186,14 +186,14 @@ def remove(space: Path) -> None:
     if (space / READY).exists() or (space / OLD).exists():
         return
     shutil.rmtree(space / FILLING, ignore_errors=True)
-    with suppress(OSError):  # the lock goes last: with it the next run can find what is left
+    with suppress(OSError):  # the lock is removed last, so that the next run can find leftovers
         (space / JOURNAL).unlink(missing_ok=True)
         (space / LOCK).unlink(missing_ok=True)
         space.rmdir()
 
 
 def exchange(one: Path, other: Path) -> bool:
-    """Exchange two names in one step; False where the system or its file system cannot."""
+    """Exchange two names atomically; False if the system or its file system cannot."""
     try:
         rename = ctypes.CDLL(None, use_errno=True).renameat2
     except (OSError, AttributeError):

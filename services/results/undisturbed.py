@@ -1,4 +1,4 @@
-"""What has to be finished once it is begun: signals that ask to end wait for it."""
+"""Runs critical sections to completion: termination signals wait."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 @contextmanager
 def undisturbed() -> Iterator[None]:
-    """SIGINT, SIGTERM and SIGHUP are held back in here; the first that came acts at the end."""
+    """SIGINT, SIGTERM and SIGHUP are deferred inside the block; the first one received acts at its end."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

@@ -1,1 +1,1 @@
-"""Roads of OpenStreetMap for vehicles that drive: the map, ways along it, and the service that answers."""
+"""OpenStreetMap roads for ground vehicles: the map, routes along it, and the planning service."""

@@ -1,7 +1,7 @@
-"""The files that an OsmPlannerService writes of its map and of each way that it finds, as tables (CSV).
+"""The CSV files that an OsmPlannerService writes of its map and of each route.
 
-Places in degrees, lengths in metres, times in seconds. A file appears whole; more than FILES_MOST ways, or
-ROWS_MOST rows, are not written.
+Places in degrees, lengths in metres, times in seconds. Files are written atomically; beyond FILES_MOST routes
+or ROWS_MOST rows nothing more is written.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ METRICS = ("map_nodes", "map_legs", "map_time_s", "way_nodes", "way_length_m", "
 
 
 class Names(NamedTuple):
-    """Names of files, "" for none: all legs of the map; each way, numbered; a row of figures for each way."""
+    """File names, "" for none: all legs of the map; each route, numbered; a row of metrics per route."""
 
     edges: str = ""
     way: str = ""
@@ -30,22 +30,22 @@ class Names(NamedTuple):
 
 
 class RoadFiles:
-    """Writes them into one folder."""
+    """Writes the files into one folder."""
 
     def __init__(self, folder: Path, names: Names, map_s: float = 0.0) -> None:
-        """map_s: how long it took to read the map [s]."""
+        """map_s: time taken to read the map [s]."""
         self._folder, self._names, self._map_s = folder, names, map_s
         self._ways = 0
         self._rows: list[str] = []
 
     def map(self, roads: Network) -> None:
-        """All legs of a map."""
+        """Write all legs of a map."""
         if self._names.edges:
             pairs = [(roads.nodes[a], roads.nodes[b]) for a, b in roads.legs]
             self._write(self._names.edges, LEGS, _legs(roads, pairs))
 
     def way(self, roads: Network, points: tuple[Vec2, ...], search_s: float) -> None:
-        """A way that was found, and how long that took [s]."""
+        """Write a route, and the time taken to find it [s]."""
         if self._names.way and self._ways < FILES_MOST:
             self._ways += 1
             name = Path(self._names.way)

@@ -1,8 +1,8 @@
-"""Ways along roads: from anywhere near a road to anywhere near one, and where roads cross a circle.
+"""Routes along roads between places near a road, and road crossings of a circle.
 
-A place beside a road counts from the nearest point of the nearest leg. How often a leg crosses a circle the kernel
-`crossings` says, proved to miss none. Plane and units: north and east [m] of a frame
-in the middle of the map.
+A place beside a road is represented by the nearest point of the nearest leg. The kernel `crossings`, proved
+to miss none, counts the crossings of a leg with a circle. Plane and units: north and east [m] of a frame in
+the middle of the map.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from cratous.spec.errors import BadInput
 from cratous.spec.mission import Frame
 
 WIDEST_M = 200_000.0
-"""So far from its middle a map may reach: beyond, lengths in one plane mean too little."""
+"""Largest extent of a map from its centre [m]: beyond, distances in a single plane are too inaccurate."""
 OFF_ROAD_MOST_M = 1_000.0
-"""Who is farther from every road is on none."""
+"""A place farther than this from every road is not on the network [m]."""
 SAME_M = 1.0
-"""Crossings that are no farther apart are one: roads that meet on the circle."""
+"""Crossings no farther apart than this are merged: roads that meet on the circle [m]."""
 _START, _END = -1, -2
 
 Clear = Callable[[Vec2, Vec2], bool]
@@ -37,7 +37,7 @@ Clear = Callable[[Vec2, Vec2], bool]
 
 
 class Foot(NamedTuple):
-    """A place, the point of a leg that is nearest to it, and the leg's number."""
+    """A place, the nearest point on a road, and the number of that leg."""
 
     place: Vec2
     at: Vec2
@@ -45,17 +45,19 @@ class Foot(NamedTuple):
 
 
 class Crossing(NamedTuple):
-    """Where a road crosses a circle, and where it leads from there outwards (clockwise from north) [rad]."""
+    """A crossing of a road with a circle, and the road's outward direction there (clockwise from north)
+    [rad].
+    """
 
     at: Vec2
     heading_rad: float
 
 
 class Network:
-    """The roads of a map in one plane. It does not change."""
+    """The roads of a map in one plane. Immutable."""
 
     def __init__(self, roads: RoadMap, where: str) -> None:
-        """BadInput if the map is too wide for one plane. where: what the map is called."""
+        """BadInput if the map is too wide for one plane. where: name of the map."""
         index = {ref: k for k, ref in enumerate(roads.nodes)}
         lats, lons = zip(*roads.nodes.values(), strict=True)
         middle = [(min(part) + max(part)) / 2 for part in (lats, lons)]
@@ -82,12 +84,12 @@ class Network:
 
     @cached_property
     def _table(self) -> tuple[np.ndarray, np.ndarray]:
-        """Where each leg begins, and how it leads on."""
+        """Start and direction vector of each leg."""
         begins = np.array([self.nodes[a] for a, _ in self.legs])
         return begins, np.array([self.nodes[b] for _, b in self.legs]) - begins
 
     def foot(self, place: Vec2) -> Foot | None:
-        """The point of a road that is nearest to a place, None if that is farther than OFF_ROAD_MOST_M."""
+        """The road point nearest to a place; None if it is farther than OFF_ROAD_MOST_M."""
         begins, along = self._table
         to = np.asarray(place) - begins
         lengths = np.maximum((along**2).sum(axis=1), 1e-12)
@@ -98,13 +100,13 @@ class Network:
         return Foot(place, at, leg) if in_ring(place, at, 0.0, OFF_ROAD_MOST_M) else None
 
     def way(self, start: Foot, end: Foot, clear: Clear | None = None) -> tuple[Vec2, ...]:
-        """The shortest way along roads from foot to foot, nothing if there is none.
+        """The shortest route along roads between two feet; () if there is none.
 
         clear: which legs may be driven, None: all.
         """
         may = clear or (lambda p, q: True)
         came: dict[int, int] = {}
-        # sorted by what is gone and what is left at least, as the crow flies
+        # sorted by the length so far plus the straight-line distance left
         todo: list[tuple[float, float, int, int]] = [(0.0, 0.0, _START, _START)]
         while todo:
             _, gone, node, before = heapq.heappop(todo)
@@ -123,7 +125,7 @@ class Network:
         return ()
 
     def _next(self, node: int, start: Foot, end: Foot) -> Iterator[int]:
-        """The nodes that one comes to from a node; from the start those of its leg."""
+        """The successors of a node; from the start, those of its leg."""
         if node == _START:
             yield from self.legs[start.leg]
             if start.leg == end.leg:
@@ -145,9 +147,9 @@ class Network:
         return (self._at(node, start, end) for node in reversed(nodes))
 
     def crossings(self, middle: Vec2, radius_m: float) -> tuple[Crossing, ...]:
-        """Where roads cross a circle, by their bearing from its middle, north first.
+        """The crossings of roads with a circle, by bearing from its centre, north first.
 
-        A road that only touches it does not. One that crosses several times is there several times.
+        Tangent roads do not count; a road that crosses several times is listed several times.
         """
         found: list[Crossing] = []
         for a, b in self.legs:
@@ -162,12 +164,12 @@ class Network:
 
 
 def length_m(points: tuple[Vec2, ...]) -> float:
-    """How long a way is [m]."""
+    """Length of a route [m]."""
     return sum(math.dist(p, q) for p, q in pairwise(points))
 
 
 def _distinct(points: Iterator[Vec2]) -> tuple[Vec2, ...]:
-    """Without a point that is where the one before it is."""
+    """The points without consecutive duplicates."""
     kept: list[Vec2] = []
     for point in points:
         if not kept or kept[-1] != point:
@@ -180,7 +182,7 @@ def _bearing(middle: Vec2, at: Vec2) -> float:
 
 
 def _crossed(middle: Vec2, radius_m: float, a: Vec2, b: Vec2) -> Iterator[Crossing]:
-    """Where a leg crosses a circle, as often as the kernel says."""
+    """The crossings of a leg with a circle, as many as the kernel counts."""
     count = crossings(middle, a, b, radius_m)
     if not count:
         return
@@ -191,7 +193,7 @@ def _crossed(middle: Vec2, radius_m: float, a: Vec2, b: Vec2) -> Iterator[Crossi
     spread = math.sqrt(max(half * half - ahead, 0.0))
     heading = math.atan2(east, north)
     ways = [(-half - spread, heading + math.pi), (-half + spread, heading)]
-    if count == 1:  # out, if it begins inside
+    if count == 1:  # outward if it begins inside
         ways = ways[1:] if in_ring(middle, a, 0.0, radius_m) else ways[:1]
     for share, outwards in ways:
         t = min(max(share, 0.0), 1.0)

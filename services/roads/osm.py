@@ -1,7 +1,7 @@
-"""Roads from a map of OpenStreetMap (XML, 0.6): every way with a tag `highway`, whatever its value.
+"""Roads from an OpenStreetMap map (XML, 0.6): every way with a tag `highway`, whatever its value.
 
-As OpenUxAS reads them: both directions of each, and two roads meet where they have a node in common. A way
-that leads over nodes which the map does not have, as cut-out maps do, is cut there, which is noted.
+As in OpenUxAS: both directions of each, and two roads meet where they share a node. A way over nodes that the
+map does not contain, as in extracts, is cut there, and that is noted.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from cratous.spec.files.limits import integer_of
 from cratous.spec.files.text_file import bytes_of
 
 NODES_MOST, LEGS_MOST = 200_000, 200_000
-"""Nodes of roads, and straight legs between two of them, in one map."""
+"""Limits of a map: road nodes, and straight legs between two of them."""
 _ID_MOST = 2**63
 
 Degrees = tuple[float, float]
@@ -26,7 +26,7 @@ Degrees = tuple[float, float]
 
 
 class RoadMap(NamedTuple):
-    """nodes: places of the nodes of roads by id; roads: runs of two or more of these ids."""
+    """nodes: places of the road nodes by id; roads: sequences of two or more of these ids."""
 
     nodes: Mapping[int, Degrees]
     roads: tuple[tuple[int, ...], ...]
@@ -34,12 +34,12 @@ class RoadMap(NamedTuple):
 
 
 def read_map(path: Path) -> RoadMap:
-    """The roads of a map; BadInput with file and line for what is no map, or too large for one."""
+    """The roads of a map; BadInput with file and line for an invalid map, or one that is too large."""
     return map_of(bytes_of(path, expected="a map of OpenStreetMap in XML"), str(path))
 
 
 def map_of(data: bytes | str, where: str) -> RoadMap:
-    """The roads of a map that is read already. where: what it is called in errors."""
+    """The roads of a map's data. where: its name in errors."""
     root = parse(data, where)
     if root.tag != "osm":
         raise BadInput("not a map", where=where, expected="<osm>", got=f"<{root.tag}>")
@@ -72,7 +72,7 @@ def _is_road(way: Any) -> bool:
 
 
 def _refs(way: Any, where: str) -> list[int]:
-    """The nodes of a way; one that is named twice in a row counts once."""
+    """The nodes of a way, without consecutive duplicates."""
     refs: list[int] = []
     for node in way.iterfind("nd"):
         ref = _id(node, "ref", where)
@@ -108,7 +108,7 @@ def _nodes(root: Any, wanted: set[int], where: str) -> dict[int, Degrees]:
 
 
 def _runs(way: list[int], nodes: Mapping[int, Degrees]) -> Iterator[tuple[int, ...]]:
-    """A way without the nodes that are not known, in pieces."""
+    """The pieces of a way between unknown nodes."""
     run: list[int] = []
     for ref in way:
         if ref in nodes:
@@ -132,7 +132,7 @@ def _id(element: Any, name: str, where: str) -> int:
 
 
 def _number(element: Any, name: str) -> float:
-    """A number of degrees; not a number where it is none."""
+    """A number of degrees; NaN for invalid text."""
     text = element.get(name, "")
     try:
         return float(text) if text.isascii() and len(text) < 40 and "_" not in text else math.nan

@@ -1,9 +1,9 @@
-"""OsmPlannerService: ways along the roads of a map for vehicles that drive, and where roads cross a circle.
+"""OsmPlannerService: routes along a map's roads for ground vehicles, and road crossings of a circle.
 
 RoutePlanRequest of a ground vehicle -> RoutePlanResponse; EgressRouteRequest -> EgressRouteResponse;
-RoadPointsRequest -> RoadPointsResponse. Every request is answered, to the service that has asked; a way that
-there is not has the cost -1 and its reason. Ways keep the zones of their region: each leg of a road is held
-against them by proved kernels before it is driven. Its map does not change, so it has no state.
+RoadPointsRequest -> RoadPointsResponse. Every request is answered, to the requesting service; a route that
+does not exist has the cost -1 and the reason. Routes keep the zones of their region: proved kernels check
+each leg. The map does not change, so the service has no state.
 """
 
 from __future__ import annotations
@@ -43,12 +43,12 @@ ROUTES = "uxas.messages.route.RoutePlanRequest"
 EGRESS = "uxas.messages.route.EgressRouteRequest"
 POINTS = "uxas.messages.route.RoadPointsRequest"
 CROSSINGS_MOST = 32
-"""So many places an EgressRouteResponse has at most, by its definition."""
+"""Most places in an EgressRouteResponse, by its definition."""
 RADIUS_MOST_M = 100_000.0
 
 
 class OsmPlannerService:
-    """Ways along roads."""
+    """Routes along roads."""
 
     name = ROADS
     subscribes: tuple[str, ...] = (ROUTES, "GroundPathPlanner", EGRESS, POINTS)
@@ -61,7 +61,7 @@ class OsmPlannerService:
         lacks: str = "",
         files: RoadFiles | None = None,
     ) -> None:
-        """network: of its map; None: it has none, and lacks says why; files: where ways are written to."""
+        """network: of its map; None: no map, with the reason in lacks; files: output files for routes."""
         self._contexts, self._network, self._lacks = contexts, network, lacks
         self._files = files
 
@@ -80,13 +80,15 @@ class OsmPlannerService:
 
     @property
     def _roads(self) -> Network:
-        """The roads; NoPlan if there is no map."""
+        """The roads; NoPlan without a map."""
         if self._network is None:
             raise NoPlan((self._lacks,))
         return self._network
 
     def _egress(self, asked: Envelope) -> list[Any]:
-        """Where roads cross the circle, and where they lead outwards [deg]; a warning why there is nothing."""
+        """The road crossings of the circle, with outward headings [deg]; a warning with the reason if there
+        are none.
+        """
         body, out = asked.body, list[Any]()
         places, headings = list[Any](), list[float]()
         try:
@@ -119,7 +121,7 @@ class OsmPlannerService:
         return found
 
     def _points(self, asked: Envelope) -> list[Any]:
-        """The places along the shortest ways; a warning for each that there is not."""
+        """The points along the shortest routes; a warning for each that does not exist."""
         body, lines, out = asked.body, list[Any](), list[Any]()
         for one in body.RoadPointsRequests:
             try:
@@ -138,7 +140,7 @@ class OsmPlannerService:
         return [*out, back(asked, answer)]
 
     def _routes(self, asked: Envelope) -> list[Any]:
-        """A RoutePlan for each way that is asked for; a warning with the reasons why there are not all."""
+        """A RoutePlan for each requested route; a warning with the reasons if some are missing."""
         body, plans = asked.body, list[Any]()
         try:
             places = self._contexts.for_routes(body.OperatingRegion, body.VehicleID)
@@ -166,7 +168,7 @@ class OsmPlannerService:
         return plan
 
     def _timed(self, search: Callable[[], tuple[Vec2, ...]]) -> tuple[Vec2, ...]:
-        """What a search finds, written down if files are wanted."""
+        """The result of a search, written to files if configured."""
         began_s = time.perf_counter()
         way = search()
         if self._files is not None:
@@ -177,7 +179,7 @@ class OsmPlannerService:
         return self._foot(start, "StartLocation"), self._foot(end, "EndLocation")
 
     def _foot(self, location: Any, item: str) -> Foot:
-        """The road at a place; NoPlan if none is near."""
+        """The road point nearest to a location; NoPlan if none is near."""
         foot = self._roads.foot(self._place(location, item))
         if foot is None:
             at = f"{location.Latitude:.6f}, {location.Longitude:.6f}"
@@ -199,14 +201,16 @@ class OsmPlannerService:
 
 
 class _Driven:
-    """Ways along roads in the zones of one request."""
+    """Routes along roads in the zones of one request."""
 
     def __init__(self, roads: Network, places: RequestPlaces) -> None:
         self._roads, self._places = roads, places
         self._clear: dict[tuple[Vec2, Vec2], bool] = {}
 
     def way(self, start: Foot, end: Foot, path: list[Position]) -> tuple[Vec2, ...]:
-        """From place to place along roads in the map's plane; `path` gets it in the request's. NoPlan if there is none."""
+        """The route in the map's plane; also appended to `path` in the request's frame. NoPlan if there is
+        none.
+        """
         zones = self._places.zones
         points = _way(self._roads, start, end, self._may if zones else None)
         points = _thinned((start.place, *points, end.place))
@@ -240,7 +244,7 @@ def _way(roads: Network, start: Foot, end: Foot, clear: Clear | None = None) -> 
 
 
 def _thinned(points: Sequence[Vec2]) -> tuple[Vec2, ...]:
-    """Without points that are hardly apart from the one before; the ends stay."""
+    """The points without those within SAME_M of the one before; the ends stay."""
     kept = [points[0]]
     for point in points[1:-1]:
         if not in_ring(kept[-1], point, 0.0, SAME_M):

@@ -1,1 +1,1 @@
-"""What the sensors of a vehicle see, and the tracks that are made of it: what its ICAROUS is given for the truth."""
+"""A vehicle's sensors and the tracks made from them: ICAROUS's input in place of the true states."""

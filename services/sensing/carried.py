@@ -1,4 +1,4 @@
-"""The sensors on one vehicle: what they have measured and is under way, and the own state by them."""
+"""The sensors on one vehicle: measurements in transit, and the own state derived from them."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ from cratous.spec.mission.sensing import Sensing
 
 
 class Sensors(NamedTuple):
-    """Sensors of one vehicle. seed: of the mission's variant, beside their own; step_ms: time since the previous step
-    [ms]."""
+    """Sensors of one vehicle. seed: of the mission's variant, in addition to their own; step_ms: time since
+    the previous step [ms].
+    """
 
     own_id: int
     sensing: Sensing
@@ -24,7 +25,7 @@ class Sensors(NamedTuple):
 
 
 class Carried(NamedTuple):
-    """under_way: measurements that have not come yet; own: None before the first step, or without a GPS."""
+    """under_way: measurements that have not arrived yet; own: None before the first step, or without a GPS."""
 
     under_way: tuple[Detection, ...] = ()
     own: Own | None = None
@@ -33,7 +34,7 @@ class Carried(NamedTuple):
 def stepped(
     sensors: Sensors, before: Carried, now_ms: int, aircraft: Mapping[int, Flown]
 ) -> Carried:
-    """After a step of the simulation: what is measured now is under way, and the vehicle has flown on."""
+    """The state after a simulation step: new measurements are in transit, and the own state has moved on."""
     sensing, air, own = sensors.sensing, aircraft[sensors.own_id], before.own
     if sensing.gps is not None and own is None:
         own = own_state.first(sensing.gps, now_ms, air)
@@ -45,7 +46,7 @@ def stepped(
 
 
 def came(own_id: int, before: Carried, now_ms: int) -> tuple[Carried, tuple[Detection, ...]]:
-    """After all that has come by now: fixes correct the own state; what there is of others."""
+    """The state after the measurements due by now: fixes correct the own state. Returns also those of others."""
     there, left = list[Detection](), list[Detection]()
     for one in before.under_way:
         (there if lasted(one.due_ms, now_ms, 0) else left).append(one)

@@ -1,8 +1,8 @@
-"""A Kalman filter for an aircraft that flies straight, at a speed that drifts a little: places and velocities.
+"""A Kalman filter for position and velocity of an aircraft in straight flight with slowly drifting velocity.
 
-Errors of a sensor are alike in north and east, and independent, so the six-dimensional filter is three of two dimensions,
-place and velocity along an axis, of which both horizontal ones have the same covariance. Its entries are those of a
-2 by 2 matrix: of the place [m2], of both, and of the velocity [m2/s2].
+A sensor's errors are the same in north and east, and independent, so the six-dimensional filter separates
+into three of two dimensions, position and velocity along an axis; both horizontal ones have the same
+covariance. Its entries are those of a 2 by 2 matrix: position [m2], cross term, and velocity [m2/s2].
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from cratous.spec.mission.sensing import Sensor
 
 
 class Flown(NamedTuple):
-    """The true place and velocity of an aircraft."""
+    """The true position and velocity of an aircraft."""
 
     position: Position
     velocity: Velocity
 
 
 class Cov(NamedTuple):
-    """A covariance of place and velocity along an axis."""
+    """Covariance of position and velocity along an axis."""
 
     place: float
     both: float
@@ -31,7 +31,7 @@ class Cov(NamedTuple):
 
 
 class Measured(NamedTuple):
-    """A place and a velocity that were measured at an instant [ms], with the covariances of their errors."""
+    """A position and a velocity measured at an instant [ms], with the covariances of their errors."""
 
     at_ms: int
     position: Position
@@ -41,8 +41,9 @@ class Measured(NamedTuple):
 
 
 class Estimate(NamedTuple):
-    """Where an aircraft is taken to be at an instant [ms], and how well that is known: along north and along east,
-    and in altitude."""
+    """Estimated state of an aircraft at an instant [ms], with covariances along north and east, and in
+    altitude.
+    """
 
     at_ms: int
     position: Position
@@ -52,19 +53,19 @@ class Estimate(NamedTuple):
 
 
 def measured(sensor: Sensor, at_ms: int, position: Position, velocity: Velocity) -> Measured:
-    """What a sensor has measured."""
+    """A sensor's measurement with its error covariances."""
     speed = sensor.velocity_m_s**2
     wide, high = Cov(sensor.horizontal_m**2, 0.0, speed), Cov(sensor.vertical_m**2, 0.0, speed)
     return Measured(at_ms, position, velocity, wide, high)
 
 
 def begun(first: Measured) -> Estimate:
-    """What is known after one measurement."""
+    """The estimate after a first measurement."""
     return Estimate(*first)
 
 
 def later(known: Estimate, at_ms: int, manoeuvre_m_s2: float) -> Estimate:
-    """The same at an instant that is not before: flown straight on, less well known."""
+    """The estimate predicted to a later instant: straight flight, with grown covariance."""
     dt_s = (at_ms - known.at_ms) / 1000
     p, v = known.position, known.velocity
     place = Position(
@@ -75,7 +76,9 @@ def later(known: Estimate, at_ms: int, manoeuvre_m_s2: float) -> Estimate:
 
 
 def _grown(cov: Cov, dt: float, manoeuvre: float) -> Cov:
-    """White noise of the acceleration: after one second the velocity has changed by `manoeuvre`."""
+    """Covariance growth by white acceleration noise: after one second the velocity has changed by
+    `manoeuvre`.
+    """
     q = manoeuvre**2
     return Cov(
         cov.place + 2 * dt * cov.both + dt**2 * cov.velocity + q * dt**3 / 3,
@@ -85,7 +88,7 @@ def _grown(cov: Cov, dt: float, manoeuvre: float) -> Cov:
 
 
 def updated(known: Estimate, seen: Measured) -> Estimate:
-    """The estimate after a measurement of its instant."""
+    """The estimate after a measurement of the same instant."""
     wide, to_place, to_velocity = _corrected(known.wide, seen.wide)
     high, up_place, up_velocity = _corrected(known.high, seen.high)
     p, v, q, w = known.position, known.velocity, seen.position, seen.velocity
@@ -118,7 +121,9 @@ def _times(row: Row, off: Row) -> float:
 
 
 def _corrected(p: Cov, r: Cov) -> tuple[Cov, Row, Row]:
-    """The covariance after a measurement whose errors in place and velocity are independent, and the rows of the gain."""
+    """The covariance after a measurement with independent position and velocity errors, and the rows of the
+    gain.
+    """
     a, b, c = p
     det = (a + r.place) * (c + r.velocity) - b * b
     place, velocity = a * (c + r.velocity) - b * b, c * (a + r.place) - b * b
@@ -129,12 +134,12 @@ def _corrected(p: Cov, r: Cov) -> tuple[Cov, Row, Row]:
 
 
 def folded(known: Estimate, seen: Iterable[Measured], manoeuvre_m_s2: float) -> Estimate:
-    """The estimate after measurements, in the order of their times."""
+    """The estimate after measurements, in order of time."""
     for one in seen:
         known = updated(later(known, one.at_ms, manoeuvre_m_s2), one)
     return known
 
 
 def deviations(cov: Cov) -> tuple[float, float]:
-    """The standard deviations of place [m] and velocity [m/s]."""
+    """Standard deviations of position [m] and velocity [m/s]."""
     return math.sqrt(cov.place), math.sqrt(cov.velocity)

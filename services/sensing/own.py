@@ -1,7 +1,7 @@
-"""The own state: fixes of GPS, carried on by the inertial unit, which knows how far the vehicle has flown since.
+"""The own state: GPS fixes, propagated by the inertial unit, which measures the motion since.
 
-The unit is taken to be exact over a step but for a drift, which is the noise of the filter. Before the first fix the vehicle
-knows the state in which it starts as well as a fix would tell it.
+The unit is assumed exact over a step except for a drift, which is the noise of the filter. Before the first
+fix the vehicle knows its initial state with the accuracy of a fix.
 """
 
 from __future__ import annotations
@@ -21,27 +21,28 @@ from cratous.spec.mission import Position, Velocity
 from cratous.spec.mission.sensing import Sensor
 
 DRIFT_M_S2 = 0.05
-"""By how much the velocity of the inertial unit may drift in a second."""
+"""Drift of the inertial unit's velocity per second [m/s2]."""
 
 
 class Own(NamedTuple):
-    """The vehicle's knowledge of itself. estimate: of now; flown: its recent path by the inertial unit, oldest first: (time [ms],
-    place, velocity)."""
+    """The vehicle's knowledge of itself. estimate: for now; flown: its recent path by the inertial unit,
+    oldest first: (time [ms], position, velocity).
+    """
 
     estimate: Estimate
     flown: tuple[tuple[int, Position, Velocity], ...]
 
 
 def first(sensor: Sensor, now_ms: int, air: Flown) -> Own:
-    """The estimate of the own state at the start, at now_ms [ms]."""
+    """The initial estimate of the own state at now_ms [ms]."""
     start = measured(sensor, now_ms, air.position, air.velocity)
     return Own(Estimate(*start), ((now_ms, air.position, air.velocity),))
 
 
 def moved(before: Own, now_ms: int, air: Flown, since_ms: int) -> Own:
-    """After the vehicle has flown on: the inertial unit tells by how much.
+    """The own state after further flight, as measured by the inertial unit.
 
-    since_ms: when the oldest fix was made that has not come yet; what was flown before is let go of.
+    since_ms: time of the oldest fix still in transit; the path before it is dropped.
     """
     _, place, velocity = before.flown[-1]
     known = before.estimate
@@ -65,7 +66,9 @@ def moved(before: Own, now_ms: int, air: Flown, since_ms: int) -> Own:
 
 
 def fixed(before: Own, fix: Measured) -> Own:
-    """After a fix has come, which was made at a step since which the way is known: it is carried on by that way."""
+    """The own state after a fix, propagated from its time to now along the recorded path; ignored if that is
+    missing.
+    """
     then = {one[0]: one for one in before.flown}.get(fix.at_ms)
     if then is None:
         return before

@@ -1,7 +1,7 @@
-"""What the sensors of a vehicle measure: the truth with errors, late, and not always.
+"""Measurements of a vehicle's sensors: the truth with errors, latency and drop-outs.
 
-Each error is drawn from what it belongs to alone (the seeds, the sensor, who carries it, whom it sees, and when), so that
-the same mission gives the same errors, and another aircraft changes nothing of those of the others.
+Each error is drawn from its own context only (seeds, sensor, carrier, target and time), so that the same
+mission gives the same errors, and another aircraft does not change those of the others.
 """
 
 from __future__ import annotations
@@ -18,8 +18,9 @@ from cratous.spec.mission.sensing import Sensing, Sensor, SensorKind
 
 
 class Detection(NamedTuple):
-    """A measurement, and when it comes [ms]. sensor: which of the mission's; name: the id that it tells, 0 for none;
-    source: of whom it is, which the vehicle does not know."""
+    """A measurement, and when it arrives [ms]. sensor: index in the mission; name: the id that it reports, 0
+    for none; source: its true target, unknown to the vehicle.
+    """
 
     due_ms: int
     sensor: int
@@ -36,7 +37,7 @@ def detections(
     step_ms: int,
     aircraft: Mapping[int, Flown],
 ) -> tuple[Detection, ...]:
-    """What the sensors of a vehicle measure at a step of the simulation; seed: of the mission's variant."""
+    """The measurements of a vehicle's sensors at a simulation step. seed: of the mission's variant."""
     found = []
     for k, sensor in enumerate(sensing.sensors):
         # the first step in each of its periods

@@ -1,4 +1,4 @@
-"""The sensors of one vehicle and its tracker: what its ICAROUS is given for its own state and for traffic."""
+"""The sensors of one vehicle and its tracker: ICAROUS's input for its own state and for traffic."""
 
 from __future__ import annotations
 
@@ -22,8 +22,9 @@ from cratous.spec.mission import Mission, SensedDaa
 
 
 class Carrier(NamedTuple):
-    """A vehicle with sensors, constant over the flight. daa: parameters with the sensors; seed: of the mission's
-    variant; cooperating: the vehicles with an ICAROUS instance, which ADS-B reports."""
+    """A vehicle with sensors and its fixed configuration. daa: parameters with the sensors; seed: of the
+    mission's variant; cooperating: vehicles with an ICAROUS instance, as reported by ADS-B.
+    """
 
     own_id: int
     daa: SensedDaa
@@ -33,7 +34,7 @@ class Carrier(NamedTuple):
 
 
 class Surveillance(NamedTuple):
-    """under_way: measurements that have not come yet; own: None before the first step, or without a GPS."""
+    """under_way: measurements that have not arrived yet; own: None before the first step, or without a GPS."""
 
     under_way: tuple[Detection, ...] = ()
     own: Own | None = None
@@ -41,8 +42,9 @@ class Surveillance(NamedTuple):
 
 
 class Shown(NamedTuple):
-    """An aircraft as the vehicle's ICAROUS is given it. track: its number there; source: whom the last measurement was
-    of; known: where it is taken to be; spread: how far off that may be."""
+    """An aircraft as shown to the vehicle's ICAROUS. track: its track number; source: true target of the last
+    measurement; known: estimated state; spread: its uncertainty.
+    """
 
     track: int
     source: int
@@ -62,7 +64,7 @@ def carriers(mission: Mission, instances: Iterable[int]) -> dict[int, Carrier]:
 def stepped(
     carrier: Carrier, before: Surveillance, now_ms: int, aircraft: Mapping[int, Flown]
 ) -> Surveillance:
-    """After a step of the simulation: what is measured now is under way, and the vehicle has flown on."""
+    """The state after a simulation step: new measurements are in transit, and the own state has moved on."""
     sensors = Sensors(carrier.own_id, carrier.daa.sensing, carrier.seed, carrier.step_ms)
     after = carried.stepped(sensors, Carried(before.under_way, before.own), now_ms, aircraft)
     return Surveillance(*after, before.tracks)
@@ -78,14 +80,16 @@ def arrived(carrier: Carrier, before: Surveillance, now_ms: int) -> Surveillance
 def beat(
     carrier: Carrier, before: Surveillance, true: Sensed, air: Flown
 ) -> tuple[Surveillance, tuple[Shown, ...], Sensed]:
-    """A heartbeat: after what has come by now, whom ICAROUS is shown, and what it is given for the true states."""
+    """Process a heartbeat. Returns the state, the aircraft shown to ICAROUS, and its input in place of the
+    true states.
+    """
     after = arrived(carrier, before, true.now_ms)
     seen = shown(carrier, after, true.now_ms, air)
     return after, seen, given(carrier, seen, true)
 
 
 def shown(carrier: Carrier, now: Surveillance, now_ms: int, air: Flown) -> tuple[Shown, ...]:
-    """The own state first, then the tracks that count. air: the true own state, which is given where there is no GPS."""
+    """The own state first, then the confirmed tracks. air: the true own state, used without a GPS."""
     known = now.own.estimate if now.own is not None else exactly(now_ms, air)
     found = [_shown(carrier, carrier.own_id, carrier.own_id, known)]
     for track in now.tracks.tracks:
@@ -96,7 +100,7 @@ def shown(carrier: Carrier, now: Surveillance, now_ms: int, air: Flown) -> tuple
 
 
 def exactly(now_ms: int, air: Flown) -> Estimate:
-    """An estimate that is exact."""
+    """An estimate without errors."""
     nothing = Cov(0.0, 0.0, 0.0)
     return Estimate(now_ms, air.position, air.velocity, nothing, nothing)
 
@@ -109,12 +113,13 @@ def _shown(carrier: Carrier, number: int, source: int, known: Estimate) -> Shown
 
 
 def given(carrier: Carrier, seen: tuple[Shown, ...], true: Sensed) -> Sensed:
-    """What ICAROUS is given for the true states: of what is seen, its own first. What the airframe can do, and how the
-    gate stands, the vehicle knows."""
+    """ICAROUS's input in place of the true states. seen: the aircraft shown, its own first. Ability and gate
+    are known exactly.
+    """
     own, low, high = seen[0], true.ability.min_speed_m_s, true.ability.max_speed_m_s
     v, off = own.known.velocity, own.spread.wide_m_s
     seen_m_s = math.hypot(v.north_m_s, v.east_m_s)
-    # it flies no slower and no faster than it can, unless wind has just changed that
+    # it flies within its speed limits, unless wind has just changed them
     speed_m_s = min(max(min(max(seen_m_s, low), high), seen_m_s - off), seen_m_s + off)
     course = math.atan2(v.east_m_s, v.north_m_s)
     motion = Motion(own.known.position, course, speed_m_s, -v.down_m_s)
@@ -133,7 +138,7 @@ def given(carrier: Carrier, seen: tuple[Shown, ...], true: Sensed) -> Sensed:
 
 
 def _both(own: Spread, other: Spread) -> Spread:
-    """How far off the one may be as seen from where the other is taken to be."""
+    """Uncertainty of the other aircraft relative to the own estimate."""
     return Spread(
         own.wide_m + other.wide_m,
         own.wide_m_s + other.wide_m_s,
@@ -144,7 +149,7 @@ def _both(own: Spread, other: Spread) -> Spread:
 
 
 def sensed_state(carrier: Carrier, one: Shown) -> Any:
-    """An aircraft as a vehicle's ICAROUS is given it, as a `SensedState`."""
+    """An aircraft as shown to a vehicle's ICAROUS, as a `SensedState`."""
     at_ms, p, v = one.known[:3]
     wide, wide_rate, high, high_rate, _ = one.spread
     return lmcp.new(

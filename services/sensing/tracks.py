@@ -1,9 +1,10 @@
-"""Tracks: which measurement is of whom, and where everybody is taken to be.
+"""Tracks: association of measurements with aircraft, and the estimated state of each.
 
-A measurement with an id is of the track of that id; one without, of the nearest track in whose gate it is, one of each
-scan. A track counts once enough of its sensor's updates have come, and ends when none has come for a while. Measurements
-may come late and in another order: each track keeps those of the last while, and takes them in the order in which
-they were made. One of its own that is outside of the gate is of an aircraft that manoeuvres: the track begins anew.
+A measurement with an id belongs to the track of that id; one without to the nearest track whose gate contains
+it, one per scan. A track is confirmed after enough updates of its sensor, and ends after some time without
+any. Measurements may arrive late and out of order: each track keeps those of the recent past, and processes
+them in order of their times. A measurement of its own outside the gate means a manoeuvre: the track is
+restarted.
 """
 
 from __future__ import annotations
@@ -22,9 +23,11 @@ from cratous.spec.mission.sensing import Sensing
 
 
 class Track(NamedTuple):
-    """One aircraft. number: its id, or -1, -2, ... where no sensor tells one; base: what is known without `recent`, the
-    measurements of the last while in the order of their times; hits: when those came that make it count [ms]; shown: it
-    counts; source: of whom the last measurement is, which the vehicle does not know."""
+    """One aircraft. number: its id, or -1, -2, ... if no sensor reports one; base: estimate without `recent`,
+    the measurements of the recent past in order of time; hits: times of those that count for confirmation
+    [ms]; shown: whether it is confirmed; source: true target of the last measurement, unknown to the
+    vehicle.
+    """
 
     number: int
     base: Estimate
@@ -43,13 +46,13 @@ class Tracks(NamedTuple):
 
 
 def estimate(track: Track, at_ms: int, manoeuvre_m_s2: float) -> Estimate:
-    """Where a track is at an instant that is not before its base, by the measurements of up to then."""
+    """The estimate of a track at an instant not before its base, from the measurements up to then."""
     seen = [one for one in track.recent if lasted(one.at_ms, at_ms, 0)]
     return later(folded(track.base, seen, manoeuvre_m_s2), at_ms, manoeuvre_m_s2)
 
 
 def tracked(before: Tracks, came: Sequence[Detection], sensing: Sensing, now_ms: int) -> Tracks:
-    """The tracks after measurements have come, those that have ended left out."""
+    """The tracks after new measurements, without those that have ended."""
     after = before
     scans = sorted(came, key=lambda one: (one.seen.at_ms, one.sensor, one.name, one.seen))
     for _, scan in groupby(scans, key=lambda one: (one.seen.at_ms, one.sensor)):
@@ -59,7 +62,7 @@ def tracked(before: Tracks, came: Sequence[Detection], sensing: Sensing, now_ms:
 
 
 def _scanned(before: Tracks, scan: Sequence[Detection], sensing: Sensing, now_ms: int) -> Tracks:
-    """All measurements of one sensor at one instant: each track gets one at most."""
+    """Process all measurements of one sensor at one instant: each track gets at most one."""
     tracks = {track.number: track for track in before.tracks}
     unnamed = before.unnamed
     left, free = list[Detection](), set(tracks)
@@ -84,14 +87,16 @@ def _scanned(before: Tracks, scan: Sequence[Detection], sensing: Sensing, now_ms
 def _nearest(
     left: Sequence[Detection], tracks: Sequence[Track], sensing: Sensing
 ) -> list[tuple[int, Detection]]:
-    """Pairs of a track and a measurement in its gate, the nearest first, each of them once. left: of one instant."""
+    """Pairs of a track and a measurement in its gate, nearest first, each used once. left: measurements of
+    one instant.
+    """
     if not left:
         return []
     pairs, at_ms = [], left[0].seen.at_ms
     for track in tracks:
         known = estimate(track, max(at_ms, track.base.at_ms), sensing.manoeuvre_m_s2)
         for k, one in enumerate(left):
-            # a track of an id is not of one that tells another
+            # a track with an id does not match another id
             if one.name and track.number in range(1, 2**31):
                 continue
             if _fits(known, one.seen, sensing.sigmas):
@@ -105,7 +110,7 @@ def _nearest(
 
 
 def _fits(known: Estimate, seen: Measured, sigmas: float) -> bool:
-    """The place that was measured is in the gate."""
+    """Whether the measured position is in the gate."""
     p, q = known.position, seen.position
     off = Vec2(q.north_m - p.north_m, q.east_m - p.east_m)
     wide, high = known.wide.place + seen.wide.place, known.high.place + seen.high.place
@@ -113,7 +118,7 @@ def _fits(known: Estimate, seen: Measured, sigmas: float) -> bool:
 
 
 def _steady(known: Estimate, seen: Measured, sigmas: float) -> bool:
-    """The velocity that was measured is in the gate."""
+    """Whether the measured velocity is in the gate."""
     v, w = known.velocity, seen.velocity
     off = Vec2(w.north_m_s - v.north_m_s, w.east_m_s - v.east_m_s)
     wide = known.wide.velocity + seen.wide.velocity
@@ -138,7 +143,7 @@ def _with(track: Track, one: Detection, sensing: Sensing, now_ms: int) -> Track:
         hits=hits, shown=track.shown or counts, last_ms=now_ms, source=one.source
     )
     if first or not lasted(track.base.at_ms, seen.at_ms, 0):
-        return after  # what came later than it may says nothing any more
+        return after  # too late to be of use
     known = estimate(track, seen.at_ms, sensing.manoeuvre_m_s2)
     if not (_fits(known, seen, sensing.sigmas) and _steady(known, seen, sensing.sigmas)):
         newer = tuple(m for m in track.recent if not lasted(m.at_ms, seen.at_ms, 0))
@@ -147,7 +152,7 @@ def _with(track: Track, one: Detection, sensing: Sensing, now_ms: int) -> Track:
 
 
 def _settled(track: Track, sensing: Sensing, now_ms: int) -> Track:
-    """The same, with those measurements in the base before which none can come any more."""
+    """The track with measurements merged into the base before which none can arrive any more."""
     latest_ms = max(one.latency_ms for one in sensing.of_traffic)
     old = [m for m in track.recent if not lasted(now_ms - latest_ms, m.at_ms, 0)]
     base = folded(track.base, old, sensing.manoeuvre_m_s2)

@@ -1,6 +1,7 @@
-"""The simulator: aircraft as AMASE flies them, on its earth, in fixed steps, from scenario files.
+"""The simulator: aircraft with AMASE's flight behaviour, on its earth model, in fixed steps, from scenario
+files.
 
-`earth` measures, `performance` knows the airframes, `motion` moves, `guidance` steers, `aircraft` puts
-one vehicle together, `world` plays a scenario, `server` opens it to others. Every step is a pure
+`earth` computes distances, `performance` models airframes, `motion` moves, `guidance` steers, `aircraft`
+combines these for one vehicle, `world` plays a scenario, `server` opens it to clients. Every step is a pure
 function over plain values: the same scenario gives the same flight on every run.
 """

@@ -1,7 +1,8 @@
-"""Altitudes above ground of what arrives, as altitudes above mean sea level: the terrain's height is added.
+"""Conversion of received altitudes above ground to altitudes above mean sea level, by the terrain's height.
 
-Each counts at its own place: a waypoint's there, a loiter's at its centre, a flight director's below the vehicle when it is
-told so, or at the waypoint that it belongs to. Between two places nothing follows the ground.
+The height at the object's own place counts: a waypoint's, a loiter's centre, for a flight director action the
+vehicle's position on receipt or the waypoint that it belongs to. Between two places the ground is not
+followed.
 """
 
 from __future__ import annotations
@@ -13,12 +14,14 @@ if TYPE_CHECKING:
     from cratous.services.simulator.terrain import Terrain
 
 Below = tuple[float, float]
-"""Latitude and longitude [rad] of the ground that counts where a message names no place of its own."""
+"""Latitude and longitude [rad] of the ground for a message without a place of its own."""
 PLACES = ("Location", "Starepoint")
 
 
 def above_sea(body: Any, terrain: Terrain, below: Below) -> Any:
-    """A message with all its altitudes above mean sea level; itself where they are. Raises BadInput for a corrupt tile."""
+    """A message with all its altitudes above mean sea level; the same object if they are already. Raises
+    BadInput for a corrupt tile.
+    """
     own = _own_place(body)
     below = below if own is None else own
     changed: dict[str, Any] = {}
@@ -44,7 +47,7 @@ def _own_place(body: Any) -> Below | None:
 
 
 def _is_above_ground(body: Any) -> bool:
-    """Whether an object has an altitude of its own above ground; 0 of a flight director is none."""
+    """Whether an object has an altitude above ground of its own; 0 in a flight director action means none."""
     kind = getattr(body, "AltitudeType", None)
     if kind is None or kind.name != "AGL" or not isfinite(body.Altitude):
         return False

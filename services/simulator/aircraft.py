@@ -1,4 +1,4 @@
-"""One aircraft of the simulator: motion and guidance in one value, and its messages."""
+"""One simulated aircraft: motion and guidance as a value, and its messages."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ from cratous.services.simulator.performance import Airframe
 from cratous.spec.errors import BadInput
 
 LEAST_RADIUS_M = 10.0
-"""Of a circle that it flies of its own, at least."""
+"""Smallest radius of a circle that it chooses itself [m]."""
 
 
 class Aircraft(NamedTuple):
-    """id, airframe; motion, the greatest bank that holds [rad], guidance; shown: command and waypoint
-    of the state that was told last, first: the state it began with."""
+    """id, airframe; motion, greatest bank in force [rad], guidance; shown_command, shown_waypoint: in the
+    last published state; first: its initial state.
+    """
 
     id: int
     airframe: Airframe
@@ -33,7 +34,7 @@ class Aircraft(NamedTuple):
 
 
 def aircraft_of(body: Any, airframe: Airframe, before: Aircraft | None, where: str) -> Aircraft:
-    """An aircraft as an AirVehicleState puts it there, with what it was doing before."""
+    """An aircraft placed by an AirVehicleState; it keeps its previous guidance."""
     place = body.Location
     numbers = (place.Latitude, place.Longitude, place.Altitude, body.Heading, body.Pitch,
                body.Roll, body.u, body.Airspeed, body.EnergyAvailable)  # fmt: skip
@@ -80,7 +81,7 @@ def aircraft_of(body: Any, airframe: Airframe, before: Aircraft | None, where: s
 
 
 def step(a: Aircraft, wind_m_s: tuple[float, float], ground_m: float, dt_s: float) -> Aircraft:
-    """The aircraft a step later."""
+    """The aircraft after a step."""
     motion, bank = move(a.motion, a.guidance.command, a.airframe, wind_m_s, ground_m, dt_s)
     held = guide.guide(a.guidance, motion, bank, dt_s)
     number, airframe, _, _, _, first, command, waypoint = a
@@ -88,20 +89,22 @@ def step(a: Aircraft, wind_m_s: tuple[float, float], ground_m: float, dt_s: floa
 
 
 def receive(a: Aircraft, body: Any, told: Mapping[int, int] = guide.NOTHING) -> Aircraft:
-    """The aircraft after a MissionCommand, with what its waypoints are told as, or a VehicleActionCommand."""
+    """The aircraft after a MissionCommand, with the reported numbers of its waypoints, or a
+    VehicleActionCommand.
+    """
     if type(body).__name__ == "MissionCommand":
         return a._replace(guidance=guide.mission(a.guidance, body, told))
     return a._replace(guidance=guide.command(a.guidance, body))
 
 
 def circle_m(a: Aircraft, speed_m_s: float) -> float:
-    """A radius that it flies round well at an airspeed: twice that of its tightest turn."""
+    """A comfortable circle radius at an airspeed [m]: twice that of the tightest turn."""
     speed = a.airframe.within(speed_m_s)
     return max(LEAST_RADIUS_M, 2 * speed * speed / (GRAVITY_M_S2 * tan(a.max_bank_rad)))
 
 
 class Shown(NamedTuple):
-    """What a state says of guidance: mode, command, waypoint and tasks."""
+    """Guidance in a published state: mode, command, waypoint and tasks."""
 
     mode: str
     command: int
@@ -110,7 +113,7 @@ class Shown(NamedTuple):
 
 
 def shown(a: Aircraft) -> Shown:
-    """What the aircraft's next state says; command and waypoint stay where its mode has none."""
+    """Guidance in the next state; command and waypoint are kept where the mode has none."""
     g = a.guidance
     mode, waypoint, number = g.mode, a.shown_waypoint, a.shown_command
     tasks: tuple[int, ...] = ()
@@ -140,7 +143,7 @@ def state(
     m, what = a.motion, shown(a)
     speed, course = ground_motion(a, wind_m_s)
     rates = body_rates(m)
-    if not a.airframe.compatible:  # AMASE tells them in rad/s, where the message has deg/s
+    if not a.airframe.compatible:  # AMASE publishes rad/s although the message has deg/s
         rates = degrees(rates[0]), degrees(rates[1]), degrees(rates[2])
     wind: dict[str, float] = {}
     if not a.airframe.compatible:

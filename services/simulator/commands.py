@@ -1,4 +1,4 @@
-"""What of a message cannot be flown: parts that are null, places and numbers that are none."""
+"""Validation of commands: null parts, invalid places and numbers."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ NUMBERS = {
 
 
 def present(body: Any, where: str) -> None:
-    """BadInput for null in a list, in the object or its parts; elsewhere the codec refuses it."""
+    """BadInput for null in a list of the object or its parts; elsewhere the codec rejects it."""
     kind = type(body).__name__
     for name in LISTS:
         for k, part in enumerate(getattr(body, name, ())):
@@ -35,7 +35,9 @@ def present(body: Any, where: str) -> None:
 
 
 def check_command(body: Any, where: str, *, flies: bool = True) -> None:
-    """BadInput for a MissionCommand or VehicleActionCommand that cannot be flown; who does not fly has no circles."""
+    """BadInput for a MissionCommand or VehicleActionCommand that cannot be executed; loiter circles are
+    checked only for vehicles that fly.
+    """
     name = f"{type(body).__name__} {body.CommandID}"
     waypoints = list(getattr(body, "WaypointList", ()))
     actions = [*getattr(body, "VehicleActionList", ())]
@@ -67,7 +69,7 @@ def _finite(numbers: tuple[float, ...], where: str, item: str) -> None:
 
 
 def check_place(place: Any, where: str, item: str) -> None:
-    """BadInput for a place that is none."""
+    """BadInput for an invalid place."""
     numbers = (place.Latitude, place.Longitude, place.Altitude)
     if not all(map(isfinite, numbers)) or abs(place.Latitude) > 90:
         raise BadInput(

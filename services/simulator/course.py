@@ -1,6 +1,7 @@
-"""Guidance of what drives or sails: along waypoints, to a stand, or on the course that it is given.
+"""Guidance of ground and surface vehicles: along waypoints, to a stop, or on a given course.
 
-`steer` follows the motion in each step; `mission` and `command` take what arrives. All are pure: Course in, Course out.
+`steer` follows the motion in each step; `mission` and `command` process what is received. All are pure:
+Course in, Course out.
 """
 
 from __future__ import annotations
@@ -29,13 +30,15 @@ from cratous.services.simulator.guidance import (
 from cratous.services.simulator.motion import Motion
 
 NEAR_M = 0.2
-"""So near a place it is there."""
+"""Within this distance a place counts as reached [m]."""
 LOOKED_MOST = 500
-"""So many waypoints ahead are looked at, at most, for where it has to brake."""
+"""Most waypoints examined ahead for braking."""
 
 
 class Stand(NamedTuple):
-    """Where it stands [rad], for how long [s], 0: for ever; since when it does [s], -1: it is on its way there."""
+    """A stop: its place [rad], how long it lasts [s], 0: forever; how long it has lasted [s], -1: not there
+    yet.
+    """
 
     place: Point
     duration_s: float
@@ -43,11 +46,13 @@ class Stand(NamedTuple):
 
 
 class Course(NamedTuple):
-    """mode; route: its waypoints by number; route_id, stand_id, directed_id: of the commands that they came with;
-    start, to: of the leg that is driven; limits: how far beyond `to` it may be how fast [m, m/s]; turn_m: how far
-    before it the turn begins; stands: that wait, the first is the one to come or had; of_waypoint: they belong to `to`;
-    held_m_s: the speed that it is told instead of its waypoints'; heading [rad]: of a course given; fired: actions of
-    payloads that are set off; done: those of `to` have been."""
+    """mode; route: its waypoints by number; route_id, stand_id, directed_id: ids of the commands for them;
+    start, to: of the present leg; limits: distances beyond `to` with the speed limits there [m, m/s];
+    turn_m: distance before `to` at which the turn begins; stands: pending stops, the present or next one
+    first; of_waypoint: whether they belong to `to`; held_m_s: speed that overrides the waypoints';
+    heading_rad: of a given course; fired: payload actions to execute; done: those of `to` have been
+    executed.
+    """
 
     mode: str = WAYPOINT
     route: dict[int, Waypoint] = {}  # noqa: RUF012 - a value, never written to
@@ -67,16 +72,18 @@ class Course(NamedTuple):
 
 
 def place(w: Waypoint) -> Point:
-    """Where a waypoint is."""
+    """Position of a waypoint."""
     return w.lat_rad, w.lon_rad
 
 
 def mission(
     c: Course, body: Any, m: Motion, chassis: Chassis, told: Mapping[int, int] = NOTHING
 ) -> Course:
-    """Drive a MissionCommand from its first waypoint on, as it is; without such a waypoint on as before.
+    """Execute a MissionCommand unchanged from its first waypoint on; without such a waypoint continue as
+    before.
 
-    told: what numbers of waypoints are told as."""
+    told: reported numbers of waypoints.
+    """
     route: dict[int, Waypoint] = {}
     for w in body.WaypointList:
         route.setdefault(w.Number, waypoint_of(w, told))
@@ -88,7 +95,7 @@ def mission(
 
 
 def command(c: Course, body: Any, m: Motion, chassis: Chassis) -> Course:
-    """Do what a VehicleActionCommand asks for; actions of payloads are left in `fired`."""
+    """Execute a VehicleActionCommand; payload actions are collected in `fired`."""
     c, here = c._replace(directed_id=None), (m.lat_rad, m.lon_rad)
     stood = c.stands
     c = c._replace(stands=())
@@ -108,7 +115,7 @@ def command(c: Course, body: Any, m: Motion, chassis: Chassis) -> Course:
             c = _action(c, one)
             if kind == "LoiterAction":
                 c = c._replace(mode=LOITER, of_waypoint=False, start=here, stand_id=body.CommandID)
-    if not c.stands:  # it is told nothing of where it stands
+    if not c.stands:  # it is commanded nothing about its stop
         c = c._replace(stands=stood)
     return c
 
@@ -124,7 +131,7 @@ def _action(c: Course, body: Any) -> Course:
 
 
 def following(c: Course, w: Waypoint) -> Waypoint | None:
-    """The waypoint after one; None where it is the last."""
+    """The waypoint after one; None if it is the last."""
     number = next(
         (a.WaypointNumber for a in w.actions if type(a).__name__ == "GoToWaypointAction"
          and a.WaypointNumber in c.route),
@@ -135,7 +142,7 @@ def following(c: Course, w: Waypoint) -> Waypoint | None:
 
 
 def _towards(c: Course, start: Point, to: Waypoint, chassis: Chassis) -> Course:
-    """On to a waypoint from a place."""
+    """Continue towards a waypoint from a place."""
     limits, turn_m = list[Point](), 0.0
     far = chassis.max_speed_m_s**2 / (2 * chassis.along_m_s2)
     before, at, along = start, to, 0.0
@@ -161,7 +168,7 @@ def _towards(c: Course, start: Point, to: Waypoint, chassis: Chassis) -> Course:
 
 
 def steer(c: Course, m: Motion, chassis: Chassis, dt_s: float) -> tuple[Course, float, float]:
-    """Guidance after a step of motion; course [rad] and speed [m/s] that it asks for."""
+    """Guidance after a step of motion; commanded course [rad] and speed [m/s]."""
     if c.mode == DIRECTED:
         speed = chassis.within(c.held_m_s or 0.0)
         return c, c.heading_rad, min(speed, bends(chassis, m, c.heading_rad))
@@ -176,7 +183,7 @@ def steer(c: Course, m: Motion, chassis: Chassis, dt_s: float) -> tuple[Course, 
         c = _reached(c, was, m)
         if c.mode == LOITER:
             return c, m.heading_rad, 0.0
-        if then is None:  # it stands at its last waypoint
+        if then is None:  # it stops at its last waypoint
             return c, m.heading_rad, 0.0
         c = _towards(c, place(was), then, chassis)
         leg = leg_at(c.start, place(then), m)
@@ -184,7 +191,7 @@ def steer(c: Course, m: Motion, chassis: Chassis, dt_s: float) -> tuple[Course, 
 
 
 def _reached(c: Course, to: Waypoint, m: Motion) -> Course:
-    """The actions of the waypoint that was reached are set off, once."""
+    """Execute the actions of the reached waypoint, once."""
     if c.done:
         return c
     c = c._replace(done=True, stands=())
@@ -196,7 +203,7 @@ def _reached(c: Course, to: Waypoint, m: Motion) -> Course:
 
 
 def _speed(c: Course, leg: Leg, m: Motion, chassis: Chassis) -> float:
-    """How fast it goes along its leg: as asked, if it can then brake for what comes."""
+    """Speed along the leg [m/s]: as commanded, as far as it can still brake for what is ahead."""
     asked = c.held_m_s
     if asked is None:
         asked = c.to.speed_m_s if c.to is not None else 0.0
@@ -207,7 +214,9 @@ def _speed(c: Course, leg: Leg, m: Motion, chassis: Chassis) -> float:
 
 
 def _stand(c: Course, m: Motion, chassis: Chassis, dt_s: float) -> tuple[Course, float, float]:
-    """To the place of the stand, and there until its time is over; then on, if it belongs to a waypoint."""
+    """Drive to the place of the stop and stay there for its duration; then continue, if it belongs to a
+    waypoint.
+    """
     stand, *rest = c.stands
     if stand.for_s < 0:
         leg = leg_at(c.start, stand.place, m)

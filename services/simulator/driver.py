@@ -1,4 +1,4 @@
-"""One vehicle that drives or sails, and all of them in a world: what they are told, and what they tell."""
+"""Ground and surface vehicles of a world: commands to them, and their states."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ STATES = {
     "GroundVehicleConfiguration": "GroundVehicleState",
     "SurfaceVehicleConfiguration": "SurfaceVehicleState",
 }
-"""The kind of state of a vehicle, by that of its configuration."""
+"""Kind of a vehicle's states, by the kind of its configuration."""
 STANDS = ("Hover", "VehicleDefault")
-"""The loiters that are a stand to all; one of another type is a stand as well, which is said."""
+"""Loiter types that mean a stop; other types are executed as a stop too, with a warning."""
 
 
 class Driver(NamedTuple):
-    """kind: of its states; first: the state that it began with; told: command and waypoint that it told last."""
+    """kind: of its states; first: its initial state; told: command and waypoint in the last published state."""
 
     kind: str
     chassis: Chassis
@@ -41,9 +41,11 @@ class Driver(NamedTuple):
 
 
 class Drivers:
-    """The vehicles of a world that drive or sail, by id. said: what they were asked for and do not do, to be told.
+    """The ground and surface vehicles of a world, by id. said: warnings about commands that were not executed
+    as given.
 
-    terrain: what drives stands on it; without one at the altitude of its state, as what sails does.
+    terrain: ground vehicles stand on it; without terrain at the altitude of their states, like surface
+    vehicles.
     """
 
     def __init__(self, terrain: Terrain | None = None, tracks: Tracks | None = None) -> None:
@@ -62,12 +64,12 @@ class Drivers:
         return len(self._chassis)
 
     def configure(self, body: Any, where: str) -> None:
-        """Take the configuration of one that is new; BadInput for what does not move."""
+        """Add a configuration; BadInput for a vehicle that cannot move."""
         self._chassis[body.ID] = STATES[type(body).__name__], chassis_of(body, where)
         self._mounted[body.ID] = payload.gimbals_of(body, where)
 
     def place(self, body: Any, where: str) -> None:
-        """Put a vehicle where a state has it, with what it was doing before; BadInput for one that cannot be."""
+        """Place a vehicle by a state, keeping its previous guidance; BadInput for an invalid one."""
         kind = type(body).__name__
         name = f"{kind} {body.ID}"
         configured, chassis = self._chassis.get(body.ID, ("", None))
@@ -110,7 +112,9 @@ class Drivers:
             held.pop(key, None)
 
     def command(self, body: Any, told: Mapping[int, int] = NOTHING) -> None:
-        """Take a MissionCommand, with what its waypoints are told as, or a VehicleActionCommand for one that is there."""
+        """Execute a MissionCommand, with the reported numbers of its waypoints, or a VehicleActionCommand for
+        a present vehicle.
+        """
         key = body.VehicleID
         one = self.there[key]
         self._warn(body)
@@ -122,7 +126,7 @@ class Drivers:
         self._fire(key)
 
     def halt(self, key: int) -> Any:
-        """Where one that brakes at once comes to stand."""
+        """Where a vehicle that brakes at once comes to rest."""
         one = self.there[key]
         m = one.motion
         braking_m = m.airspeed_m_s**2 / (2 * one.chassis.along_m_s2)
@@ -152,7 +156,7 @@ class Drivers:
             self.said.append(text)
 
     def step(self, dt_s: float) -> None:
-        """All of them a step on."""
+        """Advance all vehicles by one step."""
         for key, one in self.there.items():
             held, heading, speed = course.steer(one.course, one.motion, one.chassis, dt_s)
             motion = move(one.motion, heading, speed, one.chassis, dt_s)
@@ -166,7 +170,7 @@ class Drivers:
                 self._mounted[key] = tuple(steps)
 
     def _fire(self, key: int) -> None:
-        """The actions that were set off, for what is mounted."""
+        """Execute the collected payload actions."""
         one, mounted = self.there[key], self._mounted[key]
         for body in one.course.fired:
             if self._tracks.act(key, mounted, body):
@@ -179,7 +183,7 @@ class Drivers:
         self.there[key] = one._replace(course=one.course._replace(fired=()))
 
     def bodies(self) -> Iterator[Body]:
-        """All of them, as they see and are seen."""
+        """All vehicles with their payloads, for perception."""
         for key, one in self.there.items():
             yield Body(key, one.motion, self._mounted[key])
 
@@ -188,7 +192,7 @@ class Drivers:
         self._mounted[key] = tuple(payload.act(p, body) for p in self._mounted[key])
 
     def states(self, time_ms: int, ground_m: float) -> Iterator[Any]:
-        """The states of all, as they are now."""
+        """The present states of all vehicles."""
         for key, one in self.there.items():
             seen = payload.states(self._mounted[key], one.motion, ground_m, self._terrain)
             self.there[key], body = state(one, time_ms, seen)
@@ -196,12 +200,12 @@ class Drivers:
 
 
 def _on(terrain: Terrain, m: Motion) -> Motion:
-    """The motion, on the ground."""
+    """The motion at the altitude of the ground."""
     return m._replace(alt_m=terrain.elevation(m.lat_rad, m.lon_rad))
 
 
 def state(d: Driver, time_ms: int, payloads: tuple[Any, ...]) -> tuple[Driver, Any]:
-    """The GroundVehicleState or SurfaceVehicleState that is told, and the vehicle that has told it."""
+    """The GroundVehicleState or SurfaceVehicleState to publish, and the vehicle after publishing it."""
     m, c = d.motion, d.course
     number, waypoint = d.told
     tasks: tuple[int, ...] = ()

@@ -1,7 +1,8 @@
-"""How what drives or sails moves: along straight legs, round corners, to a stand where its way ends.
+"""Motion of ground and surface vehicles: along straight legs, round corners, to a stop at the end of the
+route.
 
-It keeps within its speeds and its accelerations along and across; where its way bends it is slow enough to pass the
-corner closely. The laws are ours: AMASE turns such entities at once, and knows no vehicle that drives.
+It keeps within the vehicle's speeds and accelerations; where the route bends, the speed is low enough to pass
+close to the corner. The laws are our own: AMASE turns such entities instantly, and has no ground vehicles.
 """
 
 from __future__ import annotations
@@ -14,24 +15,26 @@ from cratous.services.simulator.motion import GRAVITY_M_S2, Motion
 from cratous.spec.errors import BadInput
 
 GROUND_BRAKES_M_S2, SEA_BRAKES_M_S2 = 1.0, 0.5
-"""How fast speed grows and falls; on land as AMASE has it for what follows a path."""
+"""Acceleration and braking along the track; on land as in AMASE for entities that follow a path."""
 GROUND_SIDE_M_S2, SEA_SIDE_M_S2 = 2.0, 1.0
-"""Acceleration across, at most; at sea without a MaxBankAngle."""
+"""Greatest lateral acceleration; at sea without a MaxBankAngle."""
 GROUND_TURN_RAD_S, SEA_TURN_RAD_S = 1.0, radians(20)
 GROUND_CUT_M, SEA_CUT_M = 1.0, 10.0
-"""How far from the corner of its way it passes, at most."""
+"""Largest distance from a corner of the route when passing it [m]."""
 TURN_GAIN_S = 2.0
-"""How fast it turns with the error of its course [1 / s]."""
+"""Turn rate per error of the course [1 / s]."""
 AHEAD_S, AHEAD_M = 1.0, 3.0
-"""It makes for the place of its way that lies so far ahead, at least so many metres."""
+"""It steers for a point this far ahead on the route, in seconds of travel and at least in metres."""
 
 Point = tuple[float, float]
 """Latitude and longitude [rad]."""
 
 
 class Chassis(NamedTuple):
-    """Least, usual and greatest speed [m/s]; acceleration along and across [m/s²]; rate of turn [rad/s]; how far off a
-    corner it passes [m]; energy used [% / s]; sails: it leans into turns, no faster than so [rad/s], 0: at once."""
+    """Lowest, usual and highest speed [m/s]; acceleration along and across [m/s²]; turn rate [rad/s]; largest
+    distance from a corner [m]; energy use [% / s]; sails: whether it leans into turns, at most at
+    leaning_rad_s [rad/s], 0: instantly.
+    """
 
     min_speed_m_s: float
     usual_m_s: float
@@ -45,11 +48,11 @@ class Chassis(NamedTuple):
     leaning_rad_s: float = 0.0
 
     def within(self, speed_m_s: float) -> float:
-        """The speed nearest to one that it can keep."""
+        """The closest speed within its limits [m/s]."""
         return max(self.min_speed_m_s, min(self.max_speed_m_s, speed_m_s))
 
     def round(self, radius_m: float) -> float:
-        """How fast it goes round a curve of a radius, at most [m/s]."""
+        """Highest speed on a curve of a radius [m/s]."""
         return min(self.max_speed_m_s, sqrt(self.side_m_s2 * radius_m), self.turn_rad_s * radius_m)
 
     def still_from(self, speed_m_s: float, away_m: float) -> float:
@@ -58,12 +61,14 @@ class Chassis(NamedTuple):
 
 
 def chassis_of(body: Any, where: str) -> Chassis:
-    """The chassis of a GroundVehicleConfiguration or SurfaceVehicleConfiguration; BadInput for none."""
+    """The chassis of a GroundVehicleConfiguration or SurfaceVehicleConfiguration; BadInput for an invalid
+    one.
+    """
     kind = type(body).__name__
     low, usual, high = body.MinimumSpeed, body.NominalSpeed, body.MaximumSpeed
     sails = kind == "SurfaceVehicleConfiguration"
     bank, leaning = (body.MaxBankAngle, body.MaxBankRate) if sails else (0.0, 0.0)
-    # not a number is in no such order
+    # NaN fails every comparison
     if not (0 <= low <= high < inf and high > 0 and 0 <= usual < inf):
         raise BadInput(
             "wrong speeds [m/s]",
@@ -90,8 +95,9 @@ def chassis_of(body: Any, where: str) -> Chassis:
 
 
 class Leg(NamedTuple):
-    """A straight way, as it lies about a place: bearing [rad], what is left of it along it [m], negative beyond its end,
-    and the course from the place onto it [rad], by the point that lies some way ahead."""
+    """A straight leg seen from a vehicle: bearing [rad], remaining distance along it [m], negative beyond its
+    end, and the course towards a point some way ahead on it [rad].
+    """
 
     bearing_rad: float
     left_m: float
@@ -99,7 +105,7 @@ class Leg(NamedTuple):
 
 
 def leg_at(start: Point, end: Point, m: Motion) -> Leg:
-    """The leg from one place to another, seen from a vehicle."""
+    """The leg between two places, seen from a vehicle."""
     scale = (prime_vertical_m(m.lat_rad) + m.alt_m) * cos(m.lat_rad)
     north = POLE_M + m.alt_m
     x, y = bound_pi(start[1] - m.lon_rad) * scale, (start[0] - m.lat_rad) * north
@@ -118,9 +124,9 @@ def _ahead_m(speed_m_s: float) -> float:
 
 
 def corner(chassis: Chassis, turn_rad: float, before_m: float, after_m: float) -> Point:
-    """How fast it passes a corner of its way [m/s], and how far before it the turn begins [m].
+    """Speed for passing a corner of the route [m/s], and the distance before it at which the turn begins [m].
 
-    turn: by how much it bends; before, after: how long the legs there are [m].
+    turn_rad: change of direction; before_m, after_m: lengths of the adjacent legs [m].
     """
     half = min(abs(bound_pi(turn_rad)), pi - 1e-3) / 2
     if half <= 1e-6:
@@ -139,7 +145,7 @@ def bends(chassis: Chassis, m: Motion, course_rad: float) -> float:
 
 
 def move(m: Motion, course_rad: float, speed_m_s: float, chassis: Chassis, dt_s: float) -> Motion:
-    """The motion after a step towards a course and a speed; what uses energy and has none stands."""
+    """The motion after a step towards a course and a speed; without energy a vehicle that needs it stops."""
     still = m.energy_percent <= 0 < chassis.energy_percent_s
     change = speed_m_s - m.airspeed_m_s
     most = chassis.along_m_s2 * dt_s
@@ -155,7 +161,7 @@ def move(m: Motion, course_rad: float, speed_m_s: float, chassis: Chassis, dt_s:
             lean = wanted - m.roll_rad
             roll = m.roll_rad + copysign(min(abs(lean), chassis.leaning_rad_s * dt_s), lean)
         rolling = (roll - m.roll_rad) / dt_s
-        # what leans too little yet turns less
+        # with too little lean yet, it turns less
         if abs(roll) < abs(wanted):
             turning = GRAVITY_M_S2 * tan(roll) / speed
     heading = bound_pi(m.heading_rad + turning * dt_s)

@@ -1,4 +1,4 @@
-"""Distances and bearings on the earth of AMASE: spherical for navigation, WGS-84 radii for motion.
+"""Distances and bearings on AMASE's earth model: spherical for navigation, WGS-84 radii for motion.
 
 Latitudes, longitudes and bearings [rad], bearings clockwise from north; distances [m].
 """
@@ -16,7 +16,7 @@ Place = tuple[float, float, float]
 
 
 def bound_pi(angle_rad: float) -> float:
-    """The same angle in [-pi, pi]."""
+    """The angle normalised to [-pi, pi]."""
     if -pi <= angle_rad <= pi:
         return angle_rad
     angle = fmod(angle_rad, 2 * pi)
@@ -26,25 +26,25 @@ def bound_pi(angle_rad: float) -> float:
 
 
 def prime_vertical_m(lat_rad: float) -> float:
-    """Radius of curvature in the prime vertical."""
+    """Radius of curvature in the prime vertical [m]."""
     along = ECCENTRICITY * sin(lat_rad)
     return EQUATOR_M / sqrt(1 - along * along)
 
 
 def distance_m(lat: float, lon: float, to_lat: float, to_lon: float) -> float:
-    """Great circle distance on a sphere of the equator's radius."""
+    """Great circle distance on a sphere of the equator's radius [m]."""
     a, b = sin((to_lat - lat) / 2), sin((to_lon - lon) / 2)
     return 2 * asin(min(1.0, sqrt(a * a + cos(lat) * cos(to_lat) * b * b))) * EQUATOR_M
 
 
 def bearing_rad(lat: float, lon: float, to_lat: float, to_lon: float) -> float:
-    """Initial bearing of the great circle from one point to another."""
+    """Initial bearing of the great circle from one point to another [rad]."""
     turn, c = to_lon - lon, cos(to_lat)
     return atan2(c * sin(turn), cos(lat) * sin(to_lat) - sin(lat) * c * cos(turn))
 
 
 def horizon_m(height_m: float) -> float:
-    """How far the horizon is from a height above the sea."""
+    """Distance of the horizon from a height above the sea [m]."""
     height = max(0.0, height_m)
     return sqrt(2 * EQUATOR_M * height + height * height)
 
@@ -62,7 +62,7 @@ def ahead(lat: float, lon: float, length_m: float, azimuth_rad: float) -> tuple[
 def to_leg(
     start: tuple[float, float], end: tuple[float, float], lat: float, lon: float
 ) -> tuple[float, float]:
-    """Distance and bearing from a point to the nearest point of a leg, on a plane about the point."""
+    """Distance and bearing from a point to the nearest point of a leg, on the tangent plane at the point."""
     scale = prime_vertical_m(lat) * cos(lat)
     x, y = (start[1] - lon) * scale, (start[0] - lat) * POLE_M
     dx, dy = (end[1] - start[1]) * scale, (end[0] - start[0]) * POLE_M

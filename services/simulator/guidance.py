@@ -1,7 +1,8 @@
-"""Guidance of one aircraft: along waypoints, around loiters, or on the course it is given.
+"""Guidance of one aircraft: along waypoints, around loiters, or on a given course.
 
-`guide` follows the motion in each step; `mission`, `action` and `command` take what arrives. All are
-pure: Guidance in, Guidance out. With compatibility AMASE's defects are kept, each named where it is.
+`guide` follows the motion in each step; `mission`, `action` and `command` process what is received. All are
+pure: Guidance in, Guidance out. In compatibility mode AMASE's defects are reproduced, each commented where it
+occurs.
 """
 
 from __future__ import annotations
@@ -27,8 +28,9 @@ DIRECTED, WAYPOINT, LOITER = "FlightDirector", "Waypoint", "Loiter"
 
 
 class Waypoint(NamedTuple):
-    """number, number of the next; place [rad, m MSL], airspeed [m/s], whether it is flown over;
-    actions and ids of tasks as the message has them."""
+    """number, number of the next; position [rad, m MSL], airspeed [m/s], whether it is flown over; actions
+    and task ids as in the message.
+    """
 
     number: int
     next_number: int
@@ -42,8 +44,9 @@ class Waypoint(NamedTuple):
 
 
 class Leg(NamedTuple):
-    """The waypoint flown to, those before and after it, and how they lie: bearing [rad] and length [m]
-    of the way to it, bearing from the next one to it, and how far that is."""
+    """The waypoint flown to, those before and after it, and their geometry: bearing [rad] and length [m] of
+    the leg to it, bearing from the next one to it, and that distance.
+    """
 
     to: Waypoint | None = None
     past: Waypoint | None = None
@@ -55,10 +58,11 @@ class Leg(NamedTuple):
 
 
 class Guidance(NamedTuple):
-    """mode; command; route: its waypoints by number, None without one; route_id, loiter_id, directed_id:
-    of the commands that they came with; leg; loiters that wait and the one flown, how long [s], its
-    corner (-1 before the first); whether a loiter belongs to a waypoint; fired: actions of payloads
-    that waypoints reached have set off; compatible: AMASE's defects kept."""
+    """mode; command; route: its waypoints by number, None without one; route_id, loiter_id, directed_id: ids
+    of the commands for them; leg; loiters: pending ones; loiter: the present one, loiter_s: its duration
+    so far [s], corner: its present corner (-1 before the first); at_waypoint: whether it belongs to a
+    waypoint; fired: payload actions of reached waypoints; compatible: AMASE's defects are reproduced.
+    """
 
     command: Command
     compatible: bool
@@ -78,7 +82,7 @@ class Guidance(NamedTuple):
 
 
 def mission(g: Guidance, body: Any, told: Mapping[int, int] = NOTHING) -> Guidance:
-    """Fly a MissionCommand from its first waypoint on. told: what numbers of waypoints are told as."""
+    """Fly a MissionCommand from its first waypoint on. told: reported numbers of waypoints."""
     if not body.WaypointList:
         return g
     route: dict[int, Waypoint] = {}
@@ -115,9 +119,9 @@ def waypoint_of(w: Any, told: Mapping[int, int] = NOTHING) -> Waypoint:
 
 
 def advance(g: Guidance, number: int) -> Guidance:
-    """On to the waypoint of a number: the actions of the one reached are set off.
+    """Continue to the waypoint of a number: the actions of the reached one are executed.
 
-    Without such a waypoint the aircraft keeps to the one it has.
+    Without such a waypoint the aircraft keeps its present one.
     """
     old = g.leg
     again = old.to is not None and old.to.number == number
@@ -143,7 +147,7 @@ def advance(g: Guidance, number: int) -> Guidance:
 
 
 def _of_waypoint(g: Guidance) -> Guidance:
-    """Altitude and speed of the waypoint flown to."""
+    """Apply altitude and speed of the waypoint flown to."""
     to = g.leg.to
     if to is None:
         return g
@@ -151,7 +155,7 @@ def _of_waypoint(g: Guidance) -> Guidance:
 
 
 def command(g: Guidance, body: Any) -> Guidance:
-    """Do what a VehicleActionCommand asks for; actions of payloads are left in `fired`."""
+    """Execute a VehicleActionCommand; payload actions are collected in `fired`."""
     g = g._replace(directed_id=None)
     kinds = [type(one).__name__ for one in body.VehicleActionList]
     if "LoiterAction" in kinds:
@@ -160,7 +164,7 @@ def command(g: Guidance, body: Any) -> Guidance:
         if kind == "GoToWaypointAction":
             g = _go_to(g, one.WaypointNumber)
             if g.compatible and "LoiterAction" not in kinds:
-                # AMASE turns to a loiter that is not there, and flies straight on
+                # AMASE switches to a loiter that does not exist, and flies straight on
                 g = g._replace(mode=LOITER, loiters=(), loiter=None)
             continue
         g = action(g, one)
@@ -172,7 +176,7 @@ def command(g: Guidance, body: Any) -> Guidance:
 
 
 def _go_to(g: Guidance, number: int) -> Guidance:
-    """Straight to a waypoint of the route; without such a one, on as before."""
+    """Fly straight to a waypoint of the route; without such a waypoint continue as before."""
     if g.route is None or (number not in g.route and not g.compatible):
         return g
     g = g._replace(mode=WAYPOINT, leg=Leg())
@@ -182,7 +186,7 @@ def _go_to(g: Guidance, number: int) -> Guidance:
 
 
 def action(g: Guidance, body: Any) -> Guidance:
-    """Do one action, of a command or of a waypoint that was reached."""
+    """Execute one action, of a command or of a reached waypoint."""
     kind = type(body).__name__
     if kind == "LoiterAction":
         loiter = loiter_of(body, g.min_speed_m_s, g.compatible)
@@ -209,7 +213,7 @@ def action(g: Guidance, body: Any) -> Guidance:
 
 
 def _leave_waypoints(g: Guidance, mode: str) -> Guidance:
-    """AMASE keeps the vertical speed of the waypoint flown to, and climbs or sinks without end."""
+    """AMASE keeps the vertical speed of the waypoint flown to, and climbs or descends without end."""
     if not g.compatible:
         g = g._replace(command=g.command._replace(climb_m_s=0.0))
     return g._replace(mode=mode)
@@ -250,10 +254,10 @@ def _follow(g: Guidance, m: Motion, max_bank_rad: float) -> Guidance:
 
 
 def _next(g: Guidance, to: Waypoint) -> Guidance:
-    """What follows a waypoint that was reached, in its own order: its actions, then the next one."""
+    """Continue after a reached waypoint: its actions, then the next one."""
     if not g.compatible:
         if to.next_number == to.number and g.leg.past is to:
-            return g  # the last one: its actions have been set off
+            return g  # the last one: its actions have been executed
         for one in to.actions:
             if type(one).__name__ == "GoToWaypointAction" and one.WaypointNumber in (g.route or {}):
                 return advance(g, one.WaypointNumber)
@@ -263,11 +267,11 @@ def _next(g: Guidance, to: Waypoint) -> Guidance:
 def reached(
     leg: Leg, away_m: float, azimuth_rad: float, heading_rad: float, radius_m: float
 ) -> bool:
-    """Whether the waypoint of a leg counts as reached, and the next one is flown to.
+    """Whether the waypoint of a leg counts as reached, so that the next one is flown to.
 
-    away, azimuth: of the waypoint from the aircraft; radius: of its tightest turn. Flown over: when it
-    is nearer than the radius and lies behind. Cut short: when the turn onto the next leg has to
-    begin, two radii ahead at most.
+    away_m, azimuth_rad: of the waypoint from the aircraft; radius_m: of its tightest turn. Fly-over: when it
+    is closer than the radius and lies behind. Otherwise: when the turn onto the next leg has to begin, at
+    most two radii before it.
     """
     if leg.to is None:
         return False
@@ -283,7 +287,7 @@ def reached(
 def _onto_leg(
     past: Waypoint, to: Waypoint, bearing: float, lat: float, lon: float, limit_m: float
 ) -> float:
-    """Course onto a leg: straight at it from afar, the nearer the more along it."""
+    """Course onto a leg: straight at it from afar, increasingly along it nearby."""
     start, end = (past.lat_rad, past.lon_rad), (to.lat_rad, to.lon_rad)
     off_m, side = to_leg(start, end, lat, lon)
     if off_m > limit_m:
@@ -303,7 +307,7 @@ def _loiter(g: Guidance, m: Motion, dt_s: float) -> Guidance:
         g = g._replace(loiter=None, loiter_s=0.0)
         if g.at_waypoint and not (g.loiters and not g.compatible):
             g = g._replace(mode=WAYPOINT)
-            # AMASE flies on at altitude and speed of the loiter
+            # AMASE continues at altitude and speed of the loiter
             return g if g.compatible else _of_waypoint(g)
         return g
     corner = g.corner

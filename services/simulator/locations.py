@@ -1,4 +1,4 @@
-"""Where a vehicle is, as messages say it."""
+"""The position of a vehicle as a message."""
 
 from __future__ import annotations
 

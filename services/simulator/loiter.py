@@ -1,7 +1,7 @@
 """Loiters: circle, racetrack, figure eight and hover, as courses to fly.
 
-Racetrack and figure eight are a round of four: turn, leg, turn, leg; a turn is flown about its
-centre and a leg to its end, and each is done when it lies abeam along the axis.
+Racetrack and figure eight are a cycle of four: turn, leg, turn, leg; a turn is flown about its centre and a
+leg to its end, and each is complete when it lies abeam along the axis.
 """
 
 from __future__ import annotations
@@ -13,12 +13,13 @@ from cratous.services.simulator.earth import ahead, bearing_rad, distance_m
 
 CIRCLE, RACETRACK, FIGURE_EIGHT, HOVER = range(4)
 HOVER_GAIN_S = 0.5
-"""A hovering vehicle approaches its place with this share of the distance each second."""
+"""Approach speed of a hovering vehicle per distance from its place [1/s]."""
 
 
 class Loiter(NamedTuple):
-    """kind; points [rad]: the centre, or turn, leg, turn, leg; radius [m]; axis [rad]; clockwise;
-    altitude [m MSL], airspeed [m/s], duration [s], 0 for ever."""
+    """kind; points [rad]: the centre, or turn, leg, turn, leg; radius [m]; axis [rad]; clockwise; altitude [m
+    MSL], airspeed [m/s], duration [s], 0 for unlimited.
+    """
 
     kind: int
     points: tuple[tuple[float, float], ...]
@@ -31,10 +32,10 @@ class Loiter(NamedTuple):
 
 
 def loiter_of(action: Any, min_speed_m_s: float, compatible: bool) -> Loiter:
-    """The loiter that a LoiterAction asks for.
+    """The loiter of a LoiterAction.
 
-    AMASE knows no hover and shifts the circle of type VehicleDefault; the corrected one hovers where
-    the airframe can (its least speed is 0) and circles otherwise.
+    AMASE has no hover and shifts the circle of type VehicleDefault; without compatibility an airframe hovers
+    if it can (its lowest speed is 0) and circles otherwise.
     """
     place = action.Location
     centre = radians(place.Latitude), radians(place.Longitude)
@@ -52,7 +53,7 @@ def loiter_of(action: Any, min_speed_m_s: float, compatible: bool) -> Loiter:
         half += action.Radius if kind == FIGURE_EIGHT else 0
         one, two = ahead(*centre, half, axis), ahead(*centre, half, axis + pi)
         right = pi / 2 if clockwise else -pi / 2
-        # the eight crosses its middle, so both legs begin on the same side
+        # the eight crosses at its centre, so both legs begin on the same side
         first = right if kind == RACETRACK else -right
         points = (
             one,
@@ -68,13 +69,13 @@ def loiter_of(action: Any, min_speed_m_s: float, compatible: bool) -> Loiter:
         clockwise,
         place.Altitude,
         action.Airspeed,
-        # AMASE takes the milliseconds of the message for seconds
+        # AMASE takes the message's milliseconds for seconds
         float(action.Duration) if compatible else action.Duration / 1000,
     )
 
 
 def first_corner(loiter: Loiter, lat: float, lon: float, compatible: bool) -> int:
-    """Where a round begins: at its nearest point (AMASE: the last one nearer than the first)."""
+    """The first corner of a cycle: the nearest point (AMASE: the last one nearer than the first)."""
     away = [distance_m(*point, lat, lon) for point in loiter.points]
     if not compatible:
         return away.index(min(away))
@@ -84,7 +85,7 @@ def first_corner(loiter: Loiter, lat: float, lon: float, compatible: bool) -> in
 def circle_course_rad(
     centre: tuple[float, float], radius_m: float, clockwise: bool, lat: float, lon: float
 ) -> float:
-    """Course onto a circle: straight to its centre beyond two radii, tangential on it."""
+    """Course onto a circle [rad]: straight to its centre beyond two radii, tangential on it."""
     course = bearing_rad(lat, lon, *centre)
     away = distance_m(lat, lon, *centre)
     if away > 2 * radius_m or radius_m == 0:
@@ -94,7 +95,7 @@ def circle_course_rad(
 
 
 def course(loiter: Loiter, corner: int, lat: float, lon: float) -> tuple[float, int]:
-    """The course to fly [rad], and the corner of the round that comes next."""
+    """The course to fly [rad], and the next corner of the cycle."""
     point = loiter.points[corner]
     if loiter.kind == HOVER:
         return bearing_rad(lat, lon, *point), corner

@@ -1,6 +1,7 @@
-"""One aircraft through the air for one step: coordinated turns without sideslip, wind, energy.
+"""One step of an aircraft's motion: coordinated turns without sideslip, wind, energy.
 
-Wind is where it blows from: north and east part [m/s] of a vector that points there.
+Wind is given by the direction from which it blows: north and east components [m/s] of a vector pointing
+there.
 """
 
 from __future__ import annotations
@@ -15,13 +16,14 @@ GRAVITY_M_S2 = 9.8
 BANK_RATE_RAD_S = radians(60)
 PITCH_RATE_RAD_S = radians(90)
 BANK_GAIN = 8.0
-"""How fast the bank grows to its greatest with the error of the course [1 / rad]."""
+"""Growth of the bank towards its maximum with the error of the course [1 / rad]."""
 ACCELERATION_M_S2 = 10.0
 
 
 class Motion(NamedTuple):
-    """Place [rad, m MSL], attitude [rad], airspeed and velocity over ground [m/s], energy [%]; how fast
-    heading, pitch and roll changed in the last step [rad/s]."""
+    """Position [rad, m MSL], attitude [rad], airspeed and velocity over ground [m/s], energy [%]; rates of
+    heading, pitch and roll in the last step [rad/s].
+    """
 
     lat_rad: float
     lon_rad: float
@@ -41,7 +43,7 @@ class Motion(NamedTuple):
 
 
 def body_rates(m: Motion) -> tuple[float, float, float]:
-    """Rates of turn about the axes forward, right and down of the aircraft [rad/s], by Euler's angles."""
+    """Rotation rates about the body axes forward, right and down [rad/s], from the Euler angle rates."""
     turn, pitch, roll = m.turning_rad_s, m.pitching_rad_s, m.rolling_rad_s
     level, bank = cos(m.pitch_rad), m.roll_rad
     return (
@@ -52,9 +54,10 @@ def body_rates(m: Motion) -> tuple[float, float, float]:
 
 
 class Command(NamedTuple):
-    """What guidance asks for: course [rad], altitude [m MSL], airspeed and climb [m/s].
+    """Output of the guidance: course [rad], altitude [m MSL], airspeed and climb rate [m/s].
 
-    climb 0: as the difference in altitude tells."""
+    Climb rate 0: as the difference in altitude requires.
+    """
 
     course_rad: float
     alt_m: float
@@ -70,9 +73,9 @@ def _towards(value: float, wanted: float, most: float) -> float:
 
 
 def asked_climb_m_s(difference_m: float, climb_m_s: float, compatible: bool) -> float:
-    """Vertical speed asked for: towards the altitude, no faster than the climb if one is given.
+    """Commanded vertical speed: towards the altitude, no faster than a given climb rate.
 
-    AMASE climbs or sinks at a given rate whatever the altitude commanded.
+    AMASE climbs or descends at a given rate whatever the commanded altitude.
     """
     if climb_m_s == 0:
         return difference_m
@@ -89,7 +92,7 @@ def move(
     ground_m: float,
     dt_s: float,
 ) -> tuple[Motion, float]:
-    """The motion after a step and the greatest bank that holds [rad].
+    """The motion after a step, and the greatest bank in force [rad].
 
     Without energy, or on the ground, nothing moves.
     """
@@ -112,7 +115,7 @@ def move(
         turning = GRAVITY_M_S2 * tan(roll) / speed
         heading = bound_pi(heading + turning * dt_s)
     if airframe.compatible:
-        # AMASE takes the error of the course for the turn of the step
+        # AMASE uses the error of the course as the turn of the step
         turning = error / dt_s
     pitch = _towards(m.pitch_rad, radians(profile.pitch_deg), PITCH_RATE_RAD_S * dt_s)
     change = max(-ACCELERATION_M_S2, min(ACCELERATION_M_S2, command.speed_m_s - speed))

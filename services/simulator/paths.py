@@ -1,4 +1,4 @@
-"""Paths to follow (FollowPathCommand): as missions, and when they begin and end."""
+"""FollowPathCommand: paths as missions, and their begin and end times."""
 
 from __future__ import annotations
 
@@ -11,27 +11,30 @@ from cratous.spec.errors import BadInput
 
 COPIED = ("Latitude", "Longitude", "Altitude", "Speed", "TurnType", "AssociatedTasks")
 STEERING = frozenset(("LoiterAction", "GoToWaypointAction", "FlightDirectorAction"))
-"""Actions that tell a vehicle where to go."""
+"""Actions that direct a vehicle somewhere."""
 
 
 def steers(body: Any) -> bool:
-    """Whether a command tells a vehicle where to go."""
+    """Whether a command directs a vehicle somewhere."""
     kinds = {type(one).__name__ for one in body.VehicleActionList}
     return type(body).__name__ != "VehicleActionCommand" or bool(kinds & STEERING)
 
 
 class Path(NamedTuple):
-    """A path as a MissionCommand; told: the numbers of waypoints that it has twice, by those of the mission."""
+    """A path as a MissionCommand. told: reported numbers of duplicated waypoints, by their numbers in the
+    mission.
+    """
 
     mission: Any
     told: Mapping[int, int]
 
 
 def path_of(body: Any, circle_m: Callable[[float], float] | None) -> Path:
-    """The path of a FollowPathCommand: a pause is a loiter of type Hover.
+    """The mission for a FollowPathCommand: a pause becomes a loiter of type Hover.
 
-    circle_m: of who flies, the radius of its circles by its speed [m/s]: it ends about the last place, where others stand.
-    A loop leads from the end to the beginning; there and back again the waypoints of the way back are numbered anew.
+    circle_m: circle radius by speed [m/s] of a vehicle that flies, which ends circling at the last place;
+    None for one that stops there. A loop leads from the end to the beginning; for a reversing path the
+    waypoints of the way back get new numbers.
     """
     known = {w.Number: w for w in reversed(body.WaypointList)}
     order, number = list[Any](), body.FirstWaypoint
@@ -53,7 +56,7 @@ def path_of(body: Any, circle_m: Callable[[float], float] | None) -> Path:
         last = k == len(order) - 1 and not again
         actions = list(w.VehicleActionList)
         if w.PauseTime > 0 or (last and circle_m is not None):
-            # one that is for ever has no duration
+            # duration 0 means unlimited
             actions.append(_pause(w, 0 if last and circle_m is not None else w.PauseTime, circle_m))
         then = numbers[k] if last else numbers[(k + 1) % len(numbers)]
         ways.append(
@@ -79,7 +82,7 @@ def _pause(w: Any, duration_ms: int, circle_m: Callable[[float], float] | None) 
 
 
 def check_times(body: Any, where: str) -> None:
-    """BadInput for a FollowPathCommand that begins or ends at no time, or ends before it begins."""
+    """BadInput for a FollowPathCommand with invalid times, or one that ends before it begins."""
     begins, ends = body.StartTime, body.StopTime
     if begins < 0 or ends < 0 or 0 < ends <= begins:
         raise BadInput(
@@ -90,7 +93,7 @@ def check_times(body: Any, where: str) -> None:
 
 
 class Paths:
-    """The paths of vehicles that are yet to begin or to end; one for each, the last that it was told."""
+    """The paths of vehicles that are still to begin or end; the last one commanded for each."""
 
     def __init__(self) -> None:
         self._held: dict[int, tuple[Any, bool]] = {}
@@ -99,15 +102,15 @@ class Paths:
         return bool(self._held)
 
     def hold(self, body: Any) -> None:
-        """Take a FollowPathCommand, which begins when it is due."""
+        """Accept a FollowPathCommand, which begins when it is due."""
         self._held[body.VehicleID] = body, False
 
     def drop(self, key: int) -> None:
-        """Forget a vehicle's path: it was commanded otherwise, or removed."""
+        """Drop a vehicle's path: it got another command, or was removed."""
         self._held.pop(key, None)
 
     def due(self, time_ms: int) -> Iterator[tuple[Any, bool]]:
-        """Paths that begin by now, with True, and that end, with False."""
+        """Paths that begin by now, with True, and those that end, with False."""
         for key, (body, begun) in list(self._held.items()):
             if not begun and body.StartTime <= time_ms:
                 self._held[key] = body, True

@@ -1,4 +1,4 @@
-"""What is mounted on an aircraft: gimbals that slew, and the cameras on them with their footprints.
+"""Payloads of an aircraft: gimbals with slew rates, and their cameras with footprints.
 
 Angles of messages and of this module are degrees: azimuth from the nose to the right, elevation up.
 """
@@ -40,7 +40,7 @@ class Gimbal(NamedTuple):
 
 
 def gimbals_of(configuration: Any, where: str) -> tuple[Gimbal, ...]:
-    """The gimbals of an aircraft with their cameras; BadInput for one that cannot be."""
+    """The gimbals of an aircraft with their cameras; BadInput for an invalid one."""
     loads = configuration.PayloadConfigurationList
     cameras = {c.PayloadID: c for c in loads if type(c).__name__ == "CameraConfiguration"}
     found = []
@@ -71,7 +71,7 @@ def gimbals_of(configuration: Any, where: str) -> tuple[Gimbal, ...]:
 
 
 def placed(mounted: tuple[Gimbal, ...], told: Any) -> tuple[Gimbal, ...]:
-    """The gimbals and cameras as the payload states of an AirVehicleState have them."""
+    """The gimbals and cameras set by the payload states of an AirVehicleState."""
     known = {one.PayloadID: one for one in told.PayloadStateList if one is not None}
     return tuple(_placed(g, known) for g in mounted)
 
@@ -94,7 +94,7 @@ def _with_fov(c: Camera, known: dict[int, Any]) -> Camera:
 
 
 def _fov(camera: Any, wanted_deg: float) -> float:
-    """The nearest field of view [deg] that a camera has."""
+    """The closest field of view [deg] that a camera supports."""
     steps = camera.DiscreteHorizontalFieldOfViewList
     if camera.FieldOfViewMode.name == "Discrete" and steps:
         return float(min(steps, key=lambda one: abs(one - wanted_deg)))
@@ -115,7 +115,7 @@ def gimbal_with(mounted: tuple[Gimbal, ...], number: int) -> int | None:
 
 
 def is_for(mounted: tuple[Gimbal, ...], body: Any) -> bool:
-    """Whether an action is one for a gimbal or camera that is mounted."""
+    """Whether an action is for a mounted gimbal or camera."""
     number = getattr(body, "PayloadID", None)
     kind = type(body).__name__
     if kind == "CameraAction":
@@ -140,7 +140,7 @@ def act(g: Gimbal, body: Any) -> Gimbal:
 
 
 def step(g: Gimbal, m: Motion, dt_s: float) -> Gimbal:
-    """The gimbal a step later."""
+    """The gimbal after a step."""
     body = g.action
     if body is None:
         return g
@@ -167,7 +167,7 @@ def step(g: Gimbal, m: Motion, dt_s: float) -> Gimbal:
 def _slew(
     g: Gimbal, wanted: tuple[float, float], rates: tuple[float, float], dt_s: float
 ) -> tuple[Gimbal, bool]:
-    """A step towards an azimuth and elevation within the limits, and whether it is there."""
+    """A step towards an azimuth and elevation within the limits, and whether they are reached."""
     c = g.configuration
     turn = wanted[0] - g.azimuth_deg
     if c.MaxAzimuth - c.MinAzimuth >= 360:
@@ -184,7 +184,7 @@ def _slew(
 
 
 def axes(heading: float, pitch: float, roll: float) -> Axes:
-    """North, east and down parts of the axes forward, right and down of a body turned so [rad]."""
+    """North, east and down components of the body axes forward, right and down, for Euler angles [rad]."""
     ch, sh, cp, sp, cr, sr = (
         cos(heading), sin(heading), cos(pitch), sin(pitch), cos(roll), sin(roll),
     )  # fmt: skip
@@ -211,7 +211,7 @@ def aim(m: Motion, point: Any) -> tuple[float, float]:
 def states(
     mounted: tuple[Gimbal, ...], m: Motion, ground_m: float, terrain: Terrain | None = None
 ) -> tuple[Any, ...]:
-    """GimbalState and CameraState of all that is mounted, over terrain or else flat ground at a height."""
+    """GimbalState and CameraState of all payloads, over terrain, or else flat ground at a height."""
     told: list[Any] = []
     for g in mounted:
         pointing = {
@@ -251,8 +251,9 @@ def _ratio(camera: Any) -> float:
 
 
 class Picture(NamedTuple):
-    """The axes of a camera ahead, right and down, by their parts north, east and down; half of its width and height
-    at depth 1."""
+    """The camera axes ahead, right and down as north, east and down components; half of the image's width and
+    height at depth 1.
+    """
 
     ahead: tuple[float, float, float]
     right: tuple[float, float, float]
@@ -262,7 +263,7 @@ class Picture(NamedTuple):
 
 
 def picture(g: Gimbal, c: Camera, m: Motion) -> Picture:
-    """What a camera has in its picture, as its footprint has it."""
+    """The image of a camera, consistent with its footprint."""
     (a0, a1, a2), (b0, b1, b2), (c0, c1, c2) = axes(m.heading_rad, m.pitch_rad, m.roll_rad)
     sensor = axes(radians(g.azimuth_deg), radians(g.elevation_deg), 0.0)
     ahead, right, down = (
@@ -283,9 +284,9 @@ def _place(point: Place) -> Any:
 def footprint(
     g: Gimbal, c: Camera, m: Motion, ground_m: float, terrain: Terrain | None = None
 ) -> list[Place]:
-    """Where the corners of a picture and its middle meet the terrain, or flat ground; the horizon at most.
+    """Where the corners and the centre of an image meet the terrain, or flat ground; at most at the horizon.
 
-    Order: top left, top right, bottom right, bottom left, middle.
+    Order: top left, top right, bottom right, bottom left, centre.
     """
     b0, b1, b2 = axes(m.heading_rad, m.pitch_rad, m.roll_rad)
     s0, s1, s2 = axes(radians(g.azimuth_deg), radians(g.elevation_deg), 0.0)

@@ -1,7 +1,7 @@
-"""What cameras see: EntityPerceptions of the vehicles that are in their pictures.
+"""Camera perception: EntityPerceptions of the vehicles in the cameras' images.
 
-A vehicle is seen where it is in the picture, nearer than the horizon, and not hidden by the terrain; of what stands on the
-ground that is the footprint. Places and velocities are the true ones, without error.
+A vehicle is seen if it is in the image, closer than the horizon, and not hidden by the terrain; of what
+stands on the ground, its position on the ground counts. Positions and velocities are true, without error.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from cratous.services.simulator.terrain import Terrain
 
 MOST_ID = 2**32 - 1
-"""Ids of perceptions have 32 bits, those of vehicles 64."""
+"""Ids in perceptions have 32 bits, those of vehicles 64."""
 MOST_PAYLOADS = 8
 
 
 class Body(NamedTuple):
-    """A vehicle: its id, where and how it is, and what is mounted on it."""
+    """A vehicle: its id, motion and payloads."""
 
     id: int
     motion: Motion
@@ -35,9 +35,10 @@ class Body(NamedTuple):
 def perceptions(
     bodies: Iterable[Body], time_ms: int, terrain: Terrain | None = None
 ) -> Iterator[Any]:
-    """The EntityPerceptions of now: of each vehicle for each that its cameras see, in their order.
+    """The present EntityPerceptions: for each vehicle, those that its cameras see, in order.
 
-    A vehicle that sees has an id of 32 bits, or tells nothing; one that is seen and has none is told as 0, unknown.
+    A perceiving vehicle needs a 32-bit id, otherwise it reports nothing; a perceived one without gets the id
+    0, unknown.
     """
     there = tuple(bodies)
     if len(there) < 2:
@@ -66,8 +67,9 @@ def perceptions(
 
 
 class _Picture(NamedTuple):
-    """What a camera, by its id, has in its picture: its axes ahead, right and down by parts for latitude, longitude [rad]
-    and height [m] below; half of its width and height at depth 1."""
+    """A camera's image, by its id: the axes ahead, right and down as components for latitude, longitude [rad]
+    and height [m] below; half of its width and height at depth 1.
+    """
 
     number: int
     ahead: Place
@@ -78,7 +80,7 @@ class _Picture(NamedTuple):
 
 
 def _pictures(one: Body) -> list[_Picture]:
-    """What the cameras of a vehicle have in their pictures."""
+    """The images of a vehicle's cameras."""
     found = []
     around = EQUATOR_M * cos(one.motion.lat_rad)
     for g in one.mounted:

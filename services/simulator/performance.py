@@ -1,7 +1,7 @@
-"""What an airframe can do: flight profiles of its configuration, interpolated as AMASE does it.
+"""Airframe performance: the flight profiles of its configuration, interpolated as in AMASE.
 
 A profile holds for one airspeed and vertical speed. Level flight interpolates the level profiles over
-airspeed; climbs and descents blend that with the least steep profile that is steeper than asked.
+airspeed; climbs and descents blend that with the least steep profile that is steeper than commanded.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from cratous.spec.errors import BadInput
 
 LEVEL_M_S = 0.01
-"""A vertical speed below this is level flight."""
+"""A vertical speed below this counts as level flight."""
 
 
 class Profile(NamedTuple):
@@ -26,8 +26,9 @@ class Profile(NamedTuple):
 
 
 class Airframe(NamedTuple):
-    """Speeds [m/s]; level profiles by airspeed, climbs and descents from the least steep on; the
-    steepest of both (the nominal profile where there is none). compatible: defects of AMASE kept."""
+    """Speeds [m/s]; level profiles by airspeed, climbs and descents in order of steepness; the steepest of
+    each (the nominal profile if there is none). compatible: AMASE's defects are reproduced.
+    """
 
     min_speed_m_s: float
     max_speed_m_s: float
@@ -39,7 +40,7 @@ class Airframe(NamedTuple):
     compatible: bool
 
     def within(self, speed_m_s: float) -> float:
-        """The airspeed nearest to one that it can fly."""
+        """The closest airspeed within its limits [m/s]."""
         return max(self.min_speed_m_s, min(self.max_speed_m_s, speed_m_s))
 
 
@@ -94,7 +95,7 @@ def _profile(body: Any, where: str, item: str) -> Profile:
 
 
 def profile_at(airframe: Airframe, speed_m_s: float, vertical_m_s: float) -> Profile:
-    """The profile that holds at an airspeed while a vertical speed is asked for [m/s]."""
+    """The profile at an airspeed and a commanded vertical speed [m/s]."""
     level = _level(airframe, speed_m_s)
     if abs(vertical_m_s) < LEVEL_M_S:
         return level
@@ -106,7 +107,7 @@ def profile_at(airframe: Airframe, speed_m_s: float, vertical_m_s: float) -> Pro
         if abs(steeper.vertical_m_s) > abs(vertical_m_s):
             mixed = _between(level, steeper, vertical_m_s / steeper.vertical_m_s)
             return mixed._replace(vertical_m_s=vertical_m_s)
-    # exactly as steep as the steepest: AMASE flies level, its list holds nothing steeper
+    # exactly as steep as the steepest: AMASE flies level, since its list has nothing steeper
     if airframe.compatible:
         return level
     return airframe.steepest_climb if vertical_m_s > 0 else airframe.steepest_descent
@@ -122,12 +123,12 @@ def _level(airframe: Airframe, speed_m_s: float) -> Profile:
     low, high = levels[above - 1], levels[above]
     part = (speed_m_s - low.airspeed_m_s) / (high.airspeed_m_s - low.airspeed_m_s)
     mixed = _between(low, high, part)
-    # AMASE forgets the energy of level flight between two profiles
+    # AMASE omits the energy use of level flight between two profiles
     return mixed._replace(energy_percent_s=0.0) if airframe.compatible else mixed
 
 
 def _between(one: Profile, other: Profile, part: float) -> Profile:
-    """part of the way from one profile to another."""
+    """Interpolation between two profiles; part 0 is the first, 1 the other."""
     rest = 1 - part
     return Profile(
         rest * one[0] + part * other[0],

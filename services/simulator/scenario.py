@@ -1,7 +1,7 @@
-"""AMASE scenario files: what happens when, and for how long.
+"""AMASE scenario files: events with their times, and the duration.
 
-`<AMASE>` holds `<ScenarioData>` (name, duration and time of the start [s]) and `<ScenarioEventList>`: LMCP objects, each
-with an attribute Time [s] (0 without one), and `<Link Source="file"/>` to another such file.
+`<AMASE>` holds `<ScenarioData>` (name, duration and start time [s]) and `<ScenarioEventList>`: LMCP objects,
+each with an attribute Time [s] (default 0), and `<Link Source="file"/>` to another such file.
 """
 
 from __future__ import annotations
@@ -20,12 +20,14 @@ DAY_S = 86_400.0
 MOST_EVENTS = 100_000
 MOST_LINKS = 100
 LATEST_S = 1e9
-"""When a scenario begins, at most: thirty years; ticks are exact till then."""
+"""Latest start of a scenario [s]: thirty years; ticks are exact until then."""
 
 
 @dataclass
 class Scenario:
-    """name, how long it lasts and at which time it begins [s]; events in the order of the file; notes: what was left out, with its place."""
+    """name, duration and start time [s]; events in the order of the file; notes: what was left out, with its
+    place.
+    """
 
     name: str
     duration_s: float = DAY_S
@@ -35,14 +37,14 @@ class Scenario:
 
 
 def read(path: Path) -> Scenario:
-    """The scenario of a file; BadInput with file and line for what is wrong."""
+    """The scenario of a file; BadInput with file and line for an invalid one."""
     scenario = Scenario(path.stem)
     _read(bytes_of(path), str(path), path.parent, scenario, [path.resolve()])
     return scenario
 
 
 def of_text(text: str, where: str) -> Scenario:
-    """The scenario of a text that links to no file."""
+    """The scenario of a text without links to files."""
     scenario = Scenario(where)
     _read(text.encode(), where, None, scenario, [])
     return scenario

@@ -1,9 +1,9 @@
-"""What aircraft know by their sensors: the own state by GPS, others by ADS-B and radar.
+"""Sensor-based knowledge of aircraft: the own state by GPS, others by ADS-B and radar.
 
-The sensors are those of missions (`services.sensing`), errors, latency and drop-outs too. What one has measured of another
-aircraft is told as an EntityPerception when it comes: with the other's id by ADS-B, without one (0) by radar, with no
-payload, and with the standard deviations of its errors. Where there is a GPS an aircraft's state says where it takes itself
-to be. It steers by its true state.
+The sensors are those of missions (`services.sensing`), with errors, latency and drop-outs. A measurement of
+another aircraft is published as an EntityPerception when it arrives: with the other's id by ADS-B, without
+one (0) by radar, without payloads, and with the standard deviations of its errors. With a GPS an aircraft's
+state reports its estimated position. It steers by its true state.
 """
 
 from __future__ import annotations
@@ -25,9 +25,11 @@ from cratous.spec.mission import Frame, Position, Velocity
 from cratous.spec.mission.sensing import Sensing
 
 LEAST_PERIOD_MS = 40
-"""The longest step of the simulator, on ticks of 10 ms."""
+"""The simulator's longest step, on ticks of 10 ms."""
 FARTHEST_M = 2_000_000.0
-"""From where the first aircraft began: there a range in its frame is longer by up to 2 %."""
+"""Largest distance from where the first aircraft began [m]: there a range in its frame is too long by up to 2
+%.
+"""
 
 
 class Sensed:
@@ -40,9 +42,9 @@ class Sensed:
         self._now_ms: int | None = None
 
     def step(self, now_ms: int, aircraft: Mapping[int, Motion]) -> list[Any]:
-        """Measure at a step, and use what has come by now; the EntityPerceptions of that.
+        """Measure at a step, and process what has arrived by now. Returns the EntityPerceptions.
 
-        BadInput where an aircraft is too far from the first one for one frame.
+        BadInput for an aircraft too far from the first one for a common frame.
         """
         flown = {key: self._flown(key, motion) for key, motion in aircraft.items()}
         last_ms = now_ms - LEAST_PERIOD_MS if self._now_ms is None else self._now_ms
@@ -58,7 +60,7 @@ class Sensed:
         return told
 
     def own(self, body: Any) -> Any:
-        """An AirVehicleState as its aircraft knows itself; as it is where there is no GPS."""
+        """An AirVehicleState as the aircraft knows itself; unchanged without a GPS."""
         known = self._carried.get(body.ID, Carried()).own
         if known is None:
             return body

@@ -1,14 +1,14 @@
-"""The port of the simulator: what AMASE's TCP server does, without its faults.
+"""The simulator's port: the functions of AMASE's TCP server, without its faults.
 
-Everything told goes to every client; what a client sends is taken, and relayed to the others. A client that does
-not read loses its oldest messages and holds up nobody. SessionStatus controls the clock: Paused, Running
-(with its RealTimeMultiple, if that is above 0), Reset, Stopped. Clients that come late are told the
-configurations of all vehicles, which AMASE leaves out. With `only` nobody is let in after so many, also not in
-the place of one that goes: with that one the flight has lost what it was for.
+Everything published goes to every client; a client's message is processed and relayed to the others. A client
+that does not read loses its oldest messages and delays nobody. SessionStatus controls the clock: Paused,
+Running (with its RealTimeMultiple, if that is above 0), Reset, Stopped. Late clients receive the
+configurations of all vehicles, which AMASE omits. With `only`, no further clients are accepted after that
+many, not even to replace one that leaves: without that one the flight is pointless.
 
-A vehicle may have a port of its own, as AMASE gives it: its clients are told its configuration, its states, the
-VehicleActionCommands for it and the weather, and send what the others send. What is due at time 0 in a compatible world is done
-as it is made, as AMASE does it on loading: before any client is there to be told.
+A vehicle may have a port of its own, as in AMASE: its clients receive its configuration, its states, its
+VehicleActionCommands and the weather, and send the same as other clients. In compatibility mode events at
+time 0 are processed on creation, as AMASE does on loading: before any client is connected.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ from cratous.spec.errors import BadInput, CratousError
 
 LIMITS = Limits(payload_bytes=4 << 20, waiting_bytes=1 << 20, connections=100)
 BURST = 500
-"""Ticks in a row before clients are heard again."""
+"""Most ticks in a row before clients are served again."""
 MOST_RATE = 1e6
 CONFIGURATIONS = ("AirVehicleConfiguration", *STATES)
 TOLD_OF = ("AirVehicleState", *STATES.values())
 """Configurations of vehicles, and their states."""
 LINGER_S = 2.0
-"""How long clients have, at the end, to read what waits for them [s]."""
+"""Time for clients to read pending data at the end [s]."""
 
 
 class ClientGone(CratousError):
@@ -45,10 +45,10 @@ class ClientGone(CratousError):
 
 
 class Server:
-    """A world that clients see and command; see the module.
+    """A world that clients observe and command; see the module.
 
-    make: the world anew, for Reset. rate: how many times faster than real time it goes. clients: so
-    many must be there before it begins. only: so many are let in, 0: any. stopping: set to end.
+    make: creates the world, also for Reset. rate: multiple of real time. clients: number required before it
+    begins. only: most clients ever accepted, 0: no limit. stopping: set to end.
     """
 
     def __init__(
@@ -91,11 +91,11 @@ class Server:
 
     @property
     def refused(self) -> dict[str, int]:
-        """Messages of clients that could not be taken, by reason."""
+        """Number of rejected client messages, by reason."""
         return dict(self._tally.counts.refused)
 
     def run(self) -> None:
-        """Until the scenario is over, or `stopping`; the port is closed then. ClientGone: see `only`."""
+        """Run until the scenario is over, or `stopping`; then close the port. ClientGone: see `only`."""
         last_s = time.monotonic()
         try:
             while not (self.stopping or self.world.over or self.state == "Stopped"):
@@ -123,7 +123,7 @@ class Server:
             port.close()
 
     def turn(self, now_s: float, passed_s: float) -> None:
-        """Hear the clients, then go on by the time that has passed [s]; waits if nothing is due."""
+        """Serve the clients, then advance by the elapsed time [s]; waits if nothing is due."""
         for port in self._ports():
             for incoming in port.step(now_s):
                 self._take(incoming, port)
@@ -145,7 +145,7 @@ class Server:
             for body in self.world.tick():
                 self.tell(body)
         else:
-            # what cannot be done in time is not made up for: the rate is what the machine gives
+            # time that cannot be caught up is dropped: the machine limits the rate
             self._behind_s = min(self._behind_s, BURST * TICK_S)
             return
         self._wait(max(0.0, (TICK_S - self._behind_s) / self.rate))
@@ -161,8 +161,9 @@ class Server:
             self._peers_of[key] = port.peers
 
     def _count(self) -> None:
-        """Shut the door behind the last of the only clients; ClientGone if one of them is no longer there and
-        nobody has asked to end."""
+        """Stop accepting after the last of the `only` clients; ClientGone if one of them has left and no end
+        was requested.
+        """
         if not self._only or self.stopping or self.state == "Stopped":
             return
         if self._peers == self._only:
@@ -185,8 +186,9 @@ class Server:
             time.sleep(0.005)
 
     def tell(self, body: Any, but: str = "", of: TcpPort | None = None) -> None:
-        """Send an object to every client but one, that is of a port; configurations are kept for those
-        that come late."""
+        """Send an object to every client except `but`, a client of port `of`; configurations are kept for
+        late clients.
+        """
         name = type(body).__name__
         if name == "SessionStatus" and not but:
             body = body.copy(RealTimeMultiple=self.rate)
@@ -200,7 +202,7 @@ class Server:
         if wanted:
             payload = frame_payload(body)
             for port in wanted:
-                # the name of a client is one of its port alone
+                # client names are unique within their port only
                 port.send((payload,), but if port is of else "")
 
     def _take(self, incoming: Incoming, port: TcpPort) -> None:
@@ -232,7 +234,7 @@ class Server:
 
 
 def _concerns(body: Any, vehicle: int) -> bool:
-    """Whether an object is told on the port that a vehicle has of its own."""
+    """Whether an object is sent on a vehicle's own port."""
     kind = type(body).__name__
     if kind in CONFIGURATIONS or kind in TOLD_OF:
         return bool(vehicle == body.ID)
@@ -242,5 +244,5 @@ def _concerns(body: Any, vehicle: int) -> bool:
 
 
 def frame_payload(body: Any) -> bytes:
-    """An object as AMASE sends it: its address, and 0 for entity and service."""
+    """An object as AMASE sends it: its address, with entity and service 0."""
     return wire.enclose(body.all_names[0], lmcp.binary.pack(body)).pack()

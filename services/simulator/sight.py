@@ -1,7 +1,8 @@
-"""What is seen over terrain: where a ray meets it, and whether it hides one place from another.
+"""Visibility over terrain: where a ray meets the ground, and whether terrain hides one place from another.
 
-Rays are straight over a flat earth, as those of footprints without terrain, and end at the horizon of the sea. Along a
-ray the ground is looked at no further apart than half of the finest posts' spacing (or a 20,000th of its way).
+Rays are straight over a flat earth, like those of footprints without terrain, and end at the horizon of the
+sea. Along a ray the ground is sampled at most half of the finest post spacing apart (or a 20,000th of its
+length).
 """
 
 from __future__ import annotations
@@ -18,13 +19,13 @@ from cratous.services.simulator.tiles import HIGHEST_M
 MOST_SAMPLES = 20_000
 BLOCK = 256
 NEAR_M = 0.01
-"""So near to where a ray meets the ground the halving ends, along the ground."""
+"""Accuracy of the intersection with the ground, along the ground [m]."""
 GRAZING_M = 0.1
-"""So much of the ground above a line of sight does not hide."""
+"""Ground that exceeds a line of sight by less than this does not hide [m]."""
 
 
 class _Line:
-    """From a place on, north and east parts of a unit vector; falling: by how much it sinks a metre."""
+    """A ray from a place in a horizontal unit direction (north, east). falling: descent per metre."""
 
     def __init__(
         self, terrain: Terrain, m: Motion, way: tuple[float, float], falling: float
@@ -46,7 +47,7 @@ class _Line:
     def first_below_m(
         self, begin_m: float, end_m: float, by_m: float
     ) -> tuple[float, float] | None:
-        """Between which two looks it goes below the ground by more than so much; None if it does not."""
+        """The two samples between which it goes below the ground by more than by_m [m]; None if it does not."""
         step = max(self.terrain.step_m, (end_m - begin_m) / MOST_SAMPLES)
         before = begin_m
         while before < end_m:
@@ -60,7 +61,7 @@ class _Line:
 
 
 def meets(terrain: Terrain, m: Motion, ray: tuple[float, float, float]) -> Place:
-    """Where a ray (north, east, down) first meets the terrain, or where it passes above the horizon's place."""
+    """Where a ray (north, east, down) first meets the terrain, or the ground at the horizon if it does not."""
     north, east, below = ray
     level = hypot(north, east)
     here = terrain.elevation(m.lat_rad, m.lon_rad)
@@ -69,7 +70,7 @@ def meets(terrain: Terrain, m: Motion, ray: tuple[float, float, float]) -> Place
         return m.lat_rad, m.lon_rad, here
     line = _Line(terrain, m, (north / level, east / level), below / level)
     far = horizon_m(m.alt_m - min(0.0, here))
-    # nothing is to be met where it is higher than any ground
+    # nothing can be met above the highest ground
     begin = max(0.0, (m.alt_m - HIGHEST_M) / line.falling) if line.falling > 0 else 0.0
     found = None
     if begin < far and (line.falling > 0 or m.alt_m <= HIGHEST_M):
@@ -85,7 +86,7 @@ def meets(terrain: Terrain, m: Motion, ray: tuple[float, float, float]) -> Place
 
 
 def in_sight(terrain: Terrain, m: Motion, place: Place) -> bool:
-    """Whether no terrain is between a vehicle and a place."""
+    """Whether no terrain lies between a vehicle and a place."""
     north = (place[0] - m.lat_rad) * EQUATOR_M
     east = bound_pi(place[1] - m.lon_rad) * EQUATOR_M * cos(m.lat_rad)
     away = hypot(north, east)

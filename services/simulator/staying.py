@@ -1,4 +1,4 @@
-"""Commands that a vehicle gives itself: to stay about a place, or to do what follows when it has lost what it tracks."""
+"""Commands that a vehicle gives itself: staying at a place, or reacting to the loss of what it tracks."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cratous.services.simulator.tracking import Track
 
 
 def stay(key: int, command: int, one: Aircraft | Driver, at: Any) -> Any:
-    """The command to stay about a place for ever; of who flies at the altitude and speed that it has."""
+    """The command to stay at a place indefinitely; an aircraft circles at its present altitude and speed."""
     more: dict[str, Any] = {"Location": at}
     if isinstance(one, Aircraft):
         speed = max(one.motion.airspeed_m_s, one.guidance.command.speed_m_s)
@@ -22,7 +22,9 @@ def stay(key: int, command: int, one: Aircraft | Driver, at: Any) -> Any:
 
 
 def fall_back(key: int, track: Track, time_s: float, one: Aircraft | Driver) -> tuple[str, Any]:
-    """What is said of a vehicle that has lost what it tracks, and its command; None if it was told otherwise since."""
+    """Report and command of a vehicle that has lost what it tracks; command None if it was commanded
+    otherwise since.
+    """
     said = f"vehicle {key} has lost entity {track.entity} at {time_s:.1f} s"
     if track.return_to is None:
         return f"{said}: it does what it was told since", None

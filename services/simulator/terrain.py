@@ -1,7 +1,7 @@
-"""The height of the ground, from tiles of one degree: between their posts as the four about a place have it.
+"""Ground height from one-degree tiles: bilinear between the four surrounding posts.
 
-Files are looked at when the terrain is made (header and size), and read when a place in them is first asked for; a few
-tiles are kept. Outside of all tiles the ground is at mean sea level.
+Header and size of files are checked at construction; data are read on first use, and a few tiles are kept.
+Outside all tiles the ground is at mean sea level.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from cratous.services.simulator.tiles import SUFFIXES, VOID, TileFile, heights_o
 from cratous.spec.errors import BadInput
 
 KEPT = 16
-"""So many tiles are in memory at once, at most: 26 MB each of the finest."""
+"""Most tiles in memory: 26 MB each for the finest."""
 MOST_FILES = 100_000
 EDGE_DEG = 1e-9
-"""So near an edge a place is in the tile on either side."""
+"""Within this distance of an edge, a place is in the tiles on both sides [deg]."""
 Cell = tuple[int, int]
 Heights = np.ndarray[Any, np.dtype[np.int16]]
 Numbers = np.ndarray[Any, np.dtype[np.float64]]
 
 
 class Terrain:
-    """See the module. said: what is to be told of it, once each; step_m: half of the spacing of the finest posts."""
+    """See the module. said: warnings, each once; step_m: half of the finest post spacing [m]."""
 
     def __init__(self, paths: Iterable[Path]) -> None:
         self.said: list[str] = []
@@ -42,7 +42,7 @@ class Terrain:
             for file in _files(path):
                 tile = tile_file(file)
                 known = self._files.setdefault((tile.south, tile.west), tile)
-                # of two for the same degree the finer one counts
+                # of two tiles for the same degree the finer one counts
                 if tile.rows * tile.columns > known.rows * known.columns:
                     self._files[tile.south, tile.west] = tile
         finest = max((t.rows for t in self._files.values()), default=2)
@@ -52,7 +52,7 @@ class Terrain:
         return len(self._files)
 
     def elevation(self, lat_rad: float, lon_rad: float) -> float:
-        """Height of the ground at a place [m MSL]; BadInput if its tile turns out to be corrupt."""
+        """Ground height at a place [m MSL]; BadInput if its tile turns out to be corrupt."""
         lat, lon = degrees(lat_rad), (degrees(lon_rad) + 180) % 360 - 180
         south, west = floor(lat), floor(lon)
         found = self._last
@@ -83,7 +83,7 @@ class Terrain:
         return 0.0
 
     def elevations(self, lat_rad: Numbers, lon_rad: Numbers) -> Numbers:
-        """Heights of the ground at places [m MSL], as `elevation` has each but on an outer edge of all tiles."""
+        """Ground heights at places [m MSL], like `elevation` for each except on an outer edge of all tiles."""
         lats, lons = np.degrees(lat_rad), (np.degrees(lon_rad) + 180) % 360 - 180
         souths, wests = np.floor(lats), np.floor(lons)
         found = np.zeros(len(lats))
@@ -123,12 +123,12 @@ class Terrain:
         if empty.any():
             first = int(empty.argmax())
             self._say_empty(float(lats[first]), float(lons[first]))
-        # without a void the weights are 1 in all but for rounding
+        # without voids the weights sum to 1 up to rounding
         parts = np.where(np.abs(share - 1) < 1e-12, 1.0, share)
         return np.asarray(np.divide(total, parts, out=np.zeros(len(lats)), where=~empty))
 
     def _at(self, lat: float, lon: float, south: int, west: int) -> tuple[Cell, Heights] | None:
-        """The tile of a place, or one that has it on its edge."""
+        """The tile of a place, or one with the place on its edge."""
         souths = (south, south - 1) if lat - south < EDGE_DEG else (south,)
         wests = (west, (west + 179) % 360 - 180) if lon - west < EDGE_DEG else (west,)
         if south + 1 - lat < EDGE_DEG:
@@ -143,7 +143,7 @@ class Terrain:
         return None
 
     def _tile(self, cell: Cell) -> Heights | None:
-        """The heights of a tile, read if need be; the one that was used longest ago makes room."""
+        """The heights of a tile, read if necessary; the least recently used tile is dropped."""
         heights = self._kept.pop(cell, None)
         if heights is None:
             file = self._files.get(cell)
@@ -178,7 +178,7 @@ class Terrain:
 
 
 def _files(path: Path) -> Iterator[Path]:
-    """A file, or the tiles of a folder and its folders, by name; BadInput where there is none."""
+    """A file, or the tiles in a folder and its subfolders, by name; BadInput if there are none."""
     if not path.is_dir():
         if path.suffix.lower() not in SUFFIXES:
             expected = f"one of {', '.join(SUFFIXES)}, or a folder of them"

@@ -1,7 +1,7 @@
-"""Tiles of terrain: DTED (.dt0, .dt1, .dt2; MIL-PRF-89020B) and SRTM (.hgt), one degree by one each.
+"""Terrain tiles: DTED (.dt0, .dt1, .dt2; MIL-PRF-89020B) and SRTM (.hgt), one degree by one degree each.
 
-Both are grids of posts with a height in whole metres, the edges of the degree among them. A file is checked as it is
-read: name or header, size, and of DTED each record by its sentinel, its place and its checksum.
+Both are grids of posts with integer heights in metres, including the edges of the degree. A file is checked
+as it is read: name or header, size, and for DTED the sentinel, position and checksum of each record.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ SUFFIXES = (".dt0", ".dt1", ".dt2", ".hgt")
 VOID = -32768
 """A post without a height."""
 LOWEST_M, HIGHEST_M = -12_000, 9_000
-"""Heights that DTED may have."""
+"""Heights permitted in DTED [m]."""
 MOST_POSTS = 3601
 HEADERS_BYTES = 80 + 648 + 2700
 LARGEST = HEADERS_BYTES + MOST_POSTS * (12 + 2 * MOST_POSTS)
-"""Of a tile [bytes]."""
+"""Size limit of a tile [bytes]."""
 SENTINEL = 0xAA
 
 
 class TileFile(NamedTuple):
-    """Where a tile is: file, south-west corner [deg], and how many posts it has to the north and to the east."""
+    """A tile: file, south-west corner [deg], and number of posts to the north and to the east."""
 
     path: Path
     south: int
@@ -39,10 +39,10 @@ class TileFile(NamedTuple):
 
 
 def tile_file(path: Path) -> TileFile:
-    """A file, by its name or header and its size; BadInput for one that is no tile."""
+    """A tile, from its name or header and its size; BadInput for an invalid file."""
     try:
         found = path.stat()
-        if not S_ISREG(found.st_mode):  # from a pipe it might wait for ever
+        if not S_ISREG(found.st_mode):  # reading a pipe might block forever
             raise BadInput("not a file", where=str(path), expected="a tile of terrain")
         with path.open("rb") as file:
             head = file.read(80)
@@ -99,9 +99,9 @@ def _in_bounds(tile: TileFile) -> TileFile:
 
 
 def heights_of(tile: TileFile) -> np.ndarray[Any, np.dtype[np.int16]]:
-    """Heights of the posts [m MSL], VOID where there is none: rows from the south, columns from the west.
+    """Heights of the posts [m MSL], VOID where missing: rows from the south, columns from the west.
 
-    BadInput with the place for a file that is not what it was, or is corrupt.
+    BadInput with the place for a file that has changed since, or is corrupt.
     """
     data = bytes_of(tile.path, LARGEST, "a tile of terrain")
     again = tile_file(tile.path)

@@ -1,4 +1,4 @@
-"""Who tracks whom: gimbals that stare at where an entity was perceived last, and what is done when it is lost."""
+"""Entity tracking: gimbals that stare at an entity's last perceived position, and its loss."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ from cratous.bridge import lmcp
 from cratous.services.simulator import payload
 
 LOST_S = 2.0
-"""What is not perceived for so long is lost: four perceptions are missed."""
+"""An entity not perceived for this long is lost [s]: four perceptions are missed."""
 
 
 class Track(NamedTuple):
-    """entity; return_to: number of the waypoint to go to when it is lost, 0: none, None: its vehicle has been told
-    something else since; at: where it was perceived last, when [s]; lost: it is not perceived any more."""
+    """entity: its id; return_to: number of the waypoint to go to on loss, 0: none, None: the vehicle got
+    another command since; at: last perceived position, seen_s: when [s]; lost: whether it is lost.
+    """
 
     entity: int
     return_to: int | None
@@ -30,7 +31,9 @@ class Tracks:
         self._held: dict[tuple[int, int], Track] = {}
 
     def act(self, key: int, mounted: tuple[payload.Gimbal, ...], body: Any) -> bool:
-        """Begin a track by a TrackEntityAction, or end one by an action for its gimbal; whether it was the first."""
+        """Begin a track by a TrackEntityAction, or end one by another action for its gimbal; returns whether
+        a track began.
+        """
         kind = type(body).__name__
         if kind != "TrackEntityAction":
             if kind in ("GimbalAngleAction", "GimbalStareAction", "GimbalScanAction"):
@@ -43,19 +46,20 @@ class Tracks:
         return True
 
     def steered(self, key: int) -> None:
-        """A vehicle was commanded to go somewhere: it does, even if it loses what it tracks."""
+        """A vehicle was directed elsewhere: it continues even if it loses what it tracks."""
         for held, track in self._held.items():
             if held[0] == key:
                 self._held[held] = track._replace(return_to=None)
 
     def removed(self, key: int) -> None:
-        """A vehicle is no longer there."""
+        """Drop the tracks of a removed vehicle."""
         for held in [one for one in self._held if one[0] == key]:
             del self._held[held]
 
     def perceived(self, body: Any, time_s: float) -> Iterator[tuple[int, Any]]:
-        """Process an EntityPerception at time_s [s]: update its tracks; by vehicle the gimbal command that points at
-        it."""
+        """Process an EntityPerception at time_s [s]: update its tracks; yields (vehicle, gimbal command that
+        points at it).
+        """
         for held, track in self._held.items():
             if track.entity and track.entity == body.PerceivedEntityID:
                 self._held[held] = track._replace(at=body.Location, seen_s=time_s, lost=False)
@@ -64,7 +68,7 @@ class Tracks:
                 yield key, stare
 
     def lost(self, time_s: float) -> Iterator[tuple[int, Track]]:
-        """What has been lost since it was asked last, by vehicle."""
+        """Tracks lost since the last call, by vehicle."""
         for held, track in self._held.items():
             if track.at is not None and not track.lost and time_s - track.seen_s > LOST_S:
                 self._held[held] = track._replace(lost=True)

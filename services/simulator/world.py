@@ -1,7 +1,7 @@
-"""A scenario as it runs: the clock, the events by time, all vehicles, and what they tell.
+"""A running scenario: clock, timed events, all vehicles, and their messages.
 
-The clock ticks 100 times a second. A step of a thirtieth is done on the tick by which it is due, as
-AMASE does it: what is told, then events, then motion. `World.tick` gives the messages of one tick, in order; nothing in it
+The clock ticks 100 times a second. A step of 1/30 s is executed on the tick by which it is due, as in AMASE:
+messages, then events, then motion. `World.tick` returns the messages of one tick, in order; nothing in it
 depends on the machine's time.
 """
 
@@ -44,7 +44,7 @@ TICK_S = 0.01
 STEP_S = 1 / 30
 TELL_S = 0.5
 GROUND_M = 0.0
-"""Without terrain the ground is at mean sea level, as it is in AMASE without elevation data."""
+"""Without terrain the ground is at mean sea level [m], as in AMASE without elevation data."""
 MOST_VEHICLES = 1000
 
 
@@ -57,12 +57,12 @@ class Event(NamedTuple):
 
 
 class World:
-    """See the module. duration_s: how long the scenario lasts, start_s: at which time it begins: what is
-    due before happens then. compatible: AMASE's defects are kept.
+    """See the module.
 
-    terrain: the ground, at mean sea level without one. sensed: by which sensors aircraft know themselves and others; without
-    them states are the true ones. unheard: kinds of messages that were told to
-    others, but that mean nothing here, counted.
+    duration_s: of the scenario; start_s: its start time, earlier events occur then. compatible: AMASE's
+    defects are reproduced. terrain: the ground, at mean sea level without one. sensed: sensors by which
+    aircraft know themselves and others; without them states are true. unheard: counts of relayed message
+    kinds that have no effect here.
     """
 
     def __init__(
@@ -80,7 +80,7 @@ class World:
         self.ends_s = start_s + duration_s
         self.compatible = compatible
         self.unheard: Counter[str] = Counter()
-        # events of the same time happen in the order of the file
+        # events at the same time occur in the order of the file
         self._events = deque(sorted(events, key=lambda event: event.time_s))
         self._airframes: dict[int, Airframe] = {}
         self._mounted: dict[int, tuple[payload.Gimbal, ...]] = {}
@@ -92,12 +92,12 @@ class World:
         self._said: list[str] = []
         self._grounded: set[int] = set()
         self.wind_m_s = 0.0, 0.0
-        self._part = 0.0  # of a step that is due already
+        self._part = 0.0  # fraction of a step already due
         self._told_s = start_s
 
     @property
     def time_ms(self) -> int:
-        """Time of the scenario [ms], as messages tell it."""
+        """Scenario time in messages [ms]."""
         return int(self.time_s * 1000)
 
     @property
@@ -106,11 +106,11 @@ class World:
         return self.time_s >= self.ends_s
 
     def begin(self) -> list[Any]:
-        """What happens at the start, done before the clock goes, as AMASE does it; those events."""
+        """Process the events at the start before the clock runs, as AMASE does; returns them."""
         return self._happen()
 
     def _happen(self) -> list[Any]:
-        """The events that are due by now."""
+        """Process and return the events due by now."""
         told = []
         while self._events and self._events[0].time_s <= self.time_s:
             event = self._events.popleft()
@@ -119,7 +119,9 @@ class World:
         return told
 
     def tick(self) -> list[Any]:
-        """Advance by one tick. Returns the objects to send: events at once, states and SessionStatus twice a second."""
+        """Advance by one tick. Returns the objects to send: events at once, states and SessionStatus twice a
+        second.
+        """
         self.time_s += TICK_S
         told: list[Any] = []
         due = TICK_S / STEP_S + self._part
@@ -154,7 +156,7 @@ class World:
         self.drivers.step(STEP_S)
 
     def _ground_m(self, key: int, m: Motion) -> float:
-        """Height of the terrain below an aircraft; it is said once that one has met it, and stands."""
+        """Terrain height below an aircraft [m]; ground contact, which stops the aircraft, is reported once."""
         ground_m = (
             GROUND_M if self.terrain is None else self.terrain.elevation(m.lat_rad, m.lon_rad)
         )
@@ -169,7 +171,7 @@ class World:
         return ground_m
 
     def status(self, state_name: str, rate: float = 1.0) -> Any:
-        """The SessionStatus of now."""
+        """The present SessionStatus."""
         return lmcp.new(
             "SessionStatus",
             State=state_name,
@@ -178,7 +180,7 @@ class World:
         )
 
     def states(self) -> list[Any]:
-        """The states of all vehicles, as they are now."""
+        """The present states of all vehicles."""
         told = []
         for key, one in self.aircraft.items():
             mounted = self._mounted.get(key, ())
@@ -190,14 +192,14 @@ class World:
         return [*told, *self.drivers.states(self.time_ms, GROUND_M)]
 
     def _sense(self, sensed: Sensed) -> list[Any]:
-        """What has come of the sensors of all aircraft, which trackers hear of."""
+        """The sensor perceptions that have arrived, also passed to the trackers."""
         told = sensed.step(self.time_ms, {key: one.motion for key, one in self.aircraft.items()})
         for body in told:
             self._perceived(body)
         return told
 
     def _perceive(self) -> list[Any]:
-        """What is perceived now, which trackers hear of; AMASE tells nothing of it."""
+        """The present camera perceptions, also passed to the trackers; AMASE has none."""
         told: list[Any] = []
         if not self.compatible:
             flying = (
@@ -216,7 +218,7 @@ class World:
         return told
 
     def _perceived(self, body: Any) -> bool:
-        """Have the gimbals that track an entity stare at where it is; whether one does."""
+        """Point the gimbals that track an entity at its position; returns whether one does."""
         stares = list(self._tracks.perceived(body, self.time_s))
         for key, stare in stares:
             if key in self.drivers.there:
@@ -226,7 +228,7 @@ class World:
         return bool(stares)
 
     def warnings(self) -> list[str]:
-        """What vehicles were asked for and do not do, since it was asked last; each is said once."""
+        """Warnings since the last call about commands that were not executed as given; each is issued once."""
         said = [*self._said, *self.drivers.said]
         self._said, self.drivers.said = [], []
         if self.terrain is not None:
@@ -235,7 +237,7 @@ class World:
         return said
 
     def receive(self, body: Any, where: str = "") -> None:
-        """Take a message, of the scenario or from outside; BadInput if it cannot be done."""
+        """Process a message, of the scenario or from outside; BadInput if it cannot be executed."""
         kind = type(body).__name__
         present(body, where)
         if kind == "AirVehicleConfiguration" or kind in STATES:
@@ -253,7 +255,7 @@ class World:
                 )
             body = self._above_sea(body)
             one = aircraft_of(body, airframe, self.aircraft.get(body.ID), where)
-            if self.terrain is not None:  # a corrupt tile is refused with who brings it up
+            if self.terrain is not None:  # a corrupt tile is refused with its state
                 self.terrain.elevation(one.motion.lat_rad, one.motion.lon_rad)
             self.aircraft[body.ID] = one
             self._mounted[body.ID] = payload.placed(self._mounted[body.ID], body)
@@ -306,7 +308,7 @@ class World:
             self._mounted[body.ID] = payload.gimbals_of(body, where)
 
     def _check(self, body: Any, where: str) -> None:
-        """BadInput for a command that cannot be done."""
+        """BadInput for a command that cannot be executed."""
         if type(body).__name__ == "FollowPathCommand":
             check_times(body, where)
         check_command(body, where, flies=body.VehicleID not in self.drivers.there)
@@ -321,7 +323,7 @@ class World:
             )
 
     def _above_sea(self, body: Any) -> Any:
-        """A message with altitudes above mean sea level; AMASE takes all for that."""
+        """A message with altitudes above mean sea level; AMASE treats all altitudes as such."""
         if self.terrain is None or self.compatible:
             return body
         key = getattr(body, "VehicleID", 0)
@@ -342,14 +344,16 @@ class World:
             self._obey(body)
 
     def _follows(self, body: Any) -> bool:
-        """Whether an object is a path for who takes one: all but AMASE's aircraft."""
+        """Whether an object is a path for a vehicle that follows paths: all except aircraft in compatibility
+        mode.
+        """
         if type(body).__name__ != "FollowPathCommand":
             return False
         flies = body.VehicleID in self.aircraft and not self.compatible
         return flies or body.VehicleID in self.drivers.there
 
     def _keep_to_times(self) -> None:
-        """Paths begin and end when they are due."""
+        """Begin and end the paths that are due."""
         for body, begins in self._paths.due(self.time_ms):
             key = body.VehicleID
             one = self._one(key)
@@ -363,7 +367,7 @@ class World:
                 self._obey(stay(key, body.CommandID, one, at))
 
     def _one(self, key: int) -> Aircraft | Driver:
-        """A vehicle that is there."""
+        """A present vehicle."""
         return self.aircraft[key] if key in self.aircraft else self.drivers.there[key]
 
     def _obey(self, body: Any, told: Mapping[int, int] = NOTHING) -> None:
@@ -376,7 +380,7 @@ class World:
         self.aircraft[body.VehicleID] = one._replace(guidance=one.guidance._replace(fired=()))
 
     def _act(self, key: int, body: Any) -> None:
-        """An action for what is mounted on a vehicle."""
+        """Execute an action for a vehicle's payloads."""
         mounted = self._mounted.get(key, ())
         if self._tracks.act(key, mounted, body):
             return

@@ -1,1 +1,1 @@
-"""Before anything runs: the ledger gate, quickly, and the compilation of kernels."""
+"""Program start: the fast ledger gate, and the compilation of kernels."""

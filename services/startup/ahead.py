@@ -1,9 +1,9 @@
-"""A first plan does not compile one loop after the other: processes of their own compile beside the gate.
+"""Parallel compilation for the first plan: separate processes compile while the gate runs.
 
     python -m cratous.services.startup.ahead routes
 
-Nothing is decided here: each process makes machine code of the text that the kernels' source gives, into the
-cache, as the planner itself would a little later. If one fails or is late, the planner compiles as ever.
+Nothing is decided here: each process compiles the kernels' generated source into the cache, as the planner
+itself would a little later. If one fails or is late, the planner compiles as usual.
 """
 
 from __future__ import annotations
@@ -45,16 +45,18 @@ from cratous.spec.assignment.search import TIME
 from cratous.spec.mission import AREAS, Mission
 
 MANY_TASKS = 5
-"""A mission of so many tasks has ways enough that CPython does not search them."""
+"""With at least this many tasks, a mission has too many routes for CPython."""
 SQUARES = "squares"
-"""Machine code of `SQUARE_LOOPS`, which any mission with an area uses."""
+"""Machine code of `SQUARE_LOOPS`, used by any mission with an area."""
 SQUARE_LOOPS = (grid_squares, mark_seen)
 WAIT_S = 120.0
-"""A process that compiles is not waited for any longer."""
+"""Longest wait for a compiling process [s]."""
+BEHIND = 10
+"""Lower priority (`nice`) of compiling what may not be needed."""
 
 
 def begin(missions: Iterable[Mission]) -> None:
-    """Have compiled what the plans of these missions need, if that is much and there is a core for it."""
+    """Start compiling what the plans of these missions need, if they are large and another core is available."""
     known = [*missions]
     large = [one for one in known if len(one.tasks) >= MANY_TASKS]
     if _cores() == 1:
@@ -66,8 +68,8 @@ def begin(missions: Iterable[Mission]) -> None:
 
 
 def _begin_squares() -> None:
-    """Have compiled what any area's squares need."""
-    if all(map(is_kept, SQUARE_LOOPS)):
+    """Start compiling what the squares of any area need."""
+    if all(is_kept(loop) for loop in SQUARE_LOOPS):
         return
     ended = _waiter(_start([__name__, SQUARES]), WAIT_S)
     for loop in SQUARE_LOOPS:
@@ -75,23 +77,33 @@ def _begin_squares() -> None:
 
 
 def begin_all(around: bool = False) -> None:
-    """Have compiled what every larger plan needs, unless it is kept. around: many ways will lead around zones."""
+    """Start compiling what every larger plan needs, unless it is cached. around: many routes are expected to
+    lead around zones.
+    """
     for name in (coming.AROUND if around else coming.ROUTES, coming.ASSIGNMENT):
         if not is_kept(LOOPS[name]):
-            coming.expect(name, _waiter(_start([__name__, name]), WAIT_S))
+            process = _start([__name__, name])
+            if name != coming.ASSIGNMENT:  # for most missions CPython finds the routes sooner
+                _stand_back(process, BEHIND)
+            coming.expect(name, _waiter(process, WAIT_S))
 
 
 def beside(module: list[str], stands_back: int) -> None:
-    """Have a module of ours compile behind what this process does, which uses it once that has ended."""
+    """Have one of our modules compile at lower priority than this process, which uses the results later."""
     process = _start(module)
-    with contextlib.suppress(OSError):  # it has ended already
-        own = os.getpriority(os.PRIO_PROCESS, 0)
-        os.setpriority(os.PRIO_PROCESS, process.pid, own + stands_back)
+    _stand_back(process, stands_back)
     threading.Thread(target=_waiter(process, None), daemon=True).start()
 
 
+def _stand_back(process: subprocess.Popen[bytes], by: int) -> None:
+    """Lower a process's priority relative to this one (`nice`)."""
+    with contextlib.suppress(OSError):  # it has ended already
+        own = os.getpriority(os.PRIO_PROCESS, 0)
+        os.setpriority(os.PRIO_PROCESS, process.pid, own + by)
+
+
 def _cores() -> int:
-    """Those that this process may use."""
+    """Number of cores available to this process."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -102,7 +114,7 @@ def _start(module: list[str]) -> subprocess.Popen[bytes]:
     place = str(Path(cratous.__file__).absolute().parents[1])
     paths = [*filter(None, [os.environ.get("PYTHONPATH")]), place]
     process = subprocess.Popen(
-        # no module of the present folder comes first
+        # modules in the working directory must not take precedence
         [sys.executable, "-P", "-m", *module],
         env={
             **without_keys(os.environ), "PYTHONPATH": os.pathsep.join(paths), ENDS_WITH: str(os.getpid()),
@@ -117,25 +129,24 @@ def _waiter(process: subprocess.Popen[bytes], limit_s: float | None) -> Callable
     def wait() -> None:
         with contextlib.suppress(subprocess.TimeoutExpired):
             process.wait(limit_s)
-        is_kept.cache_clear()  # what was not kept may be now
 
     return wait
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
-    """What nobody has waited for is not needed any more; it ends by itself, and tidies up."""
+    """End a process that nothing has waited for; it terminates cleanly."""
     if process.poll() is None:
         process.terminate()
 
 
 def make_routes() -> None:
-    """Direct routes, of no poses: what is compiled depends on the types alone."""
+    """Compile direct routes, on empty arrays: compilation depends on the types only."""
     none = np.empty((0, 4))
     machine(direct_many)(none, none, Turning(1.0, math.inf, 1.0), table(()), _no_routes())
 
 
 def make_around() -> None:
-    """Routes around zones, of no poses."""
+    """Compile routes around zones, on empty arrays."""
     none, rings = np.empty((0, 4)), np.empty((0, 0, 2))
     nothing = Rings(rings, np.empty(0, np.int64), np.empty((0, 0, 0), np.int8))
     machine(route_many)(none, none, Turning(1.0, math.inf, 1.0), table(()), nothing, _no_routes())
@@ -147,14 +158,14 @@ def _no_routes() -> Routed:
 
 
 def make_squares() -> None:
-    """The squares of an area, and those that footprints see, of no area."""
+    """Compile the squares of an area and their visibility in footprints, on empty arrays."""
     none = np.empty((0, 4))
     machine(grid_squares)(none, 0.0, 0.0, 0, 0, 1.0, np.empty((0, 2)))
     machine(mark_seen)(np.empty((0, 2)), 0.5, np.empty((0, 4, 2)), np.empty(0, np.bool_))
 
 
 def make_assignment() -> None:
-    """Bounds, tables and the improvement at random of a little problem."""
+    """Compile bounds, tables and annealing, on a small problem."""
     instance = simple_instance(TIME)
     _, moves = greedy(instance)
     assert moves is not None
@@ -173,9 +184,9 @@ LOOPS: dict[str, Callable[..., object]] = {
     coming.AROUND: route_many,
     coming.ASSIGNMENT: anneal,
 }
-"""What is in the cache once its maker has ended well."""
+"""The loop that is in the cache once its maker has succeeded."""
 
 if __name__ == "__main__":
     end_with_parent()
-    gc.disable()  # the compiler leaves little garbage, and looking for it takes a tenth of its time
+    gc.disable()  # the compiler leaves little garbage, and collecting it takes a tenth of its time
     MAKERS[sys.argv[1]]()

@@ -1,4 +1,5 @@
-"""Small missions that stand for larger ones: a way around a zone, lanes with turns, footprints along a line.
+"""Small missions that represent larger ones: a route around a zone, lanes with turns, footprints along a
+line.
 
 Together they call every loop that planning compiles.
 """
@@ -44,7 +45,7 @@ TASKS = (
 
 
 def mission(tasks: Sequence[str], zone: str = _ZONE) -> Mission:
-    """One vehicle, a zone, which may be none, and these tasks, each as one of `TASKS`."""
+    """A mission of one vehicle, an optional zone, and these tasks, each as in `TASKS`."""
     lines = (f"  - {{id: {number}, {task}}}\n" for number, task in enumerate(tasks, 1))
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "mission.yaml"

@@ -1,8 +1,8 @@
-"""Old machine code leaves the cache: folders of compiled kernels that nothing has used for days, and compiled templates.
+"""Cache cleaning: compiled kernels that have not been used for days, and old compiled templates.
 
-Only what is surely ours is removed: a folder of the private cache whose name is the hash of the text
-in it, files of the gate's keys, and files named as jinja2 names what it has compiled, none by way of a link.
-What is removed is made anew when it is needed.
+Only files that are certainly ours are removed: folders of the private cache whose name is the hash of the
+text in them, files of the gate's keys, and files named like jinja2's compiled templates; links are never
+followed. Everything removed is recreated on demand.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ DAY_S = 86_400.0
 
 
 def prune(days: float) -> tuple[int, int]:
-    """Remove compiled kernels and keys of the gate unused for so many days, and templates compiled so long ago.
+    """Remove compiled kernels and gate keys unused for this many days, and templates compiled that long ago.
 
-    How many, and their bytes.
+    Returns the number of removed entries and their bytes.
     """
     before_s = time.time() - days * DAY_S
     cache = private_cache()
@@ -46,7 +46,7 @@ def _is_old_file(file: Path, before_s: float) -> bool:
 
 
 def _is_ours(folder: Path) -> bool:
-    """A folder, no link, with the text that its name is the hash of, and nothing of others beside it."""
+    """Whether it is a folder, not a link, with the text whose hash is its name, and without other files."""
     if not stat.S_ISDIR(folder.lstat().st_mode):
         return False
     source = folder / f"{folder.name}.py"
@@ -56,7 +56,7 @@ def _is_ours(folder: Path) -> bool:
     except (OSError, UnicodeDecodeError):
         return False
     beside = [f for f in folder.iterdir() if f.name not in (source.name, "__pycache__")]
-    # what a write that was cut off has left
+    # left by an interrupted write
     return all(f.name.startswith(f"{folder.name}.") and f.is_file() for f in beside)
 
 

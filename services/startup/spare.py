@@ -1,6 +1,7 @@
-"""What a process that has nothing to do yet does for its first request: reads compiled loops, and plans a little.
+"""Work of an idle process before its first request: loading compiled loops, and small plans.
 
-Each piece is short, so that a request which comes meanwhile waits for no more than it would have taken itself.
+Each piece is short, so that a request arriving meanwhile waits no longer than it would otherwise have spent
+on that work.
 """
 
 from __future__ import annotations
@@ -28,17 +29,19 @@ _LOOPS: tuple[Callable[..., Any], ...] = (
 
 
 _FEW = {"PointSearchTask", "ImpactPointSearchTask", "MustFlyTask", "LoiterTask", "WatchTask"}
-"""Kinds of which one task among no zones needs no machine code."""
+"""Kinds of which a single task without zones needs no machine code."""
 _SORTS = ("task", "zone", "region", "configuration", "state", "point", "line", "area")
 WITHOUT_TASKS_S = 10.0
-"""Where nobody tells a task for so long, everything is read."""
+"""Without any task for this long, everything is loaded [s]."""
 
 
 def pieces(contexts: Contexts | None = None) -> Iterator[bool]:
-    """Each piece is done when the next one is asked for: True; False where there is nothing to do for now.
+    """Each piece is executed when the next one is requested. Yields True for a piece, False if there is
+    nothing to do.
 
-    What has been told says what is to be done: options of the tasks that are known, for the vehicles that are known, and
-    machine code if they need it, which takes as much memory as all the rest. contexts: who knows; None: nobody does.
+    What is known so far determines the work: options of the known tasks for the known vehicles, and machine
+    code if they need it, which takes as much memory as everything else. contexts: what is known; None:
+    nothing.
     """
     source = None if contexts is None else contexts.source
     if contexts is None or not isinstance(source, MessageSource):
@@ -57,7 +60,7 @@ def pieces(contexts: Contexts | None = None) -> Iterator[bool]:
 
 
 class Told:
-    """What the messages have told so far, and what is made of it."""
+    """What messages have reported so far, and what was computed from it."""
 
     def __init__(self, contexts: Contexts, source: MessageSource) -> None:
         self._contexts, self._source = contexts, source
@@ -80,7 +83,9 @@ class Told:
         )
 
     def options(self, done: bool = False) -> Iterator[bool]:
-        """Those of the tasks that are known, one task at a time, and ways between them, if more is known than was; `done`."""
+        """Compute options of the known tasks, one task at a time, and routes between them, if more is known
+        than before; finally yields `done`.
+        """
         counts = self._counts()
         inputs = None if counts == self._made else self._source.foreseen()
         self._made = counts
@@ -94,9 +99,9 @@ class Told:
 
 
 def _read() -> Iterator[bool]:
-    """Every compiled loop, and small missions."""
+    """Load every compiled loop, and plan small missions."""
     for loop in _LOOPS:
-        swift(loop, SOON + 1)  # as if it had done much: it is read, if it is kept
+        swift(loop, SOON + 1)  # counted as heavily used: loaded if it is cached
         yield True
     for chosen in (*((task,) for task in TASKS), TASKS):
         plan(chosen)

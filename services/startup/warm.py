@@ -1,8 +1,8 @@
-"""What `cratous warm` does: compile the kernels that the runtime uses on arrays, each step with a name.
+"""The work of `cratous warm`: compiling the kernels that the runtime uses on arrays, in named steps.
 
-Part of the set-up, so that no mission waits for the compiler. `ensure_planning` asks for
-it where a service that has to answer in time begins in a cache that has not been filled: in
-processes of their own, because the compiler takes a minute and more memory than planning itself.
+It is part of the set-up, so that no mission waits for the compiler. `ensure_planning` requests it where a
+service with response times starts with an empty cache: in separate processes, since the compiler takes a
+minute and more memory than planning itself.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ own 0 0 5000 0 150 0 0
 north 0.3 4 5300 180 180 -150 0
 east 4 2.5 5100 270 200 0 0
 """
-"""Two intruders in conflict: alerts, bands in all dimensions, reasons, and whether there is a way out."""
+"""Two intruders in conflict: alerts, bands in all dimensions, reasons, and the search for a resolution."""
 
 
 def warm_kernels() -> None:
-    """Well clear and orientation over arrays."""
+    """Compile well clear and orientation over arrays."""
     zero = 0.0
     state = (100.0, zero, -10.0, zero)
     compiled(horizontal_violation)(*state, 50.0, 10.0)
@@ -52,7 +52,7 @@ def warm_kernels() -> None:
 
 
 def warm_planning() -> None:
-    """What planning a mission calls; remembered as done, for `ensure_planning`."""
+    """Compile what planning a mission calls, and record that for `ensure_planning`."""
     with at_once():
         little_missions.plan(little_missions.TASKS)
     _mark().parent.mkdir(exist_ok=True, mode=0o700)
@@ -60,7 +60,7 @@ def warm_planning() -> None:
 
 
 def warm_daa() -> None:
-    """What detect and avoid calls, and the judges of a way out."""
+    """Compile what detect and avoid and its judges call."""
     from cratous.services.daa import named_or_file, run
     from cratous.services.daa.excuse import judge_step
     from cratous.services.daa.explain import explain
@@ -78,14 +78,14 @@ def warm_daa() -> None:
             explain(step.parameters, step.instant)
             judge_step(step)
             step.instant.last_times(step.parameters, 0)
-        # levels that what is near raises too, and an ownship that keeps to its side
+        # with levels for spread bands, and coordination of the ownship
         sided = replace(known, alerters=spread, conflict_crit=True, urgency_strategy=DCPA)
         for step in run(file, sided):
             explain(step.parameters, step.instant)
 
 
 def warm_requirements() -> None:
-    """What judges a whole trace by requirements, at two samples."""
+    """Compile the evaluation of requirements over a whole trace, at two samples."""
     columns = whole.Columns("x")
     for time in (0, 1):
         columns.add(time, {"x": 1.0})
@@ -96,12 +96,12 @@ def warm_requirements() -> None:
 
 
 def warm_gate() -> None:
-    """What the gate reads, whatever it says."""
+    """Load what the gate reads, whatever its verdict."""
     ledger.require(allow_unproved=True)
 
 
 BESIDE = 10
-"""How much what is compiled meanwhile stands back behind what answers (`nice`)."""
+"""Lower priority (`nice`) of background compilation."""
 Step = tuple[str, Callable[[], None]]
 PLANNING: tuple[Step, ...] = (
     ("the searches of the assignment", assign_warm.warm),
@@ -114,11 +114,15 @@ OTHERS: tuple[Step, ...] = (
     ("what the gate reads", warm_gate),
 )
 CHAINS = (PLANNING, OTHERS)
-"""What may be compiled at the same time: steps of one chain share kernels, those of two hardly any."""
+"""Chains that may be compiled in parallel: steps of one chain share kernels, those of different chains hardly
+any.
+"""
 
 
 def compile_all(chains: Sequence[Sequence[Step]], cores: int, say: Callable[[str], None]) -> None:
-    """Take all steps of these chains, on several cores each chain in a process; `say` is told what is done."""
+    """Execute all steps of these chains, in parallel processes on several cores; `say` receives the name of
+    each completed step.
+    """
     if cores == 1 or len(chains) == 1:
         for name, step in (step for chain in chains for step in chain):
             step()
@@ -137,10 +141,10 @@ def _taken(chain: Sequence[Step]) -> list[str]:
 
 
 def ensure_planning(say: Callable[[str], None]) -> None:
-    """Have planning's loops compiled, unless they are; `say` is told when that takes time.
+    """Ensure that planning's loops are compiled; `say` is told if that takes time.
 
-    What every larger plan needs is waited for; the rest is compiled while this process works, and not
-    beyond its end: the next one goes on with it.
+    What every larger plan needs is waited for; the rest is compiled while this process runs, but not beyond
+    its end: the next process continues.
     """
     if _mark().is_file():
         return
@@ -148,14 +152,14 @@ def ensure_planning(say: Callable[[str], None]) -> None:
         "the planning loops are compiled, once for this version and machine: some are waited for, "
         "the rest is compiled meanwhile (`cratous warm` does it ahead)"
     )
-    ahead.begin_all()  # on one core too: what answers is not to stand still for it
+    ahead.begin_all()  # on a single core too: the service must not stall on compilation
     for name in (coming.ROUTES, coming.ASSIGNMENT):
         coming.ready(name)
     ahead.beside(["cratous", "warm", "--planning", "--quiet"], BESIDE)
 
 
 def _mark() -> Path:
-    """A file that exists once planning is compiled; named by the loops' sources and the compiler."""
+    """A file that exists once planning is compiled; its name hashes the loops' sources and the compiler."""
     sha = hashlib.sha256(f"{sys.version} {ledger.compiler()}".encode())
     for file in sorted((ROOT / "core").rglob("*.py")):
         sha.update(file.read_bytes())

@@ -1,1 +1,1 @@
-"""A flight's log, held against the composed steps of authority that are proved (`spec.system.authority`)."""
+"""Checks a flight's log against the proved composed steps of authority (`spec.system.authority`)."""

@@ -1,4 +1,4 @@
-"""What a replay covers: the steps by how often their kernels were asked, and what it does not look at."""
+"""Coverage of a replay: calls of each step's kernels, and what was not checked."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ STEPS = {
     "a change of the certificate in hand": (hand.hand_step, hand.accepts, hand.hand_passed),
     "UxAS commands a track": (link_end.track_is_told,),
 }
-"""Each step of the model, and the kernels that answer it."""
+"""Each step of the model, with its kernels."""
 NOT_COVERED = (
     "whether a conflict was foreseen or the way back free (either is allowed at each heartbeat)",
     "when ICAROUS heard UxAS (an offer is allowed also while nothing goes to it)",
@@ -39,9 +39,10 @@ NOT_COVERED = (
 
 
 def steps(calls: Mapping[str, Any]) -> dict[str, dict[str, int]]:
-    """How often each kernel of each step was asked in a replay, by its full name; 0: not once.
+    """Number of calls of each kernel of each step in a replay, by qualified name; 0 if never
+    called.
 
-    calls: what was counted while it ran, as of `certify.evidence.Calls.data`.
+    calls: counted during the replay, of `certify.evidence.Calls.data`.
     """
     called = calls["called"]
     return {
@@ -53,7 +54,7 @@ def steps(calls: Mapping[str, Any]) -> dict[str, dict[str, int]]:
 
 
 def lines(steps: Mapping[str, Mapping[str, int]]) -> list[str]:
-    """The steps for people: which kernels of each were asked, how often, and which were not. steps: as of `steps`."""
+    """The steps as text: their kernels with the number of calls, and those not called. steps: of `steps`."""
     found = []
     for step, kernels in steps.items():
         short = {name.rpartition(".")[2]: count for name, count in kernels.items()}
@@ -65,6 +66,6 @@ def lines(steps: Mapping[str, Mapping[str, int]]) -> list[str]:
 
 
 def rows(passed: Mapping[str, int]) -> list[str]:
-    """All that was not covered in this log. passed: messages that were not looked at, by topic."""
+    """What was not covered in this log. passed: number of unchecked messages by topic."""
     unread = [f"{count} {topic}: message not looked at" for topic, count in sorted(passed.items())]
     return [*NOT_COVERED, *unread]

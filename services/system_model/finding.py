@@ -1,4 +1,4 @@
-"""What does not fit: an event that is no step of the model, or one that had to come and did not."""
+"""A misfit: an event that is no step of the model, or the absence of a required one."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 
 class Finding(NamedTuple):
-    """seq: place in the log of the first event that does not fit, or at which one is missing; time_ms:
-    its time [ms]; vehicle_id: 0 for none; what: the event; expected, got: in words."""
+    """seq: log number of the first event that does not fit, or at which one is missing; time_ms:
+    its time [ms]; vehicle_id: 0 for none; what: the event; expected, got: in words.
+    """
 
     seq: int
     time_ms: int
@@ -18,14 +19,14 @@ class Finding(NamedTuple):
 
     @property
     def text(self) -> str:
-        """On one line, for people."""
+        """The finding as one line of text."""
         vehicle = f", vehicle {self.vehicle_id}" if self.vehicle_id else ""
         place = f"message {self.seq} at {self.time_ms / 1000:.2f} s{vehicle}"
         return f"{place}: {self.what}: expected {self.expected}; got {self.got}"
 
 
 class Misfit(Exception):
-    """Raised by a part of the model when the log does not fit it; the replay adds the place in the log."""
+    """Raised by a part of the model if the log does not fit; the replay adds the position in the log."""
 
     def __init__(self, what: str, expected: str, got: str) -> None:
         super().__init__(what)

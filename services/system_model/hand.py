@@ -1,7 +1,7 @@
-"""The certificate in hand of one vehicle as the model has it: what the kernels say of each change in the log.
+"""Model of the certificate in hand of one vehicle: kernels check each change in the log.
 
-What an offer permits is not in the log, so that it was permitted is not found again here; that it might take the place
-of what was in hand, and what news, expiry and handback do to it, is.
+The trajectory of an offer is not in the log, so whether it was permitted is not checked; whether it
+may replace the certificate in hand, and the effects of news, expiry and handback, are.
 """
 
 from __future__ import annotations
@@ -18,7 +18,9 @@ SAYS = ("Base", "BaseExpiry", "ID", "Knowledge", "Expiry", "Surprises")
 
 
 class HandModel:
-    """hand: what is in hand; certificate: whether a trajectory is; heard_ms: when ICAROUS last commanded [ms]."""
+    """hand: the certificate in hand; certificate: whether it has a trajectory; heard_ms: time of
+    ICAROUS's last command [ms].
+    """
 
     def __init__(self, heartbeat_ms: int) -> None:
         self.hand = EMPTY
@@ -28,11 +30,11 @@ class HandModel:
 
     @property
     def reserve_ms(self) -> int:
-        """What an offer must leave certain [ms]."""
+        """Time that an offer must leave certain [ms]."""
         return RESERVE_BEATS * self._heartbeat_ms
 
     def changes(self, body: Any, icarous_has_it: bool, now_ms: int) -> None:
-        """A `HandState`; Misfit if it is not what the kernels make of what was in hand."""
+        """Process a `HandState`; Misfit if it is not the kernels' result for the certificate in hand."""
         kind, before = body.Change.name, self.hand
         what = f"what is in hand ({kind})"
         if kind in ("Offered", "Refused"):
@@ -70,7 +72,7 @@ class HandModel:
         self._same(what, tuple(getattr(body, n) for n in SAYS), (*meant, after.surprises))
 
     def commands(self, now_ms: int) -> None:
-        """ICAROUS has commanded, or has taken the vehicle."""
+        """Process a command or takeover by ICAROUS."""
         self.heard_ms = now_ms
 
     def handed_back(self, got: str) -> None:

@@ -1,7 +1,8 @@
-"""The ICAROUS instance of one vehicle as the model has it: every state that it can be in by what was logged.
+"""Model of one vehicle's ICAROUS instance: the set of all states consistent with the log.
 
-What an instance sees is not in the log: whether a conflict is foreseen, whether the way back is free, when it
-has heard UxAS. Each may be either way; what it then does is answered by the kernels that fly.
+What an instance observes is not in the log: whether a conflict is predicted, whether the return
+path is clear, when it heard UxAS. Each may be either way; the flown kernels decide what it does
+then.
 """
 
 from __future__ import annotations
@@ -33,8 +34,10 @@ ASKED = {
 
 
 class IcarousEnd:
-    """cycles: the states it can be in; beats: heartbeats so far; beat_ms: when the last was [ms], None before
-    the first; due: it has changed the authority, so a command has to follow; flown: it has ever commanded."""
+    """cycles: possible states; beats: number of heartbeats; beat_ms: time of the last [ms], None
+    before the first; due: a command has to follow a change of authority; flown: it has commanded
+    before.
+    """
 
     def __init__(self) -> None:
         self.cycles: frozenset[Cycle] = frozenset({START})
@@ -44,11 +47,11 @@ class IcarousEnd:
         self.flown = False
 
     def has_beaten(self, now_ms: int) -> bool:
-        """True if its heartbeat of this instant has started or is over."""
+        """True if its heartbeat at this instant has started or is over."""
         return self.beat_ms is not None and in_time(self.beat_ms, now_ms, 0)
 
     def wishes(self, gate: Gate, after: Gate, now_ms: int) -> None:
-        """The gate has changed at its wish, in its heartbeat; Misfit if no state wishes this."""
+        """It changed the gate in its heartbeat; Misfit if no possible state does this."""
         got = f"the gate went from {tuple(gate)} to {tuple(after)} (owner, epoch, offered)"
         self._beat(
             gate,
@@ -60,7 +63,9 @@ class IcarousEnd:
         self.due = True
 
     def commands(self, gate: Gate, now_ms: int) -> None:
-        """It sends a command; Misfit if no state allows that, or this heartbeat already has its command."""
+        """It sends a command; Misfit if no possible state allows this, or this heartbeat already
+        has its command.
+        """
         self.flown = True
         if self.due:
             self.due = False
@@ -84,7 +89,7 @@ class IcarousEnd:
         self.beats += 1
 
     def _may_do(self, gate: Gate, now_ms: int) -> Iterator[Cycled]:
-        """All that it can do, whatever it sees."""
+        """All possible transitions, for any observations."""
         may = gate_accepts(gate, ICAROUS, gate.epoch)
         for cycle in self.cycles:
             begun = cycle_begun(cycle, may, now_ms)
@@ -105,8 +110,10 @@ def _watches(does: Cycled) -> bool:
 
 
 def _foremost(cycles: frozenset[Cycle]) -> frozenset[Cycle]:
-    """Without those that can do nothing that another cannot: of states that differ only in since when the
-    way back is free, the one where it has been for longest may offer whenever any other may, and needs not."""
+    """Drop states that allow nothing more than another: of states that differ only in the time
+    since which the return path is clear, the earliest may offer whenever any other may, and need
+    not.
+    """
     longest: dict[Cycle, Cycle] = {}
     for cycle in cycles:
         alike = cycle._replace(free_ms=0)

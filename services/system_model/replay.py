@@ -1,4 +1,4 @@
-"""The replay of a log through the composed steps: event by event, until one does not fit."""
+"""Replays a log through the composed steps, event by event, until one does not fit."""
 
 from __future__ import annotations
 
@@ -26,8 +26,10 @@ SUSPENDED = "Suspended"
 
 @dataclass
 class Replayed:
-    """events: those that were steps, by kind; passed: messages not looked at, by topic; vehicles: how many
-    have an ICAROUS instance; finding: the first event that does not fit, None if all do."""
+    """events: number of events that were steps, by kind; passed: unchecked messages by topic;
+    vehicles: number with an ICAROUS instance; finding: the first event that does not fit, None if
+    all do.
+    """
 
     vehicles: int
     events: Counter[str] = field(default_factory=Counter)
@@ -49,7 +51,7 @@ class _Replay:
         self.told: set[int] = set()
 
     def message(self, envelope: Any) -> None:
-        """One message of the log."""
+        """Process one message of the log."""
         self.vehicle_id = 0
         self._time(envelope.time_ms)
         self.seq = envelope.seq
@@ -78,14 +80,14 @@ class _Replay:
         model.event(short, envelope.source, body, self.now_ms)
 
     def end(self) -> None:
-        """The log is over."""
+        """Process the end of the log."""
         self.vehicle_id = 0
         self._close()
         if not self.over:
             raise Misfit("the end of the log", "the end of the mission", "no MissionEnd")
 
     def _time(self, time_ms: int) -> None:
-        """Time goes on: the heartbeats until then are over."""
+        """Advance the time: the heartbeats before it are complete."""
         if not in_time(self.now_ms, time_ms, self.limit_ms) or not in_time(
             0, time_ms, self.limit_ms
         ):
@@ -101,7 +103,7 @@ class _Replay:
         self.now_ms = time_ms
 
     def _close(self) -> None:
-        """All that happens at an instant has: no report is due, and at a heartbeat everyone has had one."""
+        """Close an instant: no report may be due, and at a heartbeat every vehicle must have had one."""
         beats = self.now_ms % self.heartbeat_ms == 0
         for vehicle_id, model in self.models.items():
             self.vehicle_id = vehicle_id
@@ -114,7 +116,7 @@ class _Replay:
         self.told.clear()
 
     def _stands_still(self) -> bool:
-        """Whether the mission lets ICAROUS stand still now."""
+        """Whether the mission lets ICAROUS stop now."""
         if not isinstance(self.simulation, FaultySimulation):
             return False
         return self.simulation.bridge_faults.icarous_is_silent(self.now_ms)
@@ -126,7 +128,7 @@ class _Replay:
 
 
 def replay(mission: Mission, avoidance: bool, envelopes: Iterable[Any]) -> Replayed:
-    """Hold the messages of one flight against the model. avoidance: it was flown with ICAROUS instances."""
+    """Check the messages of one flight against the model. avoidance: it was flown with ICAROUS instances."""
     steps = _Replay(mission, avoidance)
     try:
         for envelope in envelopes:

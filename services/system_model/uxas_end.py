@@ -1,7 +1,8 @@
-"""The UxAS end of one vehicle's link as the model has it: every state that it can be in by what was logged.
+"""Model of the UxAS end of one vehicle's link: the set of all states consistent with the log.
 
-SETMOD lines are not in the log: any line may have come at any instant, late, twice or forged. What the end makes
-of one is answered by the kernel that flies; where it acts on one (a vehicle is let go or taken back), the log shows it.
+SETMOD lines are not in the log: any line may have arrived at any time, late, duplicated or forged.
+The flown kernel decides the end's reaction; where it acts on a line (releases or takes back a
+vehicle), the log shows it.
 """
 
 from __future__ import annotations
@@ -30,15 +31,16 @@ EITHER = (False, True)
 
 
 class Believes(NamedTuple):
-    """What the end believes, and whether UxAS's own flying of the vehicle is suspended."""
+    """The end's state, and whether UxAS's own flight of the vehicle is suspended."""
 
     end: LinkEnd
     suspended: bool
 
 
 class UxasEnd:
-    """possible: the states it can be in; taken: the epoch in which UxAS has last taken the vehicle; met: it has
-    been connected; open: the connection stands; downs: heartbeats sent; heard_ms: when a heartbeat last came [ms].
+    """possible: possible states; taken: epoch in which UxAS last took the vehicle; met: it has been
+    connected; open: the connection is up; downs: number of heartbeats sent; heard_ms: time of the
+    last heartbeat received [ms].
     """
 
     def __init__(self) -> None:
@@ -50,25 +52,25 @@ class UxasEnd:
         self.heard_ms = 0
 
     def hears(self, gate: Gate) -> None:
-        """Lines may have come unseen: those at which the end does nothing, or lets the vehicle go."""
+        """Unlogged lines may have arrived: those that have no effect, or that release the vehicle."""
         for act in (ends.NOTHING, ends.SUSPEND):
             self.possible |= self._after(gate, EITHER, gate.epoch, act)
 
     def lets_go(self, gate: Gate) -> None:
-        """The log says that the path of a task was left: a line has come at which the vehicle is let go."""
+        """A task's path was left, by the log: a line has released the vehicle."""
         after = self._after(gate, (True,), gate.epoch, ends.SUSPEND)
         expected = "a takeover that UxAS can believe, and has not yet"
         self._keep(after, "UxAS lets the vehicle go", expected, f"the gate is {said(gate)}")
 
     def takes_back(self, gate: Gate, epoch: int) -> None:
-        """A command that takes the vehicle back: an offer of its epoch has come and was believed."""
+        """A command takes the vehicle back: an offer of its epoch has arrived and was believed."""
         after = self._after(gate, (False,), epoch, ends.TAKE_BACK)
         got = f"epoch {epoch}, while the gate is {said(gate)}"
         self._keep(after, "a handback", "one that answers an open offer, in its epoch", got)
         self.taken = epoch
 
     def tells(self, epoch: int) -> None:
-        """A command of the executive: UxAS flies the vehicle, and names the epoch in which it took it."""
+        """A command of the executive: UxAS flies the vehicle, and states the epoch in which it took it."""
         if not gate_accepts(Gate(UXAS, self.taken, False), UXAS, epoch):
             expected = f"epoch {self.taken}, in which UxAS has last taken the vehicle"
             raise Misfit("a command of UxAS", expected, f"epoch {epoch}")
@@ -77,22 +79,22 @@ class UxasEnd:
         self._keep(flies, "a command of UxAS", expected, f"one of epoch {epoch}")
 
     def refuses(self, gate: Gate, active: bool, epoch: int) -> None:
-        """A line was refused: one that cannot be true."""
+        """A line with an impossible mode was refused."""
         after = self._after(gate, (active,), epoch, ends.REFUSED)
         mode = "ICAROUS commands" if active else "control is offered"
         got = f"one of epoch {epoch} ({mode}) refused, while the gate is {said(gate)}"
         self._keep(after, "a mode refused", "a mode that cannot be true", got)
 
     def connects(self, now_ms: int) -> None:
-        """The connection is open, for the first time or again."""
+        """The connection is up, for the first time or again."""
         self.met, self.open, self.heard_ms = True, True, now_ms
         alive = (b._replace(end=b.end._replace(alive=True)) for b in self.possible)
         self.possible = frozenset(alive)
 
     def notes(self, note: str, alive: bool, gate: Gate, now_ms: int) -> None:
-        """A note on the link: a sign of life or none, a mode that is overtaken; others change nothing.
+        """Process a link note: liveness, or an outdated mode; other notes change nothing.
 
-        alive: whether it says that ICAROUS is being heard.
+        alive: whether the note reports that ICAROUS is heard.
         """
         if note in CONNECTED:
             self.connects(now_ms)
@@ -117,14 +119,14 @@ class UxasEnd:
         self._keep(agree, "a status of the link", f"alive {not alive}", f"alive {alive}: {note}")
 
     def sends_beat(self, sequence: int) -> None:
-        """A heartbeat is sent to ICAROUS; Misfit unless the connection is open and the number is the next."""
+        """A heartbeat is sent to ICAROUS; Misfit unless the connection is up and the number is the next one."""
         if not self.open or sequence != self.downs + 1:
             number = f"number {self.downs + 1}" if self.open else "none without a connection"
             raise Misfit("a heartbeat to ICAROUS", number, f"number {sequence}")
         self.downs += 1
 
     def hears_beat(self, now_ms: int) -> None:
-        """A heartbeat of ICAROUS has come: whoever did not count as heard was said to be heard before."""
+        """A heartbeat of ICAROUS has arrived; Misfit unless the connection is up and was reported alive."""
         if not self.open or not all(b.end.alive for b in self.possible):
             expected = "that the link is said to be heard before"
             raise Misfit("a heartbeat from ICAROUS", expected, "none said so")
@@ -151,7 +153,7 @@ class UxasEnd:
     def _after(
         self, gate: Gate, modes: Iterable[bool], epoch: int, act: int
     ) -> frozenset[Believes]:
-        """The states after a line of this epoch at which the end does this."""
+        """The states after a line of this epoch to which the end reacts in this way."""
         after = set()
         for b in self.possible:
             for active in modes:

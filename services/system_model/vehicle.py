@@ -1,4 +1,4 @@
-"""One vehicle in the model: its gate, its ICAROUS instance and the UxAS end, and the reports that are due."""
+"""Model of one vehicle: its gate, its ICAROUS instance and the UxAS end, and the reports that are due."""
 
 from __future__ import annotations
 
@@ -17,12 +17,15 @@ OF_THE_LINK = ("Heartbeat", "BridgeStatus", "ModeRefused")
 NUMBERS = {"UxAS": UXAS, "ICAROUS": ICAROUS}
 NAMES = {number: name for name, number in NUMBERS.items()}
 Report = tuple[str, str, int, int]
-"""Kind; who owns it, or has sent what was dropped; epoch; offered (0 or 1), or the gate's epoch of one dropped."""
+"""Kind; owner, or sender of a dropped command; epoch; offered (0 or 1), or the gate's epoch for a
+dropped command.
+"""
 
 
 class VehicleModel:
-    """The state of all three and of what is in hand, as far as the log tells; due: reports that must come next, in
-    order."""
+    """The state of all three and of the certificate in hand, as far as the log shows; due: reports
+    that must come next, in order.
+    """
 
     def __init__(self, vehicle_id: int, has_instance: bool, heartbeat_ms: int) -> None:
         self.vehicle_id = vehicle_id
@@ -33,7 +36,7 @@ class VehicleModel:
         self.hand = HandModel(heartbeat_ms)
 
     def event(self, short: str, source: str, body: Any, now_ms: int) -> None:
-        """An event of this vehicle; Misfit if it is no step from any state that it can be in."""
+        """Process an event of this vehicle; Misfit if it is no step from any possible state."""
         teller = LINK if short in OF_THE_LINK else f"vehicle/{self.vehicle_id}"
         if short in (*REPORTS, *OF_THE_LINK, HAND) and source != teller:
             raise Misfit(f"the sender of a {short}", teller, source)
@@ -70,12 +73,14 @@ class VehicleModel:
             raise Misfit("a report of the gate", _said(self.due[0]), got)
 
     def end_of_heartbeat(self, now_ms: int, stands_still: bool = False) -> None:
-        """A heartbeat's instant is over: ICAROUS has commanded, or watched and done nothing; UxAS has sent
-        its own, and said so if nothing has come for too long. stands_still: the mission lets ICAROUS do so now."""
+        """A heartbeat's instant is over: ICAROUS has commanded, or monitored without acting; UxAS
+        has sent its own, and reported a silence that was too long. stands_still: the mission lets
+        ICAROUS stop now.
+        """
         icarous = self.icarous
         if icarous is None:
             return
-        # a flight begins with the connection: without it nothing of the link would ever be asked for
+        # a flight begins with the connection: without it the link would never be checked
         if not self.uxas.met:
             expected = "that ICAROUS is connected before the end of the first heartbeat"
             raise Misfit("the link", expected, "no note that it is")
@@ -85,7 +90,7 @@ class VehicleModel:
             )
         if not icarous.has_beaten(now_ms) and not stands_still:
             icarous.is_silent(self.gate, now_ms)
-        # lines of commands may be under way still once it has flown; before, heartbeats are all that comes
+        # command lines may still be in transit once it has flown; before, only heartbeats arrive
         if self.uxas.open and not icarous.flown and self.uxas.is_silent(now_ms):
             heard = f"nothing; the last heartbeat came at {self.uxas.heard_ms} ms"
             raise Misfit("the link", "a report of silence", heard)
@@ -138,7 +143,7 @@ class VehicleModel:
         if body.Direction.name == "Down":
             self.uxas.sends_beat(body.Sequence)
             return
-        # the first heartbeat of this instant that comes up shows that the instance has had its turn
+        # its first heartbeat at this instant shows that the instance has run
         known = self.icarous.beats
         if not self.icarous.has_beaten(now_ms) and body.Sequence == known + 1:
             self.icarous.is_silent(self.gate, now_ms)
@@ -149,7 +154,7 @@ class VehicleModel:
 
 
 def _changes(before: Gate, after: Gate) -> list[Report]:
-    """The change of who owns the vehicle, if it is one."""
+    """The report of a change of owner, if it is one."""
     was, now = NAMES[before.owner], NAMES[after.owner]
     return [("AuthorityChange", now, after.epoch, 0)] if was != now else []
 

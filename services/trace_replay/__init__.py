@@ -1,1 +1,1 @@
-"""Traces of authority played on the actors that fly: gate, ICAROUS, UxAS's end and executive, over real sockets."""
+"""Replays authority traces on the real actors: gate, ICAROUS, UxAS end and executive, over real sockets."""

@@ -1,9 +1,10 @@
-"""The actors of a flight, between which a trace decides what arrives, and when.
+"""The actors of a flight, with the delivery of messages controlled by a trace.
 
-They are those of `cratous run`, and lines go over its sockets. What is sent is held back: commands to the gate, what
-the vehicle reports of it, and SETMOD lines (of which a trace may send any, a forged one too). All else arrives at
-once. A heartbeat of the trace is one of the flight; one that finds the way free is as many as the instance's
-patience asks for, since a trace knows no time.
+They are those of `cratous run`, and lines go over its sockets. These messages are held back:
+commands to the gate, the vehicle's gate reports, and SETMOD lines (of which a trace may send any,
+including forged ones). Everything else is delivered immediately. A heartbeat of the trace is one of
+the flight; one that finds the path clear corresponds to as many as the instance's patience
+requires, since a trace has no times.
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ from cratous.services.flight.vehicle import UNTOUCHED
 from cratous.services.icarous_program.epochs import EpochFile
 from cratous.services.pipeline.plan import make_plan
 from cratous.services.trace_replay import scene
+from cratous.services.trace_replay.never_sent import NeverSent
 from cratous.services.trace_replay.scene import INTRUDER, VEHICLE
 from cratous.spec.authority.cycle import AVOID
 from cratous.spec.system.trace import (
@@ -51,11 +53,11 @@ from cratous.spec.system.trace import (
 )
 
 MOST_BEATS = 60
-"""The instance's patience is never longer than so many heartbeats."""
+"""Upper bound of the instance's patience, in heartbeats."""
 
 
 class Held(NamedTuple):
-    """A command that was sent: by whom, in which epoch, after how many new epochs of the gate."""
+    """A command held back: sender, epoch, and number of gate epochs before it."""
 
     sender: int
     epoch: int
@@ -63,12 +65,8 @@ class Held(NamedTuple):
     body: Any
 
 
-class NeverSent(Exception):
-    """The trace delivers a message that was never sent."""
-
-
 class _HoldingBridge(Bridge):
-    """The bridge of a flight on which no SETMOD of the instance arrives by itself."""
+    """A flight's bridge that delivers no SETMOD of the instance by itself."""
 
     def to_uxas(self, vehicle_id: int, message: Message) -> bool:
         return isinstance(message, SetMode) or super().to_uxas(vehicle_id, message)
@@ -96,7 +94,7 @@ class Actors(Flight):
         self._executive(Begin(0, self._own()))
         self._link(Connected(0, self.instances))
         self._executive(SetOut())
-        for one in self.sent:  # nothing has happened yet: the vehicle flies its way
+        for one in self.sent:  # nothing has happened yet: the vehicle flies its path
             self._vehicle(VEHICLE, Commanded(0, one.body))
 
     def __enter__(self) -> Actors:
@@ -140,7 +138,7 @@ class Actors(Flight):
                 return
 
     def _beat(self) -> None:
-        """Fly until the next heartbeat, which comes first."""
+        """Fly until the next heartbeat, before anything else of that instant."""
         while True:
             self.bus.now_ms = self.now_ms
             self._step()
@@ -189,7 +187,7 @@ class Actors(Flight):
         if gate != state.gate:
             self._link(GateIs(VEHICLE, gate))
 
-    # how things stand --------------------------------------------------------------------------
+    # resulting state --------------------------------------------------------------------------
 
     @property
     def gate(self) -> Gate:
@@ -197,7 +195,7 @@ class Actors(Flight):
         return self.vehicle_states[VEHICLE].gate
 
     def happen(self, event: Event) -> Standing:
-        """Let it happen; how things stand then. NeverSent if it cannot."""
+        """Execute an event; returns the resulting state. NeverSent if it is impossible."""
         self.last_of_uxas, self.dropped = NOTHING, False
         {
             HEARTBEAT: self.heartbeat,

@@ -1,4 +1,4 @@
-"""Traces in files: what `cratous search-faults --traces` writes, and `cratous replay-trace` reads."""
+"""Trace files, written by `cratous search-faults --traces`, and read by `cratous replay-trace`."""
 
 from __future__ import annotations
 
@@ -10,24 +10,44 @@ from typing import Any, NamedTuple, get_type_hints
 from cratous.core.files.whole_file import cannot_write, write_atomically
 from cratous.spec.errors import BadInput
 from cratous.spec.files.text_file import text_of
-from cratous.spec.system.trace import KINDS, NOTHING, Entry, Event, Standing
+from cratous.spec.system import hand_trace, trace
+from cratous.spec.system.trace import NOTHING
 
 FORMAT = "cratous authority trace 1"
+HAND_FORMAT = "cratous certificate trace 1"
 MOST_BYTES = 1_000_000
 MOST_ENTRIES = 100
 MOST = 1000
-"""Epochs and counts of changes go so far."""
+"""Maximum of epochs and of change counts."""
 WORDS = 500
-"""A text of a trace has at most so many characters."""
+"""Maximum length of a text in a trace."""
+
+
+Entries = tuple[trace.Entry, ...] | tuple[hand_trace.Entry, ...]
+KINDS: dict[str, tuple[Any, Any, Any, tuple[str, ...]]] = {
+    FORMAT: (trace.Entry, trace.Event, trace.Standing, trace.KINDS),
+    HAND_FORMAT: (hand_trace.Entry, hand_trace.Event, hand_trace.InHand, hand_trace.KINDS),
+}
+"""By format: types of an entry, its event and state, and the kinds of events."""
 
 
 class Trace(NamedTuple):
-    """design: by name; says: what is wrong in it; wrong: what is wrong at the end, empty if nothing is."""
+    """design: its name; says: what is wrong in it; wrong: the fault at the end, empty if none."""
 
     design: str
     says: str
     wrong: str
-    entries: tuple[Entry, ...]
+    entries: Entries
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """Its events as text."""
+        return tuple(one.text for one in self.entries)
+
+    @property
+    def of_hand(self) -> bool:
+        """Whether it is a trace of the certificate in hand; otherwise of authority."""
+        return any(isinstance(one, hand_trace.Entry) for one in self.entries)
 
 
 def place(folder: Path, designs: Iterable[str]) -> dict[str, Path]:
@@ -43,18 +63,19 @@ def place(folder: Path, designs: Iterable[str]) -> dict[str, Path]:
     return files
 
 
-def write(file: Path, trace: Trace) -> None:
+def write(file: Path, told: Trace) -> None:
     """The trace as JSON, whole or not at all."""
     rows = [
         {"text": e.text, "event": e.event._asdict(), "after": e.after._asdict()}
-        for e in trace.entries
+        for e in told.entries
     ]
-    data = {"format": FORMAT, **trace._asdict(), "entries": rows}
+    form = HAND_FORMAT if told.of_hand else FORMAT
+    data = {"format": form, **told._asdict(), "entries": rows}
     write_atomically(file, json.dumps(data, indent=1) + "\n", "the trace")
 
 
 def read(file: Path) -> Trace:
-    """A trace; BadInput with the place where the file is none."""
+    """A trace; BadInput with the position if the file is invalid."""
     text = text_of(file, MOST_BYTES, "a trace of `cratous search-faults --traces`")
     try:
         data = json.loads(text)
@@ -63,29 +84,31 @@ def read(file: Path) -> Trace:
         raise BadInput("not a trace", where=str(file), expected="JSON", got=why) from None
     reader = _Reader(str(file))
     top = reader.table(data, ("format", *Trace._fields), "")
-    if top["format"] != FORMAT:
-        raise reader.wrong("format", FORMAT, top["format"])
+    form = top["format"]
+    if not isinstance(form, str) or form not in KINDS:
+        raise reader.wrong("format", " or ".join(KINDS), form)
     rows = top["entries"]
     if not isinstance(rows, list) or len(rows) not in range(1, MOST_ENTRIES + 1):
         raise reader.wrong("entries", f"a list of 1 to {MOST_ENTRIES}", rows)
     texts = {name: reader.text(top[name], name) for name in ("design", "says", "wrong")}
-    return Trace(**texts, entries=tuple(_entries(reader, rows)))
+    return Trace(**texts, entries=tuple(_entries(reader, rows, form)))
 
 
-def _entries(reader: _Reader, rows: list[Any]) -> Iterable[Entry]:
+def _entries(reader: _Reader, rows: list[Any], form: str) -> Iterable[Any]:
+    of, event_of, after_of, kinds = KINDS[form]
     for number, one in enumerate(rows):
         item = f"entries[{number}]"
-        row = reader.table(one, Entry._fields, item)
-        event = reader.fields(row["event"], Event, f"{item}.event")
-        after = reader.fields(row["after"], Standing, f"{item}.after")
-        if event["kind"] not in KINDS:
-            raise reader.wrong(f"{item}.event.kind", " or ".join(KINDS), event["kind"])
+        row = reader.table(one, of._fields, item)
+        event = reader.fields(row["event"], event_of, f"{item}.event")
+        after = reader.fields(row["after"], after_of, f"{item}.after")
+        if event["kind"] not in kinds:
+            raise reader.wrong(f"{item}.event.kind", " or ".join(kinds), event["kind"])
         text = reader.text(row["text"], f"{item}.text")
-        yield Entry(text, Event(**event), Standing(**after))
+        yield of(text, event_of(**event), after_of(**after))
 
 
 class _Reader:
-    """Holds each part of the data against what it has to be."""
+    """Validates each part of the data."""
 
     def __init__(self, where: str) -> None:
         self._where = where
@@ -107,7 +130,7 @@ class _Reader:
         return data
 
     def fields(self, data: object, of: type[Any], item: str) -> dict[str, Any]:
-        """The fields of a named tuple of texts, truth values and whole numbers."""
+        """The fields of a named tuple of strings, booleans and integers."""
         row = self.table(data, of._fields, item)
         for name, kind in get_type_hints(of).items():
             value, place = row[name], f"{item}.{name}"

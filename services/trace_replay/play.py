@@ -1,11 +1,15 @@
-"""Play a trace on the actors that fly, until they do otherwise than it says."""
+"""Replays a trace on the real actors, until they deviate from it."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from cratous.services.trace_replay.actors import Actors, NeverSent
+from cratous.services.trace_replay.actors import Actors
+from cratous.services.trace_replay.files import Trace
+from cratous.services.trace_replay.holder import Holder
+from cratous.services.trace_replay.never_sent import NeverSent
+from cratous.spec.system import hand_trace
 from cratous.spec.system.trace import NOTHING, Entry, Standing
 
 NAMES = ("UxAS", "ICAROUS")
@@ -13,14 +17,21 @@ MODES = ("watching", "avoiding", "offering control")
 
 
 class Played(NamedTuple):
-    """followed: so many entries went as the trace says; why: how the next one did not, empty at the end."""
+    """followed: number of entries that matched the trace; why: how the next one differed, empty at the end."""
 
     followed: int
     why: str
 
 
+def play_trace(told: Trace) -> Played:
+    """Replay a trace of either kind from the start of a flight."""
+    if told.of_hand:
+        return play_hand([one for one in told.entries if isinstance(one, hand_trace.Entry)])
+    return play([one for one in told.entries if isinstance(one, Entry)])
+
+
 def play(entries: Sequence[Entry]) -> Played:
-    """Play a trace from the start of a flight."""
+    """Replay a trace of authority from the start of a flight."""
     with Actors() as actors:
         for number, entry in enumerate(entries):
             try:
@@ -32,8 +43,27 @@ def play(entries: Sequence[Entry]) -> Played:
     return Played(len(entries), "")
 
 
+def play_hand(entries: Sequence[hand_trace.Entry]) -> Played:
+    """Replay a trace of the certificate in hand from the start of a flight."""
+    holder = Holder()
+    for number, entry in enumerate(entries):
+        try:
+            stands = holder.happen(entry.event)
+        except NeverSent as error:
+            return Played(number, str(error))
+        if stands != entry.after:
+            return Played(number, f"{_holds(stands)}, in the trace {_holds(entry.after)}")
+    return Played(len(entries), "")
+
+
+def _holds(stands: hand_trace.InHand) -> str:
+    if stands.until <= stands.now:
+        return f"nothing is certain at heartbeat {stands.now}"
+    return f"what is in hand at heartbeat {stands.now} is certain until {stands.until}"
+
+
 def differs(told: Standing, flown: Standing) -> str:
-    """In what a trace and the flight differ, in words; empty if in nothing."""
+    """Differences between trace and flight, in words; empty if none."""
     rows = [
         ("the gate", _gate(told), _gate(flown)),
         ("ICAROUS is", _of(MODES, told.mode), _of(MODES, flown.mode)),

@@ -1,4 +1,4 @@
-"""The flight on which traces are played: one vehicle on a long way north, and an aircraft that meets it at will."""
+"""The flight on which traces are replayed: one vehicle flying far north, and an intruder on demand."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from cratous.spec.mission.changes import WIND, WindChange
 VEHICLE = 1
 INTRUDER = 2
 NEAR_M = 400.0
-"""So far ahead comes who is met: within the volume as predicted, and too near for any waiting."""
+"""Distance ahead of the intruder [m]: within the predicted volume, and too close to wait."""
 BREEZE_M_S = 0.1
 
 
 @cache
 def mission() -> Mission:
-    """One protected vehicle, at its greatest speed, so that every breeze counts; its only task is 100 km ahead."""
+    """One protected vehicle at its maximum speed, so that any wind matters; its only task is 100 km ahead."""
     start = Position(0.0, 0.0, 300.0)
     bank = math.radians(30)
     vehicle = Vehicle(VEHICLE, "own", start, 0.0, 22.0, 15.0, 22.0, bank, 5.0, True)
@@ -50,7 +50,7 @@ def with_breeze(known: Mission, now_ms: int) -> tuple[Mission, Change]:
 
 
 def met(air: AirState) -> AirState:
-    """An aircraft that comes towards this one, head on, at its height and speed."""
+    """An aircraft approaching head-on, at the same altitude and speed."""
     north_m = air.position.north_m + NEAR_M * math.cos(air.heading_rad)
     east_m = air.position.east_m + NEAR_M * math.sin(air.heading_rad)
     return air._replace(

@@ -1,1 +1,1 @@
-"""UxAS as one process of ours: configuration, service manager, services, bridges, the loop."""
+"""UxAS as a single process: configuration, service manager, services, bridges and the main loop."""

@@ -1,4 +1,4 @@
-"""Small services: messages from files, simulated time, status reports, a greeting."""
+"""Small services: messages from files, simulated time, status reports, and HelloWorld."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ MESSAGE_ATTRIBUTES = {
 
 
 class Planned(NamedTuple):
-    """A message to send: body, address ("" for its type), first time, period and count (0: ever)."""
+    """A message to send: body, address ("" for its type), first time, period, and count (0: unlimited)."""
 
     body: Any
     address: str
@@ -36,7 +36,7 @@ class Planned(NamedTuple):
 
 
 class SendMessagesService:
-    """Sends messages from files at their times after StartupComplete, once or periodically."""
+    """Sends messages from files at times relative to StartupComplete, once or periodically."""
 
     subscribes: tuple[str, ...] = (STARTUP,)
 
@@ -47,13 +47,13 @@ class SendMessagesService:
         return False
 
     def handle(self, state: bool, envelope: Envelope, now_ms: int) -> Step:
-        """Only the first StartupComplete counts."""
+        """Start the schedule; only the first StartupComplete counts."""
         if state:
             return state, ()
         return True, [Wake(plan.time_ms, (k, 1)) for k, plan in enumerate(self._planned)]
 
     def wake(self, state: bool, key: tuple[int, int], now_ms: int) -> Step:
-        """Send message k for the n-th time."""
+        """Send a message of the schedule; key: its index and its repetition."""
         k, sent = key
         plan = self._planned[k]
         out: list[Any] = [Send(plan.body, plan.address)]
@@ -63,10 +63,11 @@ class SendMessagesService:
 
 
 def send_messages(host: Host, entry: Entry, values: dict[str, Any], name: str) -> Any:
-    """The service of a configuration's entry; reads all files now, so that errors come at start.
+    """The service of a configuration's entry; reads all files now, so that errors are found at
+    start-up.
 
-    A relative path is relative to the present folder, as in UxAS; where the files are not there,
-    the configuration's folder, its `rundir` and its `inputs` are looked into (and logged).
+    A relative path is relative to the working directory, as in UxAS; if the files are not there,
+    the configuration's folder, its `rundir` and its `inputs` are searched (and this is logged).
     """
     problems: list[BadInput] = []
     planned: list[Planned] = []
@@ -81,7 +82,7 @@ def send_messages(host: Host, entry: Entry, values: dict[str, Any], name: str) -
         except BadInput as error:
             problems.append(error)
             continue
-        timed = found["SendTime_ms"] is not None  # a period counts only without a time
+        timed = found["SendTime_ms"] is not None  # a period is used only without a time
         planned += [
             Planned(
                 body,
@@ -99,7 +100,7 @@ def send_messages(host: Host, entry: Entry, values: dict[str, Any], name: str) -
 
 
 def data_of(host: Host, entry: Entry) -> Path:
-    """Where the services of a process write; BadInput if it has no such folder."""
+    """The folder in which the services of a process write; BadInput if it has none."""
     folder: Path | None = host.shared.get("data")
     if folder is None:
         raise BadInput("no folder to write to", where=entry.where, item=entry.type)
@@ -107,14 +108,16 @@ def data_of(host: Host, entry: Entry) -> Path:
 
 
 def looked_for(host: Host, name: str, where: str, folder: str = ".") -> tuple[Path | None, str]:
-    """Where a file is that a configuration names, None: nowhere; and in words where it was looked for.
+    """Path of a file that a configuration names, None if not found; and the searched places in
+    words.
 
-    folder: of the name; relative to the present folder, else to those that `send_messages` says.
+    folder: of the name; relative to the working directory, otherwise to the folders of
+    `send_messages`.
     """
     beside = host.config.parent
     bases = (Path(folder), beside / folder, beside / "rundir" / folder, beside / "inputs")
     paths = [Path(os.path.normpath(base / name)) for base in bases]
-    # a name that no file may have is that of none
+    # an invalid file name counts as not found
     path = next((p for p in paths if os.path.isfile(p)), None)
     if path not in (None, paths[0]):
         host.log("INFO", f"{where}: {name} is read from {path}")
@@ -141,7 +144,7 @@ def _bodies(host: Host, folder: str, name: str, where: str) -> list[Any]:
 
 
 class SimulationTime:
-    """Test_SimulationTime: the bus clock advances only with the times of entity states."""
+    """Test_SimulationTime: the bus clock advances only with the times in entity states."""
 
     subscribes: tuple[str, ...] = (STATE,)
 
@@ -157,12 +160,12 @@ class SimulationTime:
         return envelope.body.Time, ()
 
     def stop(self, state: int) -> None:
-        """From now on the clock is that of the machine."""
+        """Return to the machine's clock."""
         self._host.clock.discrete = False
 
 
 class HelloWorld:
-    """Sends a text periodically, and prints the texts of others."""
+    """Sends a text periodically, and prints the texts received."""
 
     subscribes: tuple[str, ...] = ("afrl.cmasi.KeyValuePair",)
 
@@ -174,7 +177,7 @@ class HelloWorld:
         return 0
 
     def begin(self, state: int) -> Step:
-        """The first greeting comes at once."""
+        """The first greeting is sent immediately."""
         return state, [Wake(0)]
 
     def handle(self, state: int, envelope: Envelope, now_ms: int) -> Step:
@@ -190,7 +193,7 @@ class HelloWorld:
 
 
 class Report(NamedTuple):
-    """The present report, and how many states and keep-alive messages have come."""
+    """The current report, and the numbers of states and keep-alive messages received."""
 
     report: Any
     states: int = 0
@@ -198,10 +201,11 @@ class Report(NamedTuple):
 
 
 class StatusReportService:
-    """Reports a vehicle's status periodically: connected entities, tasks, age of its state, authority.
+    """Reports a vehicle's status periodically: connected entities, tasks, age of its state,
+    authority.
 
-    A state that is older than `stale_ms`, or an autopilot's keep-alive older than `expires_ms`,
-    is no longer called valid.
+    A state older than `stale_ms`, or an autopilot keep-alive older than `expires_ms`, is reported
+    as invalid.
     """
 
     subscribes: tuple[str, ...] = (
@@ -221,7 +225,7 @@ class StatusReportService:
         return Report(lmcp.new("OnboardStatusReport", VehicleID=self._vehicle))
 
     def begin(self, state: Report) -> Step:
-        """The first report comes after one period."""
+        """The first report is sent after one period."""
         return state, [Wake(self._period_ms, ("report", 0))]
 
     def handle(self, state: Report, envelope: Envelope, now_ms: int) -> Step:

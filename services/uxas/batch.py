@@ -1,9 +1,10 @@
-"""BatchSummaryService: how long each vehicle would take to each task, and whether it meets a zone.
+"""BatchSummaryService: how long each vehicle would take to each task, and whether it violates a
+zone.
 
 BatchSummaryRequest -> a TaskAutomationRequest for each task and vehicle, as a trial ->
-TaskAutomationResponse -> BatchSummaryResponse, when all have answered. A vehicle that has no plan
-for a task gets a summary with no waypoints and the times -1. Zones outside of the operating region
-that a plan meets are named (kernel `leg_ok`), whether or not they bind.
+TaskAutomationResponse -> BatchSummaryResponse, when all have been answered. A vehicle without a
+plan for a task gets a summary with no waypoints and times of -1. Zones outside the operating region
+that a plan violates are named (kernel `leg_ok`), whether or not they are active.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ AT_ONCE = 16
 
 
 class Batch(NamedTuple):
-    """A request, the first id of its block, (task, vehicle) by id from there, and answers."""
+    """A request, the first id of its block, (task, vehicle) by id from there on, and the answers."""
 
     request: Any
     first: int
@@ -41,7 +42,7 @@ class Batch(NamedTuple):
 
 
 class Batches(NamedTuple):
-    """The next free id, and requests in progress."""
+    """The next free id, and the requests in progress."""
 
     free: int = 1
     open: tuple[Batch, ...] = ()
@@ -51,7 +52,7 @@ Step = tuple[Batches, Iterable[Any]]
 
 
 class BatchSummaryService:
-    """Summaries by trial."""
+    """Summaries from trial plans."""
 
     name = "BatchSummaryService"
     subscribes: tuple[str, ...] = (REQUEST, RESPONSE)
@@ -134,7 +135,7 @@ class BatchSummaryService:
         )
 
     def _meets(self, region: int, vehicle: int, points: list[Any]) -> list[int]:
-        """Keep-out zones that a plan meets, by id."""
+        """Ids of the keep-out zones that a plan violates."""
         world = self._source.world
         outs = [z.ZoneID for z in world.of("zone") if type(z).__name__ == "KeepOutZone"]
         if not points or not outs:
@@ -147,7 +148,7 @@ class BatchSummaryService:
             ]
             zones = hard_zones([z for z in places.mission.zones if z.kind is ZoneKind.KEEP_OUT])
         except CratousError:
-            return outs  # what cannot be told is not called free
+            return outs  # a zone that cannot be checked is not reported as respected
         return [zone.id for zone in zones if first_bad_leg(path, (zone,)) is not None]
 
 

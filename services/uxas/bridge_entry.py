@@ -1,4 +1,4 @@
-"""An entry of a configuration that asks for a bridge, after its check."""
+"""A validated bridge entry of a configuration."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Children = dict[str, list[dict[str, Any]]]
 
 @dataclass(frozen=True)
 class Given:
-    """An entry of a configuration after its check: values, children by tag, and the context."""
+    """A validated configuration entry: values, children by tag, and context."""
 
     host: Host
     entry: Entry
@@ -27,11 +27,11 @@ class Given:
     context: Any
 
     def prefixes(self, tag: str = "SubscribeToMessage") -> tuple[str, ...]:
-        """The subscribed prefixes, without doubles."""
+        """The subscribed prefixes, without duplicates."""
         return tuple(dict.fromkeys(c["MessageType"] for c in self.children.get(tag, ())))
 
     def limits(self) -> Limits:
-        """The limits that it states."""
+        """The limits that it sets."""
         v = self.values
         return Limits(
             payload_bytes=v["MaxMessageSize_bytes"],
@@ -43,7 +43,7 @@ class Given:
         )
 
     def address(self, name: str, schemes: tuple[str, ...]) -> Address:
-        """An attribute as an address; one with `*` is said to listen everywhere."""
+        """An attribute as an address; logs if `*` makes it listen on all interfaces."""
         found = address(self.values[name], schemes, where=self.entry.where, item=name, free=True)
         if found.everywhere:
             self.host.log(
@@ -52,7 +52,7 @@ class Given:
         return found
 
     def bridge(self, port: Port, **rules: Any) -> Bridge:
-        """The bridge of a port."""
+        """A bridge with this port."""
         made = Rules(
             prefixes=self.prefixes(),
             self_generated=self.values["ConsiderSelfGenerated"],

@@ -1,7 +1,7 @@
-"""The bridges that a configuration may name: their attributes, limits, keys, and how each is made.
+"""The bridge types of a configuration: attributes, limits, keys, and constructors.
 
 Addresses default to UxAS's ports on 127.0.0.1; an address with `*` listens on all interfaces, and
-the log says so.
+this is logged.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from cratous.spec.errors import BadInput
 
 ZMQ_SCHEMES = ("tcp", "ipc", "inproc", "udp")
 _DEFAULT = Limits()
-_SETTLE_S = 0.5  # more than ZeroMQ takes to try again to connect (100 to 200 ms)
+_SETTLE_S = 0.5  # longer than ZeroMQ's reconnection interval (100 to 200 ms)
 
 LIMITS: Mapping[str, Attr] = {
     "MaxMessageSize_bytes": whole(_DEFAULT.payload_bytes, 1024, 2**30),
@@ -53,7 +53,7 @@ TRANSFORM = {
 
 @dataclass(frozen=True)
 class BridgeKind:
-    """A bridge type: its attributes, its children with theirs, and its maker."""
+    """A bridge type: its attributes, its children with theirs, and its constructor."""
 
     attributes: Mapping[str, Attr]
     children: Mapping[str, Mapping[str, Attr]]
@@ -61,7 +61,7 @@ class BridgeKind:
 
 
 def curve_of(values: Mapping[str, Any], where: str, config: Path, domain: str) -> Any:
-    """The keys that attributes name, relative to the configuration's folder, or None."""
+    """The keys named by attributes, relative to the configuration's folder; None if there are none."""
     if not values["CurveSecretKeyFile"]:
         for name in ("CurveServerKeyFile", "CurveClientKeys"):
             if values[name]:
@@ -113,7 +113,7 @@ def _serial(given: Given) -> Bridge:
 
 
 def _pair(given: Given, out: str, into: str, parts: int = 1) -> Port:
-    """The sockets of a ZeroMQ bridge; UDP where both addresses say so."""
+    """The sockets of a ZeroMQ bridge, or UDP if both addresses use it."""
     to = given.address(f"Address{out}", ZMQ_SCHEMES)
     at = given.address(f"Address{into}", ZMQ_SCHEMES)
     if "udp" in (to.scheme, at.scheme):
@@ -194,7 +194,7 @@ def _kind(
 
 
 def _addresses(publisher: str, pusher: str) -> dict[str, Attr]:
-    """The attributes of a pair of ends: at the publisher's socket, and at the one that pushes."""
+    """The attributes of a socket pair: the publisher's address and the pusher's."""
     return {
         f"Address{publisher}": Attr(default="tcp://127.0.0.1:5556"),
         f"Address{pusher}": Attr(default="tcp://127.0.0.1:5555"),
@@ -253,7 +253,7 @@ BRIDGES: dict[str, BridgeKind] = {
 def check(
     entry: Entry, kind: BridgeKind, problems: list[BadInput]
 ) -> tuple[dict[str, Any], Children]:
-    """Values and children of an entry; what is wrong is added to `problems`."""
+    """Values and children of an entry; errors are added to `problems`."""
     values = values_of(kind.attributes, entry.attributes, entry.where, entry.type, problems)
     children: Children = {}
     for element in entry.children:

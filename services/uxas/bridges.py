@@ -1,11 +1,11 @@
-"""Bridges: a port to the outside as a service of the bus, with UxAS's rules of what passes.
+"""Bridges: an external port as a service of the bus, with UxAS's forwarding rules.
 
-Out: messages whose address begins with a subscribed prefix; where the bridge is of the kind that
-keeps foreign messages in (`own_only`), those of our own entity alone; never its own imports (but see
-`relay`), never what is addressed to the bridge itself, never KillService. In: LMCP that decodes; its source
-attributes as they came, or those of the bridge where it considers messages self-generated; no
-CreateNewService or KillService, unless the configuration trusts those behind the bridge. What
-does not pass for another reason than these rules is counted and logged.
+Out: messages whose address begins with a subscribed prefix; for a bridge type that keeps foreign
+messages in (`own_only`), only those of our own entity; never its own imports (but see `relay`),
+never messages addressed to the bridge itself, never KillService. In: LMCP that decodes; source
+attributes as received, or those of the bridge if it treats messages as self-generated; no
+CreateNewService or KillService, unless the configuration trusts the peers. What is dropped for any
+other reason is counted and logged.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ from cratous.spec.errors import BadInput
 
 KILL = "uxas.messages.uxnative.KillService"
 CREATE = "uxas.messages.uxnative.CreateNewService"
-_NAME_BYTES = 256  # of an address or a group that comes from outside
+_NAME_BYTES = 256  # maximum size of an address or group received from outside
 
 
 @dataclass(frozen=True)
 class Rules:
-    """What a kind of bridge lets pass, and how it names the source of what comes in.
+    """What a bridge type forwards, and how it names the source of imports.
 
-    own_only: only our entity's messages go out. group: source group of imports that are
-    considered self-generated. self_generated: whether they are. aliases: new addresses of imports.
-    impact: two parts, IMPACT's address and LMCP bytes, from entity `external_id`; throttle: the
-    same AirVehicleConfiguration goes out once. relay: what clients say in the name of our entity
-    goes out again, so that all clients hear it. returns: our own messages come back from such a
-    relay, and are not taken in again. trusted: who is behind it may make and end services.
+    own_only: only our entity's messages go out. group: source group of imports treated as
+    self-generated. self_generated: whether they are. aliases: new addresses of imports. impact: two
+    parts, IMPACT's address and LMCP bytes, from entity `external_id`; throttle: send an identical
+    AirVehicleConfiguration only once. relay: messages from clients in our entity's name are sent
+    out again, so that all clients receive them. returns: such a relay returns our own messages,
+    which are dropped. trusted: peers may create and end services.
     """
 
     prefixes: tuple[str, ...]
@@ -53,7 +53,7 @@ class Rules:
 
 
 class Bridge:
-    """A port on the bus; the runtime calls `pump` when the port has something."""
+    """A port on the bus; the runtime calls `pump` when the port has input."""
 
     subscribes: tuple[str, ...] = ()
 
@@ -71,7 +71,7 @@ class Bridge:
         return None
 
     def handle(self, state: None, envelope: Envelope, now_ms: int) -> tuple[None, Iterable[Any]]:
-        """Send a message out, if the rules let it."""
+        """Send a message out if the rules permit."""
         if self.exports(envelope):
             try:
                 parts = self._parts(envelope)
@@ -82,13 +82,13 @@ class Bridge:
         return None, ()
 
     def stop(self, state: None) -> None:
-        """Close the port and say what it has done."""
+        """Close the port and log its statistics."""
         self.port.close()
         self._host.log("INFO", f"{self.name}: closed; {self.port.counts.line()}")
         self.on_closed()
 
     def exports(self, envelope: Envelope) -> bool:
-        """True if the rules let a message out."""
+        """True if the rules permit sending a message out."""
         mine = unicast(self._identity.entity_id, self._identity.service_id)
         if envelope.topic == KILL or envelope.to == mine:
             return False
@@ -100,7 +100,7 @@ class Bridge:
         return not (self.rules.throttle and self._known(envelope.body))
 
     def pump(self, now_s: float) -> int:
-        """Put what has arrived on the bus; returns how many messages."""
+        """Put received messages on the bus; returns their number."""
         count = 0
         for incoming in self.port.step(now_s):
             try:
@@ -147,12 +147,12 @@ class Bridge:
         source = self.name
         own = self._identity
         if self.rules.relay and who.entity_id == own.entity_id and who[:2] != own[:2]:
-            # under another name it comes back to this bridge, in the order of the bus
+            # under another name it returns to this bridge, in the order of the bus
             source = f"eid{who.entity_id}.sid{who.service_id}"
         return self._envelope(found, payload, "" if address == topic else address, who, source)
 
     def _admit(self, body: Any) -> str:
-        """The type of an object that may come in; BadInput for one that is for trusted peers alone."""
+        """The type of an object that may come in; BadInput for one permitted only from trusted peers."""
         topic: str = body.all_names[0]
         if topic in (KILL, CREATE) and not self.rules.trusted:
             raise BadInput(
@@ -162,7 +162,7 @@ class Bridge:
         return topic
 
     def _received(self, payload: bytes, where: str) -> tuple[Any, bytes]:
-        """Object and message of a payload; a client's deviations from the protocol are reported."""
+        """Object and message of a payload; a client's protocol deviations are reported."""
         body, payload, notes = lmcp.binary.received(payload, where)
         for note in notes:
             self._notes[note] += 1
@@ -217,7 +217,7 @@ def unpack(message: wire.AddressedMessage) -> Any:
 
 
 def number(text: str) -> int:
-    """An id of the wire; empty is 0, as AMASE sends it."""
+    """An id on the wire; empty means 0, as AMASE sends it."""
     if not text:
         return 0
     if not text.isascii() or not text.isdigit() or len(text) > 19:

@@ -1,7 +1,8 @@
-"""Courses of the vector fields that lead an aircraft onto a line and onto a circle.
+"""Vector fields that guide an aircraft onto a line or a circle.
 
-Source: D. R. Nelson, D. B. Barber, T. W. McLain, R. W. Beard, "Vector field path following for miniature air
-vehicles", IEEE Transactions on Robotics 23(3), 2007. North and east [m] of a plane; courses clockwise from north [rad].
+Source: D. R. Nelson, D. B. Barber, T. W. McLain, R. W. Beard, "Vector field path following for
+miniature air vehicles", IEEE Transactions on Robotics 23(3), 2007. Coordinates are north and east
+[m] in a plane; courses are clockwise from north [rad].
 """
 
 from __future__ import annotations
@@ -14,16 +15,16 @@ EARTH_M = 6_371_000.0
 
 
 def plane(latitude: float, longitude: float, of: tuple[float, float]) -> Vec2:
-    """North and east of a place from another [deg], flat between them."""
+    """North and east [m] of a place relative to another [deg], on a flat Earth."""
     turn = (longitude - of[1] + 180.0) % 360.0 - 180.0
     north, east = radians(latitude - of[0]), radians(turn) * cos(radians(of[0]))
     return Vec2(EARTH_M * north, EARTH_M * east)
 
 
 def line_course(here: Vec2, start: Vec2, to: Vec2, most_rad: float, gain_per_m: float) -> float:
-    """Onto the line from start to end: along it there, and across it by most_rad far away.
+    """Course onto the line from start to end: along it when on it, at most_rad to it when far away.
 
-    gain_per_m: how soon that changes. A line without a length is the way to its end.
+    gain_per_m: steepness of the transition. For a line of zero length, the course to its end.
     """
     north, east = to.x - start.x, to.y - start.y
     length = hypot(north, east)
@@ -34,7 +35,7 @@ def line_course(here: Vec2, start: Vec2, to: Vec2, most_rad: float, gain_per_m: 
 
 
 def circle_course(here: Vec2, centre: Vec2, radius_m: float, clockwise: bool, gain: float) -> float:
-    """Onto the circle about a centre: along it there, and to its centre far away."""
+    """Course onto a circle: along it when on it, towards its centre when far away."""
     north, east = here.x - centre.x, here.y - centre.y
     inwards = pi / 2 + atan(gain * (hypot(north, east) - radius_m) / radius_m)
     return atan2(east, north) + (inwards if clockwise else -inwards)

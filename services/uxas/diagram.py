@@ -1,9 +1,10 @@
-"""AutomationDiagramDataService: for each planned request a folder with what it was about, and a picture.
+"""AutomationDiagramDataService: writes for each planned request a folder with its objects and a
+diagram.
 
-The folder is `AutomationDiagramDataService/0001_AutomationDiagram_ID0100` (a number that is free, the
-entity's id) below the data folder. In it, as UxAS names them: the state of each vehicle, the tasks
-with the places that they refer to, the zones of the operating region, and the response, one XML file
-each; and `AutomationDiagram.svg`, in place of the plotting scripts of UxAS.
+The folder is `AutomationDiagramDataService/0001_AutomationDiagram_ID0100` (an unused number, the
+entity id) below the data folder. It contains, named as in UxAS: the state of each vehicle, the
+tasks with the places that they refer to, the zones of the operating region, and the response, one
+XML file each; and `AutomationDiagram.svg`, in place of UxAS's plotting scripts.
 """
 
 from __future__ import annotations
@@ -35,11 +36,11 @@ _REFERENCES = {
     "BlockedEntityID": ("state", "BlockedEntity"),
     "SupportedEntityID": ("state", "SupportedEntity"),
 }
-"""What a task may refer to by id: the sort of object, and how its file is called."""
+"""Objects that a task may refer to by id: kind of object, and prefix of its file name."""
 
 
 class Pairs(NamedTuple):
-    """Requests by id that have no response yet, the newest AT_ONCE of them; and what is still to be written."""
+    """The newest AT_ONCE unanswered requests by id, and the answered ones still to be written."""
 
     asked: dict[int, Any]
     answered: tuple[tuple[Any, Any], ...] = ()
@@ -51,7 +52,7 @@ class AutomationDiagramDataService:
     subscribes: tuple[str, ...] = (REQUEST, RESPONSE)
 
     def __init__(self, name: str, world: World, folder: Path, entity_id: int) -> None:
-        """world: what the messages have told; folder: where it writes, made when first needed."""
+        """world: state received in messages; folder: output folder, created when first needed."""
         self.name, self._world, self._entity = name, world, entity_id
         self._folder = folder / SERVICE_TYPE
 
@@ -59,7 +60,7 @@ class AutomationDiagramDataService:
         return Pairs({})
 
     def handle(self, state: Pairs, envelope: Envelope, now_ms: int) -> tuple[Pairs, Iterable[Any]]:
-        """Pairs responses with requests; files are written once whoever waits for the response has it."""
+        """Match responses with requests; files are written after the response has been delivered."""
         body = envelope.body
         if envelope.topic == REQUEST:
             newest = [*state.asked.items(), (body.RequestID, body)][-AT_ONCE:]
@@ -71,7 +72,7 @@ class AutomationDiagramDataService:
         return Pairs(asked, (*state.answered, (request, body))), [Wake(0)]
 
     def wake(self, state: Pairs, key: None, now_ms: int) -> tuple[Pairs, Iterable[Any]]:
-        """Writes what has been answered; says what could not be written."""
+        """Write the answered requests; returns status messages for failures."""
         said = []
         for request, response in state.answered:
             try:
@@ -79,16 +80,16 @@ class AutomationDiagramDataService:
             except OSError as error:
                 what = f"{error.filename or self._folder}: {error.strerror or error}"
                 said.append(status(response.ResponseID, "Error", [(SERVICE_TYPE, what)]))
-            except BadInput as error:  # XML cannot hold each text that a message may have
+            except BadInput as error:  # XML cannot represent every text of a message
                 said.append(status(response.ResponseID, "Error", [(SERVICE_TYPE, str(error))]))
         return state._replace(answered=()), said
 
     def stop(self, state: Pairs) -> None:
-        """The service leaves the bus: nothing that was answered stays unwritten."""
+        """When the service stops, write all remaining answered requests."""
         self.wake(state, None, 0)
 
     def files(self, request: Any, response: Any) -> dict[str, Any]:
-        """What is written for a request and its response: the object of each file by its name."""
+        """The objects written for a request and its response, by file name."""
         found = dict(self._states(request))
         for number in request.OriginalRequest.TaskList:
             task = self._world.get("task", number)
@@ -108,7 +109,7 @@ class AutomationDiagramDataService:
         return found
 
     def _states(self, request: Any) -> Iterator[tuple[str, Any]]:
-        """The state that each vehicle was planned from: of the request, else the newest."""
+        """The state from which each vehicle was planned: from the request, otherwise the newest."""
         given = {state.EntityID: state for state in request.PlanningStates}
         for number in request.OriginalRequest.EntityList or sorted(self._world.ids("state")):
             known = self._world.get("state", number)
@@ -141,7 +142,7 @@ class AutomationDiagramDataService:
             space.remove()
 
     def _free(self) -> str:
-        """The next number, as UxAS counts: one more than the greatest that is there."""
+        """The next number, as in UxAS: the greatest existing one plus one."""
         there = [m for name in os.listdir(self._folder) if (m := _NUMBERED.fullmatch(name))]
         number = 1 + max((int(match[1]) for match in there), default=0)
         return f"{number:04d}_AutomationDiagram_ID{self._entity:04d}"

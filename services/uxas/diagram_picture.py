@@ -1,4 +1,4 @@
-"""A picture of a planned request as SVG: zones, tasks, vehicles and their waypoints; north is up."""
+"""Draws a planned request as SVG: zones, tasks, vehicles and their waypoints; north is up."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _STYLE = """
 
 
 class Shape(NamedTuple):
-    """closed: an area; else a line, or a point if it has one corner. corners: north and east [m]."""
+    """closed: an area; otherwise a line, or a point if it has one corner. corners: north and east [m]."""
 
     closed: bool
     corners: list[tuple[float, float]]
@@ -32,9 +32,9 @@ class Shape(NamedTuple):
 
 
 def picture(files: dict[str, Any], title: str) -> str:
-    """The SVG text of a request's objects by the names of their files (see `diagram.files`).
+    """The SVG text for a request's objects by file name (see `diagram.files`).
 
-    What has no place on a map is left out of the picture; it stands in its file.
+    Objects without a position on a map are omitted; they are in their files.
     """
     found = [place for body in files.values() for place in locations(body) if place != (0.0, 0.0)]
     usable = [p for p in found if abs(p[0]) <= 89 and abs(p[1]) <= 180]
@@ -76,7 +76,7 @@ def _parts(value: Any, places: Places, css: str, label: str) -> list[Shape]:
         if isinstance(value, (list, tuple)) and value and type(value[0]).__name__ == "Location3D":
             return [Shape(False, [point(v, places, sent, kind)[:2] for v in value], css, label)]
     except BadInput:
-        return []  # a place that is none, or an area that cannot be: it stands in its file
+        return []  # invalid position or impossible area: it is in its file
     names = getattr(value, "names", ())
     return [shape for name in names for shape in _parts(getattr(value, name), places, css, label)]
 

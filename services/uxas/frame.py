@@ -1,4 +1,4 @@
-"""What a service gets when it is made: the host. And the clock that the host's loop follows."""
+"""The host that each service receives when created, and the clock of the host's loop."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ STATE = "afrl.cmasi.EntityState"
 
 
 class Clock:
-    """Milliseconds since the start: of the machine, or as the entities' states tell.
+    """Milliseconds since the start: of the machine's clock, or from entity states.
 
-    With Test_SimulationTime on the bus time is discrete: it stands at 0 until a state says
-    otherwise, and never goes back. A leap of more than an hour, or back by more than ten seconds
-    (another simulation, an absolute date), is no time that passes: the clock goes on from where it
-    stands, and what follows counts from the new origin.
+    With Test_SimulationTime on the bus, time is discrete: it stays at 0 until a state gives
+    another, and never decreases. A jump of more than an hour, or back by more than ten seconds
+    (another simulation, an absolute date), does not count as elapsed time: the clock continues from
+    its value, and later times count from the new origin.
     """
 
     LEAP_MS = 3_600_000
@@ -32,21 +32,21 @@ class Clock:
         self._zero_s = monotonic()
         self.discrete = False
         self._told_ms = 0
-        self._heard_ms = 0  # the time that a state told last, whatever its origin
+        self._heard_ms = 0  # the last time reported by a state, whatever its origin
 
     def real_s(self) -> float:
-        """Seconds of the machine since the start."""
+        """Seconds of the machine's clock since the start."""
         return self._monotonic() - self._zero_s
 
     def now_ms(self) -> int:
-        """The time that the services see [ms]."""
+        """The time seen by the services [ms]."""
         return self._told_ms if self.discrete else int(1000 * self.real_s())
 
     def tell(self, time_ms: int) -> bool:
-        """A state says what time it is [ms]; False if that was a leap."""
+        """Process the time of a state [ms]; False if it was a jump."""
         step = time_ms - self._heard_ms
         if step in range(-self.BACK_MS, 1):
-            return True  # the states of several vehicles come one after the other
+            return True  # states of several vehicles arrive one after the other
         self._heard_ms = time_ms
         if step not in range(1, self.LEAP_MS + 1):
             return False
@@ -56,9 +56,9 @@ class Clock:
 
 @dataclass
 class Host:
-    """The process that a service lives in: bus, loggers, clock, who and where it is.
+    """The process that contains a service: bus, loggers, clock, and identity.
 
-    shared: what services of one process have in common (what is known, ids given), by name.
+    shared: objects common to the services of a process (world state, ids), by name.
     """
 
     bus: Bus
@@ -72,8 +72,9 @@ class Host:
     say: Callable[[str], None] = print
 
     def arrived(self, envelope: Envelope) -> None:
-        """Queue a message from outside. With Test_SimulationTime a state comes at the time that it tells, and
-        what has come before it at the time before, however many come at once."""
+        """Queue a message from outside. With Test_SimulationTime a state takes effect at its own
+        time, and messages received before it at the previous time, however many arrive at once.
+        """
         if self.clock.discrete and STATE in lmcp.full_names(envelope.body):
             self.bus.run_until(self.clock.now_ms())
             self.tell(envelope.body, "Test_SimulationTime")
@@ -81,7 +82,7 @@ class Host:
         self.bus.put(envelope)
 
     def tell(self, body: Any, name: str) -> None:
-        """A state tells the clock what time it is; a leap is logged. name: of the service that says so."""
+        """Pass the time of a state to the clock; a jump is logged. name: of the reporting service."""
         if not self.clock.tell(body.Time):
             self.log(
                 "WARN",

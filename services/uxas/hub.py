@@ -1,11 +1,13 @@
-"""The bus over several processes: one holds the hub, the others join it over ZeroMQ.
+"""The bus over several processes: one process runs the hub, the others join it over ZeroMQ.
 
 The hub's process binds HubPULL and HubPUB; a satellite connects HubPUSH and HubSUB. A satellite's
-services publish to the hub and hear everything from it, their own process' messages too, so that
-there is one total order for all: the hub's. The frames are UxAS's, `address$attributes$payload`;
-anybody may listen at HubPUB. `Probe` frames (content type `hub`) tell a satellite that it hears.
+services publish to the hub and receive everything from it, including messages of their own process,
+so that there is one total order for all: the hub's. The frames are UxAS's,
+`address$attributes$payload`; anyone may subscribe to HubPUB. `Probe` frames (content type `hub`)
+tell a satellite that its subscription works.
 
-A satellite that does not read loses messages, counted here; what no satellite wants is not sent.
+A satellite that does not read loses messages, counted here; messages without subscriber are not
+sent.
 """
 
 from __future__ import annotations
@@ -33,8 +35,9 @@ _PROBE_MS = 50
 
 
 class _Side:
-    """What both sides have: a port, and a count of what it has lost and refused. take: who is given what the
-    other side has sent; echoes: whether its probes are sent back."""
+    """Common part of both sides: a port, and counts of lost and refused messages. take: receives
+    the other side's messages; echoes: whether probes are returned.
+    """
 
     def __init__(
         self, host: Host, port: ZmqPort, name: str, take: Callable[[Envelope], object], echoes: bool
@@ -45,7 +48,7 @@ class _Side:
         self._tally.counts = port.counts
 
     def pump(self, now_s: float) -> int:
-        """Take in what the other side has sent; how many messages that were."""
+        """Process input from the other side; returns the number of messages."""
         count = 0
         for incoming in self.port.step(now_s):
             try:
@@ -73,7 +76,7 @@ class _Side:
 
 
 class Hub(_Side):
-    """The process that orders: publishes what its bus delivers, takes in what satellites push."""
+    """The ordering process: publishes what its bus delivers, accepts what satellites push."""
 
     prefixes = ("",)
 
@@ -84,12 +87,12 @@ class Hub(_Side):
 
 
 class RemoteBus(Bus):
-    """A satellite's bus: what is published goes to the hub, what the hub says is delivered."""
+    """A satellite's bus: published messages go to the hub, messages from the hub are delivered."""
 
     satellite: Satellite | None = None
 
     def put(self, envelope: Envelope) -> None:
-        """Push to the hub; before it is joined, as any bus."""
+        """Push to the hub; before joining, behave as any bus."""
         if self.satellite is None:
             super().put(envelope)
         else:
@@ -101,10 +104,10 @@ class RemoteBus(Bus):
 
 
 class Satellite(_Side):
-    """The other side: joins a hub and feeds a `RemoteBus`."""
+    """The satellite side: joins a hub and feeds a `RemoteBus`."""
 
     def __init__(self, host: Host, context: Any, sub: str, push: str, curve: Curve | None) -> None:
-        """BadInput if no hub answers within ten seconds."""
+        """Raises BadInput if no hub answers within ten seconds."""
         assert isinstance(host.bus, RemoteBus)
         self._bus = host.bus
         port = _port(host, context, ("PUSH", push), ("SUB", sub), False, curve)
@@ -117,7 +120,7 @@ class Satellite(_Side):
         self._bus.satellite = self
 
     def _join(self, push: str) -> None:
-        """Wait until a probe message comes back: from then on no message can be missed."""
+        """Wait until a probe message returns: from then on no message can be missed."""
         nonce = f"hub.probe.{os.getpid()}.{time.monotonic_ns()}"
         probe = wire.AddressedMessage(nonce, PROBE, nonce, "", "0", "0", b"?").pack()
         end_s = time.monotonic() + _JOIN_S
@@ -162,7 +165,7 @@ def _envelope(bus: Bus, message: wire.AddressedMessage) -> Envelope:
     topic = body.all_names[0]
     entity, service = number(message.entity_id), number(message.service_id)
     source = f"eid{entity}.sid{service}"
-    for name in bus.names():  # a message of our own comes back with our own name
+    for name in bus.names():  # one of our own messages returns with our own name
         if bus.identity(name)[:2] == (entity, service) and service:
             source = name
     target = "" if message.address == topic else message.address

@@ -1,9 +1,10 @@
-"""LoiterLeash: a vehicle asked to go in a direction loiters on the safe way there, a leash ahead.
+"""LoiterLeash: a vehicle asked to fly a heading loiters on the safe route there, a leash length
+ahead.
 
 SafeHeadingAction -> RoutePlanRequest to the point that far ahead -> RoutePlanResponse ->
-VehicleActionCommand with a loiter on the route: around the farthest of its points where all of the
-disc, not only its centre, obeys the zones of the action's region (the proved kernels say so). Without a
-route, or where there is no such point, it loiters where it is, and a ServiceStatus says why.
+VehicleActionCommand with a loiter on the route: around its farthest point where the whole disc, not
+only its centre, respects the zones of the action's region (proved kernels decide). Without a route
+or such a point it loiters at its position, and a ServiceStatus gives the reason.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from cratous.spec.mission import Position
 
 ACTION = "uxas.messages.uxnative.SafeHeadingAction"
 ROUTES_FROM = 2**61
-"""Ids of its route requests, apart from those of aggregator and tasks."""
+"""First id of its route requests, distinct from those of aggregator and tasks."""
 GRAVITY_M_S2 = 9.80665
 
 
@@ -41,7 +42,7 @@ Step = tuple[Leash, Iterable[Any]]
 
 
 class LoiterLeash:
-    """For one vehicle."""
+    """Leash for one vehicle."""
 
     subscribes: tuple[str, ...] = (
         "afrl.cmasi.EntityConfiguration",
@@ -53,7 +54,7 @@ class LoiterLeash:
     def __init__(
         self, name: str, contexts: Contexts, vehicle: int, lead_m: float | None, buffer_m: float
     ) -> None:
-        """lead_m: how far ahead, None: as the action says; buffer_m: added to the turn radius."""
+        """lead_m: leash length, None: from the action; buffer_m: added to the turn radius."""
         self.name, self._contexts, self._vehicle = name, contexts, vehicle
         self._lead_m, self._buffer_m = lead_m, buffer_m
 
@@ -104,7 +105,7 @@ class LoiterLeash:
         return state._replace(asked=number, action=action), [request]
 
     def _answered(self, state: Leash, body: Any) -> Step:
-        """Only the answer to the newest request counts."""
+        """Process a route response; only the answer to the newest request counts."""
         if state.action is None or body.ResponseID != ROUTES_FROM + state.asked:
             return state, ()
         action, plan = state.action, next(iter(body.RouteResponses), None)
@@ -144,7 +145,7 @@ class LoiterLeash:
         return state._replace(action=None), [*out, command]
 
     def _room(self, region: int, places: list[Any], radius_m: float) -> tuple[Any, list[str]]:
-        """The first place around which there is room to loiter; the last one and why, if none has it."""
+        """The first place with room to loiter; if there is none, the last one and the reasons."""
         try:
             known = self._contexts.for_routes(region, self._vehicle)
             zones = hard_zones(known.mission.zones)
@@ -164,7 +165,7 @@ class LoiterLeash:
         return 0.0 if configuration is None else float(configuration.NominalSpeed)
 
     def _radius(self, configuration: Any) -> float:
-        """The tightest turn at nominal speed, and the buffer."""
+        """Minimum turn radius at nominal speed, plus the buffer."""
         profile = getattr(configuration, "NominalFlightProfile", None)
         bank = profile.MaxBankAngle if profile is not None else 0.0
         if not bank:

@@ -1,7 +1,7 @@
-"""The loggers of a running UxAS: console and file, each from a severity on.
+"""The loggers of a UxAS process: console and file, each from a minimum severity.
 
-Defaults as UxAS has them: the console from WARN on, the file `log/log_<start in ms>` from DEBUG on;
-the folder `log` stands in the present folder. A line is `<time> <severity> <text>`.
+Defaults as in UxAS: the console from WARN, the file `log/log_<start in ms>` from DEBUG; the folder
+`log` is in the working directory. A line is `<time> <severity> <text>`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from cratous.spec.files.printable import printable
 
 @contextmanager
 def writing_in(folder: Path, what: str) -> Iterator[None]:
-    """An OSError in here says what cannot be done, and that a folder is meant that can be written."""
+    """Convert an OSError in the block into a BadInput that names the operation and asks for a writable folder."""
     try:
         yield
     except OSError as error:
@@ -32,7 +32,7 @@ def writing_in(folder: Path, what: str) -> Iterator[None]:
 
 
 class Logs:
-    """Console and file; call it with a severity and a sentence."""
+    """Console and file logger; call it with a severity and a text."""
 
     def __init__(
         self,
@@ -58,7 +58,7 @@ class Logs:
                 self._out = self.path.open("a", encoding="utf-8", buffering=1)
 
     def __call__(self, severity: str, text: str) -> None:
-        """Log one sentence."""
+        """Log one text."""
         level = self._levels[severity]
         self.counts[severity] += 1
         text = printable(text)  # a peer could forge lines, or move the cursor

@@ -1,9 +1,9 @@
-"""The service manager: makes services and bridges from a configuration, and at run time.
+"""The service manager: creates services and bridges from a configuration, and at run time.
 
-Ids count up in the order of the file from FirstServiceID (50, the manager's own), services first.
-All that is wrong with a configuration is found before anything is opened, and refused together.
-CreateNewService makes a service (a task's, or any of the registry); KillService ends one and frees
-what it held; KillService of the manager's own id ends all services, of -1 the process.
+Ids increase in file order from FirstServiceID (50, the manager's own), services first. All errors of a configuration
+are found before anything is opened, and reported together. CreateNewService creates a service (a task's, or any of
+the registry); KillService ends one and releases its resources; KillService with the manager's own id ends all
+services, with -1 the process.
 """
 
 from __future__ import annotations
@@ -47,12 +47,12 @@ from cratous.spec.errors import BadInput, CratousError
 
 FIRST_ID = 50
 SLIP = 0.85
-"""Names as alike as this (difflib's ratio) are one name with a slip in it: that is a mistake, no other service."""
-_COMMON = {"MessageGroup": Attr()}  # of every service: the group of its messages and its address
+"""Similarity (difflib's ratio) from which an unknown name counts as a misspelling, not as another service."""
+_COMMON = {"MessageGroup": Attr()}  # for every service: the group and address of its messages
 
 
 class ServiceManager:
-    """A service itself (id FirstServiceID), so that it hears CreateNewService and KillService."""
+    """A service itself (id FirstServiceID), so that it receives CreateNewService and KillService."""
 
     name = "ServiceManager"
     subscribes: tuple[str, ...] = (CREATE, KILL)
@@ -67,7 +67,7 @@ class ServiceManager:
         self.ended = False
         self.on_change: Callable[[], None] = lambda: None
         host.shared["new_id"] = self.new_id
-        # what the loader of missions wants to know of a configuration
+        # what the mission loader needs from a configuration
         host.shared["services"] = tuple(
             (e.type, dict(e.attributes), int(e.where.rpartition(":")[2] or 0))
             for e in config.entries
@@ -75,7 +75,7 @@ class ServiceManager:
         )
 
     def new_id(self) -> int:
-        """The next id of this process that is not taken."""
+        """The next unused id of this process."""
         self._last_id += 1
         while self._last_id in self._names:
             self._last_id += 1
@@ -87,9 +87,9 @@ class ServiceManager:
         return dict(self._names)
 
     def build(self, without: frozenset[str] = frozenset()) -> None:
-        """Make all services and bridges of the configuration; BadInput names what is wrong.
+        """Create all services and bridges of the configuration; BadInput lists its errors.
 
-        without: types that the user has asked to leave out.
+        without: types that the user has excluded.
         """
         notes: list[str] = []
         entries = check(self._config, without, notes)
@@ -140,7 +140,7 @@ class ServiceManager:
         self._end(number)
 
     def close(self) -> None:
-        """End all, bridges first."""
+        """End all services, bridges first."""
         for number in [*self.bridges, *[n for n in self._names if n != self.first_id]]:
             if number in self._names:
                 self._end(number)
@@ -236,7 +236,7 @@ class ServiceManager:
             self._add(self._task_service(item.type, task, partial(_forget, world, task)), number)
             return []
         if task is not None and item.type == task.all_names[0]:
-            # no error: another's service may do it, and a request says if nobody does
+            # not an error: another process may have it, and a request reports if none does
             text = f"task {task.TaskID} is a {item.type}: no service here does this kind"
             self._host.log("WARN", text)
             return [status(0, "Warning", [("TaskID", str(task.TaskID)), ("reason", text)])]
@@ -269,10 +269,10 @@ def _forget(world: World, task: Any) -> None:
 def check(
     config: Configuration, without: frozenset[str] = frozenset(), notes: list[str] | None = None
 ) -> list[Entry]:
-    """The entries to make; BadInput with all that is wrong with types, attributes and elements.
+    """The entries to create; BadInput with all errors in types, attributes and elements.
 
-    without: types that the user has asked to leave out. notes: takes what was read leniently, and the
-    services that nobody has here; a strict configuration is refused for them.
+    without: types that the user has excluded. notes: receives what was read leniently, and the services that are not
+    available here; a strict configuration is refused for them.
     """
     entries = [e for e in config.entries if e.type not in without]
     problems: list[BadInput] = []
@@ -329,7 +329,7 @@ def _check(item: Entry, entries: list[Entry], problems: list[BadInput]) -> None:
 
 
 def _parsed(text: str, where: str) -> tuple[Entry, Any]:
-    """The Service element of a CreateNewService and the task inside, if there is one.
+    """The Service element of a CreateNewService, and the task inside, if any.
 
     UxAS escapes the angle brackets and leaves the closing tag to the receiver.
     """
@@ -378,5 +378,5 @@ def _unknown(item: Entry, known: Any) -> BadInput:
 
 
 def startup(bus: Bus) -> None:
-    """Say that all services of the configuration are there."""
+    """Publish that all services of the configuration are running."""
     bus.publish(lmcp.new("StartupComplete"), ServiceManager.name)

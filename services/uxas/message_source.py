@@ -1,7 +1,7 @@
-"""What the services of a UxAS process know: what the messages have told, read by the loader.
+"""World state of a UxAS process, from the messages received, for the mission loader.
 
-The world is the newest of each entity, task, zone and region. A UniqueAutomationRequest is a mission in
-the world as it is when the request comes.
+The world is the newest version of each entity, task, zone and region. A UniqueAutomationRequest
+becomes a mission in the world at the time of the request.
 """
 
 from __future__ import annotations
@@ -33,34 +33,34 @@ from cratous.spec.mission import Frame
 IMPACT = "afrl.impact.ImpactAutomationRequest"
 INITIALISED = "uxas.messages.task.TaskInitialized"
 IMPACT_ANSWER = "afrl.impact.ImpactAutomationResponse"
-_OF_ZONES = -1  # no region that comes in a message is this one
+_OF_ZONES = -1  # no region in a message has this id
 MOST_OVERRIDDEN = 1000
 _FORESEEN = {name.rpartition(".")[2] for name in TASKS} - {"WatchTask"}
-"""Kinds of tasks of which a task alone says how it is flown."""
+"""Task types whose flight options depend on the task alone."""
 FORESEEN_MOST = 100
-"""Of so many tasks, the newest, options are made before anybody asks for them."""
+"""Number of tasks, the newest ones, for which options are computed in advance."""
 
 
 class MessageSource:
-    """The facts of one process."""
+    """World state of one process."""
 
     subscribes: tuple[str, ...] = (*World.subscribes, IMPACT, IMPACT_ANSWER, INITIALISED)
 
     def __init__(self, host: Host) -> None:
         self.world = World()
         self._host = host
-        self._spoken: dict[int, None] = {}  # tasks whose services have said that they are there
+        self._spoken: dict[int, None] = {}  # tasks whose services have announced themselves
         self._frame: Frame | None = None  # of the newest request
-        self._overridden: dict[int, Any] = {}  # requests with conditions of their own, unanswered
-        self._told: dict[int, tuple[Any, ...]] = {}  # conditions by RequestID, of a validator here
+        self._overridden: dict[int, Any] = {}  # unanswered, with conditions of their own
+        self._told: dict[int, tuple[Any, ...]] = {}  # by RequestID, from this process's validator
 
     @property
     def outside(self) -> Outside:
-        """Vehicles of a process are outside of it."""
+        """The vehicles are outside the process."""
         return Outside(self._host.shared.get("separation_m", Outside().separation_m))
 
     def hear(self, envelope: Envelope, now_ms: int) -> None:
-        """A message about the world, or a request with conditions of its own."""
+        """Process a message about the world, or a request with conditions of its own."""
         body = envelope.body
         if envelope.topic == IMPACT:
             if body.OverridePlanningConditions:
@@ -73,16 +73,16 @@ class MessageSource:
             if len(self._spoken) > MOST:
                 self._spoken.pop(next(iter(self._spoken)))
         else:
-            if hasattr(body, "TaskID"):  # another task of this id, which has to be spoken for anew
+            if hasattr(body, "TaskID"):  # another task with this id needs a new announcement
                 self._spoken.pop(body.TaskID, None)
             self.world.add(body, f"message {envelope.seq} from {envelope.source}", now_ms)
 
     def asks(self, service: str) -> bool:
-        """Whatever runs on the same bus is asked."""
+        """Whether a service of this name runs on the same bus, so that it can be asked."""
         return service in self._host.bus.names()
 
     def inputs(self, request: Any, where: str) -> Inputs:
-        """A request as a mission; BadInput says what is wrong with it."""
+        """A request as a mission; BadInput states its errors."""
         asked = request.OriginalRequest
         pairs = self._conditions(request, where)
         if pairs:
@@ -105,8 +105,10 @@ class MessageSource:
         return self._led(Inputs(mission, starts), given)
 
     def _conditions(self, request: Any, where: str) -> Sequence[Any]:
-        """The OverridePlanningConditions of a request, as the validator of this process has said; BadInput where it
-        is in another one, and the request equals one with conditions: which of the two it is cannot be told."""
+        """The OverridePlanningConditions of a request, as reported by this process's validator.
+        BadInput if the validator is in another process and the request equals one with conditions:
+        they cannot be told apart.
+        """
         if request.RequestID in self._told:
             return self._told[request.RequestID]
         if any(body == request.OriginalRequest for body in self._overridden.values()):
@@ -119,7 +121,7 @@ class MessageSource:
         return ()
 
     def _led(self, inputs: Inputs, given: Collection[int]) -> Inputs:
-        """With each vehicle as far ahead of where it is as the plan builder says, where zones let it fly there."""
+        """The inputs with each start moved ahead by the plan builder's lead distance, where zones permit."""
         lead_m = self._host.shared.get("lead_m", 0.0)
         if not lead_m:
             return inputs
@@ -132,16 +134,18 @@ class MessageSource:
         return Inputs(inputs.mission, starts)
 
     def conditions(self, request_id: int, pairs: Sequence[Any]) -> None:
-        """The validator says under which conditions a request is planned that it is about to publish."""
+        """The validator reports the conditions of a request that it is about to publish."""
         self._told.pop(request_id, None)
         self._told[request_id] = tuple(pairs)
         if len(self._told) > MOST_OVERRIDDEN:
             self._told.pop(next(iter(self._told)))
 
     def foreseen(self) -> Inputs | None:
-        """What a request would mean that names every aircraft, the newest tasks of ours and the newest region.
+        """The inputs of an anticipated request with every aircraft, our newest tasks and the newest
+        region.
 
-        None where that means nothing. Its frame is that of the request to come, if things stay about where they are.
+        None if they are invalid. Its frame is that of the coming request, if objects stay roughly
+        where they are.
         """
         flown = {
             state.ID
@@ -161,7 +165,7 @@ class MessageSource:
         try:
             mission = mission_of(cfg, str(self._host.config), self._spoken, self._frame)
             inputs = self._led(Inputs(mission, stages.start_poses(mission)), ())
-        except CratousError:  # whoever asks for it will be told
+        except CratousError:  # the sender of such a request gets the error
             return None
         self._frame = mission.frame
         return inputs
@@ -171,7 +175,7 @@ class MessageSource:
         return self._surroundings(vehicle, region, ())
 
     def among(self, vehicle: int, zones: list[int]) -> RequestPlaces:
-        """The frame and some zones, whatever region they are of. BadInput if one is unknown."""
+        """The frame and some zones, whatever their region. BadInput if one is unknown."""
         extra = lmcp.new("OperatingRegion", ID=_OF_ZONES, KeepOutAreas=zones)
         return self._surroundings(vehicle, _OF_ZONES, (Sent(extra, "zones", 0),))
 

@@ -1,8 +1,10 @@
-"""The base of a task kind of the user's own: what it says on the bus, but for the ways to fly it (docs/guides/own-task.md).
+"""Base class for user-defined task types: all bus messages, except the flight options
+(docs/guides/own-task.md).
 
-It says TaskInitialized for each task that it knows, TaskPlanOptions for each request with one, asks the route planner for the
-way there, and answers with the waypoints. TaskActive and TaskComplete follow the vehicles' AssociatedTasks. What a way
-raises, or says amiss, ends the request with the reason.
+It publishes TaskInitialized for each task that it knows, TaskPlanOptions for each request with one,
+asks the route planner for the transit route, and answers with the waypoints. TaskActive and
+TaskComplete follow the vehicles' AssociatedTasks. An exception or an invalid result of the user's
+code ends the request with the reason.
 """
 
 from __future__ import annotations
@@ -24,14 +26,14 @@ UNIQUE = "uxas.messages.task.UniqueAutomationRequest"
 CHOICE = "uxas.messages.task.TaskImplementationRequest"
 ROUTES = "uxas.messages.route.RoutePlanResponse"
 ROUTES_FROM = 10**15
-"""Numbers of these services' route requests: beyond those of the other tasks."""
+"""First id of these services' route requests, above those of other tasks."""
 REMEMBERED = 256
-"""Offers and questions that are remembered; the oldest makes room."""
+"""Number of stored offers and route requests; the oldest are dropped."""
 WAYS_MOST, PLACES_MOST, TAKES_MOST_S = 1_000, 10_000, 1e6
 
 
 class Place(NamedTuple):
-    """A place [degrees], and its altitude [m MSL], 0: the vehicle's own."""
+    """A place [degrees] with altitude [m MSL]; 0: the vehicle's own."""
 
     latitude: float
     longitude: float
@@ -39,7 +41,7 @@ class Place(NamedTuple):
 
 
 class Flight(NamedTuple):
-    """One way to fly a task: its places in order, how long it takes [s], and the headings at its ends [degrees]."""
+    """One way to fly a task: its places in order, its duration [s], and the headings at its ends [degrees]."""
 
     places: Sequence[Place]
     takes_s: float
@@ -48,9 +50,10 @@ class Flight(NamedTuple):
 
 
 class Held(NamedTuple):
-    """tasks and usual speeds [m/s] by id; offers: by request and task, the vehicle and flight of each option; asked: by
-    the number of a route request; active: vehicles by task; away: of the vehicles that ICAROUS has, or has handed back
-    and that do not fly waypoints yet, which of the two."""
+    """tasks and nominal speeds [m/s] by id; offers: by request and task, vehicle and flight of each
+    option; asked: by route request id; active: vehicles by task; away: vehicles that ICAROUS
+    commands, or has handed back and that do not fly waypoints yet, with which of the two.
+    """
 
     tasks: Mapping[int, Any] = MappingProxyType({})
     speeds: Mapping[int, float] = MappingProxyType({})
@@ -64,7 +67,7 @@ Step = tuple[Held, Iterable[Any]]
 
 
 class OwnTask:
-    """One kind of tasks: every cmasi Task with the Label `label`, flown by what `flights` says."""
+    """One task type: every cmasi Task with the Label `label`, flown as `flights` returns."""
 
     label = ""
     subscribes: tuple[str, ...] = (
@@ -72,13 +75,13 @@ class OwnTask:
     )  # fmt: skip
 
     def __init__(self, name: str, values: Mapping[str, Any]) -> None:
-        """values: the attributes of the service. BadInput where the class has no label or no flights."""
+        """values: the attributes of the service. BadInput if the class has no label or no `flights`."""
         self.check_class()
         self.name, self.values = name, values
 
     @classmethod
     def check_class(cls) -> None:
-        """BadInput names the class if it takes any task, or cannot say how one is flown."""
+        """BadInput, with the class's name, if it has no label or does not define `flights`."""
         where = f"{cls.__module__}:{cls.__qualname__}"
         if not isinstance(cls.label, str) or not cls.label.strip():
             raise BadInput(
@@ -92,7 +95,7 @@ class OwnTask:
             )  # fmt: skip
 
     def flights(self, task: Any, speed_m_s: float) -> Sequence[Flight]:
-        """The ways in which a vehicle of this usual speed may fly a task; none: it cannot."""
+        """The ways in which a vehicle with this nominal speed may fly a task; empty if it cannot."""
         raise NotImplementedError
 
     def start(self) -> Held:
@@ -142,7 +145,7 @@ class OwnTask:
     def _found(
         self, state: Held, task: Any, asked: Sequence[int]
     ) -> tuple[tuple[int, Flight], ...]:
-        """The flights that are offered, each with its vehicle."""
+        """The flights on offer, each with its vehicle."""
         may = task.EligibleEntities or asked or sorted(state.speeds)
         found, where = list[tuple[int, Flight]](), f"task {task.TaskID} ({self.label})"
         for vehicle in may:
@@ -187,8 +190,9 @@ class OwnTask:
             return state, [_failed(request, asked.TaskID, error)]
 
     def _flown(self, state: Held, body: Any) -> Step:
-        """Active from the first state of a vehicle that tells a task, complete with the first that tells it no more; what
-        it tells from when ICAROUS takes it until it flies waypoints again ends no task."""
+        """Active from the first vehicle state that lists a task, complete with the first that no
+        longer does; states from a takeover by ICAROUS until waypoints are flown again end no task.
+        """
         if state.away.get(body.ID) == HANDED_BACK and on_its_way(body):
             left = {number: at for number, at in state.away.items() if number != body.ID}
             state = state._replace(away=left)
@@ -233,7 +237,9 @@ def _options(request: int, task: int, found: Sequence[tuple[int, Flight]]) -> An
 
 
 def _plan(asked: Any, flight: Flight, response: Any) -> Any:
-    """The waypoints of the way there and of the flight, at the speed and, if a place says none, altitude of the former."""
+    """The waypoints of the transit and of the flight, at the transit's speed and, where a place has
+    none, its altitude.
+    """
     route = response.RouteResponses[0]
     if not route.Waypoints:
         why = "; ".join(pair.Value for pair in route.RouteError) or "the planner does not say why"

@@ -1,8 +1,8 @@
-"""A running UxAS: bus, manager, ports and the loop that turns them. One thread, no timers.
+"""A running UxAS: bus, manager, ports and the main loop. One thread, no timers.
 
-Time runs as the machine's by default (`Clock`); what is due happens at its own virtual time, in
-order, however late the loop comes to it. `virtual=True` waits for nothing: time jumps from one
-wake to the next, so that the same configuration gives the same messages; it takes no bridges.
+By default time is the machine's (`Clock`); due events happen at their own virtual time, in order,
+however late the loop processes them. `virtual=True` waits for nothing: time jumps from one wake-up
+to the next, so that the same configuration gives the same messages; it allows no bridges.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ from cratous.services.uxas.logs import Logs, writing_in
 from cratous.services.uxas.manager import ServiceManager, startup
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 
-_LONGEST_POLL_MS = 200  # so that a signal or a discrete clock is seen
+_LONGEST_POLL_MS = 200  # so that a signal or a discrete clock is noticed
 _QUIET_MS = 20
-"""A piece of what can be done at any time is done when nothing has come, or is due, for so long."""
+"""Idle time before a piece of background work is done [ms]."""
 _FILES = 65536
 _NEVER_MS = 2**62
 
@@ -51,9 +51,9 @@ class Process:
         data: Path | None = None,
         clock: Clock | None = None,
     ) -> None:
-        """BadInput names what is wrong with the configuration; nothing stays open then.
+        """BadInput states the errors of the configuration; nothing stays open then.
 
-        data: the folder for what services write; without one, none may.
+        data: folder in which services write; without one, none may.
         """
         root = config.root
         self.log, self.config, self._virtual = log, config, virtual
@@ -127,16 +127,17 @@ class Process:
 
     @property
     def ports(self) -> list[Any]:
-        """All that has sockets: hub or satellite, then bridges."""
+        """All objects with sockets: hub or satellite, then bridges."""
         found: list[Any] = [p for p in (self._hub, self._satellite) if p is not None]
         return found + list(self.manager.bridges.values())
 
     def run(self, until_s: float | None = None, spare: Iterator[bool] | None = None) -> None:
-        """Turn until `until_s` seconds are over, KillService -1 comes, or `stopping` is set.
+        """Run until `until_s` seconds have passed, KillService -1 arrives, or `stopping` is set.
 
-        The start is complete when all entities that services wait for have connected; time counts from then on.
-        spare: what is done piece by piece when nothing else is there to do, before the first request, and says whether
-        there was any; not in virtual time, which has no such time.
+        Start-up is complete when all entities that services wait for have connected; time counts
+        from then on. spare: background work done piece by piece when idle, before the first
+        request; each item says whether there was any. Not used in virtual time, which has no idle
+        time.
         """
         if spare is not None and not self._virtual:
             self._spare = spare
@@ -155,7 +156,7 @@ class Process:
             self.turn(None if end_s is None else end_s - now_s)
 
     def turn(self, most_s: float | None = None) -> None:
-        """Wait for the next thing, at most `most_s`, and do all that is there to do."""
+        """Wait for the next event, at most `most_s`, and process everything due."""
         self._wait(most_s)
         if self._doorkeeper is not None:
             self._doorkeeper.step()
@@ -163,13 +164,13 @@ class Process:
         for port in self.ports:
             port.pump(now_s)
         self.bus.run_until(self.clock.now_ms())
-        if self.clock.discrete:  # a state has told the time: what comes next comes at that time
+        if self.clock.discrete:  # a state has given the time: what follows happens at that time
             self.bus.run_until(self.clock.now_ms())
 
     def _awaits(self) -> bool:
         now_s = time.monotonic()
         waiting = [port.awaits(now_s) for port in self.ports if hasattr(port, "awaits")]
-        return any(waiting)  # each has said for whom
+        return any(waiting)  # each has logged for whom it waits
 
     def close(self) -> None:
         """End all services, close all sockets. Safe to call twice."""
@@ -217,22 +218,22 @@ class Process:
             self._use_spare_time()
 
     def _heard(self, wait_ms: int) -> bool:
-        """Wait so long for something to come; whether it has."""
+        """Wait up to wait_ms for input; whether there is any."""
         if not self._handles:
             time.sleep(wait_ms / 1000)
             return False
         assert self._poller is not None
         with contextlib.suppress(InterruptedError):
             return bool(self._poller.poll(wait_ms))
-        return True  # a signal has come
+        return True  # interrupted by a signal
 
     def _asked(self, envelope: Envelope) -> None:
-        """Nothing is done ahead any more once something is asked for: from then on it would only be in the way."""
+        """Stop background work after the first automation request, where it would only cause delay."""
         if envelope.topic.endswith("AutomationRequest"):
             self._spare = None
 
     def _use_spare_time(self) -> None:
-        """Do one piece of what can be done at any time."""
+        """Do one piece of background work."""
         assert self._spare is not None
         try:
             self._idle = not next(self._spare)
@@ -266,13 +267,13 @@ class Process:
             self.log("DEBUG", "".join(traceback.format_exception(error)))
         number = _request_of(envelope.body) if envelope else 0
         if not number or not _plans(name):
-            return  # what nobody answers, the validator answers when its time is over
+            return  # the validator answers unanswered requests when their time is over
         reasons = error.reasons if isinstance(error, NoPlan) else (f"{name}: {kind}{error}",)
         self.bus.publish(status(number, "Error", [("reason", text) for text in reasons]), name)
 
 
 def _request_of(body: Any) -> int:
-    """The automation request that a message of the pipeline belongs to, 0 if it does not say."""
+    """The automation request to which a message of the pipeline belongs, 0 if it has none."""
     if type(body).__name__ == "UniqueAutomationRequest":
         return int(body.RequestID)
     return int(getattr(body, "CorrespondingAutomationRequestID", 0))
@@ -301,7 +302,7 @@ def _addresses(config: Configuration, names: tuple[str, str]) -> tuple[str, str]
 
 
 def _raise_file_limit() -> None:
-    """Let many connections stand: as many files as the system lets us have, up to 65,536."""
+    """Raise the file limit to the system's maximum, at most 65,536, for many connections."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     most = _FILES if hard == resource.RLIM_INFINITY else min(hard, _FILES)
     if soft != resource.RLIM_INFINITY and soft < most:
@@ -310,7 +311,7 @@ def _raise_file_limit() -> None:
 
 
 def data_folder(config: Configuration, here: Path) -> Path:
-    """`datawork`, made as UxAS does; with isDataTimestamp a folder inside, named by the time."""
+    """The folder `datawork`, created as in UxAS; with isDataTimestamp a subfolder named by the time."""
     folder = here / "datawork"
     if config.root["isDataTimestamp"]:
         folder = folder / str(time.time_ns() // 1_000_000)

@@ -1,8 +1,9 @@
-"""OperatingRegionStateService: one operating region of all zones that are there.
+"""OperatingRegionStateService: maintains one operating region that contains all existing zones.
 
-KeepInZone, KeepOutZone, RemoveZones -> OperatingRegion with the id 0, which binds whoever names no region, whenever
-the zones change. A zone that begins and ends at -1 ms is taken out. A WaterZone
-binds no aircraft and is left out. With an additional padding each zone is sent again, padded by so much more.
+KeepInZone, KeepOutZone, RemoveZones -> OperatingRegion with id 0, which applies to requests that
+name no region, whenever the zones change. A zone with start and end time -1 ms is removed. A
+WaterZone does not apply to aircraft and is omitted. With an additional padding each zone is sent
+again with that padding added.
 """
 
 from __future__ import annotations
@@ -17,11 +18,11 @@ from cratous.services.bus import Envelope
 Zones = dict[int, Any]
 REGION, REMOVED_MS = 0, -1
 FLOAT = 1e-6
-"""So far a number is rounded on the wire, of itself."""
+"""Relative rounding error of numbers on the wire."""
 
 
 class OperatingRegionStateService:
-    """Keeps the zones by id, each as last received."""
+    """Stores the newest version of each zone by id."""
 
     name = "OperatingRegionStateService"
     subscribes: tuple[str, ...] = (
@@ -31,7 +32,7 @@ class OperatingRegionStateService:
     )
 
     def __init__(self, padding_m: float = 0.0) -> None:
-        """padding_m: by how much more each zone is padded [m]."""
+        """padding_m: additional padding of each zone [m]."""
         self._padding_m = padding_m
 
     def start(self) -> Zones:
@@ -51,8 +52,10 @@ class OperatingRegionStateService:
         return made, out
 
     def _ours(self, known: Any, body: Any) -> bool:
-        """Whether a zone is what we have made of it, or another service of this kind has: padded by as much more, and
-        the same else. To pad that again would never end; by less it is another zone, which is to be padded too."""
+        """Whether a zone was already padded by this service or another of its kind: equal except
+        for that padding. Padding it again would never end; a zone with less padding is a different
+        one, which is padded too.
+        """
         if known is None or not self._padding_m:
             return False
         most = max(abs(body.Padding), abs(known.Padding), self._padding_m)
@@ -62,7 +65,7 @@ class OperatingRegionStateService:
         return bool(body.copy(Padding=known.Padding) == known)
 
     def _changed(self, before: Zones, after: Zones) -> tuple[Zones, list[Any]]:
-        """The region, if other zones are there than before."""
+        """The operating region, if the set of zones has changed."""
         zones = _ids(after)
         if zones == _ids(before):
             return after, []

@@ -1,6 +1,6 @@
-"""The services that a configuration may name: their attributes, and how each is made.
+"""The services that a configuration may name: their attributes, and constructors.
 
-What UxAS has and we do not have yet is known by name too, so that it is refused with a sentence.
+Services of UxAS that are not implemented here are known by name too, so that they are refused with a reason.
 """
 
 from __future__ import annotations
@@ -49,9 +49,9 @@ Make = Callable[["Host", Entry, dict[str, Any], str, int], Any]
 
 @dataclass(frozen=True)
 class Kind:
-    """A service type: attributes, names of child elements, maker, whether only one may be there.
+    """A service type: attributes, names of child elements, constructor, whether only one instance is allowed.
 
-    plans: it takes part in planning, so the kernels that it stands on have to be proved.
+    plans: it takes part in planning, so the kernels that it uses have to be proved.
     """
 
     attributes: Mapping[str, Attr]
@@ -67,7 +67,7 @@ ICAROUS = "IcarousCommunicationService"
 
 
 def contexts_of(host: Host) -> Contexts:
-    """What the messages mean to the services of a process; it joins the bus when first asked for."""
+    """The planning contexts of a process; joins the bus when first asked for."""
     if "contexts" not in host.shared:
         host.shared["source"] = MessageSource(host)
         host.shared["contexts"] = Contexts(host.shared["source"])
@@ -78,7 +78,7 @@ def contexts_of(host: Host) -> Contexts:
 
 def source_of(host: Host) -> MessageSource:
     """The message source shared by the services of a process."""
-    contexts_of(host)  # which hears the messages
+    contexts_of(host)  # which receives the messages
     source: MessageSource = host.shared["source"]
     return source
 
@@ -97,7 +97,7 @@ def _planner(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int
 
 
 def _by_icarous(host: Host, entry: Entry, name: str, wanted: bool) -> None:
-    """Routes are left to ICAROUS: said where nobody in this process has them planned there."""
+    """Log if routes are left to ICAROUS but no service in this process plans them there."""
     services = [attributes for kind, attributes, _ in host.shared["services"] if kind == ICAROUS]
     if wanted and all(one.get("RoutePlannerUsed", "-1") == "-1" for one in services):
         text = f"{ICAROUS} with a RoutePlannerUsed of 0 to 3 is not in this configuration"

@@ -1,4 +1,4 @@
-"""The OsmPlannerService of a configuration, with the map that it names."""
+"""Creates the OsmPlannerService of a configuration with its map."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ WRITTEN = ("MapEdgesFile", "ShortestPathFile", "MetricsFile")
 
 
 def made(host: Host, entry: Entry, contexts: Contexts, v: dict[str, Any]) -> Any:
-    """The service; BadInput for a map that is none, and, where the configuration is read strictly, for no map.
+    """The service; BadInput for an invalid map and, in strict mode, for a missing one.
 
-    v: the attributes; OsmFile is relative as the files of messages are, those that are written go to the data folder.
+    v: the attributes; OsmFile is resolved as message files are, output files go to the data folder.
     """
     name, names = v["OsmFile"], Names(*(_name(entry, one, v[one]) for one in WRITTEN))
     if name:

@@ -1,7 +1,8 @@
-"""SerialAutomationRequestTestService: requests one after the other, each once the one before is answered.
+"""SerialAutomationRequestTestService: forwards requests one at a time, each once the previous is
+answered.
 
-AutomationRequest, ImpactAutomationRequest -> the same, to the address UniqueAutomationRequest; the next one after an
-AutomationResponse or an ImpactAutomationResponse, or when the time for one is over.
+AutomationRequest, ImpactAutomationRequest -> the same, to the address UniqueAutomationRequest; the
+next after an AutomationResponse or an ImpactAutomationResponse, or after a time-out.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ WAITING_MOST = 10_000
 
 
 class Queue(NamedTuple):
-    """Requests that wait, how many have gone out, and whether the last of them is unanswered."""
+    """Waiting requests, the number sent, and whether the last is unanswered."""
 
     waiting: tuple[Any, ...] = ()
     sent: int = 0
@@ -34,7 +35,7 @@ class SerialAutomationRequestTestService:
     subscribes: tuple[str, ...] = (*REQUESTS, *RESPONSES)
 
     def __init__(self, name: str, limit_ms: int) -> None:
-        """limit_ms: so long an answer is waited for [ms]."""
+        """limit_ms: time-out for an answer [ms]."""
         self.name, self._limit_ms = name, limit_ms
 
     def start(self) -> Queue:
@@ -47,7 +48,7 @@ class SerialAutomationRequestTestService:
         return self._next(state._replace(waiting=waiting))
 
     def wake(self, state: Queue, key: Any, now_ms: int) -> Step:
-        """The time for the answer to request number `key` is over."""
+        """Time-out of request number `key`."""
         return self._next(state._replace(busy=False)) if key == state.sent else (state, ())
 
     def _next(self, state: Queue) -> Step:

@@ -1,4 +1,4 @@
-"""What each service of the registry is, and what it sends: for the table of services and its tests."""
+"""Class and published messages of each registered service, for the table of services and its tests."""
 
 from __future__ import annotations
 
@@ -109,4 +109,4 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
     "HelloWorld": (basic_services.HelloWorld, ("KeyValuePair",)),
     "StatusReportService": (basic_services.StatusReportService, ("OnboardStatusReport",)),
 }  # fmt: skip
-"""Of each service its class, which says what it subscribes to, and the messages that it sends."""
+"""For each service its class, which defines its subscriptions, and the messages that it publishes."""

@@ -1,4 +1,4 @@
-"""The kinds of attributes that a service of one's own declares (`docs/guides/own-service.md`)."""
+"""The kinds of attributes for user-defined services (`docs/guides/own-service.md`)."""
 
 from cratous.services.loading.uxas_settings import Attr, choice, flag, number, whole
 

@@ -1,9 +1,10 @@
-"""SteeringService: flies a plan for one aircraft whose autopilot takes courses and no waypoints.
+"""SteeringService: flies a plan for an aircraft whose autopilot accepts courses but no waypoints.
 
-AirVehicleState at the address PartialAirVehicleState (TransformReceivedMessage of a bridge makes it so) -> a
-VehicleActionCommand with heading, speed and altitude, or a SafeHeadingAction for the LoiterLeash; and the same state
-with the waypoint that is made for and its tasks. The plan is that of the newest AutomationResponse or MissionCommand.
-While a task steers with FlightDirectorActions of its own it is silent.
+AirVehicleState at the address PartialAirVehicleState (set by a bridge's TransformReceivedMessage)
+-> a VehicleActionCommand with heading, speed and altitude, or a SafeHeadingAction for the
+LoiterLeash; and the same state with the current waypoint and its tasks. The plan is that of the
+newest AutomationResponse or MissionCommand. It is silent while a task steers with
+FlightDirectorActions of its own.
 """
 
 from __future__ import annotations
@@ -30,17 +31,21 @@ ASKED, ANSWERED = (
 )
 GRAVITY_M_S2 = 9.80665
 SAME_M = 1.0
-"""So short a leg has been flown."""
+"""A leg shorter than this counts as flown [m]."""
 REGIONS_MOST = 64
 WIDER, AHEAD = 1.2, 3.0
-"""A loiter on the leash is by so much wider than the tightest turn, and so many of its radii ahead."""
+"""Leash loiters: radius as a multiple of the minimum turn radius, and distance ahead as a multiple
+of that radius.
+"""
 
 Place = tuple[float, float]
 
 
 class Steering(NamedTuple):
-    """How it steers; accept_ms: a waypoint is reached so long before [ms]; most_rad, per_m: of lines; gain: of circles;
-    leash: courses go out as SafeHeadingActions; region: of these, None: the plan's."""
+    """Guidance parameters; accept_ms: a waypoint counts as reached this time ahead [ms]; most_rad,
+    per_m: of lines; gain: of circles; leash: courses are sent as SafeHeadingActions; region: for
+    these, None: the plan's.
+    """
 
     accept_ms: int = 0
     most_rad: float = pi / 2
@@ -62,7 +67,7 @@ ATTRIBUTES = {
 
 
 def steering_of(v: dict[str, Any]) -> Steering:
-    """What a configuration says."""
+    """The parameters in a configuration."""
     return Steering(
         v["AcceptanceTime_ms"],
         radians(v["MaxCourseAngleDeg"]),
@@ -74,9 +79,10 @@ def steering_of(v: dict[str, Any]) -> Steering:
 
 
 class Steered(NamedTuple):
-    """The plan and the waypoint in it that is made for, since when [ms]; where the leg to it begins; done: that was
-    the last; told_m_s: a speed instead of the waypoints'; by_task: a task steers; commands sent; the aircraft's
-    configuration; the region of the plan, and those of requests in progress."""
+    """The plan and its current waypoint, since when [ms]; start of the leg to it; done: it was the
+    last; told_m_s: commanded speed in place of the waypoints'; by_task: a task steers; number of
+    commands; the aircraft's configuration; the region of the plan, and those of pending requests.
+    """
 
     plan: Any = None
     number: int = 0
@@ -91,7 +97,7 @@ class Steered(NamedTuple):
     regions: tuple[tuple[int, int], ...] = ()
 
     def waypoint(self, number: int) -> Any:
-        """A waypoint of the plan, None if there is none of this number."""
+        """A waypoint of the plan; None if there is none with this number."""
         points = () if self.plan is None else self.plan.WaypointList
         return next((w for w in points if w.Number == number), None)
 
@@ -100,7 +106,7 @@ Step = tuple[Steered, Iterable[Any]]
 
 
 class SteeringService:
-    """For one aircraft."""
+    """Steering of one aircraft."""
 
     subscribes: tuple[str, ...] = (
         PARTIAL, CONFIGURATION, RESPONSE, COMMAND, ACTIONS, SPEED, ASKED, ANSWERED
@@ -133,7 +139,9 @@ class SteeringService:
         return state._replace(by_task=state.by_task or "FlightDirectorAction" in kinds), ()
 
     def _planned(self, state: Steered, body: Any, asked: bool) -> Steered:
-        """The region of a request is that of its plan, if this aircraft is in it; a trial's is not flown."""
+        """Note the region of a request as that of its plan, if this aircraft takes part; trial
+        plans are not flown.
+        """
         if asked:
             if body.SandBoxRequest or body.OriginalRequest is None:
                 return state
@@ -146,7 +154,7 @@ class SteeringService:
         return state._replace(region=region, regions=left)
 
     def _flown(self, state: Steered, body: Any, now_ms: int) -> Step:
-        """Where it has to go from here, and the state as it is told to everybody."""
+        """Compute the course from here, and publish the state to all."""
         out: list[Any] = []
         place = body.Location
         known = place is not None and is_place(place.Latitude, place.Longitude)
@@ -160,7 +168,7 @@ class SteeringService:
         return state, [*out, body.copy(CurrentWaypoint=state.number, AssociatedTasks=tasks)]
 
     def _on(self, state: Steered, here: Place, now_ms: int) -> Steered:
-        """On to the next waypoint as long as one is reached, each once: a cycle of near ones has an end too."""
+        """Advance while a waypoint is reached, each at most once, so that a cycle of close waypoints terminates."""
         reached: set[int] = set()
         while not state.done and self._reached(state, here, now_ms):
             waypoint = state.waypoint(state.number)
@@ -243,9 +251,10 @@ class SteeringService:
 
 
 def _begun(state: Steered, plan: Any, now_ms: int) -> Steered:
-    """At the first waypoint of a plan; the leg to it begins at the waypoint that leads to it, if there is one.
+    """Start a plan at its first waypoint; the leg to it begins at the waypoint that leads to it, if
+    there is one.
 
-    A plan whose numbers lead nowhere is not taken: the one before is flown on.
+    A plan with invalid waypoint links is rejected: the previous one is flown on.
     """
     if not all(map(_leads, plan.WaypointList)):
         return state
@@ -264,7 +273,7 @@ def _begun(state: Steered, plan: Any, now_ms: int) -> Steered:
 
 
 def _leads(waypoint: Any) -> bool:
-    """Whether a course, a speed and an altitude can be told for a waypoint."""
+    """Whether a waypoint gives a valid course, speed and altitude."""
     loiter = _loiter(waypoint)
     numbers = [waypoint.Speed, waypoint.Altitude, waypoint.ClimbRate]
     numbers += [] if loiter is None else [loiter.Radius, loiter.Airspeed]
@@ -282,7 +291,7 @@ def _speed(configuration: Any) -> float:
 
 
 def _turn_m(configuration: Any) -> float:
-    """The radius of the tightest turn at nominal speed, 0 where it is not known."""
+    """Minimum turn radius at nominal speed [m], 0 if unknown."""
     profile = getattr(configuration, "NominalFlightProfile", None)
     bank = abs(profile.MaxBankAngle) if profile is not None else 0.0
     return (

@@ -1,6 +1,6 @@
 """TaskTrackerService: logs each change of a task's status.
 
-A task is known, assigned (a plan for a vehicle has it), active (the vehicle says so), or done.
+A task is known, assigned (in a plan of a vehicle), active (as the vehicle reports), or done.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ KNOWN, ASSIGNED, ACTIVE, DONE = "known", "assigned", "active", "done"
 
 
 class Tracked(NamedTuple):
-    """What a task is now, and for which vehicle (0: none)."""
+    """Current status of a task, and its vehicle (0: none)."""
 
     status: str
     vehicle: int = 0

@@ -1,7 +1,7 @@
-"""Services of the user's own: `Type="module:Class"` in a configuration.
+"""User-defined services: `Type="module:Class"` in a configuration.
 
-The module lies beside the configuration, or is importable. Only the configuration's own file can
-name one; CreateNewService makes those that it names, and no others. How to write one:
+The module is beside the configuration, or importable. Only the configuration file itself can name
+one; CreateNewService can create only those named there. How to write one:
 docs/guides/own-service.md.
 """
 
@@ -21,7 +21,7 @@ _loaded: dict[str, Kind] = {}
 
 
 def kind_of(name: str) -> Kind | None:
-    """A service type of the registry, or one that a configuration has named."""
+    """A service type of the registry, or one named by a configuration."""
     return KINDS.get(name) or _loaded.get(name)
 
 
@@ -40,7 +40,7 @@ def _kind(name: str, folder: Path, where: str) -> Kind:
     module, _, attribute = name.partition(":")
     try:
         made = getattr(_module(module, folder), attribute)
-    except Exception as error:  # the user's module may fail in any way
+    except Exception as error:  # the user's module may raise anything
         raise BadInput(
             f"the service cannot be loaded: {type(error).__name__}: {error}",
             where=where,

@@ -1,7 +1,7 @@
 """WaypointPlanManagerService and SimpleWaypointPlanManagerService: plans for one vehicle.
 
-The manager serves a long path in segments; which positions of the path come next, the proved kernels
-of `core.contracts.segments` say. A path that leads back into itself goes on for ever.
+The manager sends a long path in segments; the proved kernels of `core.contracts.segments` decide
+which positions of the path come next. A cyclic path never ends.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ STATES = (
     "afrl.vehicles.SurfaceVehicleState",
 )
 AHEAD_DEG = -60.0
-"""Where a gimbal looks when a mission has ended, above the horizon [deg]."""
+"""Gimbal elevation at the end of a mission, above the horizon [deg]."""
 FAR = 2**60
-"""The last position of a path without end."""
+"""Last position of a cyclic path."""
 
 
 class Serving(NamedTuple):
-    """How a path is served; to_serve, overlap: waypoints in a segment, and in common with the next.
+    """How a path is served; to_serve, overlap: waypoints per segment, and shared with the next.
 
-    radius_m: of loiters at the end of the mission, or of each segment; turn_type: of all waypoints; gimbal: payload
-    that looks ahead and down at the end of the mission, below 1: none.
+    radius_m: of loiters at the end of the mission, or of each segment; turn_type: of all waypoints;
+    gimbal: payload pointed ahead and down at the end of the mission, below 1: none.
     """
 
     to_serve: int = 100_000
@@ -45,7 +45,7 @@ class Serving(NamedTuple):
 
 
 class Path(NamedTuple):
-    """Waypoints in the order of flight; where the last one leads (its own index: it ends there)."""
+    """Waypoints in flight order; back_to: index that follows the last one (its own: the path ends there)."""
 
     command: Any
     waypoints: tuple[Any, ...]
@@ -58,11 +58,11 @@ class Path(NamedTuple):
 
     @property
     def cyclic(self) -> bool:
-        """True if it leads back into itself."""
+        """True if the path is cyclic."""
         return self.back_to != len(self.waypoints) - 1
 
     def indices(self, span: Span) -> list[int]:
-        """The waypoints at the positions of a span."""
+        """Indices of the waypoints at the positions of a span."""
         found, index = [], 0
         for _ in range(self._same(span.first)):
             index = waypoint_after(index, len(self.waypoints), self.back_to)
@@ -72,7 +72,7 @@ class Path(NamedTuple):
         return found
 
     def _same(self, position: int) -> int:
-        """A position in the first round that has the same waypoint."""
+        """The position in the first round with the same waypoint."""
         count = len(self.waypoints)
         if not self.cyclic or position < count:
             return position
@@ -80,7 +80,7 @@ class Path(NamedTuple):
 
 
 def path_of(command: Any, serving: Serving) -> Path:
-    """The path of a MissionCommand: from its first waypoint, each to the next that it names."""
+    """The path of a MissionCommand: from its first waypoint, following the NextWaypoint links."""
     known = {w.Number: w for w in command.WaypointList}
     order: dict[int, int] = {}
     number = command.FirstWaypoint if command.FirstWaypoint in known else next(iter(known))
@@ -120,7 +120,7 @@ def _loitering(waypoint: Any, radius_m: float) -> Any:
 
 
 class Served(NamedTuple):
-    """The path in progress, the segment that the vehicle has, its waypoint, and the last command id."""
+    """The path in progress, the segment sent to the vehicle, its current waypoint, and the last command id."""
 
     path: Path | None = None
     span: Span = Span(0, 0)
@@ -132,7 +132,7 @@ Step = tuple[Served, Iterable[Any]]
 
 
 class WaypointPlanManagerService:
-    """AutomationResponse or MissionCommand -> MissionCommands of a few waypoints, one by one."""
+    """AutomationResponse or MissionCommand -> MissionCommands with a few waypoints each, in sequence."""
 
     subscribes: tuple[str, ...] = (RESPONSE, COMMAND, INCREMENT, *STATES)
 
@@ -166,7 +166,7 @@ class WaypointPlanManagerService:
         return self._serve(Served(path, span, 0, state.commands), path.waypoints[0].Number)
 
     def _length(self, path: Path) -> int:
-        """Positions in a segment: of a round no more than there are waypoints in it."""
+        """Length of a segment; for a cyclic path at most the number of waypoints in the cycle."""
         if not path.cyclic or self._all(path):
             return self._serving.to_serve
         return min(self._serving.to_serve, len(path.waypoints) - path.back_to)
@@ -176,7 +176,7 @@ class WaypointPlanManagerService:
         return span_after(state.span, path.end, length, min(self._serving.overlap, length - 1))
 
     def _serve(self, state: Served, first: int) -> Step:
-        """The present segment as a command that begins with waypoint number `first`."""
+        """The current segment as a command that begins with waypoint number `first`."""
         path = state.path
         assert path is not None
         points = [path.waypoints[k] for k in path.indices(state.span)]
@@ -191,11 +191,11 @@ class WaypointPlanManagerService:
         return state._replace(commands=state.commands + 1, waypoint=first), [command]
 
     def _all(self, path: Path) -> bool:
-        """True if one segment holds a whole round, which then leads back by itself."""
+        """True if one segment contains a whole cycle, which then repeats by itself."""
         return path.cyclic and self._serving.to_serve >= len(path.waypoints)
 
     def _flown(self, state: Served, body: Any) -> Step:
-        """The next segment is due when the vehicle has come to what the two have in common."""
+        """Send the next segment when the vehicle has reached the waypoints that both share."""
         path, number = state.path, body.CurrentWaypoint
         if path is None or number == state.waypoint:
             return state, ()
@@ -211,7 +211,7 @@ class WaypointPlanManagerService:
         return self._serve(state._replace(span=following), number)
 
     def _increment(self, state: Served) -> Step:
-        """Send the vehicle to the waypoint after the one that it makes for."""
+        """Send the vehicle to the waypoint after its current one."""
         path = state.path
         if path is None:
             return state, ()
@@ -224,7 +224,7 @@ class WaypointPlanManagerService:
 
 
 class SimpleWaypointPlanManagerService:
-    """AutomationResponse -> the MissionCommand of one vehicle, whole."""
+    """AutomationResponse -> the complete MissionCommand of one vehicle."""
 
     subscribes: tuple[str, ...] = (RESPONSE,)
 
@@ -235,7 +235,7 @@ class SimpleWaypointPlanManagerService:
         return 0
 
     def handle(self, state: int, envelope: Envelope, now_ms: int) -> tuple[int, Iterable[Any]]:
-        """state: commands so far."""
+        """state: number of commands so far."""
         mine = [c for c in envelope.body.MissionCommandList if c.VehicleID == self._vehicle]
         out = [command.copy(CommandID=state + k + 1) for k, command in enumerate(mine)]
         return state + len(out), out

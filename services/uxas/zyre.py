@@ -1,8 +1,9 @@
-"""The Zyre bridge: messages to each peer whose subscriptions they match, as UxAS does it.
+"""The Zyre bridge: sends messages to each peer whose subscriptions they match, as UxAS does.
 
-A peer says in its header `SubscribeToMessage` which address prefixes it wants (`;` between them);
-what matches is whispered to it once, as a sentinel frame. A peer without `EntityID`, or with ours,
-is no peer of the bus. Joining and leaving are told on the bus: EntityJoin, EntityExit.
+A peer lists the address prefixes that it wants in its header `SubscribeToMessage` (separated by
+`;`); matching messages are whispered to it once, as a sentinel frame. A peer without `EntityID`, or
+with ours, is no peer of the bus. Joining and leaving are published on the bus: EntityJoin,
+EntityExit.
 """
 
 from __future__ import annotations
@@ -28,13 +29,13 @@ class ZyreBridge(Bridge):
     def __init__(self, given: Given, node: ZreNode, rules: Rules) -> None:
         super().__init__(given.name, given.host, given.identity, node, rules)  # type: ignore[arg-type]
         self.node = node
-        self.prefixes = ("",)  # what goes out is what the peers ask for
+        self.prefixes = ("",)  # the peers' subscriptions select what goes out
         self._wanted: dict[str, tuple[str, ...]] = {}
         self._entities: dict[str, int] = {}
 
     @property
     def entities(self) -> tuple[int, ...]:
-        """The entities that are joined."""
+        """The entities that have joined."""
         return tuple(self._entities.values())
 
     def handle(self, state: None, envelope: Envelope, now_ms: int) -> tuple[None, Iterable[Any]]:
@@ -54,7 +55,7 @@ class ZyreBridge(Bridge):
         return None, ()
 
     def pump(self, now_s: float) -> int:
-        """Do what peers say."""
+        """Process the peers' events."""
         count = 0
         for event in self.node.step(now_s):
             try:

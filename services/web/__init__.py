@@ -1,1 +1,1 @@
-"""Pages and data over HTTP: uvicorn at an address of this machine, with limits to what clients may hold."""
+"""HTTP server for pages and data: uvicorn at a local address, with limits on client resources."""

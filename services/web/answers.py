@@ -1,4 +1,4 @@
-"""Answers of a server, as starlette sends them."""
+"""HTTP responses of a server, as starlette sends them."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ JSON = "application/json"
 
 
 def json_bytes(data: dict[str, Any]) -> bytes:
-    """As they are sent."""
+    """The JSON text as bytes."""
     return json_text(data).encode()
 
 
 def json_answer(data: dict[str, Any], status: int = 200, **headers: str) -> Response:
-    """Data as JSON."""
+    """A JSON response."""
     return Response(json_bytes(data), status, headers, JSON)
 
 
 async def in_thread(do: Callable[..., T], *words: Any) -> T:
-    """What a call gives that may wait; a server that ends does not wait for it."""
+    """The result of a blocking call; a server that ends does not wait for it."""
     return await to_thread.run_sync(do, *words, abandon_on_cancel=True)
 
 
 async def body_of(request: Request, longest: int) -> bytes:
-    """The body of a request. Raises HTTPException, 413, for more than so many bytes."""
+    """The body of a request. Raises HTTPException 413 if it has more than `longest` bytes."""
     content = bytearray()
     if int(request.headers.get("content-length", "0")) <= longest:
         async for part in request.stream():

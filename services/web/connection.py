@@ -1,26 +1,30 @@
-"""A connection of an HTTP client: uvicorn's, with the two limits that uvicorn has not.
+"""A connection of an HTTP client: uvicorn's, with three additional limits.
 
-A client has a time for its whole request, and when too many clients have asked nothing yet, the one that has been so
-longest is cut off, so that silent clients take nobody's place. What uvicorn limits itself is said in `server`.
+A client has a time limit for its whole request. If too many clients have sent no request yet, the
+oldest of them is disconnected, so that silent clients block nobody. A client that does not read its
+responses is disconnected too. uvicorn's own limits are set in `server`.
 """
 
 from __future__ import annotations
 
 import asyncio
 
+import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.server import ServerState
 
 REQUEST_S = 10.0
-"""So long a client may take for its request."""
+"""Time limit for a client's request [s]."""
 MOST_SILENT = 32
-"""Connections without a whole request."""
+"""Maximum number of connections without a complete request."""
 MOST_UNREAD = 1 << 20
-"""Of a request that is answered already [bytes]."""
+"""Maximum amount of a request body that arrives after its response [bytes]."""
+LEAST_READ = 1 << 14
+"""Minimum amount of response data that a client has to read in REQUEST_S [bytes]."""
 
 
 class Connections(ServerState):
-    """silent: the connections that have no whole request yet, the oldest first, and when each is cut off."""
+    """silent: connections without a complete request, oldest first, each with the timer that disconnects it."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -28,11 +32,13 @@ class Connections(ServerState):
 
 
 class Connection(H11Protocol):
-    """One client."""
+    """The connection of one client."""
 
     server_state: Connections
     unread = 0
-    """Of the request that is answered already [bytes]."""
+    """Amount of the request body received after its response [bytes]."""
+    reading: asyncio.TimerHandle | None = None
+    """Timer by which it has to read more response data; None unless the write buffer is full."""
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         super().connection_made(transport)
@@ -52,17 +58,51 @@ class Connection(H11Protocol):
         super().on_response_complete()
         self._look()
 
+    def pause_writing(self) -> None:
+        super().pause_writing()
+        self._wait_for_reader()
+        self._look()
+
+    def resume_writing(self) -> None:
+        self._has_read()
+        super().resume_writing()
+        self._look()
+
     def connection_lost(self, exc: Exception | None) -> None:
         super().connection_lost(exc)
+        self._has_read()
         self._is_heard()
 
+    def send_400_response(self, msg: str) -> None:
+        if self.conn.our_state in (h11.IDLE, h11.SEND_RESPONSE):
+            super().send_400_response(msg)
+        else:  # data that are not HTTP after a response
+            self.transport.abort()
+
+    def _wait_for_reader(self) -> None:
+        left = self.transport.get_write_buffer_size()
+        self.reading = self.loop.call_later(REQUEST_S, self._look_whether_read, left)
+
+    def _look_whether_read(self, before: int) -> None:
+        if before - self.transport.get_write_buffer_size() < LEAST_READ:
+            self.transport.abort()
+        else:
+            self._wait_for_reader()
+
+    def _has_read(self) -> None:
+        if self.reading is not None:
+            self.reading.cancel()
+            self.reading = None
+
     def _look(self) -> None:
-        """Hold against it that it has asked nothing, unless it has."""
+        """Start the time limit for a request, or stop it if a request is being answered or its
+        response is being read.
+        """
         silent = self.server_state.silent
         asked = self.cycle is not None and not (
             self.cycle.more_body or self.cycle.response_complete
         )
-        if asked or self.transport.is_closing():
+        if asked or self.reading is not None:
             self._is_heard()
         elif self not in silent:
             silent[self] = self.loop.call_later(REQUEST_S, self.transport.abort)

@@ -1,4 +1,4 @@
-"""An application at an address of this machine, served by uvicorn."""
+"""Runs an application at a local address, with uvicorn."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from cratous.services.web.connection import Connection, Connections
 
 LOOPBACK = "127.0.0.1"
 MOST_AT_ONCE = 128
-"""Connections, and answers that are being made; who comes beyond is told 503."""
+"""Maximum number of connections and of responses in preparation; beyond it clients get status 503."""
 QUEUE = 128
 TICK_S = 1.0
-"""Answers have a date, which uvicorn makes anew each time."""
+"""Interval at which uvicorn updates the date header [s]."""
 
 
 class _Server(Server):
-    """uvicorn's looks ten times a second whether it is to end; this one is told."""
+    """Ends when notified, instead of uvicorn's polling ten times a second."""
 
     _told: tuple[asyncio.AbstractEventLoop, asyncio.Event] | None = None
 
@@ -35,11 +35,11 @@ class _Server(Server):
                     await ended.wait()
 
     def end(self) -> None:
-        """From any thread, or a handler of signals."""
+        """End the server, from any thread or a signal handler."""
         self.should_exit = True
         if self._told is not None:
             loop, ended = self._told
-            with suppress(RuntimeError):  # the loop has ended before
+            with suppress(RuntimeError):  # the loop has already ended
                 loop.call_soon_threadsafe(ended.set)
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
@@ -48,9 +48,10 @@ class _Server(Server):
 
 
 class WebServer:
-    """Bound at once, so that clients may come; they are answered by `serve_forever`, until `shutdown`.
+    """The socket is bound on creation, so that clients can connect; `serve_forever` answers them
+    until `shutdown`.
 
-    port: where it listens. What goes wrong with a client is not logged: it is no concern of the others.
+    port: the listening port. Errors of a client are not logged: they do not concern the others.
     """
 
     def __init__(
@@ -60,7 +61,7 @@ class WebServer:
         address: str = LOOPBACK,
         family: socket.AddressFamily = socket.AF_INET,
     ) -> None:
-        """port: 0 takes a free one. Raises OSError if it cannot be had."""
+        """port: 0 takes a free one. Raises OSError if it is unavailable."""
         both = family == socket.AF_INET6 and socket.has_dualstack_ipv6()
         self._socket = socket.create_server(
             (address, port), family=family, backlog=QUEUE, dualstack_ipv6=both
@@ -77,11 +78,11 @@ class WebServer:
         self._server.server_state = Connections()
 
     def serve_forever(self) -> None:
-        """Answer until `shutdown`, which may come before; in the main thread also until SIGINT or SIGTERM."""
+        """Answer until `shutdown`, which may be called before; in the main thread also until SIGINT or SIGTERM."""
         self._server.run([self._socket])
 
     def shutdown(self) -> None:
-        """End `serve_forever`, from any thread or a handler of signals."""
+        """End `serve_forever`, from any thread or a signal handler."""
         self._server.end()
 
     def __enter__(self) -> Self:

@@ -3,7 +3,7 @@
     .(p1 |(p2 p3)_[1000-1500] +(p4 p5))-[0-60000]
 
 A term is an operator with one or more operands, or a task `p<id>`; any term may carry one timing
-suffix in milliseconds. What terms mean stands in `algebra_meaning`. A text that is not exactly one
+suffix in milliseconds. The meaning of terms: `spec.algebra.meaning`. A text that is not exactly one
 term is refused with its place and what was expected: nothing is skipped, guessed or repaired.
 """
 
@@ -70,10 +70,10 @@ Term: TypeAlias = Atom | Op
 def parse(
     text: str, known: frozenset[int] | None = None, *, where: str = "process algebra"
 ) -> Term:
-    """The term that the text says.
+    """Parse a text into a term.
 
-    known: ids of the tasks that exist; None accepts any. where: what errors call the place (for
-    example a file). Raises AlgebraError, never anything else, for a text that is not a term.
+    known: ids of the tasks that exist; None accepts any id. where: the source named in errors (for example a file).
+    Raises AlgebraError, and no other error, for a text that is not a term.
     """
     try:
         _refuse_blank_or_deep(text)
@@ -89,7 +89,7 @@ def parse(
 
 
 def format_term(term: Term) -> str:
-    """The canonical text: one blank between operands and none elsewhere. Inverse of `parse`."""
+    """The canonical text of a term: single blanks between operands, no other blanks. Inverse of `parse`."""
     parts: list[str] = []
     todo: list[Term | str] = [term]
     while todo:
@@ -107,7 +107,7 @@ def format_term(term: Term) -> str:
 
 
 def parallel_of(ids: Iterable[int]) -> Term:
-    """All these tasks, in any order: what an empty text means. Raises BadInput for no task."""
+    """A term with all these tasks in any order, the meaning of an empty text. Raises BadInput if there are none."""
     tasks = tuple(ids)
     if not tasks:
         raise BadInput("there is no task to do", expected="at least one task", got="none")
@@ -179,7 +179,7 @@ def _suffix(kind: str, children: list[Any]) -> Suffix:
 
 
 def _number(digits: str, offset: int, name: str, low: int, high: int) -> int:
-    # A number of very many digits is refused before it is converted.
+    # A number with too many digits is refused before it is converted.
     significant = digits.lstrip("0")
     value = int(significant or "0") if len(significant) <= 19 else high + 1
     if not low <= value <= high:
@@ -225,7 +225,7 @@ def atoms(term: Term) -> Iterable[Atom]:
 
 
 def _refuse_twice(term: Term) -> dict[int, Span]:
-    """Where each task first stands; operands of `+` alone may share tasks."""
+    """The first position of each task; raises for a task that occurs twice, except in different operands of one `+`."""
     if isinstance(term, Atom):
         return {term.task: term.span}
     seen: dict[int, Span] = {}

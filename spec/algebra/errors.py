@@ -1,4 +1,4 @@
-"""What is wrong with a text of the process algebra: its place, its name, and what was expected."""
+"""Errors in process-algebra texts: the position, the kind of mistake, and what was expected."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class AlgebraError(BadInput):
         return f"{before}{window}{after}\n{' ' * (len(before) + at - first)}^"
 
     def data(self) -> dict[str, str]:
-        """As for every `BadInput`, and the caret."""
+        """The fields of every `BadInput`, and the caret."""
         return {**super().data(), "caret": self.caret()}
 
 
@@ -68,7 +68,7 @@ def clip(text: str) -> str:
 
 
 def explain(text: str, last: Token | None, accepts: set[str]) -> Refusal:
-    """The refusal for a text that stops being a term after the token `last`."""
+    """The refusal for a text that stops being a valid term after the token `last`."""
     behind = 0 if last is None else (last.end_pos or 0)
     offset = behind + len(text[behind:]) - len(text[behind:].lstrip())
     chunk = _CHUNK.match(text, offset)
@@ -85,7 +85,7 @@ def explain(text: str, last: Token | None, accepts: set[str]) -> Refusal:
 
 
 def _what(text: str, before: str, accepts: set[str], got: str) -> str:
-    """The name of the mistake: `got` stands after `before`, where the parser accepts `accepts`."""
+    """The name of the mistake: `got` was found after `before`, where the parser accepts `accepts`."""
     if accepts & {"LSQB", "TIME", "RSQB"} or ("DASH" in accepts and "UNDERSCORE" not in accepts):
         return "this is not a timing"
     if before == "]" and got in ("_", "-"):
@@ -102,7 +102,7 @@ def _what(text: str, before: str, accepts: set[str], got: str) -> str:
 
 
 def _what_term(got: str) -> str:
-    """Why `got` begins no term."""
+    """Why a term cannot begin with `got`."""
     if got == ",":
         return "operands are separated by blanks, not by commas"
     if re.fullmatch(r"P\d+", got):

@@ -60,7 +60,7 @@ Times = Mapping[int, tuple[int, int]]
 
 
 def tasks(term: Term) -> tuple[int, ...]:
-    """The tasks that stand in the term, each once, in the order of the text."""
+    """The tasks of the term, each once, in the order of the text."""
     return tuple(dict.fromkeys(atom.task for atom in atoms(term)))
 
 
@@ -74,7 +74,7 @@ def bounds_all(term: Term) -> bool:
 
 
 def count_branches(term: Term) -> int:
-    """In how many ways every `+` can be resolved to one operand."""
+    """The number of ways to resolve every `+` to one operand."""
     if isinstance(term, Atom):
         return 1
     counts = map(count_branches, term.operands)
@@ -109,7 +109,7 @@ def branch(term: Term, number: int) -> Term:
 
 
 def _also_bounded(term: Term, outer: Suffix | None) -> Term:
-    """The term under one more, outer timing of all its tasks."""
+    """The term with one more, outer timing on all its tasks."""
     if outer is None or bounds_all(term):
         return term
     absolute = replace(outer, kind=ABSOLUTE)
@@ -134,7 +134,7 @@ def rows(term: Term) -> tuple[Row, ...]:
 
 
 def idle_timings(term: Term) -> tuple[Term, ...]:
-    """Sub-terms of a term without `+` whose timing bounds no task: inner ones override it."""
+    """Sub-terms of a term without `+` whose timing constrains no task because inner timings override it."""
     timing: dict[int, tuple[Row, ...]] = {}
     owners: dict[int, Term] = {}
     _collect(term, [], timing, owners)
@@ -157,7 +157,7 @@ def _collect(
     timing: dict[int, tuple[Row, ...]],
     owners: dict[int, Term] | None = None,
 ) -> None:
-    """Add the order rows to `order` and set `timing` per task; inner terms come later and win."""
+    """Add the order rows to `order` and set the timing rows of each task; inner terms come later and override."""
     said = quote(term) if isinstance(term, Op) or term.suffix else ""
     if isinstance(term, Op):
         if term.op == ALTERNATIVE:
@@ -215,7 +215,7 @@ def _relative_rows(term: Term, said: str) -> dict[int, tuple[Row, ...]]:
 
 
 def quote(term: Term) -> str:
-    """The canonical text of a term between back quotes, shortened in the middle if it is long."""
+    """The canonical text of a term in back quotes, shortened in the middle if it is long."""
     text = format_term(term)
     return f"`{text}`" if len(text) <= 64 else f"`{text[:40]}…{text[-20:]}`"
 
@@ -234,17 +234,17 @@ Free = frozenset[int]
 
 
 def satisfied(term: Term, times: Times) -> bool:
-    """Whether the tasks that have run, from start to end [ms], are what the term asks for.
+    """Whether the tasks that ran, with their start and end times [ms], satisfy the term.
 
-    times holds the tasks that have started; tasks that do not stand in the term say nothing.
-    Written from the definition on composites, on purpose without `branches` and `rows`.
+    times: the tasks that have started; tasks that do not occur in the term are ignored. Written directly from the
+    definition on composites, deliberately without `branches` and `rows`.
     """
     ran = [times[task] for task in tasks(term) if task in times]
     return all(start <= end for start, end in ran) and bool(_ways(term, times))
 
 
 def _ways(term: Term, times: Times) -> set[Free]:
-    """The ways in which the term has been done: for each, its tasks that no timing bounds yet."""
+    """The ways in which the term has been done; each is the set of its tasks that no timing constrains yet."""
     parts: list[set[Free]] = []
     if isinstance(term, Atom):
         parts.append({frozenset({term.task})} if term.task in times else set())
@@ -278,6 +278,6 @@ def _ways(term: Term, times: Times) -> set[Free]:
 
 
 def _fits(ways: set[Free], times: Times, moment: int, window: Suffix) -> bool:
-    """Whether in one of the ways all tasks still unbounded lie in the window after `moment`."""
+    """Whether, in one of the ways, all tasks not yet constrained lie in the window after `moment`."""
     first, last = moment + window.t1_ms, moment + window.t2_ms
     return any(all(first <= times[x][0] and times[x][1] <= last for x in way) for way in ways)

@@ -1,10 +1,10 @@
-"""What the operators of the process algebra say of their operands, at one instant or of one task.
+"""What the operators of the process algebra require of their operands, at one instant or for one task.
 
-The meaning of a term (`spec.algebra.meaning`, `spec.algebra.partial`) one operator at a time: of an operand
-it is known which tasks stand in it, when what ran of it ran, whether it is done whole, and whether it was
-done as it permits. The definitions speak of instants and of single tasks; the kernels
-(`core.algebra.steps`) of earliest starts, latest ends and masks. Milliseconds after mission start;
-instants are integers, and a definition says how they are quantified.
+The meaning of a term (`spec.algebra.meaning`, `spec.algebra.partial`), one operator at a time. Known of each operand:
+its tasks, when those that ran did so, whether it is completely done, and whether it was done as it permits. The
+definitions refer to instants and to single tasks; the kernels (`core.algebra.steps`) use earliest starts, latest ends
+and bit masks. Milliseconds after mission start; instants are integers, and each definition states how they are
+quantified.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from typing import NamedTuple
 from cratous.spec.schedule import runs_at
 
 TASK, SEQUENTIAL, TILDE, PARALLEL, ALTERNATIVE = 0, 1, 2, 3, 4
-"""What a term is: a task, or an operator `.` `~` `|` `+` over operands."""
+"""Node codes of a term: a task, or an operator `.` `~` `|` `+` over operands."""
 UNTIMED, ABSOLUTE, RELATIVE = 0, 1, 2
-"""The timing of a term: none, `_[t1-t2]`, `-[t1-t2]`."""
+"""Timing codes of a term: none, `_[t1-t2]`, `-[t1-t2]`."""
 
 
 class Ran(NamedTuple):
-    """What ran of a term: whether anything did, its earliest start and its latest end [ms]."""
+    """What ran of a term: whether any task did, the earliest start and the latest end [ms]."""
 
     some: bool
     start: int
@@ -28,22 +28,23 @@ class Ran(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """A term at an instant: some task of it has begun; all that ever run of it have ended."""
+    """A term at an instant: whether some task of it has begun, and whether all its tasks that ran have ended."""
 
     begun: bool
     ended: bool
 
 
 class Window(NamedTuple):
-    """A span of time, both ends included [ms]."""
+    """A time interval, both ends included [ms]."""
 
     first: int
     last: int
 
 
 class Part(NamedTuple):
-    """An operand. fits: it has all tasks of the whole term that were begun; allowed: it was done as it
-    permits; whole: all of it was done."""
+    """An operand. fits: it contains all tasks of the whole term that were begun; allowed: it was done as it permits;
+    whole: all of it was done.
+    """
 
     fits: bool
     allowed: bool
@@ -55,7 +56,7 @@ class Part(NamedTuple):
 
 
 def stands_in(k: int, mask: int) -> bool:
-    """Task number k is in the set `mask`, of which it is bit k."""
+    """Task number k is in the set `mask` (bit k is set)."""
     return (mask >> k) & 1 == 1
 
 
@@ -65,7 +66,7 @@ def stands_in_one_of(k: int, one: int, other: int) -> bool:
 
 
 def none_beside(k: int, whole: int, part: int, begun: int) -> bool:
-    """Task number k, if it is in the whole and was begun, is in the part. FOR ALL k in 0..63."""
+    """If task number k is in `whole` and was begun, it is in `part`. FOR ALL k in 0..63."""
     return not (stands_in(k, whole) and stands_in(k, begun)) or stands_in(k, part)
 
 
@@ -78,7 +79,7 @@ def some_begun(t: int, ran: Ran) -> bool:
 
 
 def all_ended(t: int, ran: Ran) -> bool:
-    """At the instant t all that ever ran of a term has ended."""
+    """At the instant t all tasks of a term that ran have ended."""
     return not ran.some or ran.end <= t
 
 
@@ -88,17 +89,16 @@ def seen(t: int, ran: Ran) -> Seen:
 
 
 def seen_together(t: int, one: Ran, other: Ran) -> Seen:
-    """Two terms at the instant t as one: one has begun if either has, ended have they if both have.
-    FOR ALL t."""
+    """The state of a term at the instant t."""
     begun = some_begun(t, one) or some_begun(t, other)
     return Seen(begun, all_ended(t, one) and all_ended(t, other))
 
 
 def lets_begin(t: int, op: int, before_whole: bool, before: Ran, later: Ran) -> bool:
-    """What has begun of an operand at the instant t was let begin by the one before it.
+    """At the instant t, an operand has begun only if the operand before it permitted that.
 
-    `.`: that is done whole, and all of it has ended; `~`: some of it has begun; under another
-    operator nothing waits. FOR ALL t.
+    `.`: the operand before is completely done and all of it has ended; `~`: some of it has begun; other operators
+    impose no order. FOR ALL t.
     """
     if not some_begun(t, later):
         return True
@@ -120,12 +120,12 @@ def inside(t: int, window: Window) -> bool:
 def may_run(
     t: int, outer: Window, op: int, timing: int, first: bool, before: Ran, bounds: Window
 ) -> bool:
-    """A task that nothing within an operand bounds may run at the instant t. FOR ALL t.
+    """A task that has no timing constraint within its operand may run at the instant t. FOR ALL t.
 
-    outer: where the term's own tasks may run if it has no timing; op, timing, bounds: the term's operator
-    and timing; first: it is the first operand; before: what ran of the operand before it. A
-    relative timing of `.` counts from the instant at which all of the operand before has ended, of `~`
-    from that at which some of it has begun, and leaves the first operand to what is outside.
+    outer: where the term's own tasks may run if it has no timing; op, timing, bounds: the term's operator and timing;
+    first: this is the first operand; before: what ran of the operand before it. A relative timing of `.` counts from
+    the instant at which all of the operand before has ended, of `~` from the instant at which some of it has begun;
+    the first operand is constrained only by `outer`.
     """
     if timing == UNTIMED:
         return inside(t, outer)
@@ -140,8 +140,9 @@ def may_run(
 
 
 def task_is_held(t: int, u: int, needed: bool, ran: Ran, window: Window) -> bool:
-    """The task ran as it may: it runs at the instant t, and at no instant u outside of the window; if it
-    did not run, it need not. THERE IS a t such that FOR ALL u."""
+    """The task ran within its window: it runs at the instant t, and at no instant u outside the window; if it did not
+    run, it is not needed. THERE IS a t such that FOR ALL u.
+    """
     if not ran.some:
         return not needed
     at_u = runs_at(u, ran.start, ran.end)
@@ -152,10 +153,10 @@ def task_is_held(t: int, u: int, needed: bool, ran: Ran, window: Window) -> bool
 
 
 def allowed_with(t: int, op: int, first: bool, so_far: bool, before: Part, part: Part) -> bool:
-    """With one operand more, a term was done as it permits, as far as the instant t shows. FOR ALL t.
+    """With one more operand, the term was done as it permits, as seen at the instant t. FOR ALL t.
 
-    `+`: one of the operands fits and was done as it permits. Else: each was done as it permits, and was let
-    begin by the one before it. first: there is none before; so_far: of the operands before.
+    `+`: one of the operands fits and was done as it permits. Otherwise each operand was done as it permits, and the
+    operand before it let it begin. first: there is no operand before; so_far: the result for the operands before.
     """
     if op == ALTERNATIVE:
         return (so_far and not first) or (part.fits and part.allowed)
@@ -164,7 +165,9 @@ def allowed_with(t: int, op: int, first: bool, so_far: bool, before: Part, part:
 
 
 def whole_with(op: int, first: bool, so_far: bool, part: Part) -> bool:
-    """With one operand more, a term is done whole: `+`: one operand that fits is; else each is."""
+    """With one more operand, the term is completely done: for `+`, one operand that fits is; otherwise every operand
+    is.
+    """
     if op == ALTERNATIVE:
         return (so_far and not first) or (part.fits and part.whole)
     return so_far and part.whole

@@ -1,14 +1,14 @@
-"""What a term permits when some of its tasks are not done: what is done of it, and what must wait.
+"""What a term permits when some of its tasks are not done: which tasks still count, and which must wait.
 
-A task that ended undone, or was never begun, satisfies nothing. So a later operand of `.` may have a
-task done only if the operand before it was done whole (`.(p1 p2)`: without p1 no p2); a later operand of
-`~` only if some task of the one before it was begun. Under `|` the others go on. Of `+` still at most
-one operand is begun. Order and timing hold for what was done as they do for all: of a relative timing
-the operand before counts with those of its tasks that ran. A line or an area of which a part was flown, since
-zones cover the rest, is done here: the part is what can be done (whether that serves it is judged apart).
+A task that ended undone, or never began, satisfies nothing. So in `.`, a task of a later operand may be done only if
+the operand before was completely done (`.(p1 p2)`: without p1 no p2); in `~`, only if some task of the operand before
+was begun. Under `|` the other operands are unaffected. Of `+`, still at most one operand is begun. Order and timing
+apply to the tasks that were done: a relative timing refers to those tasks of the operand before that ran. A line or
+an area of which only a part was flown, because zones cover the rest, counts as done here (whether that part serves
+the task is judged separately).
 
-`permits` says that of composites and times; `may_be_done` the same of sets of tasks, where only the
-order of things matters. `kept_rows` gives the constraints on times, `only` the term that is left.
+`permits` defines this on composites and times; `may_be_done` on sets of tasks, considering order alone. `kept_rows`
+gives the time constraints of the remaining tasks, `only` the remaining term.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ ORDERED = (SEQUENTIAL, TILDE)
 
 
 def is_whole(term: Term, done: Set[int]) -> bool:
-    """Whether a term is done whole if just these tasks are done."""
+    """Whether a term is completely done if exactly these tasks are done."""
     if isinstance(term, Atom):
         return term.task in done
     if term.op == ALTERNATIVE:
@@ -36,7 +36,7 @@ def is_whole(term: Term, done: Set[int]) -> bool:
 
 
 def may_be_done(term: Term, done: Set[int]) -> bool:
-    """Whether just these tasks of a term may be done, the others left undone."""
+    """Whether exactly these tasks of a term may be done and the others left undone."""
     if isinstance(term, Atom):
         return True
     if term.op == ALTERNATIVE:
@@ -51,7 +51,7 @@ def may_be_done(term: Term, done: Set[int]) -> bool:
 
 
 def _opens(op: str, before: Term, done: Set[int]) -> bool:
-    """Whether what was done of an operand lets the one after it begin."""
+    """Whether what was done of an operand permits the next one to begin."""
     return is_whole(before, done) if op == SEQUENTIAL else bool(done & set(tasks(before)))
 
 
@@ -59,16 +59,16 @@ def _opens(op: str, before: Term, done: Set[int]) -> bool:
 
 
 def permits(term: Term, times: Times) -> bool:
-    """Whether a term permits that just these of its tasks ran, from start to end [ms].
+    """Whether a term permits that exactly these of its tasks ran, from start to end [ms].
 
-    Written from the definition on composites, on purpose without `branches` and `rows`.
+    Written directly from the definition on composites, deliberately without `branches` and `rows`.
     """
     ran = [times[task] for task in tasks(term) if task in times]
     return all(start <= end for start, end in ran) and bool(_ways(term, times))
 
 
 def _ways(term: Term, times: Times) -> set[frozenset[int]]:
-    """The ways in which a part of the term has been done: for each, its tasks that no timing bounds yet."""
+    """The ways in which a part of the term has been done; each is the set of its tasks not yet constrained."""
     began = set(tasks(term)) & set(times)
     if isinstance(term, Atom):
         parts = [{frozenset(began)}]
@@ -107,7 +107,7 @@ def _moment(op: str, before: Term, times: Times) -> int:
 
 
 def _fits(ways: set[frozenset[int]], times: Times, moment: int, window: Suffix) -> bool:
-    """Whether in one of the ways all tasks still unbounded lie in the window after `moment`."""
+    """Whether, in one of the ways, all tasks not yet constrained lie in the window after `moment`."""
     first, last = moment + window.t1_ms, moment + window.t2_ms
     return any(all(first <= times[x][0] and times[x][1] <= last for x in way) for way in ways)
 
@@ -116,18 +116,19 @@ def _fits(ways: set[frozenset[int]], times: Times, moment: int, window: Suffix) 
 
 
 def waits_for(row: Row, kept: Set[int]) -> bool:
-    """Whether a row forbids its task for ever, if just the kept tasks are ever done: it waits for the
-    end of one that is not, or for the start of tasks none of which is."""
+    """Whether a row blocks its task for ever if only the kept tasks are ever done: the row waits for the end of a
+    task that is not kept, or for the start of a group with no kept task.
+    """
     if row.kind == AFTER_END:
         return not set(row.group) <= kept
     return row.kind == AFTER_START and not set(row.group) & kept
 
 
 def largest_part(branch: Term, able: Set[int], begun: Set[int] = frozenset()) -> frozenset[int]:
-    """The tasks of a term without `+` that may be done, if only the able ones can: all that wait for
-    nothing that is left out. It has every set of able tasks in it that may be done.
+    """The largest set of tasks of a term without `+` that may be done if only the able tasks can be: those that wait
+    for no task outside the set. It contains every set of able tasks that may be done.
 
-    begun: tasks that were begun already, which no order holds back any more.
+    begun: tasks that have already begun, which no order constraint holds back.
     """
     kept = set(tasks(branch)) & able
     order = [row for row in rows(branch) if row.kind in (AFTER_END, AFTER_START)]
@@ -141,7 +142,7 @@ def largest_part(branch: Term, able: Set[int], begun: Set[int] = frozenset()) ->
 def kept_rows(branch: Term, kept: Set[int]) -> tuple[Row, ...]:
     """The constraint rows of a term without `+` on the times of the kept tasks.
 
-    A row speaks of those tasks of its group that are kept; one that has none is void.
+    Each row refers to the kept tasks of its group; a row without any is dropped.
     """
     found = []
     for row in rows(branch):
@@ -153,9 +154,9 @@ def kept_rows(branch: Term, kept: Set[int]) -> tuple[Row, ...]:
 
 
 def only(branch: Term, kept: Set[int]) -> Term | None:
-    """The term without `+` with the kept tasks alone; None if there are none.
+    """The term without `+` restricted to the kept tasks; None if there are none.
 
-    For tasks that `may_be_done` it has the rows `kept_rows`.
+    For tasks that satisfy `may_be_done`, its rows are `kept_rows`.
     """
     if isinstance(branch, Atom):
         return branch if branch.task in kept else None
@@ -163,15 +164,15 @@ def only(branch: Term, kept: Set[int]) -> Term | None:
     if not parts:
         return None
     if only(branch.operands[0], kept) is None and not bounds_all(branch) and branch.suffix:
-        # what was begun before may stand alone: its relative timing refers to nothing any more
+        # a task begun earlier may stand alone: its relative timing no longer refers to anything
         return Op(PARALLEL, parts, None, branch.span)
     return replace(branch, operands=parts)
 
 
 def after_choices(term: Term, begun: Set[int]) -> Term:
-    """The term with those operands of each `+` alone that have all tasks of it that were begun.
+    """The term in which each `+` keeps only the operands that contain all of its tasks that were begun.
 
-    Where no operand has all of them the `+` stays as it is.
+    A `+` with no such operand stays unchanged.
     """
     if isinstance(term, Atom):
         return term

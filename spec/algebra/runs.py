@@ -1,10 +1,10 @@
-"""In which orders the tasks of a process-algebra term may be assigned. Timing plays no part.
+"""The orders in which the tasks of a process-algebra term may be assigned. Timing is not considered.
 
-An operand of `.` may begin when the one before it is complete; an operand of `~` when the one
-before it has begun. Sorted by start, the tasks of every schedule that satisfies the term come in
-such an order, so a search over these orders misses no schedule. A state is what is left of the
-term after the actions so far (its derivative); it has several entries only if operands of a `+`
-share tasks, and then no decision is made before the tasks themselves make it.
+An operand of `.` may begin when the one before it is complete; an operand of `~` when the one before it has begun.
+Sorted by start, the tasks of every schedule that satisfies the term appear in such an order, so a search over these
+orders misses no schedule. A state is the remainder of the term after the actions so far (its derivative); it has
+several entries only if operands of a `+` share tasks, and then the choice stays open until the tasks themselves
+decide it.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from cratous.spec.algebra import ALTERNATIVE, PARALLEL, SEQUENTIAL, TILDE, Atom, Op, Term
 
 State = tuple[Term | None, ...]
-"""What may still be to do after some actions, one entry per way to get there; None: nothing."""
+"""What may remain to be done after some actions, one entry per way to get there; None: nothing remains."""
 
 
 def begin(term: Term) -> State:
@@ -23,7 +23,7 @@ def begin(term: Term) -> State:
 
 
 def advance(state: State, task: int) -> State:
-    """The state after one more task; empty if the task may not come next."""
+    """The state after one more task; empty if that task may not come next."""
     found: list[Term | None] = []
     for rest in state:
         if rest is not None:
@@ -43,18 +43,18 @@ def actions(state: State) -> frozenset[int]:
 def next_actions(term: Term, done: tuple[int, ...]) -> frozenset[int]:
     """The tasks that may be assigned next, after `done` in this order.
 
-    Empty if nothing is left to do, and if `done` itself is not allowed: ask `complete`.
+    Empty if nothing remains to be done, and also if `done` itself is not allowed (`complete` tells these apart).
     """
     return actions(_state_after(term, done))
 
 
 def complete(term: Term, done: tuple[int, ...]) -> bool:
-    """Whether `done`, in this order, does all that the term asks for and nothing else."""
+    """Whether `done`, in this order, does everything that the term requires and nothing else."""
     return None in _state_after(term, done)
 
 
 def runs(term: Term, limit: int | None = None) -> Iterator[tuple[int, ...]]:
-    """All complete orders of assignment, each once, lexicographic by id; at most `limit`."""
+    """All complete assignment orders, each once, in lexicographic order of ids; at most `limit`."""
     given = 0
     done: list[int] = []
     states = [begin(term)]
@@ -93,7 +93,7 @@ def _first(term: Term, found: set[int]) -> None:
 
 
 def _after(term: Term, task: int) -> list[Term | None]:
-    """What may be left of a term once `task` has been done as the first of it."""
+    """What may remain of a term after `task` has been done first."""
     if isinstance(term, Atom):
         return [None] if term.task == task else []
     left: list[Term | None] = []
@@ -115,9 +115,9 @@ def _after(term: Term, task: int) -> list[Term | None]:
 
 
 def _together(op: str, parts: tuple[Term | None, ...]) -> Term | None:
-    """The parts that are left under one operator, without timing.
+    """The remaining parts under one operator, without timing.
 
-    `.` and `|` are made flat, so that terms do not grow deep; `~` is not associative.
+    `.` and `|` are flattened to keep terms shallow; `~` is not associative.
     """
     flat: list[Term] = []
     for part in parts:

@@ -1,1 +1,1 @@
-"""What an assignment problem, its search steps and its lower bounds mean."""
+"""Definitions of assignment problems, their search steps and their lower bounds."""

@@ -1,1 +1,1 @@
-"""What authority over a vehicle means: gate, times of messages, right of way."""
+"""Definitions of authority over a vehicle: gate, message times, right of way."""

@@ -1,14 +1,14 @@
-"""Who was in command at an instant, and what broke first by then, of what is told in a list.
+"""Who was in command at an instant, and what failed first by then, determined from a list of entries.
 
-The definitions run over the list in its order. Times are integers of one unit, between -2**61 and 2**61; a
-place is the number of an entry in the list, and -1 is none. Each of the two is also said of the list as a whole: an entry
-is the one exactly if none of the others beats it.
+The definitions run over the list in order. Times are integers of one unit, between -2**61 and 2**61; a place is the
+index of an entry in the list, -1 for none. Each definition is given twice: step by step, and for the list as a whole,
+where an entry is the answer exactly if no other entry precedes it by the rule.
 """
 
 from typing import NamedTuple
 
 AGES = 4611686018427387904
-"""2**62: later than any time of an entry, and with a minus earlier."""
+"""2**62: later than any time of an entry; negated, earlier than any."""
 
 
 class Latest(NamedTuple):
@@ -19,9 +19,9 @@ class Latest(NamedTuple):
 
 
 def stood_step(latest: Latest, time: int, place: int, at: int) -> Latest:
-    """An entry more: what stands at `at` was told at the greatest of the times that are not after it.
+    """Add an entry: the one in force at `at` has the greatest time that is not after `at`.
 
-    Of several at that time the last one told stands.
+    Of several entries with that time, the last in the list counts.
     """
     told = time if time <= at else -AGES
     greatest = max(latest.since, told)
@@ -29,10 +29,11 @@ def stood_step(latest: Latest, time: int, place: int, at: int) -> Latest:
 
 
 class Asked(NamedTuple):
-    """Is one entry the one that stands? Asked of any entry, whatever the list.
+    """Whether one given entry is the one in force, for any list.
 
-    time, place: of the entry; there: it is in the list; later: another one that is told by the instant is later;
-    after: one that is as late is told after it; latest: what stands by the definition above.
+    time, place: of the entry; there: it is in the list; later: another entry, not after the instant, has a later
+    time; after: an entry with the same time comes after it in the list; latest: the entry in force by the definition
+    above.
     """
 
     time: int
@@ -44,7 +45,7 @@ class Asked(NamedTuple):
 
 
 def asked_step(asked: Asked, time: int, place: int, at: int) -> Asked:
-    """An entry more of the list: the entry itself, or a rival of it."""
+    """Add an entry of the list: the given entry itself, or a competing one."""
     latest = stood_step(asked.latest, time, place, at)
     if time == asked.time and place == asked.place:
         return Asked(asked.time, asked.place, True, asked.later, False, latest)
@@ -54,7 +55,9 @@ def asked_step(asked: Asked, time: int, place: int, at: int) -> Asked:
 
 
 def stands(asked: Asked, at: int) -> bool:
-    """It is in the list, told by the instant, and of all that are NONE is later and NONE as late and after it."""
+    """It is in the list, not after the instant, and NO other entry is later, or equally late and after it in the
+    list.
+    """
     return asked.there and asked.time <= at and not asked.later and not asked.after
 
 
@@ -66,9 +69,9 @@ class Earliest(NamedTuple):
 
 
 def broke_step(earliest: Earliest, since: int, place: int, at: int) -> Earliest:
-    """An entry more: what broke first by `at` did so at the least of the times that are not after it.
+    """Add an entry: the first failure by `at` has the least of the times that are not after `at`.
 
-    Of several at that time it is the one that stands first in the list.
+    Of several entries with that time, the first in the list counts.
     """
     told = since if since <= at else AGES
     least = min(earliest.since, told)
@@ -76,10 +79,10 @@ def broke_step(earliest: Earliest, since: int, place: int, at: int) -> Earliest:
 
 
 class Blamed(NamedTuple):
-    """Is one entry the one that came first? Asked of any entry, whatever the list.
+    """Whether one given entry is the first failure, for any list.
 
-    since, place: of the entry; there: it is in the list; beaten: another one is sooner, or as soon and stands before
-    it; earliest: what came first by the definition above.
+    since, place: of the entry; there: it is in the list; beaten: another entry is earlier, or equally early and
+    before it in the list; earliest: the first failure by the definition above.
     """
 
     since: int
@@ -90,7 +93,7 @@ class Blamed(NamedTuple):
 
 
 def blamed_step(blamed: Blamed, since: int, place: int, at: int) -> Blamed:
-    """An entry more of the list: the entry itself, or a rival of it."""
+    """Add an entry of the list: the given entry itself, or a competing one."""
     earliest = broke_step(blamed.earliest, since, place, at)
     if since == blamed.since and place == blamed.place:
         return Blamed(blamed.since, blamed.place, True, blamed.beaten, earliest)
@@ -99,5 +102,7 @@ def blamed_step(blamed: Blamed, since: int, place: int, at: int) -> Blamed:
 
 
 def came_first(blamed: Blamed, at: int) -> bool:
-    """It is in the list, is by the instant, and of all NONE is sooner and NONE as soon and before it."""
+    """It is in the list, not after the instant, and NO other entry is earlier, or equally early and before it in the
+    list.
+    """
     return blamed.there and blamed.since <= at and not blamed.beaten

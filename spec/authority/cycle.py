@@ -1,8 +1,8 @@
-"""The cycle of one vehicle's ICAROUS: when it takes over, offers control back, and withdraws the offer.
+"""The authority cycle of one vehicle's ICAROUS: takeover, offer of control, and withdrawal of the offer.
 
-The gate (`spec.authority.gate`) says who may command. The instance steers exactly while it may; it takes
-over when a conflict is foreseen, and offers control when the way back has been free of conflict for long
-enough. The more often it had to take over soon after it had handed back, the longer that is, so that
+The gate (`spec.authority.gate`) determines who may command. The instance flies the vehicle exactly while it may
+command; it takes over when a conflict is predicted, and offers control when the way back has been free of conflict
+for long enough. Each takeover that follows soon after a handback lengthens that required time (hysteresis), so that
 authority does not chatter. Milliseconds.
 """
 
@@ -14,16 +14,17 @@ from cratous.spec.authority import gate as authority
 from cratous.spec.authority.link_end import too_old
 
 MONITOR, AVOID, HANDBACK = 0, 1, 2
-"""UxAS flies; ICAROUS has taken over; ICAROUS commands and offers control."""
+"""Modes: UxAS flies; ICAROUS has taken over; ICAROUS commands and offers control."""
 NOTHING, OFFER, WITHDRAW, TAKE_OVER = 0, 1, 2, 3
-"""What an instance does with authority at a heartbeat; the first three as in `spec.authority.gate`."""
+"""Acts of an instance on authority at a heartbeat; the first three as in `spec.authority.gate`."""
 MOST_RELAPSES = 4
-"""More relapses than this count as this many."""
+"""Further relapses no longer increase the count."""
 
 
 class Instance(NamedTuple):
-    """mode; relapses: takeovers that each followed soon after a handback; handed: control has been
-    handed back before, last at handed_ms; free: the way back is free, and has been since free_ms."""
+    """mode; relapses: consecutive takeovers that each followed soon after a handback; handed: control has been handed
+    back before, last at handed_ms; free: the way back is free of conflict, and has been since free_ms.
+    """
 
     mode: int
     relapses: int
@@ -34,29 +35,30 @@ class Instance(NamedTuple):
 
 
 def is_mode(mode: int) -> bool:
-    """It is one of the three."""
+    """It is one of the three modes."""
     return not (mode < MONITOR or mode > HANDBACK)
 
 
 def steers(cycle: Instance) -> bool:
-    """ICAROUS flies the vehicle, as far as the instance is concerned."""
+    """ICAROUS flies the vehicle, as far as the instance knows."""
     return cycle.mode != MONITOR
 
 
 def same_past(before: Instance, after: Instance) -> bool:
-    """What it remembers of takeovers and handbacks is the same."""
+    """The record of takeovers and handbacks is unchanged."""
     handed = after.handed == before.handed and after.handed_ms == before.handed_ms
     return handed and after.relapses == before.relapses
 
 
 def forgets_the_way(after: Instance) -> bool:
-    """The way back does not count as free; it is looked at anew."""
+    """The way back does not count as free; its assessment starts anew."""
     return not after.free and after.free_ms == 0
 
 
 def is_after_notice(before: Instance, commands: bool, now: int, after: Instance) -> bool:
-    """An instance steers exactly while the gate lets it. One whose offer was taken remembers when; one
-    that commands and does not know it, having been started anew, avoids. Else nothing changes."""
+    """An instance flies the vehicle exactly while the gate lets it. If its offer was taken, it records when; if it
+    commands without knowing so (after a restart), it enters AVOID. Otherwise nothing changes.
+    """
     if steers(before) == commands:
         return after == before
     if commands:
@@ -66,15 +68,16 @@ def is_after_notice(before: Instance, commands: bool, now: int, after: Instance)
 
 
 def relapsed(before: Instance, now: int, soon: int) -> bool:
-    """Control was handed back less than `soon` ago."""
+    """Control was handed back less than `soon` ago [ms]."""
     return before.handed and now < before.handed_ms + soon
 
 
 def is_after_watch(
     before: Instance, foreseen: bool, now: int, soon: int, after: Instance, act: int
 ) -> bool:
-    """An instance that does not steer takes over if a conflict is foreseen that it must act on, and
-    only then. It counts how many times in a row that came too soon after a handback."""
+    """An instance that does not fly the vehicle takes over if, and only if, a conflict is predicted that it must act
+    on. It counts consecutive takeovers that came too soon after a handback.
+    """
     if steers(before) or not foreseen:
         return after == before and act == NOTHING
     if relapsed(before, now, soon):
@@ -89,8 +92,9 @@ def is_after_watch(
 
 
 def is_patience(relapses: int, least: int, asked: int, asked_before: int) -> bool:
-    """How long is asked for after that many relapses, and after one less: without any `least`, with
-    each the double, and no longer after the last that counts."""
+    """The required time after that many relapses, and after one fewer: `least` without relapses, doubled with each
+    one, and constant beyond the last that counts.
+    """
     if relapses <= 0:
         return asked == least
     if relapses > MOST_RELAPSES:
@@ -99,7 +103,7 @@ def is_patience(relapses: int, least: int, asked: int, asked_before: int) -> boo
 
 
 def is_free_since(before: Instance, free: bool, now: int, after: Instance) -> bool:
-    """It is remembered since when the way back has been free without a break."""
+    """The time since which the way back has been continuously free is recorded."""
     if not free:
         return forgets_the_way(after)
     begun = after.free_ms == now
@@ -117,8 +121,9 @@ def is_after_flight(
     after: Instance,
     act: int,
 ) -> bool:
-    """An instance that steers offers control, or withdraws its offer, when the gate's definitions say
-    so, and goes on steering until it is taken. asked: how long the way back must have been free."""
+    """An instance that flies the vehicle offers control, or withdraws its offer, when the gate's definitions require
+    it, and goes on flying until the offer is taken. asked: how long the way back must have been free [ms].
+    """
     if not steers(before):
         return after == before and act == NOTHING
     offered = before.mode == HANDBACK
@@ -133,7 +138,7 @@ def is_after_flight(
 
 
 def is_after_wish(before: authority.State, act: int, after: authority.State) -> bool:
-    """The gate does what the instance wants: it opens an offer, or lets ICAROUS alone command."""
+    """The gate carries out the instance's act: it opens an offer, or restricts command to ICAROUS."""
     if act == OFFER:
         return authority.is_offer(before, after)
     if act == NOTHING or act > TAKE_OVER or act < NOTHING:
@@ -142,6 +147,6 @@ def is_after_wish(before: authority.State, act: int, after: authority.State) -> 
 
 
 def agree(cycle: Instance, gate: authority.State) -> bool:
-    """Instance and gate mean the same: it steers iff the gate lets it, and offers iff an offer is open."""
+    """Instance and gate agree: the instance flies iff the gate lets it, and offers iff an offer is open."""
     may = authority.may_command(gate, 1)
     return steers(cycle) == may and (cycle.mode == HANDBACK) == gate.offered

@@ -1,8 +1,8 @@
-"""Who commands a vehicle: what must be true of the actuator gate (G4).
+"""Who commands a vehicle: requirements on the actuator gate (G4).
 
-Exactly one of UxAS (0) and ICAROUS (1) owns a vehicle; a command reaches the actuators only from
-the owner, or from UxAS when ICAROUS has offered control back, and only in the epoch in which it
-was made. Every change of authority begins a new epoch, so a late command never acts.
+Exactly one of UxAS (0) and ICAROUS (1) owns a vehicle; a command reaches the actuators only from the owner, or from
+UxAS when ICAROUS has offered control back, and only in the epoch in which it was made. Every change of authority
+begins a new epoch, so a late command never acts.
 """
 
 from typing import NamedTuple
@@ -30,24 +30,24 @@ def may_command(state: State, sender: int) -> bool:
 
 
 def may_act(state: State, sender: int, epoch: int) -> bool:
-    """A command of this sender, made in this epoch, may reach the actuators: nothing has changed
-    hands since it was made."""
+    """A command of this sender, made in this epoch, may reach the actuators: authority has not changed since it was
+    made.
+    """
     return may_command(state, sender) and epoch == state.epoch
 
 
 def was_given(state: State, epoch: int) -> bool:
-    """Some change so far has begun this epoch, or it is the first one; none has begun a later one."""
+    """The epoch has begun: it is the first one (0), or a change so far began it."""
     return not (epoch < 0 or epoch > state.epoch)
 
 
 def stale(after: State, epoch: int) -> bool:
-    """Whatever was commanded in this epoch cannot act any more, whoever sent it."""
+    """No command made in this epoch can act any more, whoever sent it."""
     return not may_act(after, 0, epoch) and not may_act(after, 1, epoch)
 
 
 def begins_epoch(before: State, after: State) -> bool:
-    """After the change the next epoch runs, which none before it was, and what was commanded in the
-    one before is stale."""
+    """After the change a new epoch, the next number, is current, and commands made in the previous one are stale."""
     return after.epoch == before.epoch + 1 and stale(after, before.epoch)
 
 
@@ -58,8 +58,9 @@ def is_takeover(before: State, after: State) -> bool:
 
 
 def is_offer(before: State, after: State) -> bool:
-    """ICAROUS, which alone commanded, lets UxAS command as well and goes on until it does, in an epoch
-    that begins with the offer; where ICAROUS did not command alone there is nothing to offer."""
+    """ICAROUS, which alone commanded, also permits UxAS to command and goes on until UxAS does, in an epoch that
+    begins with the offer; if ICAROUS did not command alone, there is nothing to offer.
+    """
     if not may_command(before, 1) or may_command(before, 0):
         return after == before
     both = may_command(after, 0) and may_command(after, 1)
@@ -67,8 +68,9 @@ def is_offer(before: State, after: State) -> bool:
 
 
 def is_after_command(before: State, sender: int, epoch: int, after: State) -> bool:
-    """A command that may act leaves its sender in command: UxAS alone, for that ends an offer, ICAROUS
-    as before. No command begins an epoch, and one that may not act changes nothing."""
+    """A command that may act leaves its sender in command: UxAS alone, since its command ends an offer; ICAROUS as
+    before. No command begins an epoch, and a command that may not act changes nothing.
+    """
     if not may_act(before, sender, epoch) or sender != 0:
         return after == before
     alone = may_command(after, 0) and not may_command(after, 1)
@@ -76,16 +78,18 @@ def is_after_command(before: State, sender: int, epoch: int, after: State) -> bo
 
 
 def one_gives_way(gives: bool, other_gives: bool, cooperate: bool) -> bool:
-    """Two that cooperate: exactly one of them gives way, so that they neither wait for each other nor
-    dodge into each other. To one that does not cooperate everybody gives way."""
+    """If both cooperate, exactly one gives way, so that neither both wait nor both manoeuvre into each other.
+    Everyone gives way to an aircraft that does not cooperate.
+    """
     if cooperate:
         return gives != other_gives
     return gives and other_gives
 
 
 def may_offer(offered: bool, free: bool, lasted: bool, linked: bool) -> bool:
-    """ICAROUS may offer control: it has not yet, the way back is free and has been for long enough,
-    and UxAS can hear the offer."""
+    """ICAROUS may offer control: it has not yet done so, the way back is free and has been for long enough, and UxAS
+    can hear the offer.
+    """
     return not offered and free and lasted and linked
 
 
@@ -95,11 +99,11 @@ def must_withdraw(offered: bool, free: bool) -> bool:
 
 
 KEEP, OFFER, WITHDRAW = 0, 1, 2
-"""What an instance that commands does with its authority at a heartbeat."""
+"""What an instance in command does with its authority at a heartbeat."""
 
 
 def handback(offered: bool, free: bool, lasted: bool, linked: bool) -> int:
-    """What is due, by code: withdraw what must be withdrawn, offer what may be offered, else keep."""
+    """The act due, as a code: withdraw if required, else offer if permitted, else keep."""
     if must_withdraw(offered, free):
         return WITHDRAW
     if may_offer(offered, free, lasted, linked):

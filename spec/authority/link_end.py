@@ -1,9 +1,8 @@
-"""The UxAS end of the bridge to one vehicle's ICAROUS: what it must believe, do, and leave.
+"""The UxAS end of the bridge to one vehicle's ICAROUS: what it must accept, do, and not do.
 
-ICAROUS may take a vehicle at any time; UxAS learns of it by SETMOD lines, each with the epoch of the
-gate (`spec.authority.gate`) that began with it, sent again and again. The vehicle reports how its gate
-stands; a line that says otherwise is nobody's to believe. Until it hears that control is offered, UxAS
-keeps its hands off the vehicle.
+ICAROUS may take a vehicle at any time; UxAS learns of it by SETMOD lines, which are repeated and each carry the epoch
+of the gate (`spec.authority.gate`) that began with the change. The vehicle reports the state of its gate; a line that
+contradicts it must not be accepted. After a takeover UxAS commands nothing until it hears that control is offered.
 """
 
 from typing import NamedTuple
@@ -11,16 +10,17 @@ from typing import NamedTuple
 from cratous.spec.authority.gate import State, may_command, was_given
 
 NOTHING, SUSPEND, TAKE_BACK, OVERTAKEN, REFUSED = 0, 1, 2, 3, 4
-"""What this end does about a mode: nothing; suspend what UxAS flies and tell where it was left; fly
-back and command it; report a mode that a newer one has overtaken; refuse one that cannot be true."""
+"""The response of this end to a mode: nothing; suspend what UxAS flies and record where it was left; fly back and
+command it; report a mode that a newer one has superseded; refuse one that cannot be true.
+"""
 
 HEARD, ENDED, PASSED = 1, 2, 3
-"""A message has come; the connection has ended; time has passed."""
+"""Events: a message has arrived; the connection has ended; time has passed."""
 SAY_HEARD, SAY_LOST, SAY_SILENT = 1, 2, 3
 
 
 class End(NamedTuple):
-    """active: by the last accepted mode ICAROUS commands; epoch: of that mode; alive: it is heard."""
+    """active: by the last accepted mode ICAROUS commands; epoch: of that mode; alive: messages are being received."""
 
     active: bool
     epoch: int
@@ -33,20 +33,21 @@ def believes_uxas(end: End) -> bool:
 
 
 def is_true(gate: State, active: bool, epoch: int) -> bool:
-    """What a mode says is so: the gate is in its epoch, and UxAS may command unless it says otherwise."""
+    """The mode is true: the gate is in its epoch, and UxAS may command unless the mode says otherwise."""
     return epoch == gate.epoch and active != may_command(gate, 0)
 
 
 def is_past(before: End, gate: State, epoch: int) -> bool:
-    """The epoch was given, and a newer one is known to have begun."""
+    """The epoch has begun, and a newer one is known to have begun."""
     return was_given(gate, epoch) and (epoch < before.epoch or epoch != gate.epoch)
 
 
 def is_after_mode(before: End, gate: State, active: bool, epoch: int, after: End, act: int) -> bool:
-    """The mode that is believed already changes nothing. One that is past is reported, and one that is
-    neither past nor true is refused; neither changes anything. A true one is believed, and that alone
-    changes; UxAS then lets go of a vehicle that it may not command, and takes back one that it may
-    command again, be it that it has let go or that it is offered what it never knew was taken."""
+    """A mode that is already accepted changes nothing. A mode of a past epoch is reported, and one that is neither
+    past nor true is refused; neither changes anything. A true one is accepted, and nothing else changes; UxAS then
+    releases a vehicle that it may not command, and takes back one that it may command again, whether it had released
+    it or is offered a vehicle whose takeover it never heard of.
+    """
     if active == before.active and epoch == before.epoch:
         return after == before and act == NOTHING
     if is_past(before, gate, epoch):
@@ -62,16 +63,16 @@ def is_after_mode(before: End, gate: State, active: bool, epoch: int, after: End
 
 
 def too_old(heard: int, now: int, bound: int) -> bool:
-    """The last message came longer ago than the bound, or none has come by now."""
+    """The last message is older than the bound, or none has arrived by now."""
     return now < heard or now > heard + bound
 
 
 def is_after_sign(
     before: End, event: int, heard: int, now: int, bound: int, after: End, act: int
 ) -> bool:
-    """Who is heard is alive, one whose connection has ended or whose last message is too old is not;
-    each change of that is told once, the end of a connection whenever it ends. No sign of life
-    changes who commands."""
+    """A peer that is heard is alive; one whose connection has ended or whose last message is too old is not. Each
+    change is reported once, the end of a connection each time. No sign of life changes who commands.
+    """
     same = after.active == before.active and after.epoch == before.epoch
     if event == HEARD:
         return same and after.alive and (act == SAY_HEARD) == (not before.alive) and act <= 1
@@ -83,8 +84,7 @@ def is_after_sign(
 
 
 def is_after_answer(suspended: bool, act: int, after: bool) -> bool:
-    """Who is to suspend is suspended afterwards, who takes back is not, and no other answer changes
-    anything."""
+    """After SUSPEND it is suspended, after TAKE_BACK it is not, and no other answer changes anything."""
     if act == SUSPEND:
         return after
     if act == TAKE_BACK:
@@ -93,5 +93,5 @@ def is_after_answer(suspended: bool, act: int, after: bool) -> bool:
 
 
 def may_tell(suspended: bool, changed: bool) -> bool:
-    """UxAS commands nothing while it is suspended, and what it has commanded already not again."""
+    """UxAS commands nothing while it is suspended, and does not repeat an unchanged command."""
     return not (suspended or not changed)

@@ -1,8 +1,8 @@
-"""What a vehicle does by itself while UxAS is not heard: one mode at a time, begun, left and ended by rule.
+"""Flight without a link to UxAS: which mode is flown, and when it begins, changes and ends.
 
-The mission chooses what is flown without the link. Where nothing permits that, the vehicle loiters until
-something does. It is heard again: what was chosen is over, and UxAS gets the vehicle back as from any takeover
-(`spec.authority.cycle`). Milliseconds.
+The mission chooses what is flown without the link. While that is not permitted, the vehicle loiters until it is. When
+UxAS is heard again, the mode ends, and UxAS gets the vehicle back as after any takeover (`spec.authority.cycle`).
+Milliseconds.
 """
 
 from typing import NamedTuple
@@ -10,45 +10,47 @@ from typing import NamedTuple
 from cratous.spec.authority.link_end import too_old
 
 LINKED, FINISH, LOITER, RETURN, OVER, LAND, FINAL, LANDED = 0, 1, 2, 3, 4, 5, 6, 7
-"""UxAS is heard; the known way is flown to its end; a circle is flown; a way to a named place is flown; what was
-chosen has been flown to its end, and a circle is flown there; a way to a landing site is flown; the last descent is,
-to the ground; the vehicle is on the ground."""
+"""Modes: UxAS is heard; the known path is flown to its end; a circle is flown; a path to a named place is flown; the
+chosen path has been flown to its end, and a circle is flown there; a path to a landing site is flown; the final
+descent to the ground is flown; the vehicle is on the ground.
+"""
 NOTHING, BEGIN, FALL_BACK, END, REJOIN, COMMIT, TOUCH = 0, 1, 2, 3, 4, 5, 6
-"""What is new: nothing; what is chosen begins; nothing permits it, a circle is flown; it has ended; UxAS is heard; the
-last descent begins; the ground is reached."""
+"""Events: nothing; the chosen mode begins; it is not permitted and a circle is flown; it has ended; UxAS is heard
+again; the final descent begins; the ground is reached.
+"""
 
 
 class Loss(NamedTuple):
-    """mode; since_ms: since when [ms]."""
+    """mode; since_ms: when it began [ms]."""
 
     mode: int
     since_ms: int
 
 
 class Heartbeat(NamedTuple):
-    """What a heartbeat leads to: loss: the mode afterwards; act: what is new."""
+    """The result of a heartbeat. loss: the mode afterwards; act: the event."""
 
     loss: Loss
     act: int
 
 
 def is_mode(mode: int) -> bool:
-    """It is one of the eight."""
+    """It is one of the eight modes."""
     return not (mode < LINKED or mode > LANDED)
 
 
 def may_be_chosen(mode: int) -> bool:
-    """A mission can ask for it."""
+    """A mission can choose this mode."""
     return not (mode < FINISH or mode > RETURN) or mode == LAND
 
 
 def is_committed(mode: int) -> bool:
-    """The vehicle is so low that nothing but the ground ends it, or is there."""
+    """The vehicle is in its final descent, which only the ground ends, or on the ground."""
     return not (mode < FINAL or mode > LANDED)
 
 
 def wanted(chosen: int, permitted: bool) -> int:
-    """What is to be flown: what is chosen if its way is permitted, else a circle."""
+    """The mode to fly: the chosen one if its path is permitted, else a circle."""
     if permitted:
         return chosen
     return LOITER
@@ -64,10 +66,12 @@ def is_after_heartbeat(
     ended: bool,
     after: Heartbeat,
 ) -> bool:
-    """Heard in time there is no mode. Else what was chosen and flown to its end stays so, and of the others the
-    one that is wanted is flown, since it was wanted first. The last descent begins at the end of the way to a landing
-    site, while it is permitted to the ground, and ends there, whatever is heard; who has landed stays. permitted: the
-    way of what is chosen is, and what is flown is ended once the vehicle is at its end."""
+    """If UxAS is heard in time, no mode is flown. Otherwise a chosen mode that was flown to its end stays so; in the
+    other cases the wanted mode is flown, with the time since when it has been wanted. The final descent begins at the
+    end of the path to a landing site, while it is permitted down to the ground, and ends there, whatever is heard; a
+    vehicle that has landed stays. permitted: the path of the chosen mode is permitted; ended: the vehicle is at the
+    end of what is flown.
+    """
     if before.mode == LANDED:
         return after == Heartbeat(before, NOTHING)
     if before.mode == FINAL:
@@ -93,10 +97,10 @@ def is_after_heartbeat(
 
 
 def must_fly(loss: Loss, foreseen: bool) -> bool:
-    """ICAROUS has a reason to have the vehicle: a conflict is foreseen, or the link is lost."""
+    """ICAROUS has a reason to command the vehicle: a conflict is predicted, or the link is lost."""
     return foreseen or loss.mode != LINKED
 
 
 def may_go_back(loss: Loss, free: bool) -> bool:
-    """UxAS may be offered the vehicle: the way back is free, and the link is not lost."""
+    """The vehicle may be offered to UxAS: the way back is free, and the link is not lost."""
     return not (loss.mode != LINKED or not free)

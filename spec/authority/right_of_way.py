@@ -1,19 +1,19 @@
 """When the ownship must act on a predicted loss of well clear. Seconds.
 
-Right of way says who gives way (`core.authority.gate.gives_way`); these definitions say when giving way, or
-acting in spite of it, is due. They hold for one intruder and one prediction.
+Right of way determines who gives way (`core.authority.gate.gives_way`); these definitions determine when giving way,
+or acting despite having the right of way, is due. They apply to one intruder and one prediction.
 """
 
 from __future__ import annotations
 
 
 def trusted(persists: bool, in_turn: bool) -> bool:
-    """The prediction tells where the intruder will be: it has persisted, or flies straight on."""
+    """The prediction can be relied on: it has persisted, or the intruder flies straight."""
     return persists or not in_turn
 
 
 def loss_after(wait: float, first: float) -> float:
-    """How far ahead the predicted loss is after a wait."""
+    """The time to the predicted loss after waiting [s]."""
     return first - wait
 
 
@@ -26,9 +26,9 @@ def must_act(
     in_turn: bool,
     has_to_give_way: bool,
 ) -> bool:
-    """One of three is so: the loss is too near for any wait although the prediction is not trusted;
-    a trusted loss is so near that right of way counts no more; or a trusted one is ours to avoid,
-    and it has persisted, or waiting until it has would bring it that near.
+    """One of three cases applies: the loss is too near for any wait although the prediction is not trusted; a trusted
+    loss is so near that right of way no longer counts; or the ownship has to give way in a trusted conflict, and the
+    prediction has persisted, or waiting until it has would bring the loss that near.
     """
     too_near = not trusted(persists, in_turn) and loss_after(0, first) <= hard
     regardless = trusted(persists, in_turn) and loss_after(0, first) <= last

@@ -1,8 +1,9 @@
-"""How a vehicle that starts on the ground leaves it: one mode at a time, begun, left and broken off by rule.
+"""Take-off of a vehicle that starts on the ground: which mode it is in, and when each begins and ends.
 
-It stands until a way up is permitted and UxAS is heard, rolls while both stay so, and is off the ground only after such a
-roll. It climbs along that way while both stay so; else the climb is left to avoidance, or to what is flown without the
-link. At the end of the way UxAS may get the vehicle, as from any takeover (`spec.authority.cycle`). Milliseconds.
+It stands until its climb path is permitted and UxAS is heard, rolls while both remain so, and leaves the ground only
+after such a roll. It climbs along that path while both remain so; otherwise the climb is left to avoidance, or to
+what is flown without the link. At the end of the path UxAS may get the vehicle, as after any takeover
+(`spec.authority.cycle`). Milliseconds.
 """
 
 from typing import NamedTuple
@@ -10,29 +11,31 @@ from typing import NamedTuple
 from cratous.spec.authority.link_end import too_old
 
 STANDING, ROLLING, CLIMBING, UP = 0, 1, 2, 3
-"""It stands on the ground, or brakes to a stand; it rolls faster and faster; it is off the ground, on its way up; that is
-over, or it started in the air."""
+"""Modes: standing on the ground, or braking to a stop; accelerating on the ground; airborne on the climb path;
+take-off over, or started in the air.
+"""
 NOTHING, BEGIN, BREAK_OFF, LIFT_OFF, END, LEAVE = 0, 1, 2, 3, 4, 5
-"""What is new: nothing; the roll begins; it is broken off; the vehicle is off the ground; it is at the end of its way up;
-that way is not permitted any more, or UxAS is not heard."""
+"""Events: nothing; the roll begins; it is aborted; the vehicle is airborne; it is at the end of the climb path; the
+climb path is no longer permitted, or UxAS is not heard.
+"""
 
 
 class Departure(NamedTuple):
-    """mode; since_ms: since when [ms]."""
+    """mode; since_ms: when it began [ms]."""
 
     mode: int
     since_ms: int
 
 
 class Heartbeat(NamedTuple):
-    """What a heartbeat leads to: departure: the mode afterwards; act: what is new."""
+    """The result of a heartbeat. departure: the mode afterwards; act: the event."""
 
     departure: Departure
     act: int
 
 
 def is_mode(mode: int) -> bool:
-    """It is one of the four."""
+    """It is one of the four modes."""
     return not (mode < STANDING or mode > UP)
 
 
@@ -42,7 +45,7 @@ def is_on_ground(mode: int) -> bool:
 
 
 def may(heard: int, now: int, bound: int, permitted: bool) -> bool:
-    """The way up is permitted, and UxAS has not been silent for more than the bound."""
+    """The climb path is permitted, and UxAS has not been silent for longer than the bound."""
     return not (too_old(heard, now, bound) or not permitted)
 
 
@@ -56,9 +59,11 @@ def is_after_heartbeat(
     ended: bool,
     after: Heartbeat,
 ) -> bool:
-    """Who is up stays so. In the air the way up ends where it ends, or is left where it may not be flown. On the ground
-    it is noticed first that the vehicle has left it; else it rolls if it may, and does not if it may not. permitted: its
-    way up is; airborne: it is off the ground; ended: it is at the end of the way."""
+    """After take-off is over it stays over. In the air the climb ends at the end of its path, or is left where it may
+    no longer be flown. On the ground, leaving the ground is noticed first; otherwise the vehicle rolls if it may, and
+    does not if it may not. permitted: its climb path is permitted; airborne: it is off the ground; ended: it is at
+    the end of the path.
+    """
     if before.mode == UP:
         return after == Heartbeat(before, NOTHING)
     if before.mode == CLIMBING:
@@ -78,10 +83,10 @@ def is_after_heartbeat(
 
 
 def must_fly(departure: Departure, foreseen: bool) -> bool:
-    """ICAROUS has a reason to have the vehicle: a conflict is foreseen, or it is not up yet."""
+    """ICAROUS has a reason to command the vehicle: a conflict is predicted, or take-off is not over."""
     return foreseen or departure.mode != UP
 
 
 def may_go_back(departure: Departure, free: bool) -> bool:
-    """UxAS may be offered the vehicle: the way back is free, and it is up."""
+    """The vehicle may be offered to UxAS: the way back is free, and take-off is over."""
     return not (departure.mode != UP or not free)

@@ -1,1 +1,1 @@
-"""What avoidance in flight takes for granted: the way ahead, and who flies straight on."""
+"""Definitions used by avoidance in flight: the path ahead, straight flight, landing."""

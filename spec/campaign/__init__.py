@@ -1,1 +1,1 @@
-"""What a campaign file says: `campaign.schema.json`, the published JSON Schema (draft 2020-12)."""
+"""The campaign file format: `campaign.schema.json`, the published JSON Schema (draft 2020-12)."""

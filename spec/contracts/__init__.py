@@ -1,1 +1,1 @@
-"""What the planning services owe each other, one request, task or path at a time."""
+"""What the planning services require of each other, for one request, task or path at a time."""

@@ -1,18 +1,19 @@
-"""Turning an assignment into plans: each task is asked in assignment order, and one answer is given.
+"""Building plans from an assignment: tasks are queried in assignment order, and one answer is given.
 
-A task's part begins where the part before it ends, so the next task is asked only when the one
-before has answered. Source: Rasmussen et al., ICUAS 2018, VI.B.6.
+A task's part begins where the part before it ends, so the next task is queried only when the one before has answered.
+Source: Rasmussen et al., ICUAS 2018, VI.B.6.
 """
 
 from typing import NamedTuple
 
 UNASKED, ASKED, BUILT, WRONG = 0, 1, 2, 3
-"""Stages of one task's part. What can happen to it bears the number of the stage it leads to."""
+"""Stages of one task's part. Each event has the number of the stage that it leads to."""
 
 
 class Parts(NamedTuple):
-    """The stages of two parts, of which the first was assigned first, and how often the request
-    was answered: with a plan, or with an error."""
+    """The stages of two parts, the first of which was assigned first, and how often the request was answered: with a
+    plan, or with an error.
+    """
 
     first: int
     second: int
@@ -21,7 +22,7 @@ class Parts(NamedTuple):
 
 
 def after(stage: int, happening: int) -> int:
-    """The stage of a part after something happened to it (0: nothing did)."""
+    """The stage of a part after an event (0: none)."""
     if happening == 0:
         return stage
     if stage == UNASKED and happening == ASKED:
@@ -32,8 +33,9 @@ def after(stage: int, happening: int) -> int:
 
 
 def in_order(parts: Parts) -> bool:
-    """Nothing has gone wrong, the second was not asked before the first was built, and there is at
-    most one answer, a plan only with both parts built."""
+    """No error has occurred, the second part was not queried before the first was built, and there is at most one
+    answer; it is a plan only if both parts are built.
+    """
     lived = parts.first != WRONG and parts.second != WRONG
     ordered = parts.second == UNASKED or parts.first == BUILT
     once = parts.plans + parts.errors <= 1

@@ -1,12 +1,11 @@
-"""The nine states of a task service and what moves it from one to the next, as a table.
+"""The nine states of a task service and its transitions, as a table.
 
-Source: Rasmussen, Kingston, Humphrey, "A Brief Introduction to Unmanned Systems Autonomy Services
-(UxAS)", ICUAS 2018, VI.B.2. What the paper leaves open is settled here: a request that arrives
-before the task is initialised, or while it completes, is kept and begun afterwards; a request that
-ends without having chosen this task lets it go; one whose plan is withdrawn before or while it is
-flown completes; and completing says whether the task was served. Requests are numbered upwards; a
-newer one always overrides, an older one never does. A reply to another request than the one the
-task works for is stale.
+Source: Rasmussen, Kingston, Humphrey, "A Brief Introduction to Unmanned Systems Autonomy Services (UxAS)", ICUAS
+2018, VI.B.2. Where the paper is silent: a request that arrives before the task is initialised, or while it completes,
+is kept and begun afterwards; a request that ends without having chosen this task releases it; a task whose plan is
+withdrawn before or while it is flown completes; and completion reports whether the task was served. Requests are
+numbered in increasing order; a newer one overrides, an older one does not. A reply to a request other than the task's
+current one is stale.
 """
 
 INIT, IDLE, SENSOR_REQUEST, OPTION_ROUTES, OPTIONS_PUBLISHED = 0, 1, 2, 3, 4
@@ -16,9 +15,10 @@ STATES = tuple(range(9))
 INITIALISED, REQUESTED, SENSORS_KNOWN, ROUTES_KNOWN, CHOSEN, FINAL_KNOWN = 1, 2, 3, 4, 5, 6
 LISTED, UNLISTED, ENDED, WITHDRAWN, PROCEED = 7, 8, 9, 10, 11
 EVENTS = tuple(range(1, 12))
-"""The task is ready; a newer request names it; sensor footprints, option routes, the choice of an
-option and final routes arrive for its request; a vehicle's state lists the task or no longer does;
-the request was answered; the plan that contains it is withdrawn; nothing more happens at once."""
+"""The task is ready; a newer request names it; sensor footprints, option routes, the choice of an option and final
+routes arrive for its request; a vehicle's state lists the task or no longer does; the request was answered; the plan
+that contains it is withdrawn; no further event at this instant.
+"""
 
 NOTHING, ANNOUNCE, ASK_SENSORS, ASK_ROUTES, PUBLISH_OPTIONS = 0, 1, 2, 3, 4
 ASK_FINAL, PUBLISH_PLAN, STEER, COMPLETE, STALE = 5, 6, 7, 8, 9
@@ -47,10 +47,10 @@ TABLE = {
     (OPTION_SELECTED, WITHDRAWN): (COMPLETED, COMPLETE),
     (ACTIVE, WITHDRAWN): (COMPLETED, COMPLETE),
 }
-"""(state, event) -> (next state, what the task does), for replies and answers to the request that it
-works for. A reply that stands in no row, or is to another request, is stale and changes nothing;
-so does every other event that stands in no row, without a word. PROCEED begins a request that was
-kept, in IDLE and COMPLETED; without one COMPLETED becomes IDLE."""
+"""(state, event) -> (next state, act), for replies and answers to the task's current request. A reply without a row,
+or to another request, is stale and changes nothing; any other event without a row is ignored silently. PROCEED begins
+a request that was kept, in IDLE and COMPLETED; without one, COMPLETED becomes IDLE.
+"""
 
 REPLIES = (SENSORS_KNOWN, ROUTES_KNOWN, CHOSEN, FINAL_KNOWN)
 ABOUT_ITS_REQUEST = (*REPLIES, ENDED)
@@ -59,7 +59,7 @@ KEPT_IN = (INIT, COMPLETED)
 
 
 def row(state: int, event: int) -> tuple[int, int]:
-    """Next state and act for an event about the request that the task works for."""
+    """Next state and act for an event of the task's current request."""
     for (before, met), (after, act) in TABLE.items():
         if state == before and event == met:
             return after, act

@@ -1,19 +1,18 @@
-"""When an automation request can be planned at all.
+"""When an automation request can be planned.
 
-Every vehicle that it names is configured, and its state is known or given with the request; every
-task that it names is known and has initialised itself; its operating region, if it names one, is
-known with each of its zones; and there is at least one vehicle and one task, because an empty
-request has no plan that could be told from a failure.
+Every vehicle named is configured, and its state is known or given with the request; every task named is known and
+initialised; the operating region, if named, is known with each of its zones; and there is at least one vehicle and
+one task, because the plan of an empty request could not be told from a failure.
 """
 
 from typing import NamedTuple
 
 VEHICLE, TASK, REGION, ZONE = 1, 2, 3, 4
-"""Kinds of things that a request names."""
+"""Kinds of items that a request names."""
 
 
 class Found(NamedTuple):
-    """What a pass over a request's things has found."""
+    """The result of a pass over a request's items."""
 
     all_hold: bool
     a_vehicle: bool
@@ -21,10 +20,10 @@ class Found(NamedTuple):
 
 
 def holds(kind: int, known: bool, ready: bool, given: bool) -> bool:
-    """One thing that the request names is as it must be.
+    """One item of the request satisfies its condition.
 
-    known: configured, or defined; ready: a vehicle's state is known, a task is initialised;
-    given: the request brings the vehicle's state itself.
+    known: configured, or defined; ready: a vehicle's state is known, a task is initialised; given: the request itself
+    contains the vehicle's state.
     """
     if kind == VEHICLE:
         return known and (ready or given)
@@ -34,7 +33,7 @@ def holds(kind: int, known: bool, ready: bool, given: bool) -> bool:
 
 
 def found_step(found: Found, here: bool, kind: int) -> Found:
-    """One more thing has been looked at."""
+    """One more item has been checked."""
     return Found(
         found.all_hold and here, found.a_vehicle or kind == VEHICLE, found.a_task or kind == TASK
     )

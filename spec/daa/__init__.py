@@ -1,1 +1,1 @@
-"""What detect and avoid means, its parameters, and the files they come in."""
+"""Definitions of detect and avoid, its parameters, and its file formats."""

@@ -1,8 +1,8 @@
 """Reading and writing detect-and-avoid configurations (`.conf`).
 
-Text; a line is `key = value [unit]`, `#` begins a comment. A key that is missing keeps its value;
-a value without unit is in SI. Alerters are named by `alerters = A, B` and described by keys that
-begin with their names. Every error names file, line, key, what was expected and what was got.
+Text; each line is `key = value [unit]`, and `#` begins a comment. A missing key keeps its value; a value without a
+unit is in SI. Alerters are named by `alerters = A, B` and described by keys that begin with their names. Every error
+names file, line and key, and what was expected and found.
 """
 
 from __future__ import annotations
@@ -51,12 +51,12 @@ TCAS_COLUMNS = {
     "TAU": ("tau_s", "s"), "TCOA": ("tau_s", "s"), "DMOD": ("dmod_m", "m"), "ZTHR": ("zthr_m", "m"),
     "HMD": ("hmd_m", "m"),
 }  # fmt: skip
-"""Columns of a TCAS table in files: their field of `spec.daa.parameters.TCAS_LEVELS`, and what they measure."""
+"""Columns of a TCAS table in files: the field of `spec.daa.parameters.TCAS_LEVELS`, and the dimension."""
 
 
 @dataclass
 class Entry:
-    """One line of a file: where, the value as written, and its unit ("" if none)."""
+    """One line of a file: its location, the value as written, and its unit ("" if none)."""
 
     where: str
     key: str
@@ -66,7 +66,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class Configuration:
-    """Parameters, and the units that the file wrote them in, to be kept when it is saved."""
+    """Parameters, and the units in which the file gave them, kept for saving."""
 
     parameters: Parameters
     units: dict[str, str] = field(default_factory=dict)
@@ -77,7 +77,7 @@ _NUMBER = re.compile(r"^(?P<number>\S+?)\s*(?:\[(?P<boxed>[^\]]*)\]|(?P<unit>[A-
 
 
 def entries(text: str, file: str) -> dict[str, Entry]:
-    """The lines of a configuration by key; raises BadInput for a line that is none."""
+    """The lines of a configuration by key; raises BadInput for a malformed or repeated line."""
     found: dict[str, Entry] = {}
     for number, line in enumerate(text.splitlines(), 1):
         line = line.split("#", 1)[0].strip()
@@ -157,7 +157,7 @@ def value_of(key: Key, entry: Entry) -> tuple[Any, str]:
 
 
 class _Reader:
-    """Takes entries away as they are understood; what is left at the end is unknown."""
+    """Consumes entries as they are recognised; those left at the end are unknown."""
 
     def __init__(self, found: dict[str, Entry], units: dict[str, str]) -> None:
         self.left, self.units = dict(found), units
@@ -230,8 +230,9 @@ class _Reader:
         return Volume(kind, **values)
 
     def resolution_table(self, head: str) -> None:
-        """Refuse a TCAS table that is not the one of resolution advisories, which is all that is
-        modelled; a file may leave it out, or write it out."""
+        """Refuse a TCAS table other than that of resolution advisories, the only one modelled; a file may omit it or
+        write it out.
+        """
         known: dict[str, tuple[float, str]] = {
             f"{head}level_{k}": (TCAS_LEVELS[k - 2].below_m if k > 1 else 0.0, "m")
             for k in range(1, 8)
@@ -256,7 +257,7 @@ class _Reader:
                        where=entry.where, item=full, expected=expected, got=entry.value)  # fmt: skip
 
     def finish(self, names: list[str]) -> None:
-        """Drop the lines of detectors, which levels share; refuse what is unknown."""
+        """Drop the detector lines that levels share; refuse unknown keys."""
         for key in list(self.left):
             name = next((n for n in names if key.startswith(f"{n}_")), None)
             if name is None:
@@ -276,7 +277,7 @@ class _Reader:
 
 
 def parse(text: str, file: str = "configuration", base: Parameters | None = None) -> Configuration:
-    """The configuration that a text says, over `base` (default: the library's defaults)."""
+    """The configuration in a text, applied over `base` (default: the library's defaults). Raises BadInput."""
     found = entries(text, file)
     units: dict[str, str] = {}
     reader = _Reader(found, units)
@@ -309,7 +310,7 @@ def read(file: Path, base: Parameters | None = None) -> Configuration:
 
 
 def _text(value: float, unit: str) -> str:
-    """A number in a unit such that reading it gives the very same double."""
+    """A number in a unit, written so that reading it gives the same double."""
     if not unit:
         return repr(value)
     size = UNITS[unit][1]
@@ -332,7 +333,7 @@ def write(made: Configuration) -> str:
         elif key.kind == "region":
             lines.append(f"{name} = {REGIONS[value]}")
         elif key.kind == "urgency":
-            # keys of ours: written only where they say something
+            # keys of this project: written only if they differ from the default
             lines.append(f"{name} = {URGENCIES[value]}" if value else "")
         elif key.kind == "id":
             lines.append(f"{name} = {value}" if value else "")

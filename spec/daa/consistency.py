@@ -1,4 +1,4 @@
-"""What parameters of detect and avoid have to satisfy together, wherever they come from."""
+"""Constraints between parameters of detect and avoid, whatever their source."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cratous.spec.errors import BadInput
 
 
 def check(p: Parameters, where: str, lines: Mapping[str, str] = MappingProxyType({})) -> None:
-    """Raise BadInput for values that do not fit together. lines: where single fields stand."""
+    """Raise BadInput for values that are inconsistent. lines: the file locations of single fields."""
     names = {key.field: key for key in KEYS.values()}
 
     def wrong(item: str, expected: str, got: str) -> None:

@@ -1,10 +1,9 @@
 """Reading encounter files (`.daa`, `.xyz`): states of aircraft over time.
 
-`#` begins a comment; `key = value [unit]` lines may come first; then one header line of column
-names in any order, a line of units (in brackets or not; it may be absent), and one row a state.
-Columns are separated by commas, blanks or tabs. Rows of one time form a step; the first aircraft
-is the ownship unless another one is chosen. Every error names file, line, column, what was
-expected and what was got.
+`#` begins a comment; `key = value [unit]` lines may come first; then a header line of column names in any order, an
+optional line of units (in brackets or not), and one row per state. Columns are separated by commas, blanks or tabs.
+Rows of one time form a step; the first aircraft is the ownship unless another one is chosen. Every error names file,
+line and column, and what was expected and found.
 """
 
 from __future__ import annotations
@@ -49,14 +48,14 @@ COLUMNS: dict[str, tuple[tuple[str, ...], str, str]] = {
     "v_en": (("v_en_std", "v_en"), "m_s", "knot"),
     "v_z": (("vz_std",), "m_s", "fpm"),
 }
-"""Columns: their names in files, what they measure, and the unit if the file gives none."""
+"""Columns: their names in files, their dimension, and the unit if the file gives none."""
 MOST = {
     "time": 1e10, "lat": math.pi / 2, "lon": 2 * math.pi, "x": 1e8, "y": 1e8, "alt": 1e5,
     "vx": 1e4, "vy": 1e4, "vs": 1e4, "trk": 4 * math.pi, "gs": 1e4, "heading": 4 * math.pi,
     "airspeed": 1e4, "alerter": 1e3, "s_ew": 1e6, "s_ns": 1e6, "s_en": 1e6, "s_z": 1e6,
     "v_ew": 1e4, "v_ns": 1e4, "v_en": 1e4, "v_z": 1e4,
 }  # fmt: skip
-"""The largest size of a value in SI: beyond what flies, and far below what overflows when squared."""
+"""The largest magnitude of a value in SI: beyond any aircraft state, and far below overflow when squared."""
 NAMES = {name: column for column, (names, _, _) in COLUMNS.items() for name in names}
 _SPLIT = re.compile(r"\s*,\s*|\s+")
 _SETTING = re.compile(r"^([A-Za-z]\w*)\s*=\s*(.+)$")
@@ -64,7 +63,7 @@ _SETTING = re.compile(r"^([A-Za-z]\w*)\s*=\s*(.+)$")
 
 @dataclass(frozen=True)
 class Row:
-    """One state in SI, as the file has it; `settings`: parameters that its row sets."""
+    """One state in SI, as given in the file; `settings`: parameters that its row sets."""
 
     line: int
     id: str
@@ -80,7 +79,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Encounters:
-    """The steps of a file, each (time, rows, ownship first), and what was left out and why."""
+    """The steps of a file, each (time, rows with the ownship first), and what was left out and why."""
 
     file: str
     ownship: str
@@ -129,7 +128,7 @@ class _Table:
         return COLUMNS[column][2] if column in COLUMNS else ""
 
     def take_units(self, line: int, parts: list[str]) -> bool:
-        """Whether the line is one of units; they are kept."""
+        """Store the units if the line is a line of units; return whether it is."""
         words = [part.strip("[]") for part in parts]
         known = set(UNITS) | {"unitless", "-", "", "none"}
         wrong = next((k for k, word in enumerate(words) if word not in known), None)
@@ -205,7 +204,7 @@ class _Table:
 
 
 def parse(text: str, file: str = "encounters", ownship: str = "") -> Encounters:
-    """The steps of a text; ownship: its name, else the first aircraft. Raises BadInput."""
+    """The steps of a text. ownship: its name; if empty, the first aircraft. Raises BadInput."""
     table: _Table | None = None
     rows: list[Row] = []
     settings: dict[str, Any] = {}

@@ -1,9 +1,9 @@
-"""What detect and avoid means, in instants: violations, manoeuvres, steps that conflict, histories.
+"""Definitions of detect and avoid at instants: violations, manoeuvres, conflicting steps, histories.
 
-Relative state is ownship minus intruder: s [m], v [m/s], sz and vz up. A manoeuvre is a sequence of
-steps; it is flown in straight pieces from step to step, and from any step one may fly straight on.
-A step conflicts if a volume is violated at some instant of a piece on the way to it, or at some
-instant of the straight flight from it within a horizon. The definitions name the instants.
+Relative state is ownship minus intruder: s [m], v [m/s], sz and vz up. A manoeuvre is a sequence of steps, flown in
+straight segments from step to step; from any step the aircraft may continue straight. A step conflicts if a volume is
+violated at some instant of a segment on the way to it, or at some instant of the straight flight from it within a
+horizon. The definitions name the instants.
 """
 
 from typing import NamedTuple
@@ -24,15 +24,16 @@ from cratous.spec.well_clear import within as well_within
 
 
 class Vertical(NamedTuple):
-    """A relative altitude and climb rate, or how far they may be off."""
+    """A relative altitude and climb rate, or the errors of both."""
 
     z: float
     w: float
 
 
 class Relative(NamedTuple):
-    """Ownship minus intruder, or how far that may be off: horizontal position and velocity, altitude
-    and climb rate [m, m/s]."""
+    """Ownship minus intruder, or the error of that: horizontal position and velocity, altitude and climb rate [m,
+    m/s].
+    """
 
     s: Plane
     v: Plane
@@ -41,8 +42,9 @@ class Relative(NamedTuple):
 
 
 class Uncertainty(NamedTuple):
-    """How far off a relative state may be: radii of horizontal position and velocity, es_m and ev_m_s,
-    and as much up or down in altitude and climb rate, ez_m and ew_m_s [m, m/s]."""
+    """Error bounds of a relative state: radii of horizontal position and velocity, es_m and ev_m_s, and bounds up or
+    down of altitude and climb rate, ez_m and ew_m_s [m, m/s].
+    """
 
     es_m: float
     ez_m: float
@@ -51,7 +53,7 @@ class Uncertainty(NamedTuple):
 
 
 class Span(NamedTuple):
-    """Instants from the first to the last; none where the last is before the first."""
+    """Instants from the first to the last [s]; empty if the last is before the first."""
 
     first: float
     last: float
@@ -60,7 +62,7 @@ class Span(NamedTuple):
 def violated_at(
     kind: int, s: Plane, v: Plane, sz: float, vz: float, thresholds: Thresholds, t: float
 ) -> bool:
-    """The volume of that kind is violated after t seconds; kind 3, a cylinder, is tep without times."""
+    """The volume of that kind is violated after t seconds; kind 3, a cylinder, is tep with zero times."""
     if kind == 1:
         return violation_tcpa_at(s, v, sz, vz, thresholds, t)
     if kind == 2 or kind == 3:
@@ -69,36 +71,36 @@ def violated_at(
 
 
 def counts(at: float, begin: float, end: float) -> bool:
-    """A piece that begins at this time is looked at."""
+    """A segment that begins at time `at` is checked: it begins within [begin, end]."""
     return begin <= at and at <= end
 
 
 def lost_on_piece(
     violated: bool, t: float, piece: float, at: float, begin: float, end: float
 ) -> bool:
-    """Lost t seconds after the begin of a piece, while it is flown, and the piece is looked at."""
+    """Lost t seconds after the beginning of a segment, while it is flown, and the segment is checked."""
     return counts(at, begin, end) and t >= 0 and t <= piece and violated
 
 
 def lost_from_step(violated: bool, t: float, at: float, begin: float, end: float) -> bool:
-    """Lost t seconds after the step at time `at`, at an instant from begin to end."""
+    """Lost t seconds after the step at time `at`, at an instant within [begin, end]."""
     return t >= 0 and at + t >= begin and at + t <= end and violated
 
 
 def lost_pieces(lost: int, piece: bool) -> int:
-    """On how many pieces of a way a volume is lost, with one piece more."""
+    """The number of segments of a path on which a volume is lost, with one more segment."""
     if piece:
         return lost + 1
     return lost
 
 
 def lost_somewhere(lost: int) -> bool:
-    """A way loses a volume: on how many of its pieces, none or more, it does."""
+    """A path loses a volume: the number of segments on which it does is positive."""
     return lost > 0
 
 
 def horizon(until: float, lookahead: float, time: float, manoeuvre: float, counted: bool) -> bool:
-    """A volume is looked for until this time: the latest that both limits allow."""
+    """A violation is searched for up to the time `until`: the latest that both limits allow."""
     limit = time
     if not counted:
         limit = time + manoeuvre
@@ -113,7 +115,7 @@ def accelerated(z: float, vz: float, change: float, t: float) -> float:
 def climb_is_flown(
     z: float, vz: float, target: float, accel: float, t1: float, t2: float, t3: float, rate: float
 ) -> bool:
-    """The phases fit together: accelerated to the rate at t1, held to t2, level at the target at t3."""
+    """The phases of the climb are consistent: accelerated to `rate` at t1, held to t2, level at the target at t3."""
     up = rate >= vz
     first = accel if up else -accel
     last = -accel if rate > 0 else accel
@@ -128,61 +130,62 @@ def climb_is_flown(
 
 
 def shrunk(before: float, after: float, least: float, factor: float) -> bool:
-    """A recovery distance after it was made smaller: by the factor, unless that is below the least."""
+    """A recovery distance after one reduction: by the factor, but not below the least."""
     smaller = before - factor * before
     return after == smaller if smaller >= least else after == least
 
 
 def reached(count: int, value: int, level: int) -> int:
-    """How many values reach a level, with one value more."""
+    """The number of values that reach a level, with one more value."""
     if value >= level:
         return count + 1
     return count
 
 
 def enough(count: int, m: int) -> bool:
-    """At least m."""
+    """The count is at least m."""
     return not count < m
 
 
 def may_drop(now: float, raised: float, persistence: float) -> bool:
-    """A level raised at that time has been shown for as long as it has to be."""
+    """A level raised at time `raised` has been shown for at least the persistence time."""
     return raised + persistence <= now
 
 
 def goes_on(now: float, before: float, gap: float) -> bool:
-    """Time has gone on, and not by more than the gap."""
+    """Time has advanced, by at most the gap."""
     return before < now and now <= before + gap
 
 
 def to_the_right(v: Plane) -> Plane:
-    """The direction a quarter turn to the right of v, as long as v."""
+    """v turned to the right by 90 degrees, with the same length."""
     return Plane(v.y, -v.x)
 
 
 def is_turned(v: Plane, w: Plane, c: float, s: float) -> bool:
-    """w is as long as v and lies to the right of it by the angle with cosine c and sine s."""
+    """w has the length of v and is turned to the right of it by the angle with cosine c and sine s."""
     angle = dot(v, w) == c * dot(v, v) and dot(to_the_right(v), w) == s * dot(v, v)
     return dot(w, w) == dot(v, v) and angle
 
 
 def is_arc(v: Plane, d: Plane, c: float, s: float) -> bool:
-    """d is where a circle to the right leads that begins with velocity v, after the angle with cosine
-    c and sine s, times its turn rate: the sine of the radius ahead, and to the right the radius less
-    its cosine. The radius times the turn rate is the speed."""
+    """d is the displacement along a right-hand circular arc that begins with velocity v, after a turn by the angle
+    with cosine c and sine s, multiplied by the turn rate: radius times s ahead, and radius times (1 - c) to the
+    right. The radius times the turn rate is the speed.
+    """
     ahead = dot(v, d) == s * dot(v, v)
     return ahead and dot(to_the_right(v), d) == (1 - c) * dot(v, v)
 
 
 def in_area(east: float, north: float, alt: float, radius: float, height: float) -> bool:
-    """In a cylinder that stands on the ground: not farther from its axis than radius, not above it."""
+    """In a cylinder on the ground: at most radius from its axis, and not above its height."""
     return well_within(Plane(east, north), radius) and not alt > height
 
 
 def may_be_violated_at(
     state: Relative, off: Relative, error: Uncertainty, thresholds: Thresholds, t: float
 ) -> bool:
-    """The true state may be off by so much, and then the volume is violated at t."""
+    """The errors `off` are within their bounds, and with them the volume is violated at t."""
     if not well_within(off.s, error.es_m) or not well_within(off.v, error.ev_m_s):
         return False
     if not layer_may_be_violated_at(
@@ -203,51 +206,55 @@ def may_be_violated_at(
 def layer_may_be_violated_at(
     state: Vertical, off: Vertical, error: Vertical, zthr: float, tcoa: float, vmod: float, t: float
 ) -> bool:
-    """Altitude and climb rate may be off by so much, and then the layer is violated at t."""
+    """The errors of altitude and climb rate are within their bounds, and with them the layer is violated at t."""
     if off.z < -error.z or off.z > error.z or off.w < -error.w or off.w > error.w:
         return False
     return layer_violation_at(state.z + off.z, state.w + off.w, zthr, tcoa, vmod, t)
 
 
 def level_at(sz: float, vz: float) -> float:
-    """When co-altitude is reached from sz >= 0; 0 where it never is."""
+    """The time at which co-altitude is reached from sz >= 0 [s]; 0 if vz >= 0."""
     if vz >= 0:
         return 0
     return sz / (0 - vz)
 
 
 def share_of(below: float, above: float) -> float:
-    """How far from the one to the other 0 lies; 0 where the one is not below the other."""
+    """The fraction of the way from `below` to `above` at which 0 lies; 0 if `below` is not less than `above`."""
     if above <= below:
         return 0
     return (0 - below) / (above - below)
 
 
 def may_be_within_at(s: Plane, v: Plane, es: float, ev: float, radius: float, t: float) -> bool:
-    """After t seconds the disc in which the position is known comes within the radius."""
+    """After t seconds the disc of possible positions comes within the radius."""
     return within_at(s, v, radius + es + ev * t, t)
 
 
 def straight_at(
     distance: float, speed: float, es: float, ev: float, dthr: float, tthr: float, t: float
 ) -> bool:
-    """Who is es nearer than the distance and comes straight on, ev faster, violates the circle at t."""
+    """An intruder whose distance is reduced by es, and that closes head-on at a speed increased by ev, violates the
+    horizontal volume at t.
+    """
     return horizontal_violation_at(Plane(distance - es, 0), Plane(-(speed + ev), 0), dthr, tthr, t)
 
 
 def sighted(s: Plane, v: Plane) -> Plane:
-    """A velocity as seen along the line of sight to the other, times the distance; never to the left."""
+    """A relative velocity in coordinates along and across the line of sight, times the distance; the across component
+    is never negative.
+    """
     across = s.x * v.y - s.y * v.x
     return Plane(-dot(s, v), across if across >= 0 else -across)
 
 
 def in_either(first: float, last: float, other_first: float, other_last: float, t: float) -> bool:
-    """In one span or in another."""
+    """The instant is in one span or in the other."""
     return in_span(first, last, t) or in_span(other_first, other_last, t)
 
 
 def speed_error(range_: float, near: float, far: float, distance: float, error: float) -> bool:
-    """The error is the far one from the distance on, the near one at 0, and on a line between."""
+    """The error is `far` from the distance on, `near` at 0, and linearly interpolated between."""
     if range_ >= distance:
         return error == far
     if range_ <= 0:
@@ -256,16 +263,16 @@ def speed_error(range_: float, near: float, far: float, distance: float, error: 
 
 
 def not_positive(a: float, half: float, c: float, t: float) -> bool:
-    """The quadratic a t^2 + 2 half t + c is not above 0."""
+    """The quadratic a t^2 + 2 half t + c is at most 0."""
     return a * t * t + 2 * half * t + c <= 0
 
 
 def last_root(a: float, half: float, c: float, t: float, last: float) -> bool:
-    """If the quadratic is not above 0 at t, then t is not after the last such time."""
+    """If the quadratic is at most 0 at t, then t is not after `last`."""
     return not not_positive(a, half, c, t) or t <= last
 
 
 def in_own_or_both(own: Span, one: Span, other: Span, begin: float, end: float, t: float) -> bool:
-    """In a span of its own, or in two others at once and from begin to end."""
+    """The instant is in `own`, or in `one` and `other` at once and within [begin, end]."""
     both = in_span(one.first, one.last, t) and in_span(other.first, other.last, t)
     return in_span(own.first, own.last, t) or (both and begin <= t and t <= end)

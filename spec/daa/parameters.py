@@ -1,8 +1,8 @@
-"""Parameters of detect and avoid: what a configuration says, in SI units.
+"""Parameters of detect and avoid: the contents of a configuration, in SI units.
 
-Names are those of DAIDALUS configurations (the key, then the unit); `KEYS` says of each its unit in
-files, its default and its range. Alerters are lists of levels, from least to most severe. Old
-names of keys are in `OLD_NAMES`. Sources: RTCA DO-365B; the DAIDALUS v2 reference manual.
+Names are those of DAIDALUS configurations (the key, then the unit); `KEYS` gives for each its unit in files, its
+default and its range. Alerters are lists of levels, from least to most severe. Older names of keys are in
+`OLD_NAMES`. Sources: RTCA DO-365B; the DAIDALUS v2 reference manual.
 """
 
 from __future__ import annotations
@@ -27,23 +27,24 @@ UNITS: dict[str, tuple[str, float]] = {
     "rad": ("rad", 1.0), "deg": ("rad", DEG),
     "rad/s": ("rad_s", 1.0), "deg/s": ("rad_s", DEG),
 }  # fmt: skip
-"""Unit names in files: what they measure (the suffix of names here), and their size in SI."""
+"""Unit names in files: their dimension (the suffix of names here), and their size in SI."""
 
 NONE, FAR, MID, NEAR, RECOVERY = 0, 1, 2, 3, 4
 REGIONS = ("NONE", "FAR", "MID", "NEAR", "RECOVERY")
-"""Regions by severity; RECOVERY only colours bands."""
+"""Regions by severity; RECOVERY is used only for bands."""
 
 TAUMOD, TCPA, TEP, CYLINDER, TAUMOD_SUM, TCAS = 0, 1, 2, 3, 4, 5
 DETECTORS = ("WCV_TAUMOD", "WCV_TCPA", "WCV_TEP", "CDCylinder", "WCV_TAUMOD_SUM", "TCAS3D")
-"""Kinds of volumes by their names in files."""
+"""Kinds of volumes, by their names in files."""
 
 NOBODY, FIXED, DCPA = 0, 1, 2
 URGENCIES = ("none", "fixed", "dcpa")
-"""Urgency strategies: how the most urgent intruder, with whom to coordinate, is found."""
+"""Urgency strategies: how the most urgent intruder, with whom to coordinate, is chosen."""
 
 NMAC_RADIUS_M, NMAC_HALF_HEIGHT_M = 500 * FOOT, 100 * FOOT
-"""The cylinder that decides sides and urgency: one for all aircraft, whatever their parameters, so that
-their choices fit together. Source: RTCA SC-147."""
+"""The cylinder that decides sides and urgency: the same for all aircraft, whatever their parameters, so that their
+choices are compatible. Source: RTCA SC-147.
+"""
 
 
 class Volume(NamedTuple):
@@ -62,7 +63,7 @@ class Volume(NamedTuple):
 
 
 class Spread(NamedTuple):
-    """How far from the present value a manoeuvre may raise an alert; 0: not at all."""
+    """How far from the present value a manoeuvre is examined for alerts; 0: not at all."""
 
     hdir_rad: float = 0.0
     hs_m_s: float = 0.0
@@ -71,8 +72,9 @@ class Spread(NamedTuple):
 
 
 class Level(NamedTuple):
-    """One alert level: its volume, the times before it that raise and that keep the alert [s], and
-    the region that it colours in bands."""
+    """One alert level: its volume, the lead times that raise and that keep the alert [s], and the region in which it
+    shows in bands.
+    """
 
     detector: str
     volume: Volume
@@ -83,7 +85,7 @@ class Level(NamedTuple):
 
 
 class Alerter(NamedTuple):
-    """A named list of levels, least severe first; level numbers begin with 1."""
+    """A named list of levels, least severe first; level numbers begin at 1."""
 
     name: str
     levels: tuple[Level, ...]
@@ -163,7 +165,7 @@ class Parameters:
 
 
 class Key(NamedTuple):
-    """A key of configurations: its field, the unit it is written in, and the values it may take."""
+    """A configuration key: its field, the unit in which it is written, and its permitted values."""
 
     name: str
     field: str
@@ -228,7 +230,7 @@ KEYS: dict[str, Key] = {
     key.name: key
     for key in (_key(f.name, f.default) for f in fields(Parameters) if f.name != "alerters")
 }
-"""All keys but those of alerters, by name."""
+"""All keys except those of alerters, by name."""
 
 OLD_NAMES = {
     "left_trk": "left_hdir", "right_trk": "right_hdir", "min_gs": "min_hs", "max_gs": "max_hs",
@@ -240,11 +242,11 @@ OLD_NAMES = {
     "max_delta_resolution_vs": "persistence_preferred_vs",
     "max_delta_resolution_alt": "persistence_preferred_alt",
 }  # fmt: skip
-"""Names that older configurations use."""
+"""Key names used by older configurations."""
 
 
 class SensitivityLevel(NamedTuple):
-    """TCAS II resolution-advisory thresholds up to an altitude [m], it included."""
+    """TCAS II resolution-advisory thresholds up to and including an altitude [m]."""
 
     below_m: float
     tau_s: float

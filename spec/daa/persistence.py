@@ -1,26 +1,26 @@
-"""When a resolution, or the preferred direction, that is shown stays although another is nearer now.
+"""When a displayed resolution or preferred direction persists although another one is now nearer.
 
-An advice that changes from instant to instant cannot be flown. So what is shown stays for a time after
-the direction was chosen, and after that while the change would be small; and it stays as long as what
-would take its place keeps a smaller distance (its recovery cylinder was shrunk more often).
-Source: RTCA DO-365B, the DAIDALUS v2 reference manual (persistence_time, persistence_preferred_*).
+Advice that changes from instant to instant cannot be flown. So a displayed value persists for a time after the
+direction was chosen, and after that while the change would be small; and it persists as long as its replacement would
+keep a smaller separation (its recovery cylinder was reduced more often). Source: RTCA DO-365B, the DAIDALUS v2
+reference manual (persistence_time, persistence_preferred_*).
 """
 
 from __future__ import annotations
 
 
 def still_new(age: float, persistence: float) -> bool:
-    """The direction was chosen too short a time ago to be changed."""
+    """The direction was chosen too recently to be changed."""
     return age < persistence
 
 
 def small(change: float, least: float) -> bool:
-    """A change that is not worth it."""
+    """The change is too small to be made."""
     return change < least
 
 
 def costs_distance(before: int, now: int) -> bool:
-    """What would take its place keeps a smaller cylinder clear; -1: it needs no cylinder."""
+    """The replacement keeps a smaller cylinder clear (more reductions); -1: it needs no recovery cylinder."""
     return now > before
 
 
@@ -33,9 +33,10 @@ def kept(
     beyond: float,
     least: float,
 ) -> bool:
-    """An earlier resolution, which still resolves, stays: of the preferred direction because the
-    change is early, small, or costs distance; of the other one if both are recoveries and the change
-    costs distance."""
+    """An earlier resolution that still resolves the conflict persists: in the preferred direction if the change is
+    early, small, or reduces separation; in the other direction if both are recoveries and the change reduces
+    separation.
+    """
     stays = still_new(age, persistence) or small(beyond, least) or costs_distance(before, now)
     recovers = before > -1 and costs_distance(before, now)
     return recovers or (preferred and stays)
@@ -50,7 +51,8 @@ def direction_kept(
     preferred: int,
     other: int,
 ) -> bool:
-    """The preferred direction stays: it is new, both ways are about as far, or the other one costs
-    distance."""
+    """The preferred direction persists: it was chosen recently, both directions need about the same change, or the
+    other one reduces separation.
+    """
     apart = max(up - down, down - up)
     return still_new(age, persistence) or small(apart, least) or costs_distance(preferred, other)

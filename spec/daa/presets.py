@@ -1,4 +1,4 @@
-"""The configurations that come with the product, as files in `spec/daa/presets`."""
+"""The configurations shipped with the product, as files in `spec/daa/presets`."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ def names() -> tuple[str, ...]:
 
 
 def preset(name: str) -> Configuration:
-    """The configuration of that name; raises BadInput for a name that is none."""
+    """The configuration of that name; raises BadInput for an unknown name."""
     if name not in names():
         raise BadInput("there is no such preset", item=name, expected=" or ".join(names()))
     return read(FOLDER / f"{name}.conf")
 
 
 def named_or_file(name: str) -> Configuration:
-    """A preset by its name, or else the configuration in the file of that name."""
+    """The preset of that name, or else the configuration in the file of that name."""
     if name in names():
         return preset(name)
     if not Path(name).exists():

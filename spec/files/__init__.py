@@ -1,1 +1,1 @@
-"""Reading what comes from outside: bounds, text, and text made safe to show."""
+"""Reading external input: size bounds, text, and text made safe for display."""

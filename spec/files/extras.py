@@ -21,12 +21,12 @@ EXTRAS = {
     "distributed": ("distributed", "campaign"),
     "pyarrow": ("pyarrow", "parquet"),
 }
-"""By the name that is imported: the library, and the extra of `pyproject.toml`."""
+"""By import name: the library, and the extra of `pyproject.toml` that installs it."""
 
 
 @contextmanager
 def told() -> Iterator[None]:
-    """Whatever is imported in here and belongs to an extra that is not installed raises NotInstalled."""
+    """Context in which importing a library of an extra that is not installed raises NotInstalled."""
     try:
         yield
     except ModuleNotFoundError as error:

@@ -1,7 +1,7 @@
-"""Bounds on what is read from outside, in one place, each checked before its cost is paid.
+"""Bounds on external input, in one place, each checked before its cost is incurred.
 
-A bound stands well above what the formats are used for and low enough that a file can cost no more
-than some hundred megabytes and a few seconds. What is beyond one is refused with the bound.
+A bound is well above what the formats are used for, and low enough that a file costs no more than some hundred
+megabytes and a few seconds. Input beyond a bound is refused with the bound.
 """
 
 from __future__ import annotations
@@ -14,45 +14,44 @@ from typing import Any
 from cratous.spec.errors import BadInput
 
 CONFIG_BYTES = 1_000_000
-"""A configuration or a text of the process algebra."""
+"""A configuration or a process-algebra text."""
 MISSION_BYTES, MISSION_NODES, MISSION_DEPTH = 5_000_000, 100_000, 32
-"""A mission file: its size, its values, and how deep they are nested."""
+"""A mission file: its size, its number of values, and its nesting depth."""
 DOCUMENT_BYTES = 64_000_000
-"""A file that is held in memory as a whole: JSON, XML, encounters, captured bytes; inflated too."""
+"""A file held in memory as a whole: JSON, XML, encounters, captured bytes; also its size after decompression."""
 CONTAINERS, VALUES, DEPTH = 1_000_000, 16_000_000, 100
-"""Lists and objects of a JSON text, its values, and how deep they are nested."""
+"""A JSON text: its lists and objects, its values, and its nesting depth."""
 TAGS = 2_000_000
-"""Begins and ends of elements in an XML file."""
+"""Start and end tags in an XML file."""
 LINE_BYTES, LINES, STREAM_BYTES = 64_000_000, 1_000_000, 1_000_000_000
-"""A file that is read line by line: one line; and of a gzipped one how many, and all of them."""
+"""A file read line by line: the length of a line; for a gzipped one, also the number of lines and the total size."""
 MESSAGES_BYTES = 256_000_000
-"""Messages of LMCP in one input, inflated."""
+"""LMCP messages in one input, after decompression."""
 ENCOUNTER_ROWS = 500_000
 """States in an encounter file."""
 CELL_BYTES = 64_000_000
-"""A value in a database, and a record or an inflated chunk of an MCAP file."""
+"""A value in a database, and a record or a decompressed chunk of an MCAP file."""
 STATES = 500_000
 """States of one layer in a certificate; the search keeps at most 200 000."""
 TRAVEL_CELLS = 10_000_000
 """Entries of an assignment problem's travel times: vehicles times options squared."""
 DIGITS = 300
-"""Digits of a number: so many fit a double, so it can be compared and shown."""
+"""Digits of a number: this many fit a double, so that it can be compared and shown."""
 
 _EXPONENT = re.compile(r"[eE][+-]?[0-9]{3}")
 _SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
 
 
 def at_most(size: int, most: int, what: str, where: str, unit: str = "bytes") -> None:
-    """BadInput unless a size is within its bound."""
+    """Raise BadInput unless a size is within its bound."""
     if size > most:
         raise BadInput(what, where=where, expected=f"at most {most} {unit}", got=f"{size}")
 
 
 def json_of(text: str | bytes, where: str, most: int = DOCUMENT_BYTES) -> Any:
-    """The data of a JSON text; BadInput for what is none or is beyond a bound.
+    """The data of a JSON text; raises BadInput for malformed text or text beyond a bound.
 
-    Numbers are finite, texts are Unicode and a name stands once in an object, which Python's own
-    reader does not ask for.
+    In addition to Python's own reader: numbers must be finite, texts valid Unicode, and names unique in an object.
     """
     at_most(len(text), most, "the JSON is too long", where)
     if isinstance(text, bytes):
@@ -85,7 +84,7 @@ def json_of(text: str | bytes, where: str, most: int = DOCUMENT_BYTES) -> Any:
 
 
 def _is_suspect(text: str) -> bool:
-    """Whether numbers or texts of a JSON text need a closer look; seldom, as the look costs time."""
+    """Whether numbers or texts of a JSON text need a closer check; rarely true, as that check is slow."""
     if _EXPONENT.search(text) or ("\\u" in text and _SURROGATE.search(text)):
         return True
     step = DIGITS // 2  # more than DIGITS digits in a row fill one such block
@@ -96,7 +95,7 @@ def _is_suspect(text: str) -> bool:
 
 
 def integer_of(text: str, low: int, high: int) -> int | None:
-    """The integer of a decimal text within a range; None for any other text, however long."""
+    """The integer of a decimal text if it is within the range; None for any other text, however long."""
     digits = text.strip().removeprefix("-").removeprefix("+")
     if not (digits.isascii() and digits.isdecimal() and len(digits) <= DIGITS):
         return None
@@ -105,7 +104,7 @@ def integer_of(text: str, low: int, high: int) -> int | None:
 
 
 def inflated(data: bytes, where: str, most: int = DOCUMENT_BYTES) -> bytes:
-    """The bytes of gzipped data; BadInput if they are too many, cut short or none."""
+    """The decompressed bytes of gzipped data; raises BadInput if they are too many, truncated or malformed."""
     parts: list[bytes] = []
     left = most
     while data:
@@ -147,7 +146,7 @@ def _no_constant(text: str) -> float:
 
 
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """An object; of two values of one name Python's own reader keeps the last without a word."""
+    """Build an object; of two values of one name, Python's own reader silently keeps the last."""
     found = dict(pairs)
     if len(found) < len(pairs):
         seen: set[str] = set()

@@ -1,7 +1,7 @@
-"""Text from outside, made safe to show: on a console, in a log, a report, a message or a table.
+"""External text made safe for display: on a console, in a log, a report, a message or a table.
 
-Control characters can rewrite what stands on a terminal, line breaks forge lines of a log, marks of
-direction reorder what is read, and a cell that begins like a formula is run by a spreadsheet.
+Control characters can rewrite what a terminal shows, line breaks forge log lines, bidirectional marks reorder text,
+and a spreadsheet runs a cell that begins like a formula.
 """
 
 from __future__ import annotations
@@ -33,15 +33,15 @@ def _escaped(c: str) -> str:
 
 
 def json_text(data: Any) -> str:
-    """Data as one line of JSON: as it is where that can be shown, else in ASCII, which says the same."""
+    """Data as one line of JSON: unescaped if that can be displayed, else in equivalent ASCII."""
     text = json.dumps(data, ensure_ascii=False, separators=(",", ":"))
     return text if text.isprintable() else json.dumps(data, separators=(",", ":"))
 
 
 def cell(value: Any) -> Any:
-    """A value for a CSV cell: a text that a spreadsheet would run gets an apostrophe before it.
+    """A value for a CSV cell: a text that a spreadsheet would run is prefixed with an apostrophe.
 
-    Numbers, and texts that are numbers, stay as they are.
+    Numbers, and texts that are numbers, stay unchanged.
     """
     if not isinstance(value, str):
         return value

@@ -1,4 +1,4 @@
-"""Whether data fit a JSON Schema: at once by `jsonschema-rs`; where they do not, `jsonschema` says in words what is wrong.
+"""Fast check of data against a JSON Schema by `jsonschema-rs`; on failure, `jsonschema` explains what is wrong.
 
 `jsonschema` takes longer to import than a small mission takes to read.
 """
@@ -9,11 +9,13 @@ from collections.abc import Callable
 from typing import Any
 
 Check = Callable[[Any], bool]
-"""Whether a value is right."""
+"""A predicate on values."""
 
 
 def fits(schema: dict[str, Any]) -> Check:
-    """A check that says yes of values that fit the schema (draft 2020-12), and no of others and of what is no JSON."""
+    """A check that is true for values that fit the schema (draft 2020-12), and false for others and for values that
+    are not JSON.
+    """
     from jsonschema_rs import Draft202012Validator
 
     validator = Draft202012Validator(schema)

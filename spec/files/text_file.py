@@ -14,7 +14,7 @@ from cratous.spec.files import limits
 
 
 def bytes_of(file: Path, most: int = limits.DOCUMENT_BYTES, expected: str = "a file") -> bytes:
-    """A file's bytes; BadInput if it is missing, no regular file, cannot be read or is longer than `most`."""
+    """A file's bytes; raises BadInput if it is missing, not a regular file, unreadable or longer than `most`."""
     try:
         _check_regular(file, expected)
         with file.open("rb") as stream:
@@ -34,7 +34,7 @@ def bytes_of(file: Path, most: int = limits.DOCUMENT_BYTES, expected: str = "a f
 
 
 def text_of(file: Path, most: int = limits.DOCUMENT_BYTES, expected: str = "a file") -> str:
-    """A file's text in UTF-8; BadInput as for `bytes_of`, or with the first byte that is no text."""
+    """A file's text in UTF-8; raises BadInput as `bytes_of`, or with the first byte that is not valid UTF-8."""
     try:
         return bytes_of(file, most, expected).decode("utf-8")
     except UnicodeDecodeError as error:
@@ -44,7 +44,7 @@ def text_of(file: Path, most: int = limits.DOCUMENT_BYTES, expected: str = "a fi
 
 
 def lines_of(file: Path) -> Iterator[tuple[int, str]]:
-    """(number, line) of a text file, gzipped if its name ends in `.gz`; BadInput beyond a bound."""
+    """(number, line) of each line of a text file, gzipped if its name ends in `.gz`; raises BadInput beyond a bound."""
     total, packed = 0, file.suffix == ".gz"
     try:
         _check_regular(file, "a file of text")
@@ -73,7 +73,7 @@ def lines_of(file: Path) -> Iterator[tuple[int, str]]:
 
 
 def _check_regular(file: Path, expected: str) -> None:
-    """Raise BadInput for a pipe or a device, which may keep its reader waiting for ever."""
+    """Raise BadInput for a pipe or a device, which could block its reader for ever."""
     mode = file.stat().st_mode
     if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):  # of a folder the system says so itself
         raise BadInput("not a regular file", where=str(file), expected=expected)

@@ -50,7 +50,7 @@ class Frame:
 class Vehicle:
     """One aircraft. `protected` vehicles get an ICAROUS instance and the guarantees G1 to G5.
 
-    power_w: what it draws in flight [W], None if that is not known.
+    power_w: power drawn in flight [W], None if not known.
     """
 
     id: int
@@ -69,20 +69,22 @@ class Vehicle:
 
     @property
     def cruise_alt_m(self) -> float:
-        """The altitude at which it flies its tasks [m MSL]: that of its start unless said otherwise."""
+        """The altitude at which it flies its tasks [m MSL]: its start altitude unless given."""
         return self.position.alt_m if self.cruise_m is None else self.cruise_m
 
 
 @dataclass(frozen=True)
 class GroundedVehicle(Vehicle):
-    """The same where it stands on the ground at the start, under its position, and takes off first. ground_m: how high
-    the ground is there [m MSL]; its position, heading and speed are those at which its plan begins."""
+    """A vehicle that stands on the ground at the start, below its position, and takes off first.
+
+    ground_m: ground elevation there [m MSL]; its position, heading and speed are those at which its plan begins.
+    """
 
     ground_m: float = 0.0
 
     @property
     def stands_at(self) -> Position:
-        """Where it stands."""
+        """The position at which it stands."""
         return self.position._replace(alt_m=self.ground_m)
 
 
@@ -94,19 +96,19 @@ class TaskKind(StrEnum):
     AREA_SEARCH = "area_search"
     PATTERN_SEARCH = "pattern_search"
     OTHER = "other"
-    """Known by what a service of its own says of it in messages, and by nothing else; of no mission file."""
+    """A task known only from the messages of an external service; not in mission files."""
 
 
 SEARCHES = (
     TaskKind.LINE_SEARCH, TaskKind.POINT_SEARCH, TaskKind.AREA_SEARCH, TaskKind.PATTERN_SEARCH,
 )  # fmt: skip
-"""The kinds that are served by what cameras see."""
+"""The kinds served by camera coverage."""
 AREAS = (TaskKind.AREA_SEARCH, TaskKind.PATTERN_SEARCH)
-"""The kinds of which a whole area has to be seen."""
+"""The kinds for which an entire area has to be seen."""
 
 
 class Pattern(StrEnum):
-    """How a pattern search covers the surroundings of its point."""
+    """How a pattern search covers the surroundings of its centre."""
 
     SPIRAL = "spiral"
     SQUARE = "square"
@@ -116,11 +118,11 @@ class Pattern(StrEnum):
 
 @dataclass(frozen=True)
 class View:
-    """From where the sensor looks at the target: boresight azimuth and elevation [rad].
+    """The direction from which the sensor looks at the target: boresight azimuth and elevation [rad].
 
-    azimuth is clockwise from the direction of flight, or from north if `inertial`;
-    elevation is negative downwards. None as a view means: any. azimuth_extent_rad: width of the
-    wedge of directions that will do, centred on azimuth; 0: that direction alone.
+    azimuth is clockwise from the direction of flight, or from north if `inertial`; elevation is negative downwards. A
+    view of None means any. azimuth_extent_rad: width of the permitted sector of directions, centred on azimuth; 0:
+    that direction alone.
     """
 
     azimuth_rad: float
@@ -131,11 +133,11 @@ class View:
 
 @dataclass(frozen=True)
 class Loiter:
-    """A closed way around `centre`: `circular`, `racetrack` or `figure_eight`.
+    """A closed path around `centre`: `circular`, `racetrack` or `figure_eight`.
 
-    radius_m: of the turns (0: the vehicle's own); axis_rad: direction of the long axis, from
-    north; length_m: of a racetrack's straights, or between a figure-eight's turn centres (which
-    is at least 2 radius_m); direction: `clockwise`, `counter_clockwise` or `any`.
+    radius_m: turn radius (0: the vehicle's own); axis_rad: direction of the long axis, from north; length_m: of a
+    racetrack's straights, or between a figure-eight's turn centres (at least 2 radius_m); direction: `clockwise`,
+    `counter_clockwise` or `any`.
     """
 
     centre: Position
@@ -148,17 +150,15 @@ class Loiter:
 
 @dataclass(frozen=True)
 class Task:
-    """One task. `eligible` empty means: every vehicle.
+    """One task. An empty `eligible` means every vehicle.
 
-    points: the line (line_search), the target (point_search), the point to fly through
-    (must_fly), the centre (loiter, pattern_search) or the corners of a polygon (area_search).
-    duration_ms: loiter or dwell time. radius_m: loiter radius. views: what else will do besides
-    `view`. standoff_m: how near the aircraft may come to a point that it searches. loiter: the
-    way to fly in a loiter, or while looking at a point. gsd_m: coarsest ground sample distance
-    that will do [m a pixel], 0: any. sweep_rad: direction of an area's lanes, None: any;
-    start_point: where the search of an area has to begin. extent_m: a pattern reaches so far from
-    its centre: over a disc (spiral, sector), or a square (square, sweep). priority: where not all tasks
-    can be done, those of higher priority are.
+    points: the line (line_search), the target (point_search), the point to fly through (must_fly), the centre
+    (loiter, pattern_search) or the corners of a polygon (area_search). duration_ms: loiter or dwell time. radius_m:
+    loiter radius. views: permitted alternatives to `view`. standoff_m: minimum distance of the aircraft from a point
+    that it searches. loiter: the path to fly in a loiter, or while looking at a point. gsd_m: coarsest permitted
+    ground sample distance [m per pixel], 0: any. sweep_rad: direction of an area's lanes, None: any; start_point:
+    where the search of an area has to begin. extent_m: extent of a pattern from its centre: over a disc (spiral,
+    sector) or a square (square, sweep). priority: if not all tasks can be done, those of higher priority are.
     """
 
     id: int
@@ -190,9 +190,8 @@ class ZoneKind(StrEnum):
 class Zone:
     """A polygon in the horizontal plane, between floor and ceiling (MSL), for all vehicles.
 
-    vertices: (north, east) [m], simple, at least three, either orientation, not repeated at the
-    end. A keep-out contains its own boundary, a keep-in does not. padding_m widens a keep-out and
-    narrows a keep-in.
+    vertices: (north, east) [m], simple, at least three, either orientation, the first not repeated at the end. A
+    keep-out contains its own boundary, a keep-in does not. padding_m widens a keep-out and narrows a keep-in.
     """
 
     id: int
@@ -206,7 +205,7 @@ class Zone:
 
 @dataclass(frozen=True)
 class Traffic:
-    """An aircraft that nobody of ours commands: straight flight, or along `waypoints`."""
+    """An aircraft outside the control of the mission: in straight flight, or along `waypoints`."""
 
     id: int
     position: Position
@@ -233,7 +232,7 @@ class GuidedWellClear(WellClear):
 
 
 class Resolution(StrEnum):
-    """Kinds of manoeuvres: heading: turns; altitude: climbs and descents; speed: slower and faster."""
+    """Kinds of resolution manoeuvres: heading: turns; altitude: climbs and descents; speed: slower or faster flight."""
 
     HEADING = "heading"
     ALTITUDE = "altitude"
@@ -242,7 +241,7 @@ class Resolution(StrEnum):
 
 @dataclass(frozen=True)
 class Daa:
-    """How ICAROUS detects and avoids: the volume it keeps and how far it looks ahead.
+    """How ICAROUS detects and avoids: the volume that it keeps clear and how far it looks ahead.
 
     close_starts: vehicles may start inside each other's volume.
     """
@@ -254,7 +253,7 @@ class Daa:
 
     @property
     def looks_first(self) -> Resolution:
-        """The kind of manoeuvre that is looked for first; the others where there is none of it."""
+        """The kind of manoeuvre searched for first; other kinds are used only if it yields none."""
         if isinstance(self, OrderedDaa | OrderedSensedDaa):
             return self.resolution
         return Resolution.HEADING
@@ -262,21 +261,21 @@ class Daa:
 
 @dataclass(frozen=True)
 class OrderedDaa(Daa):
-    """The same where another kind of manoeuvre than turns is looked for first."""
+    """Detect and avoid in which a kind of manoeuvre other than turns is searched for first."""
 
     resolution: Resolution = Resolution.HEADING
 
 
 @dataclass(frozen=True)
 class SensedDaa(Daa):
-    """The same where ICAROUS is given what sensors see, and not the true states."""
+    """Detect and avoid in which ICAROUS gets sensor measurements instead of true states."""
 
     sensing: Sensing = field(default_factory=lambda: Sensing(()))
 
 
 @dataclass(frozen=True)
 class OrderedSensedDaa(SensedDaa):
-    """Both."""
+    """Both: another first kind of manoeuvre, and sensor measurements."""
 
     resolution: Resolution = Resolution.HEADING
 
@@ -296,14 +295,14 @@ class LinkLoss:
 
 @dataclass(frozen=True)
 class LandingLoss(LinkLoss):
-    """The same where it lands. name: of the site, "" for the nearest; sites: all that it may land at."""
+    """Link loss with a landing. name: of the site, "" for the nearest; sites: all permitted landing sites."""
 
     sites: tuple[LandingSite, ...] = ()
 
 
 @dataclass(frozen=True)
 class LinkLossDaa(OrderedDaa):
-    """The same where the mission says what is flown while UxAS is not heard."""
+    """Detect and avoid in a mission that specifies what is flown while UxAS is not heard."""
 
     link_loss: LinkLoss = field(default_factory=lambda: LinkLoss(WithoutLink.LOITER))
 
@@ -317,7 +316,7 @@ class MergingDaa(OrderedDaa):
 
 @dataclass(frozen=True)
 class Change:
-    """Something that becomes known in flight; `kind` is one of those of `spec.mission.changes`."""
+    """A change that becomes known in flight; `kind` is one of those of `spec.mission.changes`."""
 
     at_ms: int
     kind: str
@@ -330,11 +329,10 @@ class Change:
 class Mission:
     """A whole mission. `relations` is the process-algebra text; empty means all tasks, any order.
 
-    instances: ids of the vehicles with an ICAROUS instance (all protected ones unless avoidance
-    is switched off). cost: a key of `spec.mission.plan.COST_UNITS`. order: "time" (precedence holds
-    in time, design decision 1) or "order" (as UxAS: order of assignment only). node_limit: nodes of
-    the assignment search (0: its first leaf); None: as many as usual; gap: the search may stop once
-    (cost - bound) / cost is at most this.
+    instances: ids of the vehicles with an ICAROUS instance (all protected ones unless avoidance is switched off).
+    cost: a key of `spec.mission.plan.COST_UNITS`. order: "time" (precedence constrains times, design decision 1) or
+    "order" (as UxAS: order of assignment only). node_limit: node limit of the assignment search (0: stop at its first
+    leaf; None: the default); gap: the search may stop once (cost - bound) / cost is at most this.
     """
 
     name: str
@@ -358,12 +356,12 @@ class Mission:
 
     @property
     def sensing(self) -> Sensing | None:
-        """The sensors of its ICAROUS instances; None: they are given the true states."""
+        """The sensors of its ICAROUS instances; None: they get the true states."""
         return self.daa.sensing if isinstance(self.daa, SensedDaa) else None
 
     @property
     def link_loss(self) -> LinkLoss | None:
-        """What is flown while UxAS is not heard; None: the mission does not say."""
+        """What is flown while UxAS is not heard; None: not specified."""
         return self.daa.link_loss if isinstance(self.daa, LinkLossDaa) else None
 
     def vehicle(self, vehicle_id: int) -> Vehicle:
@@ -383,6 +381,6 @@ class Mission:
 
 @dataclass(frozen=True)
 class LivePlanningMission(Mission):
-    """The same where UxAS plans live: an ICAROUS that has its vehicle may ask it for a way back."""
+    """A mission in which UxAS plans in flight: an ICAROUS that commands its vehicle may request a path back."""
 
     uxas_route_planner: bool = True

@@ -1,7 +1,7 @@
-"""Which tasks a mission asks for: those of one branch of its relations, from the mission alone.
+"""The tasks that a mission requires: those of one branch of its relations, from the mission alone.
 
-What a planner accepted, or a vehicle flew, only helps to tell which branch of a `+` was chosen; it
-never makes the set smaller.
+What a planner accepted, or a vehicle flew, only helps to determine which branch of a `+` was chosen; it never reduces
+the set.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ Worth = Callable[[int], int]
 
 
 def term_of(mission: Mission) -> Term | None:
-    """The mission's relations as a term: all its tasks in any order if it has none; None without tasks."""
+    """The mission's relations as a term; all its tasks in any order if it has no relations; None without tasks."""
     ids = [task.id for task in mission.tasks]
     if not ids:
         return None
@@ -27,13 +27,13 @@ def term_of(mission: Mission) -> Term | None:
 
 
 def best_branch(term: Term, worth: Worth) -> Term:
-    """The branch whose tasks are worth most in sum, the first of several."""
+    """The branch with the greatest total worth of its tasks; the first of equals."""
     _, number, _ = _best(term, worth)
     return algebra_meaning.branch(term, number)
 
 
 def _best(term: Term, worth: Worth) -> tuple[int, int, int]:
-    """(worth, number) of the best branch, and how many branches there are."""
+    """The best branch as (worth, number), and the number of branches."""
     if isinstance(term, Atom):
         return worth(term.task), 0, 1
     found = [_best(operand, worth) for operand in term.operands]
@@ -51,9 +51,9 @@ def _best(term: Term, worth: Worth) -> tuple[int, int, int]:
 
 
 def asked(mission: Mission, done: Set[int], accepted: Set[int]) -> tuple[int, ...]:
-    """The tasks that have to be served: of a branch that is done whole, else of the one most like
-    what was accepted: of those with most of it the one with the fewest tasks besides. Of several the
-    first; no tasks if the mission has none.
+    """The tasks that have to be served: those of a branch that is completely done; otherwise of the branch that
+    contains most of the accepted tasks and, among those, the fewest other tasks. The first of equals; no tasks if the
+    mission has none.
     """
     term = term_of(mission)
     if term is None:

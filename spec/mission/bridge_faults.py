@@ -1,25 +1,25 @@
-"""Faults of the bridge that a mission asks for: what its connections do to lines, seeded."""
+"""Bridge faults requested by a mission: what its connections do to lines, from a seed."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 LONGEST_DELAY_MS = 5000
-"""No line is delayed by more [ms]."""
+"""Upper limit of the delay of a line [ms]."""
 
 
 @dataclass(frozen=True)
 class BridgeFaults:
-    """What happens on every connection of the bridge, the same for the same seed.
+    """The faults on every connection of the bridge, reproducible from the seed.
 
-    Shares are of the lines of either direction, each line by itself: loss, repeat (comes twice), reorder (takes
-    another place among the lines of its beat), truncation (its end is missing, the new line too),
-    corruption (one byte is another). delay_ms: each line comes up to this much later, drawn evenly. forged_modes:
-    share of the exchanges, two a heartbeat, at which a SETMOD of any mode and an epoch from 0 to 5 comes to UxAS that ICAROUS did not send.
-    cut_ms, reconnect_ms: every connection breaks, and is opened anew. stops_reading_ms, reads_again_ms:
-    ICAROUS takes nothing from its connection from the one to the other, which breaks when too much waits.
-    silent_ms, speaks_again_ms: ICAROUS on board of every vehicle stands still from the one to the other: it looks at
-    nothing and commands nothing; lines to it wait.
+    Shares apply to the lines of either direction, each line independently: loss, repeat (duplicated), reorder (moved
+    among the lines of its heartbeat), truncation (its end is missing, the newline included), corruption (one byte is
+    changed). delay_ms: each line is delayed by up to this, uniformly distributed. forged_modes: share of the
+    exchanges, two per heartbeat, at which UxAS receives a SETMOD with a random mode and an epoch from 0 to 5 that
+    ICAROUS did not send. cut_ms, reconnect_ms: every connection breaks, and is reopened. stops_reading_ms,
+    reads_again_ms: between these times ICAROUS reads nothing from its connection, which breaks when too much is
+    queued. silent_ms, speaks_again_ms: between these times ICAROUS on board every vehicle is stopped: it reads and
+    commands nothing; lines to it are queued.
     """
 
     seed: int = 0
@@ -38,15 +38,15 @@ class BridgeFaults:
     speaks_again_ms: int | None = None
 
     def icarous_is_silent(self, now_ms: int) -> bool:
-        """Whether ICAROUS stands still at an instant [ms]."""
+        """Whether ICAROUS is stopped at an instant [ms]."""
         return _within(self.silent_ms, self.speaks_again_ms, now_ms)
 
     def icarous_does_not_read(self, now_ms: int) -> bool:
-        """Whether ICAROUS takes nothing from its connection at an instant [ms]."""
+        """Whether ICAROUS reads nothing from its connection at an instant [ms]."""
         return _within(self.stops_reading_ms, self.reads_again_ms, now_ms)
 
     def is_cut(self, now_ms: int) -> bool:
-        """Whether no connection stands at an instant [ms]."""
+        """Whether all connections are down at an instant [ms]."""
         return _within(self.cut_ms, self.reconnect_ms, now_ms)
 
 
@@ -66,7 +66,7 @@ INSTANTS = {
 
 
 def words(faults: BridgeFaults) -> str:
-    """The faults in words, for reports; those that are not asked for are left out."""
+    """The faults in words, for reports; those not requested are left out."""
     said = [
         f"{name.replace('_', ' ')} {getattr(faults, name):g}"
         for name in SHARES

@@ -1,4 +1,4 @@
-"""What becomes known while a mission is flown, and the mission as it is known at an instant."""
+"""Changes that become known while a mission is flown, and the mission as known at an instant."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ TASK_ADDED, TASK_REMOVED = "task_added", "task_removed"
 ZONE, ZONE_ENDS = "zone", "zone_ends"
 WIND = "wind"
 VEHICLE_HOLDS, VEHICLE_RESUMES = DIRECT = "vehicle_holds", "vehicle_resumes"
-"""Commands to one vehicle: what is known of the mission, and its plan, stay as they are."""
+"""Commands to one vehicle; the known mission and its plan stay unchanged."""
 VEHICLE_LANDED = "vehicle_landed"
-"""Of no mission file: what the flight itself leads to."""
+"""Not in mission files: a consequence of the flight itself."""
 
 
 @dataclass(frozen=True)
 class WindChange(Change):
-    """From now on this wind blows, in place of any before; the air stands still at the start."""
+    """This wind blows from now on and replaces any earlier one; there is no wind at the start."""
 
     north_m_s: float = 0.0
     east_m_s: float = 0.0
@@ -31,16 +31,16 @@ class WindChange(Change):
 
 @dataclass(frozen=True)
 class ZoneEnd(Change):
-    """From now on the zone with this id binds nobody any more. A leg that was begun before is still held to it."""
+    """The zone with this id no longer applies from now on. A leg already begun is still checked against it."""
 
     zone_id: int = 0
 
 
 @dataclass(frozen=True)
 class HoldCommand(Change):
-    """The vehicle flies to a place and circles there until it resumes its plan; no place: where it is.
+    """The vehicle flies to a place and circles there until it resumes its plan; without a place, where it is.
 
-    place: north, east [m]; alt_m: above mean sea level; None: the altitude at which it is then.
+    place: north, east [m]; alt_m: above mean sea level [m]; None: its altitude at that time.
     """
 
     place: tuple[float, float] | None = None
@@ -74,24 +74,24 @@ def words(change: Change) -> str:
 
 
 def requested_ms(mission: Mission, task: int) -> int | None:
-    """When a task that was not there at the start was asked for first [ms]; None for one that was there."""
+    """When a task that was not part of the mission at the start was first requested [ms]; None for the others."""
     mine = [c for c in mission.changes if c.task == task and c.kind in (TASK_ADDED, TASK_REMOVED)]
     first = min(mine, key=lambda change: change.at_ms, default=None)
     return first.at_ms if first is not None and first.kind == TASK_ADDED else None
 
 
 def split(changes: Iterable[Change], now_ms: int) -> tuple[list[Change], list[Change]]:
-    """The changes that are known at an instant, and those to come, each in the order of time."""
+    """The changes known at an instant, and those still to come, each in order of time."""
     row = sorted(changes, key=lambda change: change.at_ms)
     return [c for c in row if c.at_ms <= now_ms], [c for c in row if c.at_ms > now_ms]
 
 
 def known_at(mission: Mission, now_ms: int, done: Iterable[int] = ()) -> Mission:
-    """The mission as it is known at an instant: the zones that have not ended, and who and what takes part.
+    """The mission as known at an instant: the zones that have not ended, and the vehicles and tasks that take part.
 
-    A vehicle takes part until it is lost, and from when it joins; a task from when it is requested until it
-    is removed, unless it is among those `done`. What was said last counts, and what is first said to
-    join or to be requested was not there before. Relations lose the tasks that do not take part.
+    A vehicle takes part until it is lost, and from when it joins; a task from when it is requested until it is
+    removed, unless it is in `done`. The latest change applies; a vehicle or task whose first change is to join or to
+    be requested was not part of the mission before. Relations lose the tasks that do not take part.
     """
     if all(change.kind in DIRECT for change in mission.changes):
         return replace(mission, changes=()) if mission.changes else mission
@@ -109,15 +109,15 @@ def known_at(mission: Mission, now_ms: int, done: Iterable[int] = ()) -> Mission
 
 
 def asked_by(mission: Mission, now_ms: int, done: Iterable[int] = ()) -> Mission:
-    """The mission with all tasks that it asks for, those too that are requested only after an instant:
-    without those that were removed by then, unless they are among those `done`."""
+    """The mission with all tasks that it requires, including those requested only after an instant, but without those
+    removed by then, unless they are in `done`.
+    """
     later = {c.task for c in mission.changes if c.kind == TASK_ADDED and c.at_ms > now_ms}
     return _without_tasks(mission, _gone(mission, now_ms).keys() - set(done) - later)
 
 
 def with_choices(mission: Mission, begun: Set[int]) -> Mission:
-    """The mission with the choice of each `+` made of which a task was begun: of its other operands none may
-    be begun any more."""
+    """The mission with each `+` resolved of which a task has begun: other operands may no longer begin."""
     if not begun or ALTERNATIVE not in mission.relations:
         return mission
     ids = frozenset(task.id for task in mission.tasks)
@@ -132,7 +132,7 @@ def with_choices(mission: Mission, begun: Set[int]) -> Mission:
 
 
 def without_vehicles(mission: Mission, now_ms: int) -> dict[int, Change]:
-    """The vehicles that do not take part at an instant, each with the change that says why."""
+    """The vehicles that do not take part at an instant, each with the change that is the reason."""
     return _out(mission, now_ms, "vehicle", VEHICLE_JOINS, VEHICLE_LOST)
 
 
@@ -141,7 +141,7 @@ def _gone(mission: Mission, now_ms: int) -> dict[int, Change]:
 
 
 def _out(mission: Mission, now_ms: int, what: str, enters: str, leaves: str) -> dict[int, Change]:
-    """Who or what is not there, by the last change that has happened, else by the first to come."""
+    """The vehicles or tasks that do not take part, by the last change so far, else by the first to come."""
     found: dict[int, Change] = {}
     happened, to_come = split((c for c in mission.changes if c.kind in (enters, leaves)), now_ms)
     for change in reversed(to_come):

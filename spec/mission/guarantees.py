@@ -1,7 +1,7 @@
-"""What CRATOUS promises for the vehicles that a mission declares protected.
+"""The guarantees of CRATOUS for the vehicles that a mission declares protected.
 
-The five guarantees, their sentences, and what a verdict on one of them consists of. An
-unprotected vehicle is listed as not covered; switching avoidance off removes no requirement.
+The five guarantees, their sentences, and the content of a verdict on one of them. An unprotected vehicle is listed as
+not covered; switching avoidance off removes no requirement.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ REQUIREMENTS = (
 
 
 class Outcome(StrEnum):
-    """The four verdicts. Unknown is never a success; excused needs evidence."""
+    """The four verdicts. Unknown never counts as success; excused requires evidence."""
 
     HOLDS = "holds"
     VIOLATED = "violated"
@@ -63,7 +63,7 @@ class Outcome(StrEnum):
 
 
 class Kind(StrEnum):
-    """How far a verdict goes: exact on the given doubles, enclosed, over the reals, observed."""
+    """The strength of a verdict: exact for the given doubles, enclosed by intervals, over the reals, or observed."""
 
     EXACT = "exact"
     OBSERVED = "observed"
@@ -74,11 +74,11 @@ class Kind(StrEnum):
 class Verdict:
     """A verdict on one requirement or one constraint.
 
-    requirement: G1 to G5; item: which constraint (empty for the whole requirement); time_ms:
-    first violation, or where the margin was smallest; margin: in `unit`, negative when violated,
-    None where there is no measure; checks: how many single checks stand behind it; method: by
-    what, in words; evidence: what an excuse, or its refusal, rests on, as plain data; kernels:
-    qualified names of the kernels, folds and drivers that decided it, none where the messages did.
+    requirement: G1 to G5; item: the constraint (empty for the whole requirement); time_ms: first violation, or the
+    time of the smallest margin; margin: in `unit`, negative when violated, None if there is no measure; checks:
+    number of single checks made; method: how it was decided, in words; evidence: the basis of an excuse, or of its
+    refusal, as plain data; kernels: qualified names of the kernels, folds and drivers that decided it, empty if the
+    messages did.
     """
 
     requirement: str
@@ -97,7 +97,7 @@ class Verdict:
 
 
 def worst(outcomes: list[Outcome]) -> Outcome:
-    """The verdict on a whole: violated before unknown before excused before holds."""
+    """The combined verdict: violated before unknown before excused before holds."""
     for outcome in (Outcome.VIOLATED, Outcome.UNKNOWN, Outcome.EXCUSED):
         if outcome in outcomes:
             return outcome
@@ -105,8 +105,9 @@ def worst(outcomes: list[Outcome]) -> Outcome:
 
 
 def exit_code(outcomes: list[Outcome], *, unproved: bool = False) -> int:
-    """0 all hold, 1 something is violated, 3 something is unknown or excused; unproved: kernels without proof
-    have judged, whose verdict is at best unknown."""
+    """0: all hold; 1: something is violated; 3: something is unknown or excused. unproved: kernels without a proof
+    took part, whose verdict is at best unknown.
+    """
     whole = worst([*outcomes, Outcome.UNKNOWN] if unproved else outcomes)
     if whole is Outcome.HOLDS:
         return 0

@@ -1,4 +1,4 @@
-"""What a mission can want of its vehicles while UxAS is not heard."""
+"""The mission's choices for flight while UxAS is not heard."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from enum import StrEnum
 
 
 class WithoutLink(StrEnum):
-    """finish: the way that is known is flown to its end; loiter: a circle where the vehicle is; return: to a place;
-    land: at a landing site."""
+    """finish: the known path is flown to its end; loiter: a circle where the vehicle is; return: to a place; land: at
+    a landing site.
+    """
 
     FINISH = "finish"
     LOITER = "loiter"
@@ -18,9 +19,10 @@ class WithoutLink(StrEnum):
 
 @dataclass(frozen=True)
 class LandingSite:
-    """Where a vehicle may land: the disc of radius_m [m] about a place, whose ground is at ground_m [m MSL].
+    """A permitted landing site: the disc of radius_m [m] about a place, with its ground at ground_m [m MSL].
 
-    ditch: only where no permitted way leads to another."""
+    ditch: used only if no permitted path leads to another site.
+    """
 
     name: str
     north_m: float
@@ -31,7 +33,7 @@ class LandingSite:
 
 
 def words(choice: WithoutLink, name: str) -> str:
-    """A choice in words. name: of the place to return to or to land at, "" for the start or the nearest site."""
+    """A choice in words. name: of the place to return to or land at, "" for the start or the nearest site."""
     if choice is WithoutLink.FINISH:
         return "the known way is flown to its end"
     if choice is WithoutLink.LOITER:

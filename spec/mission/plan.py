@@ -1,8 +1,8 @@
 """What a plan is: who flies which task by which route and when. Same frame and units as `mission`.
 
-A vehicle's plan is a chain of items. Item k is: `transit` from where item k-1 ended to the start
-pose of the task, then (if wait_ms > 0) a loiter of exactly wait_ms on `hold`, then `path`, the
-task itself. Polylines are what is flown: arcs are already cut into short legs.
+A vehicle's plan is a chain of items. Item k consists of: `transit` from the end of item k-1 to the start pose of the
+task, then (if wait_ms > 0) a loiter of exactly wait_ms on `hold`, then `path`, the task itself. Polylines are what is
+flown: arcs are already divided into short legs.
 """
 
 from __future__ import annotations
@@ -15,12 +15,13 @@ from cratous.spec.constraint_rows import Row
 from cratous.spec.mission import Position
 
 COST_UNITS = {"MINMAX": "ms", "CUMULATIVE": "ms", "DISTANCE": "mm", "ENERGY": "mJ"}
-"""What a plan is to cost least of: the latest end, the sum of the vehicles' last ends, the distance flown on
-ways and tasks, the energy used on them; and the unit of each."""
+"""Costs that a plan can minimise: the latest end, the sum of the vehicles' last ends, the distance flown on transits
+and tasks, the energy used on them; and the unit of each.
+"""
 
 
 def cost_text(cost: str, value: int) -> str:
-    """A cost in words: seconds, kilometres or kilojoules."""
+    """A cost as text: in seconds, kilometres or kilojoules."""
     if COST_UNITS[cost] == "ms":
         return f"{value / 1000:.1f} s"
     return f"{value / 1e6:.3f} km" if COST_UNITS[cost] == "mm" else f"{value / 1e6:.1f} kJ"
@@ -71,8 +72,8 @@ class PlanItem:
 class Plan:
     """A complete assignment: chains by vehicle, the constraints it was made for, and its cost.
 
-    status: `optimal` only with a certificate, else `feasible`; bound: nothing costs less, as far as
-    was proved; certificate: its digest; exhausted: whether it is optimal by its certificate.
+    status: `optimal` only with a certificate, else `feasible`; bound: the proved lower bound of the cost;
+    certificate: its digest; exhausted: whether the certificate shows it to be optimal.
     """
 
     mission: str
@@ -95,14 +96,14 @@ class Plan:
 ZONE, ELIGIBILITY, TIME, WIND, VEHICLE, ORDER = (
     "zone", "eligibility", "time", "wind", "vehicle", "order",
 )  # fmt: skip
-"""What may stand in the way of a task. No mission bounds energy, so that never does."""
+"""Kinds of obstacles to a task. No mission bounds energy, so energy is not one."""
 
 
 class Remedy(NamedTuple):
-    """A smallest set of what would have to change so that a task that is left out could be done.
+    """A minimal set of changes that would make a left-out task possible.
 
-    kinds: what it is about; text: in words; zones, tasks, vehicles: of which it speaks; tried: that a vehicle
-    could do the task then was computed (not, whether there is a schedule with it).
+    kinds: kinds of obstacles concerned; text: in words; zones, tasks, vehicles: those concerned; tried: it was
+    computed that a vehicle could then do the task (not whether a schedule with it exists).
     """
 
     kinds: tuple[str, ...]
@@ -114,15 +115,14 @@ class Remedy(NamedTuple):
 
 
 NOT_THERE_YET = "no vehicle that may do it is there yet"
-"""Why a task is left out for now whose vehicle joins later."""
+"""The reason for leaving a task out for now until its vehicle joins."""
 
 
 class LeftOut(NamedTuple):
-    """A task that is asked for and not planned.
+    """A task that is required but not planned.
 
-    reason: why it cannot be done; waiting: the tasks that are left out because they wait for it; instead:
-    the planned tasks with which there is no schedule for it; remedies: what would have to change, each enough by
-    itself as far as is known.
+    reason: why it cannot be done; waiting: the tasks that are left out because they wait for it; instead: the planned
+    tasks with which it cannot be scheduled; remedies: possible changes, each sufficient by itself as far as is known.
     """
 
     task_id: int
@@ -133,22 +133,22 @@ class LeftOut(NamedTuple):
 
     @property
     def waits(self) -> bool:
-        """Whether it is left out for now, until a vehicle that may do it joins."""
+        """Whether it is left out only until an eligible vehicle joins."""
         return self.reason.startswith(NOT_THERE_YET)
 
     @property
     def text(self) -> str:
-        """In words: the task, why, and what else is not done because of it."""
+        """In words: the task, the reason, and what else is left out because of it."""
         waiting = f"; what waits for it: {', '.join(map(str, self.waiting))}"
         return f"task {self.task_id} ({self.reason}{waiting if self.waiting else ''})"
 
 
 class InPart(NamedTuple):
-    """A line or an area of which a part is planned, since zones cover the rest.
+    """A line or an area of which only a part is planned, because zones cover the rest.
 
-    share: how much of it the planned way sees, at least, from 0 to 1 (without a camera: how much of its length
-    is flown); outside: how much of it lies outside of the zones at the vehicle's altitude, at least;
-    zones: their ids; names: the zones in words.
+    share: lower bound of the share that the planned path sees, from 0 to 1 (without a camera: of the length that is
+    flown); outside: lower bound of the share outside the zones at the vehicle's altitude; zones: their ids; names:
+    the zones in words.
     """
 
     task_id: int
@@ -159,7 +159,7 @@ class InPart(NamedTuple):
 
     @property
     def text(self) -> str:
-        """In words: the task, the shares, and because of which zones."""
+        """In words: the task, the shares, and the zones responsible."""
         return (
             f"task {self.task_id} (planned: {percent(self.share)} of it; "
             f"{percent(self.outside)} of it lies outside of {self.names}; "
@@ -168,16 +168,16 @@ class InPart(NamedTuple):
 
 
 def percent(share: float) -> str:
-    """A share in per cent, rounded down to a tenth."""
+    """A share as a percentage, rounded down to a tenth."""
     return f"{math.floor(1000 * share + 1e-9) / 10:.1f} %"
 
 
 @dataclass(frozen=True)
 class PartialPlan(Plan):
-    """A plan of a part of what is asked for: what can be done of it.
+    """A plan for the feasible part of the required tasks.
 
-    chosen: the tasks of that part; sure: no more can be done, as far as was searched; in_part: those of
-    the planned tasks of which only a part is done.
+    chosen: the tasks of that part; sure: no more can be done, as far as was searched; in_part: the planned tasks of
+    which only a part is done.
     """
 
     left_out: tuple[LeftOut, ...] = ()
@@ -188,23 +188,23 @@ class PartialPlan(Plan):
 def partial(
     plan: Plan, left_out: tuple[LeftOut, ...], sure: bool, in_part: tuple[InPart, ...] = ()
 ) -> PartialPlan:
-    """A plan that leaves these tasks out, and does those in part."""
+    """A plan that leaves these tasks out, and does those of `in_part` in part."""
     known = {f.name: getattr(plan, f.name) for f in fields(Plan)}
     return PartialPlan(**known, left_out=left_out, sure=sure, in_part=in_part)
 
 
 def in_part_of(plan: Plan) -> tuple[InPart, ...]:
-    """The tasks that a plan does in part; none of a plan of all that is asked for."""
+    """The tasks that a plan does in part; none if the plan covers everything required."""
     return plan.in_part if isinstance(plan, PartialPlan) else ()
 
 
 def left_out_of(plan: Plan) -> tuple[LeftOut, ...]:
-    """The tasks that a plan leaves out; none of a plan of all that is asked for."""
+    """The tasks that a plan leaves out; none if the plan covers everything required."""
     return plan.left_out if isinstance(plan, PartialPlan) else ()
 
 
 def left_out_text(plan: Plan) -> str:
-    """In one line which tasks a plan leaves out or does in part, and why; empty if none."""
+    """One line of text: the tasks that a plan leaves out or does in part, and why; empty if there are none."""
     said = [left.text for left in left_out_of(plan)]
     told = [f"in part: {'; '.join(one.text for one in in_part_of(plan))}"] * bool(in_part_of(plan))
     if said:

@@ -1,6 +1,6 @@
-"""Sensors of a mission: what its ICAROUS instances see of their own vehicle and of traffic, and how well.
+"""Sensors of a mission: what its ICAROUS instances measure of their own vehicle and of traffic, and how accurately.
 
-A mission without them gives ICAROUS the exact states of all aircraft, which its report says.
+A mission without sensors gives ICAROUS the exact states of all aircraft, which its report states.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from enum import StrEnum
 
 
 class SensorKind(StrEnum):
-    """gps: the own state; adsb: traffic, by its id; radar: traffic, without ids."""
+    """gps: the vehicle's own state; adsb: traffic, by its id; radar: traffic, without ids."""
 
     GPS = "gps"
     ADSB = "adsb"
@@ -19,11 +19,11 @@ class SensorKind(StrEnum):
 
 @dataclass(frozen=True)
 class Sensor:
-    """A sensor that every vehicle with an ICAROUS instance carries.
+    """A sensor carried by every vehicle with an ICAROUS instance.
 
     horizontal_m, vertical_m, velocity_m_s: standard deviations of its errors, normal and independent: of north and
-    east each, of altitude, of each component of the velocity. latency_ms: what it has measured comes so much later.
-    drop_out: share of its measurements that do not come. range_m: horizontal distance up to which it sees, None: any.
+    east each, of altitude, of each velocity component. latency_ms: delay of its measurements. drop_out: share of its
+    measurements that are lost. range_m: maximum horizontal distance, None: unlimited.
     """
 
     kind: SensorKind
@@ -38,12 +38,12 @@ class Sensor:
 
 @dataclass(frozen=True)
 class Sensing:
-    """All sensors, and how tracks are made of what they measure.
+    """All sensors, and how tracks are formed from their measurements.
 
-    seed: another one draws other errors. sigmas: an aircraft is taken to be no farther from its track than so many
-    standard deviations. confirm_hits, confirm_of: a track counts once so many measurements of so many updates have
-    come. coast_ms: it ends so long after the last one. manoeuvre_m_s2: by how much traffic is expected to change
-    its velocity in a second, beside small turns: the noise of the filter's model.
+    seed: of the errors. sigmas: an aircraft is assumed to be within this many standard deviations of its track.
+    confirm_hits, confirm_of: a track is confirmed after this many measurements in this many updates. coast_ms: time
+    after the last measurement at which a track ends. manoeuvre_m_s2: expected change of traffic velocity per second,
+    besides small turns: the process noise of the filter.
     """
 
     sensors: tuple[Sensor, ...]
@@ -56,23 +56,23 @@ class Sensing:
 
     @property
     def gps(self) -> Sensor | None:
-        """The sensor of the own state, if there is one."""
+        """The sensor of the vehicle's own state, if there is one."""
         return next((one for one in self.sensors if one.kind is SensorKind.GPS), None)
 
     @property
     def of_traffic(self) -> tuple[Sensor, ...]:
-        """The sensors that see others."""
+        """The sensors that measure other aircraft."""
         return tuple(one for one in self.sensors if one.kind is not SensorKind.GPS)
 
 
 EXACT_STATES = (
     "ICAROUS is given the exact states of its vehicle and of traffic (truth), not sensed ones"
 )
-"""What is said of a flight without sensors."""
+"""Report text for a flight without sensors."""
 
 
 def words(sensing: Sensing) -> str:
-    """The sensors and how tracks are made of them in words, for reports."""
+    """The sensors and the forming of tracks in words, for reports."""
     sensors = "; ".join(map(_words, sensing.sensors))
     own = "" if sensing.gps else "; the own state is exact"
     return (

@@ -1,4 +1,4 @@
-"""How the virtual time of a mission goes, and what fails in it."""
+"""The virtual time of a mission, and its simulated faults."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from cratous.spec.mission.bridge_faults import BridgeFaults
 
 @dataclass(frozen=True)
 class Simulation:
-    """Virtual time: length of a physics step, heartbeat period, and the end of patience."""
+    """Virtual time: length of a physics step, heartbeat period, and time limit of the flight."""
 
     step_ms: int = 250
     heartbeat_ms: int = 500
@@ -18,6 +18,6 @@ class Simulation:
 
 @dataclass(frozen=True)
 class FaultySimulation(Simulation):
-    """The same with faults of the bridge."""
+    """A simulation with faults of the bridge."""
 
     bridge_faults: BridgeFaults = field(default_factory=BridgeFaults)

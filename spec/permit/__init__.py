@@ -1,1 +1,1 @@
-"""What it means that a trajectory is permitted: no cylinder and no zone is entered at any instant."""
+"""When a trajectory is permitted: no cylinder and no zone is entered at any instant."""

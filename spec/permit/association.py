@@ -1,7 +1,7 @@
-"""What it means that a measurement may be of a track.
+"""When a measurement is associated with a track.
 
-Both are off the true place by normal errors; their difference has the sum of their variances. It is in the gate where it
-is no longer, in the plane and up, than so many standard deviations.
+Both have normal errors about the true position; the variance of their difference is the sum of their variances. The
+measurement is in the gate if the horizontal and vertical differences are within a number of standard deviations.
 """
 
 from __future__ import annotations
@@ -10,6 +10,8 @@ from cratous.spec.well_clear import Plane, within
 
 
 def gated(off: Plane, up: float, wide_sigma: float, high_sigma: float, sigmas: float) -> bool:
-    """In the plane the difference is within so many times the one deviation, up within so many of the other."""
+    """The horizontal difference is within `sigmas` times wide_sigma, the vertical one within `sigmas` times
+    high_sigma.
+    """
     reach = sigmas * high_sigma
     return within(off, sigmas * wide_sigma) and -reach <= up and up <= reach

@@ -1,8 +1,8 @@
-"""What must be true of how often ICAROUS takes over because of one intruder.
+"""Bounds on how often ICAROUS takes over because of one intruder.
 
-A takeover is answered by a permit: control goes back only on a way that is permitted against the intruder. So there
-is one takeover, and one more for each permit that did not last: a *surprise*, where something happened that it does
-not allow for, or its *end*. Milliseconds of one clock.
+A takeover ends with a permit: control goes back only on a path that is permitted against the intruder. So there is
+one takeover, and one more for each permit that did not last: because of a *surprise*, an event that it does not
+cover, or because of its *end*. Milliseconds of one clock.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 
 class Encounter(NamedTuple):
-    """takeovers, surprises, ended: so many; avoiding: a takeover is not over; permitted: until expiry_ms [ms]."""
+    """takeovers, surprises, ended: counts; avoiding: a takeover is in progress; permitted: until expiry_ms [ms]."""
 
     takeovers: int
     surprises: int
@@ -22,19 +22,19 @@ class Encounter(NamedTuple):
 
 
 def bounded(one: Encounter) -> bool:
-    """There are no more takeovers than one, and one for each permit that did not last."""
+    """The number of takeovers is at most one plus the number of permits that did not last."""
     return one.takeovers <= 1 + one.surprises + one.ended
 
 
 def owed(one: Encounter) -> bool:
-    """Each takeover but the one that is not over, or is answered by a permit, has a permit that did not last."""
+    """Each takeover, except one in progress or covered by a permit in force, has a permit that did not last."""
     open_now = 1 if one.avoiding or one.permitted else 0
     counts = one.takeovers >= 0 and one.surprises >= 0 and one.ended >= 0
     return counts and one.takeovers <= one.surprises + one.ended + open_now
 
 
 def same_counts(before: Encounter, after: Encounter, surprises: int, ended: int) -> bool:
-    """No takeover, and so many more surprises and ends."""
+    """No new takeover, and these numbers of new surprises and ends."""
     more = after.surprises == before.surprises + surprises and after.ended == before.ended + ended
     return more and after.takeovers == before.takeovers
 
@@ -45,8 +45,9 @@ def without_permit(after: Encounter) -> bool:
 
 
 def is_after_look(before: Encounter, allowed: bool, now: int, after: Encounter) -> bool:
-    """A permit whose time is over has ended, one that does not allow for what is seen was a surprise; else all stays
-    as it is."""
+    """A permit whose time has passed has ended; one that does not cover what is observed is a surprise; otherwise
+    nothing changes.
+    """
     if before.permitted and now >= before.expiry_ms:
         over = same_counts(before, after, 0, 1) and without_permit(after)
         return over and after.avoiding == before.avoiding
@@ -57,7 +58,9 @@ def is_after_look(before: Encounter, allowed: bool, now: int, after: Encounter) 
 
 
 def is_after_watch(before: Encounter, foreseen: bool, after: Encounter, acts: bool) -> bool:
-    """ICAROUS takes over if it must act and nothing is permitted; else nothing changes."""
+    """ICAROUS takes over if a conflict is predicted, no permit is in force and no takeover is in progress; otherwise
+    nothing changes.
+    """
     if not (foreseen and not before.permitted and not before.avoiding):
         return after == before and not acts
     one_more = after.takeovers == before.takeovers + 1 and after.avoiding
@@ -66,8 +69,9 @@ def is_after_watch(before: Encounter, foreseen: bool, after: Encounter, acts: bo
 
 
 def is_after_handback(before: Encounter, allowed: bool, expiry: int, after: Encounter) -> bool:
-    """The takeover is over: what is flown is permitted until the expiry; where it is not, one that was answered for
-    before is a surprise now."""
+    """The takeover is over: what is flown is permitted until the expiry. If it is not permitted, a takeover in
+    progress or a permit in force now counts as a surprise.
+    """
     if allowed:
         permitted = after.permitted and after.expiry_ms == expiry and not after.avoiding
         return permitted and same_counts(before, after, 0, 0)

@@ -1,8 +1,9 @@
-"""What must be true of the certificate in hand, behind the actuator gate, and of what may take its place.
+"""Requirements on the certificate in hand, behind the actuator gate, and on its replacement.
 
-A certificate says: flown from now on, its trajectory is clear of all that its tracks may do until it expires,
-at every instant before. It names the one that it begins on, which it agrees with until it begins. Whatever is
-lost, comes twice, late or in another order, only such a one may take its place. Milliseconds of one clock.
+A certificate says: flown from now on, its trajectory is clear, at every instant until it expires, of everything that
+its tracks may do. It names the trajectory that it branches off, with which it agrees until it begins. Whatever
+messages are lost, duplicated, delayed or reordered, only such a certificate may replace it. Milliseconds of one
+clock.
 """
 
 from __future__ import annotations
@@ -11,8 +12,9 @@ from typing import NamedTuple
 
 
 class Hand(NamedTuple):
-    """The certificate in hand. id: which; knowledge: how many changes of the set of tracks and zones it
-    knows; expiry_ms: up to when it is clear; surprises: what became known and was not allowed for."""
+    """The certificate in hand. id: its number; knowledge: how many changes of the set of tracks and zones it covers;
+    expiry_ms: until when it is clear; surprises: number of changes that it did not allow for.
+    """
 
     id: int
     knowledge: int
@@ -21,7 +23,7 @@ class Hand(NamedTuple):
 
 
 class Offer(NamedTuple):
-    """A certificate that is offered. base: the one that it begins on, at sigma_ms; the rest as in `Hand`."""
+    """An offered certificate. base: the certificate that it branches off, at sigma_ms; the rest as in `Hand`."""
 
     id: int
     base: int
@@ -31,31 +33,35 @@ class Offer(NamedTuple):
 
 
 def certified(expiry: int, clear: bool, now: int, at: int) -> bool:
-    """Of this instant it is true that the vehicle is clear, if it is one from now until the expiry. FOR
-    ALL at. clear: the vehicle is, at this instant, if it flies the trajectory."""
+    """The vehicle is clear at the instant `at`, if that lies from now until the expiry. FOR ALL at. clear: the
+    vehicle is clear at this instant if it flies the trajectory.
+    """
     return clear or at < now or at >= expiry
 
 
 def agrees(sigma: int, clear: bool, base_clear: bool, at: int) -> bool:
-    """Before a trajectory begins it is the one that it begins on: both are clear, or neither. FOR ALL at."""
+    """Before it begins, a trajectory coincides with its base: both are clear, or neither. FOR ALL at."""
     return at >= sigma or clear == base_clear
 
 
 def lasts(before: int, after: int, now: int, reserve: int) -> bool:
-    """An expiry falls at most to the reserve from now on; it need not, to fly on near one that hovers."""
+    """The expiry is not reduced below now plus the reserve; it may stay lower, to fly on near an intruder that
+    hovers.
+    """
     return after >= before or after >= now + reserve
 
 
 def may_take_over(hand: Hand, offer: Offer, now: int, reserve: int) -> bool:
-    """An offer may take the place of the hand: it begins on it, neither in the past nor after its expiry,
-    allows for all that is known, and does not shorten what is certain by too much."""
+    """An offer may replace the certificate in hand: it branches off it, neither in the past nor after its expiry,
+    covers all known changes, and does not reduce the expiry below the reserve.
+    """
     in_time = not (offer.sigma_ms < now or offer.sigma_ms > hand.expiry_ms)
     knows = offer.base == hand.id and offer.knowledge == hand.knowledge
     return knows and in_time and lasts(hand.expiry_ms, offer.expiry_ms, now, reserve)
 
 
 def is_after_offer(before: Hand, offer: Offer, now: int, reserve: int, after: Hand) -> bool:
-    """The hand is the one that was offered if that may take its place; else nothing changes."""
+    """The certificate in hand is the offered one if that may replace it; otherwise nothing changes."""
     if not may_take_over(before, offer, now, reserve):
         return after == before
     same = after.knowledge == before.knowledge and after.surprises == before.surprises
@@ -63,9 +69,10 @@ def is_after_offer(before: Hand, offer: Offer, now: int, reserve: int, after: Ha
 
 
 def is_after_news(before: Hand, permitted: bool, now: int, after: Hand) -> bool:
-    """A track or zone has become known. The hand is permitted against it too, and is certain as before; or
-    it is a surprise, which is declared, and nothing is certain any more. Offers that do not allow for it
-    are not accepted."""
+    """A track or zone has become known. Either the certificate in hand is permitted against it too, and its expiry
+    stays; or this is counted as a surprise, and nothing is guaranteed any more. Offers that do not cover the change
+    are not accepted.
+    """
     known = after.id == before.id and after.knowledge == before.knowledge + 1
     if permitted:
         return known and after.expiry_ms == before.expiry_ms and after.surprises == before.surprises
@@ -76,7 +83,9 @@ OFFERED, KNOWN, LEFT = 0, 1, 2
 
 
 def is_after_time(before: Hand, now: int, after: Hand) -> bool:
-    """Time has passed: what has not expired stays as it is; what has holds nothing, from this instant on."""
+    """Time has passed: a certificate that has not expired stays as it is; one that has guarantees nothing from this
+    instant on.
+    """
     same = after.id == before.id and after.knowledge == before.knowledge
     kept = same and after.surprises == before.surprises
     if before.expiry_ms < now:
@@ -85,29 +94,30 @@ def is_after_time(before: Hand, now: int, after: Hand) -> bool:
 
 
 def is_after_leaving(before: Hand, now: int, after: Hand) -> bool:
-    """Another trajectory is flown: nothing is certain any more, and the hand is another one, on which nothing
-    begins that was offered before. Nothing has become known."""
+    """Another trajectory is flown: nothing is guaranteed any more, and the new id differs, so that no earlier offer
+    branches off it. Nothing has become known.
+    """
     other = after.id > before.id and after.expiry_ms <= now and after.expiry_ms <= before.expiry_ms
     return other and after.knowledge == before.knowledge and after.surprises == before.surprises
 
 
 def is_news_for(hand: Hand, news: Offer) -> bool:
-    """What was asked about is the certificate in hand, up to its expiry, and the change is the next one."""
+    """The answer refers to the certificate in hand, covers it up to its expiry, and refers to the next change."""
     later = news.expiry_ms >= hand.expiry_ms
     return news.id == hand.id and news.knowledge == hand.knowledge + 1 and later
 
 
 MOST = 1 << 60
-"""So many changes are counted; of a hand with more nothing is certain."""
+"""The greatest count; beyond it nothing is guaranteed."""
 
 
 def is_worn(hand: Hand) -> bool:
-    """It has been changed too often to be counted once more."""
+    """One of its counts has reached the greatest value."""
     return hand.id >= MOST or hand.knowledge >= MOST or hand.surprises >= MOST
 
 
 class Clock(NamedTuple):
-    """When the last event was [ms], and whether each so far came no earlier than the one before."""
+    """The time of the last event [ms], and whether no event so far was earlier than the one before."""
 
     now_ms: int
     in_order: bool
@@ -123,7 +133,7 @@ def clock_step(
 def is_after_event(
     before: Hand, kind: int, offer: Offer, permitted: bool, now: int, reserve: int, after: Hand
 ) -> bool:
-    """Time has passed up to the event, and then what the event is for has happened to the hand."""
+    """Time has passed up to the event, and then the event has taken effect on the certificate in hand."""
     present = Hand(before.id, before.knowledge, max(before.expiry_ms, now), before.surprises)
     if is_worn(present):
         same = after.id == present.id and after.knowledge == present.knowledge

@@ -1,10 +1,10 @@
-"""What it means that a piece of flight is clear of an intruder, and that one tube lies in another.
+"""When a segment of flight is clear of an intruder, and when one tube lies in another.
 
-A *piece* is a moving disc: while it lasts the vehicle is no farther than rho from a reference that moves
-straight, horizontally and in altitude. A *tube* is the same with a radius that grows: the intruder is no
-farther from its straight prediction than start + rate t + gain t^2 at t seconds, horizontally (`wide`) and
-in altitude (`high`). Relative state is the reference minus the prediction: s [m], v [m/s], sz [m], vz [m/s].
-The closed cylinder is entered if there are places that vehicle and intruder may have at which it is.
+A *segment* (piece) is a moving disc: while it lasts the vehicle is within rho of a reference that moves straight,
+horizontally and in altitude. A *tube* is the same with a growing radius: after t seconds the intruder is within start
++ rate t + gain t^2 of its straight prediction, horizontally (`wide`) and in altitude (`high`). Relative state is the
+reference minus the prediction: s [m], v [m/s], sz [m], vz [m/s]. The closed cylinder counts as entered if it is for
+some possible positions of vehicle and intruder.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class Growth(NamedTuple):
 
 
 class Off(NamedTuple):
-    """How far something is from where it is taken to be: horizontally x and y, z in altitude [m]."""
+    """The deviation of an aircraft from its assumed position: horizontally x and y, z in altitude [m]."""
 
     x: float
     y: float
@@ -31,22 +31,23 @@ class Off(NamedTuple):
 
 
 class Offs(NamedTuple):
-    """How far the vehicle is off its reference, and the intruder off its prediction."""
+    """The deviations of the vehicle from its reference, and of the intruder from its prediction."""
 
     own: Off
     other: Off
 
 
 class Tube(NamedTuple):
-    """How far an intruder may be from its straight prediction: horizontally, and in altitude."""
+    """Bounds on the deviation of an intruder from its straight prediction: horizontally, and in altitude."""
 
     wide: Growth
     high: Growth
 
 
 class Margins(NamedTuple):
-    """The cylinder about the intruder, radius and half height [m], and how far the vehicle may be from its
-    reference, rho_m [m]."""
+    """The cylinder about the intruder, radius and half height [m], and the bound on the vehicle's deviation from its
+    reference, rho_m [m].
+    """
 
     radius_m: float
     half_m: float
@@ -59,18 +60,18 @@ def reach(growth: Growth, t: float) -> float:
 
 
 def later(growth: Growth, t: float) -> Growth:
-    """The same radius, counted from t seconds on: what it is then, and how fast it grows then."""
+    """The same radius, with time counted from t seconds on: its value and its rate at that time."""
     return Growth(reach(growth, t), growth.rate_m_s + 2 * growth.gain_m_s2 * t, growth.gain_m_s2)
 
 
 def may_be_off(off: Off, wide: float, high: float) -> bool:
-    """It may be so far off: no farther than `wide` horizontally and `high` in altitude."""
+    """The deviation is within its bounds: at most `wide` horizontally and `high` in altitude."""
     beside = wide >= 0 and within(Plane(off.x, off.y), wide)
     return beside and -high <= off.z and off.z <= high
 
 
 def enters_at(s: Plane, sz: float, offs: Offs, wide: float, high: float, margins: Margins) -> bool:
-    """Vehicle and intruder may be off by so much, and then the cylinder is entered."""
+    """The deviations of vehicle and intruder are within their bounds, and with them the cylinder is entered."""
     radius, half, rho = margins
     own, other = offs
     possible = may_be_off(own, rho, rho) and may_be_off(other, wide, high)
@@ -88,42 +89,44 @@ def hit_at(
     margins: Margins,
     t: float,
 ) -> bool:
-    """The cylinder is entered t seconds after the piece has begun. THERE ARE t and both offs."""
+    """The cylinder is entered t seconds after the beginning of the segment. THERE ARE t and both deviations."""
     at = position(s, v, t)
     return enters_at(at, sz + t * vz, offs, reach(tube.wide, t), reach(tube.high, t), margins)
 
 
 def reached_at(s: Plane, v: Plane, growth: Growth, t: float) -> bool:
-    """After t seconds the centres are no farther apart than the radius. THERE IS t."""
+    """After t seconds the distance of the centres is at most the radius. THERE IS t."""
     return within(position(s, v, t), reach(growth, t))
 
 
 def levelled_at(sz: float, vz: float, growth: Growth, t: float) -> bool:
-    """After t seconds the altitude above the other is no more than the radius. THERE IS t."""
+    """After t seconds the altitude above the other is at most the radius. THERE IS t."""
     return sz + t * vz <= reach(growth, t)
 
 
 def in_disc(p: Plane, o: Plane, inner: float, outer: float) -> bool:
-    """The place off by o from the centre p, no farther than `inner`, is no farther than `outer` from 0:
-    what a disc that lies in another one holds for every place. FOR ALL o."""
+    """If the position at offset o from the centre p is within `inner` of p, it is within `outer` of 0: what holds for
+    every position if one disc lies in another. FOR ALL o.
+    """
     return not (inner >= 0 and within(o, inner)) or within(Plane(p.x + o.x, p.y + o.y), outer)
 
 
 def in_tube_at(
     s: Plane, v: Plane, o: Plane, new: Growth, old: Growth, age: float, t: float
 ) -> bool:
-    """A place off by o from the new prediction, in its tube after t seconds, is in the old tube then, which
-    is `age` seconds older. s, v: the new prediction minus the old one now. FOR ALL o and t."""
+    """If the position at offset o from the new prediction is in its tube after t seconds, it is then also in the old
+    tube, which is `age` seconds older. s, v: the new prediction minus the old one now. FOR ALL o and t.
+    """
     at = position(s, v, t)
     inside = reach(new, t) >= 0 and within(o, reach(new, t))
     return not inside or within(Plane(at.x + o.x, at.y + o.y), reach(old, age + t))
 
 
 class Way(NamedTuple):
-    """What a pass over the pieces of a trajectory has seen up to an instant `at` that is looked for.
+    """The state of a pass over the segments of a trajectory, for a given instant `at`.
 
-    north, east, up: how far the reference has moved [m]; time: how long that took [s]; hit: `at` has
-    come, and the cylinder is entered then.
+    north, east, up: displacement of the reference so far [m]; time: its duration so far [s]; hit: `at` has been
+    reached, and the cylinder is entered then.
     """
 
     hit: bool
@@ -134,8 +137,9 @@ class Way(NamedTuple):
 
 
 class Meeting(NamedTuple):
-    """Where an intruder is when a trajectory begins: reference minus prediction s [m] and sz [m]; its
-    velocity w [m/s] and wz [m/s]; its tube; the cylinder."""
+    """The intruder when a trajectory begins: reference minus prediction s [m] and sz [m]; its velocity w [m/s] and wz
+    [m/s]; its tube; the cylinder.
+    """
 
     s: Plane
     sz: float
@@ -157,7 +161,7 @@ def way_step(
     offs: Offs,
     at: float,
 ) -> Way:
-    """One more piece is flown. The instant `at` [s from the beginning] may lie in it."""
+    """Add a segment. The instant `at` [s from the beginning] may lie in it."""
     t = at - way.time
     there = Plane(
         meeting.s.x + way.north + t * v.x - at * meeting.w.x,
@@ -183,5 +187,5 @@ def way_step(
 
 
 def way_result(way: Way) -> bool:
-    """Whether the cylinder is entered at the instant, on any piece."""
+    """Whether the cylinder is entered at the instant, on any segment."""
     return way.hit

@@ -1,1 +1,1 @@
-"""What a requirement over time means."""
+"""Definitions of requirements over time."""

@@ -1,21 +1,21 @@
 """Metric temporal logic over time-stamped samples, with three verdicts: 0 false, 1 unknown, 2 true.
 
-A trace is samples at strictly rising integer times; a sample that is not later than the one before is
-none of the trace. Bounds are of times, inclusive, 0 <= low <= high. For `phi U[low,high] psi` and `phi
-S[low,high] psi` the definitions run over the samples in order; a whole trace is the last state. Source:
-pointwise semantics of MTL (Koymans 1990; Alur and Henzinger 1993) in Kleene's strong three-valued logic.
+A trace consists of samples at strictly increasing integer times; a sample that is not later than the one before is
+not part of the trace. Time bounds are inclusive, 0 <= low <= high. For `phi U[low,high] psi` and `phi S[low,high]
+psi` the definitions run over the samples in order; the value for a whole trace is the last state. Source: pointwise
+semantics of MTL (Koymans 1990; Alur and Henzinger 1993) in Kleene's strong three-valued logic.
 """
 
 from typing import NamedTuple
 
 
 def must(verdict: int) -> bool:
-    """However what is unknown turns out, it is true."""
+    """True however the unknowns are resolved."""
     return verdict == 2
 
 
 def may(verdict: int) -> bool:
-    """What is unknown may turn out so that it is true."""
+    """True for some resolution of the unknowns."""
     return verdict != 0
 
 
@@ -25,12 +25,12 @@ def one_of(verdict: int) -> bool:
 
 
 def not_(phi: int, said: int) -> bool:
-    """Said is `not phi`: it must hold iff phi cannot, and may hold iff phi need not."""
+    """`said` is the verdict of `not phi`: it must hold iff phi cannot, and may hold iff phi need not."""
     return one_of(said) and must(said) == (not may(phi)) and may(said) == (not must(phi))
 
 
 def and_(phi: int, psi: int, said: int) -> bool:
-    """Said is `phi and psi`: it must hold iff both must, and may iff both may."""
+    """`said` is the verdict of `phi and psi`: it must hold iff both must, and may iff both may."""
     return (
         one_of(said)
         and must(said) == (must(phi) and must(psi))
@@ -39,7 +39,7 @@ def and_(phi: int, psi: int, said: int) -> bool:
 
 
 def or_(phi: int, psi: int, said: int) -> bool:
-    """Said is `phi or psi`: it must hold iff one of them must, and may iff one of them may."""
+    """`said` is the verdict of `phi or psi`: it must hold iff one of them must, and may iff one of them may."""
     return (
         one_of(said)
         and must(said) == (must(phi) or must(psi))
@@ -48,9 +48,9 @@ def or_(phi: int, psi: int, said: int) -> bool:
 
 
 class Meant(NamedTuple):
-    """An operator at one sample, after samples of a trace.
+    """The state of an operator at one sample, after some samples of a trace.
 
-    last: time of the last one; hold: the least verdict of phi from that sample on; value: of the operator.
+    last: time of the last sample; hold: the least verdict of phi since that sample; value: of the operator.
     """
 
     last: int
@@ -59,10 +59,10 @@ class Meant(NamedTuple):
 
 
 def until_step(meant: Meant, time: int, phi: int, psi: int, at: int, low: int, high: int) -> Meant:
-    """A sample more of `phi U[low,high] psi` at the sample at time `at`.
+    """Add a sample to `phi U[low,high] psi`, evaluated at the sample at time `at`.
 
-    The value is the greatest, over the samples from `at` on whose distance to it lies in the bounds, of
-    the least of psi there and of phi at every sample from `at` on and before it.
+    The value is the greatest, over the samples from `at` on whose distance from it lies in the bounds, of the least
+    of psi there and of phi at every sample from `at` on and before it.
     """
     if time <= meant.last:
         return meant
@@ -74,11 +74,11 @@ def until_step(meant: Meant, time: int, phi: int, psi: int, at: int, low: int, h
 
 
 def since_step(meant: Meant, time: int, phi: int, psi: int, at: int, low: int, high: int) -> Meant:
-    """A sample more of `phi S[low,high] psi` at the sample at time `at`.
+    """Add a sample to `phi S[low,high] psi`, evaluated at the sample at time `at`.
 
-    The value is the greatest, over the samples up to `at` whose distance to it lies in the bounds, of the
-    least of psi there and of phi at every sample after it up to `at`. So a sample more bounds what was
-    found before by its phi, and is found itself. Samples after `at` do not count.
+    The value is the greatest, over the samples up to `at` whose distance from it lies in the bounds, of the least of
+    psi there and of phi at every sample after it up to `at`. So each new sample limits the earlier values by its phi,
+    and contributes its own. Samples after `at` do not count.
     """
     if time <= meant.last or time > at:
         return meant
@@ -88,5 +88,5 @@ def since_step(meant: Meant, time: int, phi: int, psi: int, at: int, low: int, h
 
 
 def at_least(change: float, value: float, bound: float) -> bool:
-    """The signal, changed by so much, is at least the bound. FOR ALL changes: margins speak of them."""
+    """The signal plus the change is at least the bound. FOR ALL changes: used for margins."""
     return value + change >= bound

@@ -1,1 +1,1 @@
-"""What flying a route means: speeds in the wind."""
+"""Definitions for flying a route: speeds in the wind."""

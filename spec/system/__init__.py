@@ -1,1 +1,1 @@
-"""What must hold of several parts together: steps of different programs, joined by messages."""
+"""Properties of several components together: steps of different programs, connected by messages."""

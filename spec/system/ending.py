@@ -1,4 +1,4 @@
-"""That things end: takeovers, silence, missions. Each measure here falls and cannot fall for ever. Milliseconds."""
+"""Termination: takeovers, silence, missions. Each measure here decreases and is bounded below. Milliseconds."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from cratous.spec import executive
 from cratous.spec.authority import gate as authority
 
 MOST_PATIENCE = 16
-"""The way back never has to be free for longer than this many times the least time."""
+"""Upper bound, as a multiple of the least time, of how long the way back must be free."""
 
 
 def over(now: int, begun: int, most: int) -> bool:
-    """What began then has lasted for at least this long."""
+    """At least `most` has passed since `begun`."""
     return not now < begun + most
 
 
@@ -22,7 +22,7 @@ def handed_back(gate: authority.State) -> bool:
 
 
 def task_steps_left(life: int) -> int:
-    """How many more changes a task can go through: it may begin, and it may end or fail."""
+    """How many more state changes a task can go through: it may begin, and it may end or fail."""
     if executive.settled(life):
         return 0
     if life == executive.LEFT:
@@ -31,8 +31,9 @@ def task_steps_left(life: int) -> int:
 
 
 def legs_left(items: int, phase: int) -> int:
-    """How many legs a chain has left. items: those not flown to their end, the present one included; each
-    has a way to its start and its path."""
+    """How many legs a chain has left. items: those not flown to their end, including the present one; each has a
+    transit to its start, and its path.
+    """
     if phase == executive.TASK:
         return 2 * items - 1
     if phase == executive.DONE:
@@ -41,14 +42,14 @@ def legs_left(items: int, phase: int) -> int:
 
 
 def time_left(now: int, limit: int) -> int:
-    """How long the flight may last still."""
+    """The maximum remaining duration of the flight [ms]."""
     if now < limit:
         return limit - now
     return 0
 
 
 class Rank(NamedTuple):
-    """What a vehicle has left, the first counting most: legs; takeovers and resumes on the leg that it is on; time [ms]."""
+    """What a vehicle has left, in lexicographic order: legs; takeovers and resumes on the present leg; time [ms]."""
 
     legs: int
     changes: int
@@ -56,8 +57,9 @@ class Rank(NamedTuple):
 
 
 class Flown(NamedTuple):
-    """items, phase: as of `legs_left`; suspended: ICAROUS has the vehicle. Of the item that it is on: takeovers: so many;
-    under_ms: ICAROUS has flown it for so long."""
+    """items, phase: as in `legs_left`; suspended: ICAROUS commands the vehicle. On the present item: takeovers: their
+    number; under_ms: how long ICAROUS has flown it [ms].
+    """
 
     items: int
     phase: int
@@ -67,7 +69,7 @@ class Flown(NamedTuple):
 
 
 def changes_left(flown: Flown, most: int) -> int:
-    """How often authority may still change on an item. A takeover after the last that is allowed gives it up."""
+    """How often authority may still change on an item. One more takeover than allowed gives the item up."""
     if flown.phase == executive.DONE:
         return 0
     left = 2 * (most + 1 - flown.takeovers)
@@ -77,8 +79,9 @@ def changes_left(flown: Flown, most: int) -> int:
 
 
 def rank(flown: Flown, most: int, longest: int, now: int, limit: int) -> Rank:
-    """What is left. most: takeovers that are allowed on an item; longest: how long ICAROUS may fly on it, in all; UxAS
-    flies until the limit of the flight at most, as does whoever has nothing left to fly."""
+    """What is left. most: allowed takeovers on an item; longest: total time that ICAROUS may fly on it; UxAS flies at
+    most until the time limit of the flight, as does a vehicle with nothing left to fly.
+    """
     if flown.suspended and flown.phase != executive.DONE:
         time = longest - flown.under_ms
     else:
@@ -87,12 +90,12 @@ def rank(flown: Flown, most: int, longest: int, now: int, limit: int) -> Rank:
 
 
 def is_rank(one: Rank) -> bool:
-    """None is below 0, so that it cannot fall for ever."""
+    """No component is negative, so that the rank cannot decrease for ever."""
     return one.legs >= 0 and one.changes >= 0 and one.time >= 0
 
 
 def falls(before: Rank, after: Rank) -> bool:
-    """The first of the three that changes has become less."""
+    """The first of the three components that changes has decreased."""
     if after.legs != before.legs:
         return after.legs < before.legs
     if after.changes != before.changes:
@@ -101,6 +104,6 @@ def falls(before: Rank, after: Rank) -> bool:
 
 
 def within(flown: Flown, most: int, longest: int) -> bool:
-    """What has been asked about at a heartbeat and was not given up: neither bound is passed."""
+    """An item checked at a heartbeat and not given up: neither bound is exceeded."""
     fits = flown.takeovers <= most and flown.under_ms <= longest
     return flown.phase == executive.DONE or fits

@@ -1,7 +1,8 @@
-"""That a vehicle obeys a zone, whoever flies it: by the legs that UxAS commanded, or by the certificate in hand. Milliseconds.
+"""That a vehicle respects a zone, whoever flies it: by the legs that UxAS commanded, or by the certificate in hand.
+Milliseconds.
 
-Said of one arbitrary zone and of one arbitrary instant `at`. Who flies is who commanded last among those that the gate
-let through: an offer that is open changes nothing until it is taken.
+Stated for one arbitrary zone and one arbitrary instant `at`. The vehicle is flown by whoever commanded last among
+those that the gate let through: an open offer changes nothing until it is taken.
 """
 
 from __future__ import annotations
@@ -12,8 +13,9 @@ from cratous.spec.authority import gate
 
 
 class Way(NamedTuple):
-    """What UxAS commands, at the instant. kept: the leg that whoever flies it is beside was checked against the zone, with
-    a margin, and accepted; near: it is no farther from that leg than the margin; obeys: it obeys the zone."""
+    """What UxAS commands, at the instant. kept: the leg near which the vehicle is flown was checked against the zone,
+    with a margin, and accepted; near: the vehicle is within the margin of that leg; obeys: it respects the zone.
+    """
 
     kept: bool
     near: bool
@@ -21,9 +23,10 @@ class Way(NamedTuple):
 
 
 class Fenced(NamedTuple):
-    """counted: no number has grown too large to be counted on; in_order: no event came earlier than the one before, the
-    last at now_ms [ms]; way: what UxAS commanded last, of what the gate let through; hand: at the instant a vehicle that
-    flies the certificate in hand obeys the zone."""
+    """counted: no counter has overflowed its limit; in_order: no event was earlier than the one before, the last at
+    now_ms [ms]; way: the last UxAS command that the gate let through; hand: at the instant a vehicle that flies the
+    certificate in hand respects the zone.
+    """
 
     counted: bool
     in_order: bool
@@ -33,7 +36,7 @@ class Fenced(NamedTuple):
 
 
 def checked(way: Way) -> bool:
-    """What the check of a leg means: near it, the zone is obeyed."""
+    """What the check of a leg implies: near it, the zone is respected."""
     return way.obeys or not (way.kept and way.near)
 
 
@@ -43,8 +46,10 @@ def flown_by_uxas(state: gate.State) -> bool:
 
 
 def is_fenced(state: gate.State, known: Fenced, knows: bool, expiry: int, at: int) -> bool:
-    """Whoever flies, the zone is obeyed at the instant, if it is not before the last event: UxAS, where its leg was
-    checked and the vehicle is near it; ICAROUS, if what is in hand knows of the zone, until it expires."""
+    """Whoever flies, the zone is respected at the instant, if it is not before the last event: under UxAS, if its leg
+    was checked and the vehicle is near it; under ICAROUS, if the certificate in hand covers the zone, until it
+    expires.
+    """
     to_come = known.now_ms <= at
     on_legs = flown_by_uxas(state) and known.way.kept and known.way.near
     in_hand = gate.may_command(state, 1) and knows and at < expiry

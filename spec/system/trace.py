@@ -1,4 +1,4 @@
-"""What happens to authority over one vehicle, event by event, and how things stand after each: a trace."""
+"""A trace of authority over one vehicle: events, and the state after each."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ HEARTBEAT, REPORT, MODE, TRACK, COMMAND, RESTART = (
     "command",
     "restart",
 )
-"""The kinds of events: a heartbeat of ICAROUS; a report of the gate reaches UxAS; a SETMOD line does; UxAS
-has a new track to fly; a command reaches the gate; the gate starts anew."""
+"""The kinds of events: a heartbeat of ICAROUS; a gate report reaches UxAS; a SETMOD line reaches UxAS; UxAS has a new
+track to fly; a command reaches the gate; the gate restarts.
+"""
 KINDS = (HEARTBEAT, REPORT, MODE, TRACK, COMMAND, RESTART)
 NOTHING = -1
-"""In the place of the epoch of a command that UxAS sends."""
+"""Stands for the epoch of a command when UxAS sends none."""
 
 
 class Event(NamedTuple):
@@ -35,10 +36,10 @@ class Event(NamedTuple):
 
 class Standing(NamedTuple):
     """owner, epoch, offered: of the gate; mode: of ICAROUS (`spec.authority.cycle`); active, heard: what UxAS
-    believes, and since which epoch; suspended: its own flying is.
+    believes, and since which epoch; suspended: whether its own flying is.
 
-    accepted: whether the command of this event has reached the actuators; sent: the epoch of a command of
-    UxAS that this event has led to, or NOTHING.
+    accepted: whether the command of this event has reached the actuators; sent: the epoch of a UxAS command caused by
+    this event, or NOTHING.
     """
 
     owner: int
@@ -53,7 +54,7 @@ class Standing(NamedTuple):
 
 
 class Entry(NamedTuple):
-    """One event of a trace, as a user reads it, and how things stand after it."""
+    """One event of a trace, as a user reads it, and the state after it."""
 
     text: str
     event: Event

@@ -319,7 +319,11 @@ def test_a_file_of_states_is_an_encounter(tmp_path: Path, root: Path) -> None:
     ("kind", "text", "named"),
     [
         ("missions", None, "no whole mission"),
-        ("encounters", "NAME sx sy sz vx vy vz time\nown 0 0 900 0 40 0 0\n", "nobody is met"),
+        (
+            "encounters",
+            "NAME sx sy sz vx vy vz time\nown 0 0 900 0 40 0 0\n",
+            "no intruder in the first step",
+        ),
         ("encounters", "nonsense\n", "states.daa"),
     ],
 )

@@ -49,11 +49,11 @@ def judged(flown: Path) -> Iterator[None]:
 
     once(SqliteLog, "digest", lambda log: log.path.stat().st_mtime_ns)
     once(rejudge, "watch")
+    once(rejudge, "watched_and_told")
     once(rejudge, "_certificate")
     once(flight_record, "inventory", lambda _standing, calls: json.dumps(calls))
     once(flight_record.ledger, "require")
-    once(report, "read_flight")
-    once(report, "read_digest", lambda path: path.stat().st_mtime_ns)
+    once(report, "told_by", lambda path, _mission: path.stat().st_mtime_ns)
     rows = list(rejudge.read_log(flown / "log.sqlite"))
     patch.setattr(rejudge, "read_log", lambda _path: rows)
     once(result_files, "pages", report.report_text)

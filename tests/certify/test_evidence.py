@@ -9,6 +9,7 @@ import threading
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
+from types import CodeType
 from typing import Any
 
 import numpy as np
@@ -21,12 +22,13 @@ from cratous.core.geofence.planar import locate, orient
 from cratous.core.kernel import REGISTRY, Entry, Fold, Vec2, qualified
 from cratous.core.kernel.sources import altered
 from cratous.core.readings import exact as exact_reading
+from cratous.core.readings import tiered
 from cratous.core.readings.enclosed import enclosed
 from cratous.core.readings.exact import exact, exactly
 from cratous.core.readings.machine.compiled import Reading, compiled, machine
 from cratous.core.tasks.footprints import points_in_quads
 from cratous.core.well_clear.now import vertical_violation
-from cratous.services.certify.evidence import counted, is_data
+from cratous.services.certify.evidence import LOOP, PYTHON, Calls, counted, is_data
 from cratous.services.cli import job, main
 from cratous.services.flight.loop import fly
 from cratous.services.loading import load
@@ -66,12 +68,19 @@ def crossing(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Any], 
     loops = {Fold.__call__.__code__: "self", Reading.__call__.__code__: "self"}
     scalar = exact_reading.exact.__code__
     seen: Counter[str] = Counter()
+    looped = next(c for c in Calls.looped.__code__.co_consts if isinstance(c, CodeType))
+    inside = 0
 
     def profile(frame: Any, event: str, _arg: Any) -> None:
-        if event != "call":
-            return
+        nonlocal inside
         code = frame.f_code
-        if code in codes:
+        if code is looped and event in ("call", "return"):
+            if event == "call":
+                seen[qualified(frame.f_locals["function"])] += 1
+            inside += 1 if event == "call" else -1
+        elif event != "call" or inside:
+            return
+        elif code in codes:
             seen[codes[code]] += 1
         elif code in loops:
             read = frame.f_locals["self"]
@@ -119,7 +128,11 @@ def test_contracts_gates_and_the_monitor_are_called_and_what_is_not_is_not_liste
     assert qualified(gate_accepts) in data["called"]
     assert "terminal_area" not in " ".join(listed)
     assert any(name.startswith("cratous.core.daa.steps.") for name in listed)
-    assert len(listed) < len(REGISTRY) / 2
+    assert len(data["called"]) < len(REGISTRY) / 2
+    loops = {
+        name for name, ways in {**data["called"], **data["loops"]}.items() if set(ways) != {PYTHON}
+    }
+    assert {name for names in data["within"].values() for name in names} <= loops
     assert is_data(data)
 
 
@@ -134,6 +147,31 @@ def test_what_stands_in_machine_code_is_listed_with_it() -> None:
     assert data["called"] == {name: {"machine code": 1}}
     parts = {"crosses_ray", "location_result", "location_step", "on_segment", "orient"}
     assert data["within"] == {f"cratous.core.geofence.planar.{part}": [name] for part in parts}
+
+
+def test_a_loop_counts_once_whatever_runs_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Else what is kept in the cache would stand in the report."""
+    line = np.array([[1.0, 1.0], [5.0, 5.0]])
+    quads = np.array([[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]])
+    corners = [Vec2(*corner) for corner in quads[0].tolist()]
+    found = []
+    for run in (points_in_quads, machine(points_in_quads)):
+        monkeypatch.setattr(tiered, "_compiled", {qualified(points_in_quads): run})
+        seen = np.zeros(2, np.bool_)
+        with counted() as calls:
+            orient(*corners[:3])
+            tiered.swift(points_in_quads)(line, quads, seen)
+            orient(*corners[:3])
+            tiered.swift(points_in_quads)(line, quads, seen)
+        assert seen.tolist() == [True, False]
+        found.append(calls.data())
+    assert found[0] == found[1]
+    assert found[0]["called"] == {
+        qualified(orient): {PYTHON: 2},
+        qualified(points_in_quads): {LOOP: 2},
+    }
+    assert qualified(locate) not in found[0]["within"]
+    assert found[0]["within"][qualified(orient)] == [qualified(points_in_quads)]
 
 
 def test_a_loop_that_is_no_kernel_is_listed_with_what_stands_in_it() -> None:

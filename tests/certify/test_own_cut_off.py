@@ -112,3 +112,53 @@ def test_a_part_of_a_log_that_names_no_flight_is_not_called_cut_off(cut: Path) -
     words = ["log", "export", str(cut / "log.sqlite"), "-o", str(part), "--type", "AirVehicleState"]
     assert main(words) == 0
     assert doubts(part) == []
+
+
+def test_a_selection_is_not_called_cut_off(cut: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from cratous.services.logs.source import DOUBTS, doubts
+
+    part = cut / "part.sqlite"
+    words = ["log", "export", str(cut / "log.sqlite"), "-o", str(part), "--to", "100"]
+    assert main(words) == 0
+    assert doubts(part) == ["selected"]
+    capsys.readouterr()
+    assert (
+        main(["monitor", str(part), "--requirements", str(cut / "own.req"), "--allow-unproved"])
+        == 1
+    )
+    said = capsys.readouterr().out
+    assert "cut off" not in said
+    assert DOUBTS["selected"] in said
+
+
+def test_where_the_format_does_not_tell_a_selection_both_are_named(
+    cut: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from cratous.services.logs.source import doubts
+
+    part = cut / "begin.jsonl"
+    words = ["log", "export", str(cut / "log.sqlite"), "-o", str(part), "--to", "100"]
+    assert main(words) == 0
+    assert doubts(part) == ["unended"]
+    capsys.readouterr()
+    words = ["monitor", str(part), "--requirements", str(cut / "own.req"), "--json"]
+    assert main([*words, "--allow-unproved"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    rows = {row["name"]: row for row in found["requirements"]}
+    assert rows["PAST"]["so_far"] == (
+        "held at each sample until 100 s, where the log has no end of its mission; what came after is unseen"
+    )
+    assert {rows[name]["verdict"] for name in SAID} == {"unknown"}
+    assert [one["kind"] for one in found["findings"]] == ["unended"]
+
+
+def test_where_messages_were_lost_the_end_may_be_among_them(cut: Path) -> None:
+    from cratous.services.logs.source import doubts
+    from cratous.services.logs.store import Gap
+
+    part = cut / "lost.sqlite"
+    with open_log(cut / "log.sqlite") as log, LogStore(part, **log.meta()) as kept:
+        for entry in log.entries():
+            kept.keep(entry)
+        kept.keep_gap(Gap(kept.count, 1, CUT_MS, CUT_MS, "the disk was slow"))
+    assert doubts(part) == ["lost", "unended"]

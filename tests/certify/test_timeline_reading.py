@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from cratous.bridge import lmcp
 from cratous.services.certify.timeline import TRUTH, FlightReader
 from cratous.services.logs.log import Row
+from cratous.spec.errors import BadInput
 
 TOPIC = "cratous.TruthState"
 NUMBERS = st.floats(-1e7, 1e7)
@@ -60,3 +61,10 @@ def test_a_text_that_is_written_otherwise_is_left_to_json(now: str, then: str) -
     assert TRUTH.fullmatch(text)
     assert now in text
     assert not TRUTH.fullmatch(text.replace(now, then))
+
+
+def test_a_field_that_is_missing_is_told() -> None:
+    text = '{"$type":"CRATOUS/AuthorityChange"}'
+    with pytest.raises(BadInput, match="a field is missing") as raised:
+        FlightReader([1]).add(Row(7, 0, "vehicle/1", "cratous.AuthorityChange", text))
+    assert raised.value.where == "message 7 (cratous.AuthorityChange)"

@@ -137,6 +137,7 @@ def test_the_page_draws_it_beneath_the_aircraft(crossing: Path, tmp_path: Path) 
         page.until(READY)
         # in the middle of the square the paper is darker than outside of it
         shade = """(() => { const map = document.querySelector('#map .leaflet-beneath-pane canvas');
+            if (!map) return 0;
             const pen = map.getContext('2d'), [w, h] = [map.width, map.height];
             let grey = 0;
             const pixels = pen.getImageData(0, 0, w, h).data;

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import sqlite3
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
@@ -15,7 +16,14 @@ from hypothesis import strategies as st
 from mission_tools import must_fly, plain_mission, plain_vehicle
 
 from cratous.services.bus import Envelope
-from cratous.services.logs.log import LogWriter, read_digest, read_envelopes, read_log, read_meta
+from cratous.services.logs.log import (
+    LogWriter,
+    read_digest,
+    read_envelopes,
+    read_heard,
+    read_log,
+    read_meta,
+)
 from cratous.services.logs.records import canonical, fingerprint, from_data, to_data
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission, Position, Zone, ZoneKind
@@ -44,6 +52,24 @@ def test_envelopes_come_back(tmp_path: Path) -> None:
 
     write(tmp_path / "log.sqlite", MESSAGES)
     assert list(read_envelopes(tmp_path / "log.sqlite", decode=json.loads)) == MESSAGES
+
+
+@pytest.mark.parametrize(
+    ("body", "wrong"),
+    [
+        ({"$type": "CRATOUS/Heartbeat"}, "a body of another type"),
+        ({"$type": "CRATOUS/TruthState", "North": "far"}, "wrong value"),
+        ({"$type": "CRATOUS/Nothing"}, "Nothing"),
+    ],
+)
+@pytest.mark.parametrize("read", [read_heard, read_envelopes])
+def test_a_body_that_is_not_of_its_message_is_refused(
+    tmp_path: Path, body: dict, wrong: str, read: Callable[[Path], Iterable[object]]
+) -> None:
+    write(tmp_path / "log.sqlite", [Envelope(0, 0, "sim", "cratous.TruthState", body)])
+    with pytest.raises(BadInput, match=wrong) as raised:
+        list(read(tmp_path / "log.sqlite"))
+    assert raised.value.where == "message 0 (cratous.TruthState)"
 
 
 @pytest.mark.parametrize(

@@ -4,60 +4,15 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from chromium_tools import Page, browsing
+from chromium_tools import Page
+from editor_tools import TEXT, click_map, data, drag_pixels, place, write
 from ground_station_tools import Served
 
-from cratous.services.mission_editor.text_edits import MissionText
-
-TEXT = "document.getElementById('text').value"
 pytestmark = pytest.mark.slow
-
-
-@pytest.fixture
-def page(editor: Served, tmp_path: Path) -> Iterator[Page]:
-    with browsing(tmp_path / "profile") as page:
-        page.go(editor.url)
-        page.until("document.getElementById('relations-tree')?.textContent.includes('p1')")
-        yield page
-        # no script failed; a refusal of the server is told as the page's own message
-        assert [one for one in page.logged if "status of 4" not in str(one)] == []
-
-
-def write(page: Page, name: str, text: str) -> None:
-    page.value(
-        f"(f => {{ f.focus(); f.value = {text!r}; f.dispatchEvent(new Event('input')); }})"
-        f"(document.getElementById({name!r}))"
-    )
-
-
-def click_map(page: Page, north: float, east: float) -> None:
-    """Click where the map shows a place."""
-    x, y = place(page, north, east)
-    for kind in ("mousePressed", "mouseReleased"):
-        page.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
-
-
-def place(page: Page, north: float, east: float) -> tuple[float, float]:
-    """Pixels of a place: two points of the canvas say where they are."""
-    box = page.value(
-        "(b => [b.x, b.y, b.width, b.height])(document.getElementById('map').getBoundingClientRect())"
-    )
-    seen = []
-    # away from the buttons and words that lie over the map
-    for x, y in ((box[2] * 0.1, box[3] * 0.4), (box[2] * 0.9, box[3] * 0.8)):
-        page.call("Input.dispatchMouseEvent", type="mouseMoved", x=box[0] + x, y=box[1] + y)
-        words = page.text("cursor").replace(",", "").split()
-        seen.append((x, y, float(words[1]), float(words[4])))
-    (x0, y0, n0, e0), (x1, y1, n1, e1) = seen
-    return (
-        box[0] + x0 + (east - e0) / (e1 - e0) * (x1 - x0),
-        box[1] + y0 + (north - n0) / (n1 - n0) * (y1 - y0),
-    )
 
 
 def test_an_error_in_the_algebra_is_shown_at_its_place_while_typing(page: Page) -> None:
@@ -212,7 +167,7 @@ def test_a_vehicle_an_area_and_a_loiter_are_drawn_dragged_and_undone(
     page.key("Enter")
     page.until(f"{TEXT}.includes('kind: loiter')")
     assert page.value("document.getElementById('circles').hidden")
-    drawn = _data(page)
+    drawn = data(page)
     new, area, loiter = drawn["vehicles"][-1], *drawn["tasks"][-2:]
     first = drawn["vehicles"][0]
     assert new["id"] == 3
@@ -230,7 +185,7 @@ def test_a_vehicle_an_area_and_a_loiter_are_drawn_dragged_and_undone(
     page.until("document.getElementById('saved').textContent === 'saved'")
     drag(page, (new["position"]["north_m"], new["position"]["east_m"]), (-1000, 900))
     page.until(f"!{TEXT}.includes('north_m: {new['position']['north_m']}')")
-    place_now = _data(page)["vehicles"][-1]["position"]
+    place_now = data(page)["vehicles"][-1]["position"]
     assert (place_now["north_m"], place_now["east_m"]) == near(-1000, 900)
     page.until("!document.getElementById('remove').disabled")
     page.click("#remove")
@@ -243,95 +198,14 @@ def test_a_vehicle_an_area_and_a_loiter_are_drawn_dragged_and_undone(
     page.until(f"{TEXT} === {json.dumps(mission.read_text(encoding='utf-8'))}")
 
 
-def test_headings_and_radii_are_dragged_by_their_circles(page: Page) -> None:
-    before = page.value(TEXT)
-    first = _data(page)["vehicles"][0]["position"]
-    ahead = _handle(page, "vehicles,0,heading_deg")
-    start = _handle(page, "vehicles,0,position")
-    assert start == pytest.approx(place(page, first["north_m"], first["east_m"]), abs=2)
-    assert ahead == pytest.approx((start[0], start[1] - 44), abs=1)  # it flies north
-    _drag_pixels(page, ahead, (start[0] - 60, start[1] + 60))
-    page.until(f"{TEXT} !== {json.dumps(before)}")
-    assert _data(page)["vehicles"][0]["heading_deg"] == pytest.approx(225, abs=1.5)
-    assert _data(page)["vehicles"][0]["position"] == first
-    # the circle stands ahead again, as far as before
-    turn = (start[0] - 44 * 0.7071, start[1] + 44 * 0.7071)
-    assert _handle(page, "vehicles,0,heading_deg") == pytest.approx(turn, abs=2)
-    assert page.value("!document.getElementById('remove').disabled")  # the vehicle is picked
-    page.click("[data-tool=loiter]")
-    click_map(page, -400, 1200)
-    click_map(page, -400, 1500)
-    page.until(f"{TEXT}.includes('kind: loiter')")
-    page.until(_marker("tasks,2,radius_m"))
-    centre, rim = _handle(page, "tasks,2,points,0"), _handle(page, "tasks,2,radius_m")
-    assert rim[1] == pytest.approx(centre[1], abs=1)
-    scale = (rim[0] - centre[0]) / _data(page)["tasks"][2]["radius_m"]
-    _drag_pixels(page, rim, (centre[0], centre[1] - 500 * scale))
-    page.until(f"!{TEXT}.includes('radius_m: {_data(page)['tasks'][2]['radius_m']}')")
-    assert _data(page)["tasks"][2]["radius_m"] == pytest.approx(500, abs=1.5 / scale)
-    circle = (
-        "  - {id: 9, kind: area_search, circle: {centre: {north_m: 0, east_m: 0}, radius_m: 300}}"
-    )
-    write(page, "text", before.replace("\ntasks:\n", f"\ntasks:\n{circle}\n"))
-    page.until(_marker("tasks,0,circle,radius_m"))
-    rim, centre = (_handle(page, f"tasks,0,circle,{name}") for name in ("radius_m", "centre"))
-    _drag_pixels(page, rim, (centre[0], centre[1] + 400 * scale))
-    page.until(f"!{TEXT}.includes('radius_m: 300')")
-    assert _data(page)["tasks"][0]["circle"]["radius_m"] == pytest.approx(400, abs=3 / scale)
-    page.click("#undo")
-    page.until(f"{TEXT}.includes('radius_m: 300')")
-
-
-def test_what_is_dragged_is_moved_by_arrow_keys_too(page: Page) -> None:
-    before = _data(page)["tasks"][1]["points"][0]
-    x, y = _handle(page, "tasks,1,points,0")
-    page.value(f"{_marker('tasks,1,points,0')}.focus()")
-    for _ in range(3):
-        page.key("ArrowRight")
-    page.call("Input.dispatchKeyEvent", type="keyDown", key="ArrowUp", modifiers=8)
-    page.until(f"!{TEXT}.includes('east_m: {before['east_m']}')")
-    assert _handle(page, "tasks,1,points,0") == pytest.approx((x + 3, y - 10), abs=1)
-    page.click("#undo")  # one change, not four
-    assert _data(page)["tasks"][1]["points"][0] == before
-    page.value(f"{_marker('vehicles,0,heading_deg')}.focus()")
-    for _ in range(10):
-        page.key("ArrowRight")
-    page.until(f"!{TEXT}.includes('heading_deg: 0')")
-    assert _data(page)["vehicles"][0]["heading_deg"] == pytest.approx(12.8, abs=1.5)  # 10 of 44 px
-
-
-def _marker(name: str) -> str:
-    return f"document.querySelector('#map .handle[data-key=\"{name}\"]')"
-
-
-def _handle(page: Page, name: str) -> tuple[float, float]:
-    """Pixels of the page of what is dragged for a value of the file."""
-    page.until(_marker(name))
-    x, y = page.value(
-        f"(b => [b.x + b.width / 2, b.y + b.height / 2])({_marker(name)}.getBoundingClientRect())"
-    )
-    return x, y
-
-
-def _drag_pixels(page: Page, at: tuple[float, float], to: tuple[float, float]) -> None:
-    mouse = "Input.dispatchMouseEvent"
-    page.call(mouse, type="mousePressed", x=at[0], y=at[1], button="left", clickCount=1)
-    page.call(mouse, type="mouseMoved", x=to[0], y=to[1], button="left")
-    page.call(mouse, type="mouseReleased", x=to[0], y=to[1], button="left", clickCount=1)
-
-
 def near(north: float, east: float) -> Any:
     """A place, to within what two pixels of the map are."""
     return pytest.approx((north, east), abs=25)
 
 
-def _data(page: Page) -> Any:
-    return MissionText(page.value(TEXT), "the page").data
-
-
 def drag(page: Page, at: tuple[float, float], to: tuple[float, float]) -> None:
     """Drag what is at a place of the map to another one."""
-    _drag_pixels(page, place(page, *at), place(page, *to))
+    drag_pixels(page, place(page, *at), place(page, *to))
 
 
 def test_windows_of_tasks_are_bands_behind_the_bars(page: Page) -> None:

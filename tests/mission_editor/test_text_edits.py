@@ -83,6 +83,8 @@ def test_every_heading_and_radius_of_the_examples_changes_and_nothing_else(name:
 def test_what_is_no_heading_or_radius_is_not_changed_as_one(key: tuple[str | int, ...]) -> None:
     with pytest.raises(BadInput, match="this is no heading or radius"):
         MissionText(TEXTS["crossing"], "m.yaml").with_number(key, 1.0)
+    with pytest.raises(BadInput, match="this is no heading or radius"):
+        MissionText("a: {radius_m: {b: 1}}", "m.yaml").with_number(("a", "radius_m"), 1.0)
 
 
 @pytest.mark.parametrize("name", TEXTS)

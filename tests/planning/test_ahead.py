@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import importlib
 import os
 import subprocess
 import sys
-import time
+import threading
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -22,10 +21,10 @@ from cratous.core.assignment.anytime import greedy, improve
 from cratous.core.assignment.layers import look_ahead, tables
 from cratous.core.assignment.problem import START
 from cratous.core.assignment.tables import latest_tables
-from cratous.core.kernel import qualified
 from cratous.core.readings import tiered
 from cratous.core.readings.machine.compiled import machine
 from cratous.core.readings.tiered import at_once
+from cratous.core.routing import visibility
 from cratous.core.routing.bulk import direct_many, route_many
 from cratous.core.routing.visibility import Roadmap, lengths_around, routes
 from cratous.core.tasks.coverage_arrays import mark_seen
@@ -44,6 +43,9 @@ from cratous.spec.mission import Mission, Zone, ZoneKind
 
 class Started:
     """Stands for processes that compile: what was started, and how often it was waited for."""
+
+    pid = -1
+    """No process."""
 
     def __init__(self, arguments: list[str], env: dict[str, str], **_: Any) -> None:
         self.name, self.waits, self.ended, self.env = arguments[-1], 0, False, env
@@ -95,6 +97,15 @@ def test_little_work_and_what_is_kept_start_nothing(
     ahead.begin([mission(50)])
     ahead.begin_all()
     assert begun == []
+
+
+def test_what_may_not_be_needed_stands_back(
+    begun: list[Started], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    back: list[tuple[str, int]] = []
+    monkeypatch.setattr(ahead, "_stand_back", lambda process, by: back.append((process.name, by)))
+    ahead.begin([mission(ahead.MANY_TASKS)])
+    assert back == [(coming.ROUTES, ahead.BEHIND)]
 
 
 def test_on_one_core_who_answers_waits_before_and_who_plans_compiles(
@@ -181,9 +192,13 @@ def test_who_searches_many_ways_waits_for_the_search_that_they_need(
     made = mission(6, Zone(1, ZoneKind.KEEP_OUT, corners, 0.0, 500.0))
     ours = Inputs(made, stages.start_poses(made))
     count = len(ours.options)
-    ours.routes.prepare(
-        0, [(before, to) for before in (START, *range(count)) for to in range(count)]
-    )
+    pairs = [(before, to) for before in (START, *range(count)) for to in range(count)]
+    monkeypatch.setitem(coming.WORTH_WAITING, name, len(pairs))
+    Inputs(made, stages.start_poses(made)).routes.prepare(0, pairs)
+    assert waited == []  # CPython has them sooner
+    monkeypatch.setitem(coming.WORTH_WAITING, name, coming.MANY_WAYS)
+    searched.clear()
+    ours.routes.prepare(0, pairs)
     assert waited == [name]
     assert set(searched) == {{coming.AROUND: "lengths_around", coming.ROUTES: "routes"}[name]}
 
@@ -217,7 +232,6 @@ def test_what_has_ended_already_is_not_set_back_and_not_ended(
     def gone(*_: int) -> None:
         raise ProcessLookupError
 
-    monkeypatch.setattr(Started, "pid", 0, raising=False)
     monkeypatch.setattr(ahead.os, "setpriority", gone)
     ahead.beside(["module"], 5)
     (process,) = begun
@@ -264,17 +278,45 @@ def test_such_a_process_leaves_machine_code_and_says_nothing(tmp_path: Path) -> 
     assert runs[1].stderr == b""
 
 
-def test_what_is_made_meanwhile_is_seen_once_it_is_waited_for(
+def test_what_is_made_meanwhile_is_used_from_then_on(
     begun: list[Started], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Else this process would go by what it has found in an empty cache until it ends."""
+    """Nobody waits for it, and nothing is compiled twice."""
     kept: list[bool] = [False]
-    monkeypatch.setattr(ahead, "is_kept", functools.cache(lambda _: kept[0]))
-    ahead.begin([mission(ahead.MANY_TASKS)])
+    monkeypatch.setattr(tiered, "_done", Counter())
+    monkeypatch.setattr(tiered, "_compiled", {})
+    monkeypatch.setattr(tiered, "_is_kept", lambda _: kept[0])
+    assert tiered.swift(direct_many, tiered.WORTH - 1_000) is direct_many
     kept[0] = True
-    assert not ahead.is_kept(direct_many)
-    coming.ready(coming.ROUTES)
-    assert ahead.is_kept(direct_many)
+    assert tiered.swift(direct_many, 1) is direct_many  # it is not looked for each time
+    assert tiered.swift(direct_many, tiered.SOON) is machine(direct_many)
+    assert tiered.swift(direct_many, 1) is machine(direct_many)
+
+
+def test_routes_are_searched_in_blocks_and_each_asks_what_there_is(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[int] = []
+
+    def swift(loop: Any, work: int) -> Any:
+        asked.append(work)
+        return loop
+
+    monkeypatch.setattr(visibility, "swift", swift)
+    n = 2 * visibility.BLOCK + 1
+    starts = np.zeros((n, 4))
+    ends = np.array([[4000.0 + k, 100.0 * (k % 7), 0.0, 0.0] for k in range(n)])
+    whole = routes(starts, ends, 50.0, Roadmap(()), 0.1, ways=True)
+    assert asked == [n, tiered.SOON, tiered.SOON]
+    each = [
+        routes(starts[k:][:1], ends[k:][:1], 50.0, Roadmap(()), 0.1, ways=True) for k in range(n)
+    ]
+    for part, parts in zip(whole, zip(*each, strict=True), strict=True):
+        assert (
+            part[:, :2].tobytes() == np.concatenate(parts)[:, :2].tobytes()
+            if part.ndim > 1
+            else (part.tobytes() == np.concatenate(parts).tobytes())
+        )
 
 
 def test_what_compiles_beside_has_no_key_of_the_bridge(
@@ -303,14 +345,10 @@ def test_what_is_compiled_beside_needs_no_other_program_and_no_file_of_the_prese
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setenv("PYTHONPATH", str(tmp_path / "own"))
-    seen = functools.cache(lambda _: False)
-    monkeypatch.setattr(ahead, "is_kept", seen)
-    seen(direct_many)
+    before = set(threading.enumerate())
     ahead.beside(["waits"], 20)
-    until = time.monotonic() + 60
-    while seen.cache_info().currsize and time.monotonic() < until:
-        time.sleep(0.01)
-    assert not seen.cache_info().currsize  # it is waited for, and leaves nothing behind
+    for one in set(threading.enumerate()) - before:
+        one.join(60)  # it is waited for, and leaves nothing behind
     assert not Path("ran").exists()
     assert Path("nice").read_text() == "19"
 
@@ -347,18 +385,9 @@ def test_an_area_has_its_squares_compiled_ahead_and_who_needs_them_waits_once(
     ahead.begin([area])
     assert [process.name for process in begun] == [ahead.SQUARES]
     (process,) = begun
-    with tiered.by_work_alone():
-        assert tiered.swift(mark_seen, tiered.MUCH) is mark_seen
-        assert process.waits == 0
-        assert tiered.swift(mark_seen, 1) is machine(mark_seen)
-        assert tiered.swift(mark_seen, 1) is machine(mark_seen)
+    monkeypatch.setattr(tiered, "_is_kept", lambda _: False)
+    assert tiered.swift(mark_seen, tiered.WORTH) is mark_seen
+    assert process.waits == 0
+    assert tiered.swift(mark_seen, 1) is machine(mark_seen)
+    assert tiered.swift(mark_seen, 1) is machine(mark_seen)
     assert process.waits == 1
-
-
-def test_a_loop_that_is_dear_to_compile_is_left_to_cpython_for_longer() -> None:
-    with tiered.by_work_alone():
-        assert tiered.swift(direct_many, 4 * tiered.MUCH) is direct_many
-        assert tiered.swift(direct_many, 1) is machine(direct_many)
-    for name in tiered.DEAR:
-        module, _, function = name.rpartition(".")
-        assert qualified(getattr(importlib.import_module(module), function)) == name

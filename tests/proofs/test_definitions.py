@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-import math
+import functools
+import os
+import signal
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
 
 import pytest
 
@@ -18,16 +20,18 @@ from cratous.proofs.engine import prover
 from cratous.proofs.engine.reachable_paths import ALL, NOT
 from cratous.proofs.statements import relation_cache
 from cratous.proofs.statements.closed_definitions import full_name
+from cratous.proofs.statements.decided import Decided, Group
 from cratous.proofs.statements.definitions import (
     Proofs,
     definition,
     definition_name,
     is_restated,
     problems,
+    to_decide,
+    with_decided,
 )
 from cratous.proofs.statements.relation_cache import Kept, readers
 from cratous.proofs.statements.relations import Relations, relations
-from cratous.proofs.statements.restated import restates
 
 ENTRIES = ledger.load_all()
 NOTHING = Relations(frozenset(), frozenset(), frozenset(), frozenset(), ())
@@ -57,6 +61,8 @@ def test_each_definition_is_used_and_related_by_a_theorem() -> None:
         related,
         varied,
     )
+    ask = functools.partial(kept.decided, jobs=2)
+    proofs = with_decided(ENTRIES, PRODUCT, proofs, ask)
     assert problems(ENTRIES, PRODUCT, proofs) == []
 
 
@@ -73,6 +79,28 @@ def test_what_is_kept_of_a_statement_depends_on_all_that_reads_it(
         files = [changed if file.name == name else file for file in there.values()]
         monkeypatch.setattr(relation_cache, "readers", lambda files=files: files)
         assert kept._file("authority_exactly_one_gives_way") != before, name
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_theorem_whose_process_is_ended_decides_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, jobs: int
+) -> None:
+    names = sorted(prover.theorem_files())[:4]
+    said = frozenset([("spec.meant", "core.kernel", 0)])
+
+    def decide(name: str, folder: Path, seed: str, wanted: object) -> frozenset[Decided]:
+        if name == names[1]:
+            os.kill(os.getpid(), signal.SIGXCPU)
+        return said
+
+    monkeypatch.setattr(relation_cache.decided, "decided", decide)
+    kept = Kept(tmp_path, PRODUCT)
+    wanted: dict[str, list[Group]] = {name: [("spec.meant", {})] for name in names}
+    found = kept.decided(wanted, jobs)
+    assert found == {name: frozenset() if name == names[1] else said for name in names}
+    # an answer is kept, its lack is not
+    assert len([file for file in tmp_path.rglob("*") if file.is_file()]) == 3
+    assert kept.decided(wanted, jobs) == found
 
 
 # -- what is wrong is said -------------------------------------------------------------------
@@ -92,6 +120,7 @@ def _proofs(
         definitions=frozenset([uses]),
         together=frozenset([(full, uses)]),
         uses=frozenset([(full, uses, full, 0)]),
+        plain=frozenset([(full, uses, full, 0)]),
     )
     said = {"one": using} if not lemma else {"one": replace(NOTHING, lemmas=(lemma,)), lemma: using}
     varied = {theorem: {(full, 0): how} for theorem in said}
@@ -123,6 +152,72 @@ def test_a_definition_that_no_theorem_uses() -> None:
     for few, points in (("not 2", "2 points"), ("not 9", "more than 8 points, all apart")):
         said = _said(later, _proofs("later", used, how=few))
         assert f"its premises leave an argument {points}" in said
+
+
+def test_goals_with_conditions_are_looked_at_further() -> None:
+    later = named("later")
+    used, full = definition_name(later, PRODUCT), later.name
+    found = _proofs("later", used)
+    assert to_decide({"later": later}, PRODUCT, found) == {}
+    (using,) = found.relations.values()
+    conditional = replace(found, relations={"one": replace(using, plain=frozenset())})
+    wanted = {"one": [((full, used), {(full, 0): ALL})]}
+    assert to_decide({"later": later}, PRODUCT, conditional) == wanted
+    assert "goals have conditions" in _said(later, conditional)
+    decided = {"one": frozenset([(used, full, 0)])}
+    assert problems({"later": later}, PRODUCT, replace(conditional, decided=decided)) == []
+    other = {"one": frozenset([("cratous.spec.schedule.earlier_of", full, 0)])}
+    assert "goals have conditions" in _said(later, replace(conditional, decided=other))
+
+
+def test_one_theorem_is_asked_for_each_kernel_in_a_round() -> None:
+    later = named("later")
+    used, full = definition_name(later, PRODUCT), later.name
+    found = _proofs("later", used)
+    using = replace(found.relations["one"], plain=frozenset(), statement="later is x")
+    long = replace(using, statement="for all x, later(x) is x")
+    more = replace(using, uses=using.uses | {(full, used, full, 1)})
+    relations = {"a": long, "b": using, "c": using, "d": more}
+    several = replace(
+        found,
+        kernels=dict.fromkeys("abcd", (full,)),
+        relations=relations,
+        varied={name: {(full, 0): ALL} for name in "abcd"},
+    )
+    decides = frozenset([(used, full, 0)])
+
+    def rounds(proofs: Proofs, deciding: str) -> tuple[list[list[str]], Proofs]:
+        asked: list[list[str]] = []
+
+        def ask(wanted: Mapping[str, list[Group]]) -> dict[str, frozenset[Decided]]:
+            asked.append(list(wanted))
+            return {name: decides if name in deciding else frozenset() for name in wanted}
+
+        known = with_decided({"later": later}, PRODUCT, proofs, ask)
+        return asked, known
+
+    # the shortest comes first, then what uses least, then by name
+    for deciding, wanted in (("b", "b"), ("c", "bc"), ("ad", "bcd"), ("", "bcda")):
+        asked, known = rounds(several, deciding)
+        assert asked == [[name] for name in wanted]
+        assert (problems({"later": later}, PRODUCT, known) == []) == bool(deciding)
+    # one that was not run holds nothing alone, so it is asked last, and does not end the rounds
+    for deciding, wanted in (("ab", "cda"), ("b", "cdab")):
+        asked, known = rounds(replace(several, run=frozenset("acd")), deciding)
+        assert asked == [[name] for name in wanted]
+        assert (problems({"later": later}, PRODUCT, known) == []) == ("a" in deciding)
+
+
+def test_what_assumes_something_vouches_for_nothing() -> None:
+    later = named("later")
+    used = definition_name(later, PRODUCT)
+    for proofs, assuming in (
+        (_proofs("later", used), "one"),
+        (_proofs("later", used, lemma="two"), "two"),
+    ):
+        found = replace(proofs, assuming=frozenset([assuming]))
+        assert "without an assumption" in _said(later, found)
+        assert to_decide({"later": later}, PRODUCT, found) == {}
 
 
 def test_a_theorem_that_was_run_at_no_point_of_doubles() -> None:
@@ -184,108 +279,6 @@ def test_exactly_one_of_definition_and_whole_is_named() -> None:
             kernels.kernel(**how)(half)
     with pytest.raises(ValueError, match="restates no definition"):
         kernels.kernel(supports="c", restates="what it is for")(half)
-
-
-# -- the same formula ------------------------------------------------------------------------
-class Point(NamedTuple):
-    x: float
-    y: float
-
-
-class Place(NamedTuple):
-    east: float
-    north: float
-
-
-ONE, LIMIT = 1, 1
-
-
-def within(value: float) -> bool:
-    return value <= ONE
-
-
-def _area(p: Point, q: Point) -> float:
-    return p.x * q.y - p.y * q.x
-
-
-def _swept(a: Place, b: Place) -> float:
-    crossed = b.east * a.north
-    return b.north * a.east - crossed
-
-
-def _both(a: float, b: float) -> bool:
-    if a > ONE:
-        return False
-    return 2 * b + a >= b + 1
-
-
-def _neither_not(x: float, y: float) -> bool:
-    return LIMIT + y <= x + y * 2 and within(x)
-
-
-def _moved(p: Point, far: bool) -> Point:
-    if far:
-        return Point(p.x + 1, p.y)
-    return p
-
-
-def _moved_too(at: Place, far: bool) -> Place:
-    return Place(1 + at.east if far else at.east, at.north)
-
-
-def _least(a: float, b: float) -> float:
-    return min(a, b, 0)
-
-
-def _least_too(a: float, b: float) -> float:
-    return min(0, min(b, a))
-
-
-def _by_root(a: float, b: float) -> float:
-    return math.sqrt(a * a + b * b)
-
-
-def _by_loop(a: float, b: float) -> float:
-    for _ in range(3):
-        a = a + b
-    return a
-
-
-@pytest.mark.parametrize(
-    ("one", "other"),
-    [(_area, _swept), (_both, _neither_not), (_moved, _moved_too), (_least, _least_too)],
-)
-def test_one_formula_in_two_ways(one: object, other: object) -> None:
-    assert restates(one, other)
-
-
-def _area_turned(a: Place, b: Place) -> float:
-    return b.east * a.north - a.east * b.north
-
-
-def _strictly(x: float, y: float) -> bool:
-    return LIMIT + y < x + y * 2 and within(x)
-
-
-def _moved_north(at: Place, far: bool) -> Place:
-    return Place(at.east, 1 + at.north if far else at.north)
-
-
-def _largest(a: float, b: float) -> float:
-    return max(0, max(b, a))
-
-
-@pytest.mark.parametrize(
-    ("one", "other"),
-    [(_area, _area_turned), (_both, _strictly), (_moved, _moved_north), (_least, _largest)],
-)
-def test_two_formulas(one: object, other: object) -> None:
-    assert restates(one, other) is False
-
-
-def test_what_is_no_formula_is_not_compared() -> None:
-    assert restates(_by_loop, _by_loop) is None
-    assert restates(_by_root, _by_root) is None
 
 
 # -- what a statement relates ----------------------------------------------------------------

@@ -377,8 +377,10 @@ def test_what_a_theorem_meets_is_within_what_it_names(step: int):
     """A key must cover every theorem that can judge, also those that meet a function indirectly."""
     from cratous.core.kernel import qualified
 
-    met = targets(KEYS.theorems[::step])
-    assert len(met) > 50
+    chosen = KEYS.theorems[::step]
+    met = targets(chosen)
+    # more theorems have come and will: how many are met depends on which ones the step hits
+    assert len({name for _, users in met.values() for name in users}) > len(chosen) / 2
     for target, users in met.values():
         for name in users:
             assert qualified(target) in KEYS.reach(name), (name, target)

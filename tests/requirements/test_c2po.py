@@ -120,7 +120,7 @@ def _monitored(tmp_path: Path, spec: str, trace: str, *more: str) -> int:
     ("spec", "trace", "code", "word"),
     [
         ("a;", "a\n1\n1\n", 0, "holds"),
-        ("a;", "a\n", 3, "undecided"),
+        ("a;", "a\n", 3, "unknown"),
         ("F[0,1] a;", "a\n1\n0\n", 3, "undecided"),
         ("x > 0.0;", "x\n1\nnan\n", 3, "unknown"),
         ("x > 0.0;", "x\n1\ninf\n", 3, "unknown"),

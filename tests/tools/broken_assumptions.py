@@ -6,7 +6,7 @@ import copy
 from dataclasses import replace
 from typing import Any
 
-from assumption_logs import WHOLE, Change, flown
+from assumption_logs import LIMIT_MS, WHOLE, Change, flown
 from flight_tools import meeting
 from tampering import (
     Log,
@@ -22,6 +22,7 @@ from tampering import (
 
 from cratous.bridge import lmcp
 from cratous.services.assumptions.listing import LISTING
+from cratous.services.mission.leg_bounds import MOST_TAKEOVERS
 from cratous.spec.mission import (
     FaultySimulation,
     Mission,
@@ -162,6 +163,28 @@ def overlooked(log: Log, at_ms: int = 10_000) -> None:
     log[:] = found
 
 
+def taken_often(log: Log) -> None:
+    """ICAROUS has taken vehicle 1 over once more than is allowed before it takes it over."""
+    one = log[at(log, "GateState", **TAKEN)]
+    for k in range(MOST_TAKEOVERS + 1):
+        for owner, at_ms in (("ICAROUS", 1000 * (k + 1)), ("UxAS", 1000 * (k + 1) + 500)):
+            m = at(log, "TruthState", at_ms)
+            told = other(one, Owner=owner, Time=log[m].time_ms)
+            log.insert(m, replace(told, time_ms=log[m].time_ms))
+
+
+def late_complete(log: Log) -> None:
+    """The task is complete a second before the limit."""
+    one = log.pop(at(log, "TaskProgress", Phase="Complete"))
+    late_ms = LIMIT_MS - 1000
+    log.insert(at(log, "MissionEnd"), replace(other(one, Time=late_ms), time_ms=late_ms))
+
+
+def failed_otherwise(log: Log) -> None:
+    k = at(log, "TaskProgress", Phase="Complete")
+    log[k] = other(log[k], Phase="Failed", Note="no way keeps the zones")
+
+
 OFFERED = {"VehicleID": 1, "Offered": True}
 BREAKS: dict[str, tuple[Change, str]] = {
     "first command": (alter({"Sender": "ICAROUS"}, "GatedCommand"), "one of ICAROUS in epoch 0"),
@@ -194,6 +217,9 @@ BREAKS: dict[str, tuple[Change, str]] = {
     "end of the flight": (days_later, "a MissionEnd at"),
     "vehicles away counted": (still_away, "ended as complete while vehicle 1 was under ICAROUS"),
     "items given up": (taken_twice, "vehicle 1 was taken over twice between two heartbeats"),
+    "stays bounded": (taken_often, "was taken over 13 times on its way to task 1"),
+    "flown in time": (late_complete, "UxAS flew the chain of vehicle 1 for"),
+    "no other failure": (failed_otherwise, "task 1 failed: no way keeps the zones"),
     "settled tasks": (flown_again, "task 1 is active after it was complete"),
     "intruder in its tube": (
         lambda log: aside(90, taken_ms() + 3000, East=20.0)(log),

@@ -8,13 +8,13 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import AsyncIterator, Iterator
 from contextlib import contextmanager, suppress
 
 import pytest
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import PlainTextResponse, Response
+from starlette.responses import PlainTextResponse, Response, StreamingResponse
 from starlette.routing import Route
 
 from cratous.services.web import connection, server
@@ -23,6 +23,8 @@ from cratous.services.web.server import WebServer
 
 LIMIT_S = 20.0
 SHORT_S = 0.4
+BIG = b"a" * 30_000_000
+"""More than lies in buffers of the system."""
 
 
 class App:
@@ -33,7 +35,8 @@ class App:
         self.app = Starlette(
             routes=[
                 Route("/", self._quick), Route("/wait", self._wait),
-                Route("/body", self._body, methods=["POST"]),
+                Route("/body", self._body, methods=["POST"]), Route("/big", self._big),
+                Route("/parts", self._parts),
             ]
         )  # fmt: skip
 
@@ -44,6 +47,16 @@ class App:
         self.waiting.release()
         await in_thread(self.go.wait, LIMIT_S)
         return PlainTextResponse("gone")
+
+    async def _big(self, _: Request) -> Response:
+        return Response(BIG)
+
+    async def _parts(self, _: Request) -> Response:
+        async def parts() -> AsyncIterator[bytes]:
+            for k in range(0, len(BIG), 100_000):
+                yield BIG[k : k + 100_000]
+
+        return StreamingResponse(parts())
 
     async def _body(self, request: Request) -> Response:
         return PlainTextResponse(str(len(await body_of(request, 100))))
@@ -131,6 +144,67 @@ def test_who_sends_on_what_was_refused_is_cut_off(app: App) -> None:
                 flood.sendall(b"a" * 999_999)
             pytest.fail("it has read a gigabyte")
         assert time.monotonic() - began_s < connection.REQUEST_S, "not only when its time is over"
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        b"GET /parts HTTP/1.1\r\nHost: a\r\n\r\n",
+        b"GET /big HTTP/1.1\r\nHost: a\r\n\r\n",
+        b"GET /big HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n",
+        b"GET /big HTTP/1.1\r\nHost: a\r\n\r\n" * 3,
+    ],
+    ids=["parts", "whole", "the last", "several"],
+)
+def test_who_does_not_read_what_it_asked_for_is_cut_off(
+    app: App, asked: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(connection, "REQUEST_S", SHORT_S)
+    with running(app) as one:
+        state = one._server.server_state
+        idle = connected(one.port)
+        idle.settimeout(5 * SHORT_S)
+        with suppress(OSError):
+            idle.sendall(asked)
+        assert idle.recv(4) == b"HTTP"
+        until_s = time.monotonic() + LIMIT_S
+        while state.connections:
+            assert time.monotonic() < until_s
+            time.sleep(SHORT_S / 10)
+        assert not state.silent
+        idle.close()
+
+
+@pytest.mark.parametrize("path", ["parts", "big"])
+def test_who_reads_slowly_gets_all_of_it(
+    app: App, path: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(connection, "REQUEST_S", SHORT_S)
+    ask = f"GET /{path} HTTP/1.1\r\nHost: a\r\n\r\n".encode()
+    with running(app) as one:
+        line, got = connected(one.port, ask), 0
+        began_s = time.monotonic()
+        while got <= len(BIG):  # of all of it more, by its head
+            part = line.recv(1_000_000)
+            assert part
+            got += len(part)
+            time.sleep(SHORT_S / 4 if got < len(BIG) / 2 else 0)
+        assert time.monotonic() - began_s > 2 * SHORT_S
+
+
+@pytest.mark.parametrize("first", [b"0\r\n\r\n", b""])
+def test_what_is_no_http_after_an_answer_is_not_told(
+    app: App, first: bytes, caplog: pytest.LogCaptureFixture
+) -> None:
+    head = b"GET / HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n"
+    with running(app) as one:
+        line = connected(one.port, head + first)
+        assert line.recv(12) == b"HTTP/1.1 200"
+        line.sendall(b"zz\r\nzz\r\n\r\n")
+        with suppress(ConnectionResetError):
+            while line.recv(1000):
+                pass
+    assert not caplog.records
 
 
 @pytest.mark.parametrize(

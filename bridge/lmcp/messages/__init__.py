@@ -3,5 +3,5 @@
     from cratous.bridge.lmcp.messages.cmasi import AirVehicleState, NavigationMode
     state = AirVehicleState(ID=400, Mode=NavigationMode.Waypoint)
 
-These are the classes of `cratous.bridge.lmcp.types`, made from the models when first asked for.
+These are the classes of `cratous.bridge.lmcp.types`, made from the models on first access.
 """

@@ -1,11 +1,11 @@
-"""The exact reading: the verdict that a division-free kernel has on the reals its doubles are.
+"""The exact reading: the verdict of a division-free kernel on the real numbers that its doubles represent.
 
 Four stages, each generated from the kernel's graph. The *filter* (`core.readings.exact.float_filter`) is as fast as
-the plain doubles and leaves undecided what rounding could have changed; *pairs* of doubles
-(`core.readings.exact.double_pairs`) with residues of what they lack (`core.readings.exact.residues`) decide nearly all of that, and
-*expansions* (`core.readings.exact.expansions`) the rest, in machine code while nothing can overflow or underflow;
-*integers* (`core.readings.exact.integers`) decide everything else. All are exact where they answer, so the verdict
-does not depend on which of them did.
+plain doubles and leaves undecided what rounding could have changed; *pairs* of doubles
+(`core.readings.exact.double_pairs`) with residues of their error (`core.readings.exact.residues`) decide nearly all
+of that, and *expansions* (`core.readings.exact.expansions`) the rest, in machine code while nothing can overflow or
+underflow; *integers* (`core.readings.exact.integers`) decide everything else. All are exact where they answer, so the
+verdict does not depend on which of them answered.
 """
 
 from __future__ import annotations
@@ -40,12 +40,12 @@ from cratous.core.readings.machine.domain import nonnegative, refuse_negative
 from cratous.spec.errors import BadInput
 
 FEW = 64
-"""So few undecided states go straight to the integers: machine code need not be made for them."""
+"""Up to this many undecided states go straight to the integers, without compiling machine code for them."""
 
 SHARED = "\n\n".join(
     ["import numpy as np", *(m(FLAGS) for m in (primitives, pairs.arithmetic, residues.arithmetic))]
 )
-"""The text that the machine code of all kernels shares."""
+"""The text shared by the machine code of all kernels."""
 
 
 # -- arrays -----------------------------------------------------------------------------
@@ -125,7 +125,7 @@ def _resolve(
     out: np.ndarray,
     code: np.ndarray,
 ) -> None:
-    """Decide what the filter left open: expansions where they reach, then integers."""
+    """Decide what the filter left open: by expansions within their range, then by integers."""
     index = np.flatnonzero(code == UNDECIDED)
     if index.size > FEW:
         made = _expansion_map(found, scalars)
@@ -169,12 +169,12 @@ def _not_finite(source: Program, item: str, value: Any) -> BadInput:
 
 # -- one state at a time ----------------------------------------------------------------
 class NotFinite(BadInput, ValueError):
-    """An argument that is not finite; also a ValueError, as it was before there was a filter."""
+    """An argument that is not finite; also a ValueError, for compatibility."""
 
 
 @functools.cache
 def _scalar_filter(kernel: Callable[..., Any]) -> Callable[..., Any]:
-    """The filter as CPython runs it: (sure, results)."""
+    """The filter as run by CPython: (sure, results)."""
     found = _filter_of(kernel)
     sure, results, roots = name(found.sure), [], [found.sure]
     for result in found.results:
@@ -201,7 +201,7 @@ def _numbers(value: Any) -> list[Any]:
 
 
 def _fits(source: Program, row: list[Any]) -> bool:
-    """True iff every number is of its column's own machine type: then the filter may be asked."""
+    """True iff every number has its column's machine type, so that the filter applies."""
     if len(row) != len(source.columns):
         return False
     for column, value in zip(source.columns, row, strict=True):
@@ -214,7 +214,7 @@ def _fits(source: Program, row: list[Any]) -> bool:
 
 
 def _built(shape: Value, parts: list[Any]) -> Any:
-    """The results put back into the kernel's record."""
+    """Rebuild the kernel's record from its results."""
     if isinstance(shape, Record):
         fields = [_built(field, parts) for field in shape.fields]
         return shape.kind(*fields)
@@ -235,7 +235,7 @@ def _filterable(function: Callable[..., Any]) -> Program | None:
         found = _filter_of(function).program
     except NotInSubset:
         return None
-    # real results are wanted exactly, and a double may not be that
+    # real results are required exactly, and a double may not be exact
     return None if any(leaf.kind == "float" for leaf in leaves(found.result)) else found
 
 
@@ -284,7 +284,7 @@ def _one(function: Callable[..., Any], args: tuple[Any, ...]) -> Any:
     names = nonnegative(function)
     if names:
         given = list(zip(_parameters(function), args, strict=False))
-        # which number it is, and whether it is one that is refused, is asked of few
+        # the offending number is determined only for the few that fail
         if _any_below(value for name, value in given if name in names):
             refuse_negative(function.__name__, names, _labelled(given))
     source = _filterable(function)

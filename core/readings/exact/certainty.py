@@ -1,8 +1,8 @@
-"""When a computed difference decides the order of two real numbers, and how far rounding reaches.
+"""When a computed difference decides the order of two real numbers, and bounds on rounding errors.
 
-Definitions: `spec.rounding`. The float filter writes the first two kernels out for each
-comparison; the enclosed reading widens the result of each operation by the third; the pairs of
-doubles of the exact reading count what they leave out by the last three.
+Definitions: `spec.rounding`. The float filter expands the first two kernels for each comparison; the enclosed reading
+widens the result of each operation by the third; the pairs of doubles of the exact reading bound their errors by the
+last three.
 """
 
 from cratous.core.kernel import kernel
@@ -34,7 +34,7 @@ def outward_margin(value: float, share: float, least: float) -> float:
 
 @kernel(implements="rounding.stands_for")
 def sum_left_out(a_left: float, b_left: float, low_rest: float, rest: float) -> float:
-    """How far the sum of two values lies at most from the pair of doubles that stands for it.
+    """Bound on the difference between the sum of two values and the pair of doubles that represents it.
 
     a_left, b_left: the same of the two values; low_rest, rest: what was rounded off. Any one unit.
     """
@@ -43,10 +43,9 @@ def sum_left_out(a_left: float, b_left: float, low_rest: float, rest: float) -> 
 
 @kernel(implements="rounding.stands_for")
 def factors_left_out(a_left: float, b_left: float, a_size: float, b_size: float) -> float:
-    """How far a product lies at most from the product of the pairs of doubles that stand for its factors.
+    """Bound on the difference between a product and the product of the pairs of doubles that represent its factors.
 
-    a_left, b_left: the same of the factors; a_size, b_size: magnitudes of their pairs. Any one unit for
-    each factor.
+    a_left, b_left: the same of the factors; a_size, b_size: magnitudes of their pairs. Any one unit for each factor.
     """
     return a_left * (b_size + b_left) + b_left * a_size
 
@@ -61,11 +60,11 @@ def product_left_out(
     rest: float,
     share: float,
 ) -> float:
-    """How far a product lies at most from the pair of doubles that stands for it.
+    """Bound on the difference between a product and the pair of doubles that represents it.
 
-    of_factors: how far the product of the pairs of its factors may be off (`factors_left_out`); cross_a,
-    cross_b, low: rounded products of the parts, the last not added; cross_rest, rest: what sums
-    rounded off; share: the relative error of a rounded product.
+    of_factors: how far the product of the pairs of its factors may be off (`factors_left_out`); cross_a, cross_b,
+    low: rounded products of the parts, the last not added; cross_rest, rest: what sums rounded off; share: the
+    relative error of a rounded product.
     """
     of_products = share * (abs(cross_a) + abs(cross_b) + abs(low)) + abs(low)
     return of_factors + of_products + (abs(cross_rest) + abs(rest))

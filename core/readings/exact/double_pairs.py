@@ -1,15 +1,15 @@
-"""The second stage of the exact reading: values as pairs of doubles that know what they lack.
+"""The second stage of the exact reading: values as pairs of doubles with an error bound.
 
-Every real value of a comparison is carried as (high, low, left_out): the value differs from
-high + low by at most left_out, and high is their sum, rounded. Sums and products of doubles are
-split into what is rounded and the exact rest (`core.readings.exact.expansion_arithmetic`); left_out is 0 where
-nothing was dropped, and there a pair decides exact ties too. What is left out is counted by kernels
-that are proved (`core.readings.exact.certainty`: sum_left_out, factors_left_out, product_left_out). Nothing is
-approximated silently: what a pair cannot decide goes on to residues and expansions.
+Every real value of a comparison is represented as (high, low, left_out): the value differs from high + low by at most
+left_out, and high is their rounded sum. Sums and products of doubles are split into the rounded result and the exact
+rest (`core.readings.exact.expansion_arithmetic`); left_out is 0 where nothing was dropped, and there a pair decides
+exact ties too. The errors are bounded by proved kernels (`core.readings.exact.certainty`: sum_left_out,
+factors_left_out, product_left_out). Nothing is approximated silently: what a pair cannot decide goes on to residues
+and expansions.
 
-The count is itself rounded, by a relative error of less than 2^-48 for each operation; `WIDER`
-covers a million of them. It never underflows where `expansions.reach` admits the input: every
-part of a value is a multiple of 2^-960, and the least share of one that is counted is 2^-52.
+The bound is itself rounded, by a relative error of less than 2^-48 for each operation; `WIDER` covers a million of
+them. It does not underflow where `expansions.reach` admits the input: every part of a value is a multiple of 2^-960,
+and the least share of one that is counted is 2^-52.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ from cratous.core.readings.graph.printing import name
 from cratous.core.readings.machine.source_text import SourceText
 
 WIDER = 1.0 + 2.0**-20
-"""What is left out is taken this much greater: covers the roundings of its count."""
+"""The error bound is enlarged by this factor, to cover the roundings of its own computation."""
 MOST_LINES = 300
-"""Comparisons beyond so many lines for one kernel go to the expansions at once: code takes time."""
+"""Beyond this many lines for one kernel, comparisons go directly to the expansions: code takes time to compile."""
 
 ARITHMETIC = '''
 @FLAGS
@@ -79,7 +79,7 @@ def product_of_pairs(ah, al, ar, bh, bl, br):
 
 
 def arithmetic(flags: str) -> str:
-    """The functions of one sum and one product, and the kernels that count what is left out."""
+    """The functions of one sum and one product, and the kernels that bound the error."""
     rules = SourceText(flags)
     kernels = (sum_left_out, factors_left_out, product_left_out, surely_above, surely_below)
     names = [f"{kernel.__name__} = {rules.add(kernel)}" for kernel in kernels]
@@ -112,7 +112,7 @@ class Pair:
 
 
 class Writer:
-    """Lines that compute pairs; `lines` grows as values are asked for."""
+    """Writes lines that compute pairs; `lines` grows as values are requested."""
 
     def __init__(self) -> None:
         self.lines: list[str] = []
@@ -132,7 +132,7 @@ class Writer:
         return pair
 
     def chosen(self, number: int, a: Pair, b: Pair, left: str | None = None) -> Pair:
-        """a where `t` with the number holds, else b; left: what is left out, if not theirs."""
+        """a where `t` with the number holds, else b; left: the error bound, if not theirs."""
         pair = Pair(f"h{number}", f"l{number}", f"r{number}")
         parts = (
             (pair.high, a.high, b.high, None),
@@ -144,7 +144,7 @@ class Writer:
         return pair
 
     def value(self, node: Node) -> None:
-        """One node, its operands being made, and the truth value of an `if` in `t` with its number."""
+        """Write one node, with its operands done; the truth value of an `if` is in `t` with its number."""
         number, args = node.number, [self.made[a.number] for a in node.args if a.kind == "float"]
         if node.op in ("in", "lit"):
             made = Pair(name(node))
@@ -174,7 +174,7 @@ class Writer:
     def sign(self, a: Node, b: Node, known: str) -> str:
         """Store the sign of a - b into `known` and return it, where it is certain.
 
-        Gives the text of the high part of a - b; how far that may be off is in `bound`.
+        Returns the text of the high part of a - b; its error bound is in `bound`.
         """
         if b.op == "lit" and b.value == 0:
             gap = self.made[a.number]

@@ -1,8 +1,8 @@
-"""Bounds on rounding errors, counted along a kernel's operations on doubles.
+"""Bounds on rounding errors, accumulated along a kernel's operations on doubles.
 
-Beside a computed value v, which stands for the real number r, there is a size p on which the
-bound hangs: |v - r| <= factor * p + slack. Each rule gives the bound of a result from those of its
-operands; `proofs/methods/rounding.py` proves each for every pair of bounds that occurs.
+Beside a computed value v, which represents the real number r, there is a size p to which the bound refers: |v - r| <=
+factor * p + slack. Each rule gives the bound of a result from those of its operands; `proofs/methods/rounding.py`
+proves each for every pair of bounds that occurs.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ UNIT = Fraction(1, 2**53)
 TINY = Fraction(1, 2**1075)
 """Absolute error of a product that underflows."""
 FLOOR = Fraction(1, 2**960)
-"""Added to the size of a factor whose own error has underflow in it, and to every bound."""
+"""Added to the size of a factor whose own error includes underflow, and to every bound."""
 LARGEST = 2.0**1023 * (2 - 2.0**-52)
 
 

@@ -10,7 +10,7 @@ the kernels, in their private folder, with their flags.
 """
 
 LONGEST = 2100
-"""No expansion is longer: its parts do not overlap, and doubles span fewer bits."""
+"""Upper bound of an expansion's length: its parts do not overlap, and doubles span fewer bits."""
 MUL2, ADD2, SUB2, ADD, SUB, SCALE, MUL, TIMES, ABS, PICK, PICK_NOT, DOT, CROSS = range(13)
 
 PRIMITIVES = '''
@@ -226,5 +226,5 @@ def usable(x, low, high):
 
 
 def primitives(flags: str) -> str:
-    """What all kernels share: `two_sum`, `two_product`, `sign_of` and `usable`."""
+    """Functions shared by all kernels: `two_sum`, `two_product`, `sign_of` and `usable`."""
     return "from numba import njit\n\n\n" + PRIMITIVES.strip().replace("@FLAGS", f"@{flags}") + "\n"

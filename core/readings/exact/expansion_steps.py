@@ -1,7 +1,7 @@
-"""The steps to the sign of one difference, over a work array with fixed places.
+"""The steps to the sign of one difference, over a work array with fixed locations.
 
-Columns, literals and conditions have a place of one double each, the same for every comparison of
-a kernel; results of steps are laid out behind them, each with its greatest length.
+Columns, literals and conditions have a location of one double each, the same for every comparison of a kernel;
+results of steps follow them, each with space for its greatest length.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from cratous.core.readings.graph.printing import name
 
 @dataclass(frozen=True)
 class Cell:
-    """A value in the work array: its number, its place, its greatest length; one double or more."""
+    """A value in the work array: its number, its location, its greatest length; one double or more."""
 
     number: int
     place: int
@@ -41,10 +41,10 @@ class Cell:
 
 
 class Layout:
-    """The places that all comparisons of a kernel share, and how many values there are.
+    """The locations shared by all comparisons of a kernel, and the number of values.
 
-    known: the first of the places where the signs of the comparisons stand; want: the place of the
-    number of the one that is missing.
+    known: the first of the locations of the comparisons' signs; want: the location of the number of the one that is
+    missing.
     """
 
     def __init__(self, nodes: Sequence[Node], comparisons: int) -> None:
@@ -63,7 +63,7 @@ class Layout:
         self.base = self.want + 1
 
     def fix(self, text: str) -> Cell:
-        """The place of a column, literal or condition."""
+        """The location of a column, literal or condition."""
         if text not in self.fixed:
             if self.base:
                 raise ValueError(f"{text} has no place, and what comes behind is taken")

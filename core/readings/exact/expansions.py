@@ -5,8 +5,8 @@ which asks the filter first, pairs of doubles next (`pairs`) and residues then (
 table of steps on expansions (`expansion_steps`), which one compiled function carries out for all
 kernels (`expansion_arithmetic`). Verdicts are short-circuited, so only what matters is computed: a
 verdict is evaluated with the signs known so far, and again with each that turns out to be missing.
-The known signs stand in the work array beside the numbers (2: not known), and so does which one is
-missing first (-1: none), so that one array alone is handed from function to function.
+The known signs are in the work array beside the numbers (2: not known), and so is the number of the
+first one missing (-1: none), so that one array alone is handed from function to function.
 
 Range: every real input is 0 or has a magnitude in [2^-E, 2^E]. E is the greatest number up to 100
 for which every value of the graph is a multiple of 2^-960 (so that not even a share of one part
@@ -28,7 +28,7 @@ MOST_CELLS = 200_000
 
 
 def reach(nodes: list[Node]) -> int:
-    """The exponent E of the module's docstring for these nodes; 0 if there is none of use."""
+    """The exponent E of the module's docstring for these nodes; 0 if there is no useful one."""
     for exponent in range(100, 15, -1):
         grid: dict[int, int] = {}
         top: dict[int, int] = {}
@@ -52,7 +52,7 @@ def reach(nodes: list[Node]) -> int:
 
 
 class Writer:
-    """Writes what decides one filtered kernel: functions, steps, and the layout of the array."""
+    """Writes the code that decides one filtered kernel: functions, steps, and the layout of the array."""
 
     def __init__(self, found: Filter, pairs: bool = True) -> None:
         self.program = found.program
@@ -73,12 +73,12 @@ class Writer:
         return self.reach > 0 and self.cells <= MOST_CELLS
 
     def sign(self, number: int) -> str:
-        """Where the sign of one comparison stands."""
+        """Location of the sign of one comparison."""
         return f"w[{self.layout.known + number}]"
 
     @property
     def want(self) -> str:
-        """Where the comparison stands whose sign is missing first."""
+        """Location of the number of the comparison whose sign is missing first."""
         return f"w[{self.layout.want}]"
 
     # -- truth values and integers ------------------------------------------------------
@@ -142,7 +142,7 @@ class Writer:
         return f"{label}(w, {self.columns})"
 
     def first(self, node: Node, number: int) -> list[str]:
-        """The filter of one comparison, unless a value in it hangs on an uncertain one."""
+        """The filter of one comparison, unless a value in it depends on an uncertain one."""
         for part in ordered(list(node.args)):
             if part.op == "if" and not self.certain[part.args[0].number].sharp:
                 return []
@@ -157,14 +157,14 @@ class Writer:
         return lines
 
     def paired(self, node: Node, number: int) -> list[str]:
-        """The sign by pairs of doubles and by residues; [] where the kernel has many such lines."""
+        """The sign by pairs of doubles and by residues; [] if the kernel has too many such lines."""
         pairs = Pairs()
         parts = [part for part in ordered(list(node.args)) if part.kind == "float"]
         for part in parts:
             if part.op == "if":
                 pairs.lines.append(f"    t{part.number} = {self.truth(part.args[0])}")
                 if not self.certain[part.args[0].number].sharp:
-                    # another sign is missing that this one hangs on
+                    # another sign is missing on which this one depends
                     pairs.lines += [f"    if {self.want} >= 0:", "        return 0.0"]
             pairs.value(part)
         a, b = node.args
@@ -176,7 +176,7 @@ class Writer:
         return found
 
     def second(self, a: Node, b: Node) -> list[str]:
-        """The steps to the sign of a - b; returned are lines that set conditions for them."""
+        """The steps to the sign of a - b; returns lines that set conditions for them."""
         body = Steps(self.layout)
         lines = []
         for part in (n for n in ordered([a, b]) if n.kind == "float"):

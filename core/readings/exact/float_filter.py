@@ -1,13 +1,12 @@
-"""The float filter: a kernel on doubles that knows when rounding could have changed its verdict.
+"""The float filter: a kernel on doubles that detects when rounding could have changed its verdict.
 
-A transformation of the kernel's graph. Beside every real value v of the graph, which stands for
-the real number r, there is a *size* p, the same expression on magnitudes, and a bound counted
-along the way: |v - r| <= factor * p + slack and |v| <= p, for every input on which p is finite.
-A comparison a ? b becomes the sign of the difference v of the two, certain where
-|v| > factor * p + slack as computed in doubles. `and or not if` are evaluated with three values,
-so that the verdict is certain wherever the certain comparisons determine it. Whatever overflows
-makes p infinite or NaN, and then nothing is certain. The rules below are what
-`proofs/methods/rounding.py` proves, one obligation for each rule and each pair of bounds that occurs.
+A transformation of the kernel's graph. Beside every real value v of the graph, which represents the real number r,
+there is a *size* p, the same expression on magnitudes, and a bound accumulated along the way: |v - r| <= factor * p +
+slack and |v| <= p, for every input on which p is finite. A comparison a ? b becomes the sign of the difference v of
+the two, certain where |v| > factor * p + slack as computed in doubles. `and or not if` are evaluated with three
+values, so that the verdict is certain wherever the certain comparisons determine it. Any overflow makes p infinite or
+NaN, and then nothing is certain. `proofs/methods/rounding.py` proves the rules below, one obligation for each rule
+and each pair of bounds that occurs.
 """
 
 from __future__ import annotations
@@ -71,8 +70,8 @@ class Certain:
 class Compared:
     """A comparison of the kernel's graph, and how it is decided here.
 
-    bound: of the difference; None where both sides are exact, and `above`, `below` with it: the
-    nodes of `surely_above` and `surely_below`.
+    bound: of the difference; None where both sides are exact; `above`, `below` are then None too, otherwise the nodes
+    of `surely_above` and `surely_below`.
     """
 
     original: Node
@@ -84,7 +83,7 @@ class Compared:
 
 @dataclass(frozen=True, eq=False)
 class Filter:
-    """A filtered kernel: columns and results as nodes of `terms`, and what was done to get there.
+    """A filtered kernel: columns and results as nodes of `terms`, and the steps that led to it.
 
     sure: the result is certain. yes, no: of a truth value (else None); values: of the others.
     """
@@ -101,10 +100,10 @@ class Filter:
 def filtered(
     kernel: Callable[..., Any] | Program, unit: Fraction = UNIT, *, shrink: float = 1.0
 ) -> Filter:
-    """The filter of a division-free kernel; raises NotInSubset where there is none.
+    """The filter of a division-free kernel; raises NotInSubset if there is none.
 
-    unit and shrink exist for tests: a filter made with less than the true unit, or with its
-    thresholds shrunk, must be refuted by the prover and caught by the comparison with rationals.
+    unit and shrink exist for tests: a filter made with less than the true unit, or with its thresholds shrunk, must
+    be refuted by the prover and detected by the comparison with rationals.
     """
     source = kernel if isinstance(kernel, Program) else program(kernel)
     if source.divides:
@@ -156,7 +155,7 @@ class _Maker:
 
     # -- reals --------------------------------------------------------------------------
     def size(self, value: Node) -> Node:
-        """|value|, which is the value itself where that is a square or a magnitude."""
+        """|value|, which is the value itself if that is a square or a magnitude."""
         if value.op == "lit":
             return self.terms.literal(abs(value.value), "float")
         if value.op == "abs" or (value.op == "mul" and value.args[0] is value.args[1]):
@@ -210,7 +209,7 @@ class _Maker:
         return Sided(self.plain(op, a.value, b.value), self.plain("add", a.size, b.size), bound)
 
     def lifted(self, a: Sided) -> Sided:
-        """The same value with the underflow in its error taken into its size."""
+        """The same value with the underflow part of its error moved into its size."""
         if not a.bound.slack:
             return a
         bound = self.note("floor", (a.bound,), bound_without_slack(a.bound))
@@ -239,7 +238,7 @@ class _Maker:
         if a.bound.exact and b.bound.exact:
             return self.exactly(value)
         bound = self.note(op, (a.bound, b.bound), bound_of_choice(a.bound, b.bound))
-        # the sum, and not the greater, of the sizes: a NaN must not get lost
+        # the sum of the sizes, not the greater: a NaN must not get lost
         return Sided(value, self.plain("add", a.size, b.size), bound)
 
     def chosen(self, node: Node) -> Sided:
@@ -342,11 +341,11 @@ class _Maker:
 
     # -- finite input -------------------------------------------------------------------
     def finite(self) -> Node:
-        """True only if every real column is finite: the sum of bounds in which each stands is.
+        """True only if every real column is finite: the sum of bounds that together contain each column.
 
-        A bound is finite only if every column in it is; one behind a choice may not be seen,
-        so it is added on its own. A bound that is not finite decides nothing, so of those that say
-        nothing of a further column none needs to be here; sizes of exact values all do.
+        A bound is finite only if every column in it is; one behind a choice may not be evaluated, so it is added
+        separately. A bound that is not finite decides nothing, so bounds that add no further column are omitted;
+        sizes of exact values are all included.
         """
         covered: set[Any] = set()
         total = []

@@ -1,10 +1,10 @@
 """The exact reading of a fold over arrays: one list of items, many contexts; compiled.
 
 The fold's step is read by its filter (`core.readings.exact.float_filter`) for every context and item, in blocks that
-stay in the cache, the items in the outer loop so that several contexts are worked on at once. A
-context for which every step is certain has the result that the fold has on the real numbers that
-the doubles are. The few others are left to `rest`, or to the exact reading one by one. Folds whose
-accumulator is made of truth values and integers are read so; no other has an exact result here.
+stay in the cache, with the items in the outer loop so that several contexts are processed at once. A context for
+which every step is certain has the result that the fold has on the real numbers that the doubles represent. The few
+others are left to `rest`, or to the exact reading one by one. This applies to folds whose accumulator consists of
+truth values and integers; no other has an exact result here.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class _Shape:
 
 
 def _certainty(found: Filter) -> str:
-    """Text that is true where every result is certain."""
+    """Text that evaluates to true where every result is certain."""
     parts = [name(found.sure)]
     for result in found.results:
         if isinstance(result, Certain) and not result.sharp:
@@ -77,7 +77,7 @@ def _start(value: Any) -> list[Any]:
 
 
 def _ending(finish: Filter | None, kinds: list[str]) -> list[str]:
-    """The result of one context, from its last accumulator."""
+    """Lines for the result of one context, from its last accumulator."""
     state = [
         f"s_{k}[j] != 0" if kind == "np.uint8" else f"s_{k}[j]" for k, kind in enumerate(kinds)
     ]
@@ -193,7 +193,7 @@ def _one_by_one(
 
 
 def _rows(kinds: list[Any], values: Any) -> tuple[Any, ...]:
-    """Scalars as the arguments of these types, as far as they reach."""
+    """Scalars grouped into arguments of these types, as far as they go."""
     left, made = [float(v) for v in values], []
     for kind in kinds:
         if not left:

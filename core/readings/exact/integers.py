@@ -1,8 +1,8 @@
 """The last stage of the exact reading: the kernel's graph on integers with tracked exponents.
 
-Every finite double is m * 2^e with integers m and e. Products multiply the m and add the e; sums
-shift one m to the lesser e. There is no range and no rounding. Verdicts are written with short
-circuit, as functions of the columns' (m, e).
+Every finite double is m * 2^e with integers m and e. Products multiply the m and add the e; sums shift one m to the
+lesser e. There is no range limit and no rounding. Verdicts are written with short circuit, as functions of the
+columns' (m, e).
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ class _Writer:
 def text(source: Program) -> str:
     """The module's text: `verdict(columns...)` gives the tuple of results.
 
-    Real columns are given as (m, e); real results come out so as well.
+    Real columns and real results are represented as (m, e).
     """
     writer = _Writer(source)
     lines, results = [], []

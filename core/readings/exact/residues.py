@@ -1,11 +1,11 @@
-"""Exact signs of values that are nearly 0, from their residues: pairs of doubles, continued.
+"""Exact signs of values near 0, from their residues: the continuation of pairs of doubles.
 
-Every real value of a comparison is a whole number of units 2^e, as doubles are. Where the pair
-(`core.readings.exact.double_pairs`) bounds a difference to less than 2^126 of its units, its residue modulo 2^128 is the
-difference itself, in two's complement: so an exact tie of numbers with all bits, which no two
-doubles hold, costs about as much as the pair, and only what spans more than some 230 bits is left to
-`core.readings.exact.expansions`. A value is (high, low, exponent), two words of 64 bits; sums shift the one with
-the coarser unit, and what is shifted out is a multiple of 2^128.
+Every real value of a comparison is an integer multiple of a unit 2^e, as doubles are. Where the pair
+(`core.readings.exact.double_pairs`) bounds a difference to less than 2^126 of its units, its residue modulo 2^128 is
+the difference itself, in two's complement: so an exact tie of numbers with all bits set, which no two doubles can
+represent, costs about as much as the pair, and only values that span more than some 230 bits are left to
+`core.readings.exact.expansions`. A value is (high, low, exponent), two words of 64 bits; sums shift the one with the
+coarser unit, and what is shifted out is a multiple of 2^128.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ def sign_of_residue(h, l, e, bound):
 
 NAMES = "negative_residue, product_of_residues, residue, sign_of_residue, sum_of_residues"
 READ = ("in", "lit", "add", "sub", "mul", "neg", "if")
-"""What needs no comparison of values: the others are left to the expansions."""
+"""Operations that need no comparison of values: the others are left to the expansions."""
 
 
 def arithmetic(flags: str) -> str:
@@ -102,11 +102,10 @@ def arithmetic(flags: str) -> str:
 
 
 def lines(nodes: list[Node], a: Node, b: Node, high: str, bound: str, known: str) -> list[str]:
-    """Store the sign of a - b into `known` and return it, where its residue says it.
+    """Lines that store the sign of a - b into `known` and return it, where its residue determines it.
 
-    nodes: what a and b need, operands first; high, bound: of the pair of doubles for a - b; the
-    condition of an `if` stands in the variable `t` with its number. [] where there is a node that
-    has no residue.
+    nodes: what a and b need, operands first; high, bound: of the pair of doubles for a - b; the condition of an `if`
+    is in the variable `t` with its number. [] if a node has no residue.
     """
     if any(node.op not in READ for node in nodes):
         return []

@@ -1,10 +1,9 @@
-"""A kernel as a graph of operations without control flow: what every generated reading starts from.
+"""A kernel as a graph of operations without control flow: the input of every generated reading.
 
-The kernel's syntax tree is walked once, callees included; `if` becomes a choice between values,
-equal terms become one node. Nothing is reordered: a node is the operation that CPython carries
-out, on the same operands. So the graph of a kernel can be printed as straight-line code (compiled
-reading), be given error bounds (filter), be evaluated on expansions and on integers (exact
-reading), and be compared with the lifted kernel by the prover.
+The kernel's syntax tree is walked once, callees included; `if` becomes a choice between values, equal terms become
+one node. Nothing is reordered: a node is the operation that CPython carries out, on the same operands. So the graph
+of a kernel can be printed as straight-line code (compiled reading), be given error bounds (filter), be evaluated on
+expansions and on integers (exact reading), and be compared with the lifted kernel by the prover.
 """
 
 from __future__ import annotations

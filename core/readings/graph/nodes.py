@@ -1,7 +1,7 @@
-"""Nodes and terms of a kernel's graph: operations without control flow, equal terms made once.
+"""Nodes and terms of a kernel's graph: operations without control flow, equal terms shared.
 
-Nothing is reordered: a node is the operation that CPython carries out, on the same operands.
-`core.readings.graph` makes them from a kernel's syntax tree.
+Nothing is reordered: a node is the operation that CPython carries out, on the same operands. `core.readings.graph`
+makes them from a kernel's syntax tree.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ LIMIT = 20_000
 
 
 class NotInSubset(TypeError):
-    """A function that has no graph: something in it is outside of the kernel subset."""
+    """A function that has no graph because part of it is outside the kernel subset."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +39,7 @@ Value = Node | Record
 
 
 class Terms:
-    """Makes nodes; equal ones are one object, constants are folded where that is no rounding."""
+    """Makes nodes; equal ones are one object, and constants are folded where this involves no rounding."""
 
     def __init__(self) -> None:
         self.made: dict[Any, Node] = {}
@@ -75,7 +75,7 @@ class Terms:
         return self.node(op, (a, b), a.kind)
 
     def alike(self, a: Node, b: Node) -> tuple[Node, Node]:
-        """Both operands of one kind."""
+        """Both operands converted to one kind."""
         if a.kind != b.kind:
             if a.kind == "int" and b.kind == "float":
                 a = self.real(a)
@@ -86,7 +86,7 @@ class Terms:
         return a, b
 
     def real(self, a: Node) -> Node:
-        """An integer literal as a real; variables of the two kinds do not mix."""
+        """An integer literal as a real; integer and real variables do not mix."""
         if a.kind == "int" and a.op != "lit":
             raise NotInSubset("an integer variable beside a real")
         return a if a.kind == "float" else self.literal(a.value, "float")
@@ -171,7 +171,7 @@ class Program:
 
     @property
     def divides(self) -> bool:
-        """True iff there is a division or a root: no exact reading."""
+        """True iff there is a division or a root, so that there is no exact reading."""
         return any(node.op in ("div", "sqrt") for node in self.nodes)
 
 

@@ -1,7 +1,7 @@
 """Graphs as straight-line Python text, for CPython and numba alike.
 
-min and max are written as CPython defines them (the first operand unless the second is strictly
-less, or greater), so that signed zeros and NaN come out alike in both.
+min and max are written as CPython defines them (the first operand unless the second is strictly less, or greater), so
+that signed zeros and NaN give the same result in both.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ INFIX = {
 
 
 def name(node: Node) -> str:
-    """What stands for the node in the text: its column, its literal, or its variable."""
+    """The text for a node: its column, its literal, or its variable."""
     if node.op == "in":
         return str(node.value)
     if node.op == "lit":

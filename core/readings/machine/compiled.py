@@ -36,20 +36,20 @@ from cratous.spec.errors import BadInput
 
 FLAGS = "njit(cache=True, fastmath=False, error_model='python', no_cfunc_wrapper=True)"
 QUIET = FLAGS.replace("'python'", "'numpy'")
-"""For straight-line code that divides: it carries out both branches and keeps the chosen one."""
+"""For straight-line code with divisions: it evaluates both branches and selects one."""
 WITHIN = FLAGS.replace("cache=True, ", "").replace(")", ", no_cpython_wrapper=True)")
-"""For what machine code alone calls: the code of its caller holds it, and Python has no way in."""
+"""For functions called only by machine code: they are part of their caller's code, without a Python entry point."""
 KINDS: dict[Any, Any] = {bool: np.bool_, int: np.int64, float: np.float64}
 MACHINE, EXACT, ENCLOSED = "machine code", "exact", "enclosed"
-"""How a function is read where CPython does not run it as written."""
+"""How a function is read if CPython does not run it as written."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Reading:
-    """A kernel, fold or loop in another reading than CPython's; called as `run` is.
+    """A kernel, fold or loop in a reading other than CPython's; called as `run` is.
 
-    function: what is read; how: MACHINE, EXACT or ENCLOSED. Every such reading is entered through
-    here, so that what was read can be told (`services/certify/evidence.py`).
+    function: what is read; how: MACHINE, EXACT or ENCLOSED. Every such reading is entered through this class, so that
+    entries can be counted (`services/certify/evidence.py`).
     """
 
     function: Callable[..., Any] | Fold[Any]
@@ -61,7 +61,7 @@ class Reading:
 
 
 PREFIX = "kernels_"
-"""How the folders of compiled text are called in the cache, before the hash of the text."""
+"""Prefix of the cache folders of compiled text, before the hash of the text."""
 
 
 def folder_name(text: str) -> str:
@@ -181,15 +181,20 @@ def machine(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 @functools.cache
-def is_kept(function: Callable[..., Any]) -> bool:
-    """Whether `machine` finds this function's machine code in the cache, so that it is quick."""
+def _kept_as(function: Callable[..., Any]) -> tuple[str, str]:
+    """The cache folder with a function's machine code, and the name of its files."""
     made, name = _entry_text(function)
-    folder = private_cache() / folder_name(made.text) / "__pycache__"
-    return any(folder.glob(f"*.{name}-*.nbi"))
+    return folder_name(made.text), f"*.{name}-*.nbc"
+
+
+def is_kept(function: Callable[..., Any]) -> bool:
+    """Whether `machine` finds this function's machine code in the cache, without compilation."""
+    folder, files = _kept_as(function)
+    return any((private_cache() / folder / "__pycache__").glob(files))
 
 
 def _flat(hint: Any) -> int:
-    """How many scalars an argument of this type holds."""
+    """The number of scalars in an argument of this type."""
     fields = get_type_hints(hint) if inspect.isclass(hint) and issubclass(hint, tuple) else {}
     return len(fields) or 1
 
@@ -219,7 +224,7 @@ def _source_map(kernel: Callable[..., Any]) -> Any:
 
 # -- the map ----------------------------------------------------------------------------
 def aligned(columns: tuple[Any, ...]) -> tuple[list[Any], tuple[int, ...]]:
-    """Columns as flat arrays of one length, single values left alone; and the common shape."""
+    """Columns as flat arrays of one length, with single values unchanged; and the common shape."""
     arrays = [np.asarray(column) for column in columns]
     shape = np.broadcast_shapes(*[array.shape for array in arrays])
     if shape == ():
@@ -290,7 +295,7 @@ def _typed(where: str, kind: str, label: str, value: Any) -> Any:
         # wider or narrower floats: NaN is left for the check that names it
         lost = (turned != array) & (array == array)
     else:
-        # beyond 2^62 the way back could overflow
+        # beyond 2^62 the conversion back could overflow
         lost = (turned.astype(array.dtype) != array) | (np.abs(turned) > 2.0**62)
     wrong = np.flatnonzero(lost)
     if wrong.size:

@@ -1,5 +1,5 @@
-"""What a kernel's checked readings refuse beyond what is no number: values below 0 where the kernel
-says that they mean nothing (`kernel(nonnegative=...)`).
+"""What a kernel's checked readings refuse beside non-numbers: values below 0 where the kernel declares them
+meaningless (`kernel(nonnegative=...)`).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def refuse_negative(where: str, names: tuple[str, ...], columns: Iterable[tuple[
         if label.split(".")[0] not in names:
             continue
         array = np.asarray(value)
-        # what is infinite is refused as such
+        # infinite values are refused separately
         wrong = np.flatnonzero((array < 0) & (array > -math.inf))
         if wrong.size:
             item = f"{label}[{wrong[0]}]" if array.ndim else label

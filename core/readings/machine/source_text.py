@@ -1,8 +1,8 @@
-"""The text for the compiler of a function with all that it uses, as written.
+"""The compiler's input for a function: its text with everything it uses, as written.
 
-Everything that is collected (functions, records, constants, modules) stands in the text under a
-unique name made of its qualified one, and the references of each function are renamed by what they
-mean in its own module. So two helpers, records or constants of one bare name keep each its meaning.
+Everything that is collected (functions, records, constants, modules) appears in the text under a unique name derived
+from its qualified one, and the references of each function are renamed by their meaning in its own module. So two
+helpers, records or constants of one bare name keep their own meanings.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from cratous.spec.errors import BadInput
 
 NUMBERS = (bool, int, float)
 LIBRARIES = ("math", "numpy")
-"""What the compiler knows by itself."""
+"""Libraries known to the compiler itself."""
 
 
 class SourceText:
     """A text under construction, callees first. flags: the compiler's, put before each function.
 
-    entries: other flags, by function: those before what Python calls.
+    entries: other flags, by function: for those called from Python.
     """
 
     def __init__(self, flags: str, entries: dict[Callable[..., Any], str] | None = None) -> None:
@@ -44,11 +44,11 @@ class SourceText:
 
     @property
     def text(self) -> str:
-        """All that was collected so far."""
+        """Everything collected so far."""
         return "\n\n".join([*self.parts, ""])
 
     def add(self, item: Any) -> str:
-        """Collect a function or record with all that it uses; its name in the text."""
+        """Collect a function or record with everything it uses; returns its name in the text."""
         where = f"{item.__module__}.{item.__qualname__}"
         if "<locals>" in where and inspect.isfunction(item) and item.__closure__:
             raise BadInput("a function within another one cannot be compiled", item=where)
@@ -59,15 +59,15 @@ class SourceText:
         return name
 
     def add_arguments(self, function: Callable[..., Any]) -> None:
-        """Say which fields the records have that a function takes from outside.
+        """Add the fields of the records that a function takes as arguments.
 
-        Machine code reads them by position, so what was made for other fields must not be found.
+        Machine code reads them by position, so code compiled for other fields must not be found in the cache.
         """
         hints = get_type_hints(inspect.unwrap(function))
         self.parts += sorted({line for kind in hints.values() for line in _fields(kind)})
 
     def _name(self, where: str, value: Any) -> tuple[str, bool]:
-        """The unique name of what is called so, and whether it is new; two values are an error."""
+        """A unique name, and whether it is new; two values of one name are an error."""
         if where in self._names:
             old = self._values[where]
             if old is not value and (type(old) is not type(value) or repr(old) != repr(value)):
@@ -108,7 +108,7 @@ class SourceText:
         return f"@{self.entries.get(function, self.flags)}\n{ast.unparse(made)}"
 
     def _reference(self, function: Callable[..., Any], used: str, own: str) -> str:
-        """The name in the text of what a function's module calls `used`."""
+        """The name in the text for what a function's module calls `used`."""
         value = function.__globals__[used]
         return self.reference(value, f"{function.__module__}.{used}", own)
 
@@ -165,7 +165,7 @@ class SourceText:
 
 
 class _Renaming(ast.NodeTransformer):
-    """A function's references as the text calls them, without annotations."""
+    """Renames a function's references to their names in the text, and removes annotations."""
 
     def __init__(self, text: SourceText, function: Any, renamed: dict[str, str]) -> None:
         self.text, self.function, self.renamed = text, function, renamed
@@ -181,7 +181,9 @@ class _Renaming(ast.NodeTransformer):
         return ast.Name(self.renamed.get(node.id, node.id), node.ctx)
 
     def visit_Call(self, node: ast.Call) -> ast.expr:
-        """A call of our own code, its written numbers as the callee's types: else each is compiled for by itself."""
+        """A call of our own code with number literals converted to the callee's types, so that it is compiled only
+        once.
+        """
         called = self.function.__globals__.get(getattr(node.func, "id", ""))
         local = getattr(node.func, "id", "") not in self.renamed
         kinds = {} if local or called is None else _parameters(called)
@@ -193,7 +195,7 @@ class _Renaming(ast.NodeTransformer):
         return self.generic_visit(node)  # type: ignore[return-value]
 
     def _typed(self, given: ast.expr, kind: Any) -> ast.expr:
-        """A written number as it is of this type; anything else as it stands."""
+        """A number literal converted to this type; anything else unchanged."""
         if isinstance(given, ast.Tuple) and get_origin(kind) is tuple:
             parts = get_args(kind)
             if len(parts) != len(given.elts) or ... in parts:
@@ -241,14 +243,14 @@ class _Renaming(ast.NodeTransformer):
 
 
 EXACT = 2**53
-"""Every whole number up to this is a double."""
+"""Every integer up to this is exactly a double."""
 _TYPED = {int: "int64", bool: "bool_"}
-"""What makes a value out of a written number, whose type alone says its value."""
+"""Conversions of a number literal, so that the compiler sees only its type."""
 
 
 @functools.cache
 def _parameters(called: Any) -> dict[str, Any]:
-    """The types of a function's parameters or a record's fields, by name; none of what is not ours to call so."""
+    """The types of a function's parameters or a record's fields, by name; empty for code that is not ours."""
     if inspect.isclass(called) and hasattr(called, "_fields"):
         return get_type_hints(called)
     if not inspect.isfunction(called):
@@ -273,7 +275,7 @@ def _definition(function: Callable[..., Any]) -> ast.FunctionDef:
 
 
 def _fields(kind: Any) -> list[str]:
-    """A line for a record and for each record in it; nothing for what is no record."""
+    """A line for a record and for each record in it; empty for other types."""
     if not (inspect.isclass(kind) and hasattr(kind, "_fields")):
         return []
     parts = get_type_hints(kind)
@@ -315,6 +317,6 @@ def _literal(value: Any) -> str:
 
 
 def _ours(value: Any, user: str) -> bool:
-    """Of the product, of the user's own package, or a registered kernel."""
+    """Whether it belongs to the product or the user's own package, or is a registered kernel."""
     home = value.__module__.split(".")[0]
     return home in ("cratous", user.split(".")[0]) or entry_of(value) is not None

@@ -18,8 +18,6 @@ def claim(c: Claim) -> None:
         at = c.use(level, p_alt, q_alt, bound)
         between = (at.num - low * at.den) * (at.num - high * at.den) < 0
         c.premise(c.implies(at.den != 0, c.negation(between)))
-        crossed = c.define(geofence.altitude, p_alt, q_alt, t) == bound
-        c.show(c.same(crossed, at.num == t * at.den), "a level is reached at its parameter")
     here, there = (c.define(geofence.altitude, p_alt, q_alt, s) for s in (t, u))
     places = [c.use(layer_place, alt, floor, ceiling) for alt in (here, there)]
     c.show(c.same(*places), "the same place")

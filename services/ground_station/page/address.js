@@ -4,6 +4,7 @@ import { DIMENSIONS } from "./band_style.js";
 import { digits } from "./units.js";
 
 export const RATES = [0.25, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
+const FARTHEST_M = 1e9; // of a view: nothing is there, and tiles so far away that numbers have no digits for them are endless
 
 export function read(end_ms, ids) {
   const given = new URLSearchParams(location.hash.slice(1)), state = {};
@@ -16,7 +17,7 @@ export function read(end_ms, ids) {
   if (["si", "aviation"].includes(given.get("units"))) state.aviation = given.get("units") === "aviation";
   if (DIMENSIONS.includes(given.get("bands"))) state.dimension = given.get("bands");
   const view = (given.get("map") || "").split(",").map(Number);
-  if (view.length === 3 && view.every(Number.isFinite) && view[2] > 0) state.view = { north: view[0], east: view[1], scale: view[2] };
+  if (view.length === 3 && view.every(Number.isFinite) && Math.max(Math.abs(view[0]), Math.abs(view[1])) <= FARTHEST_M && view[2] > 0) state.view = { north: view[0], east: view[1], scale: view[2] };
   return state;
 }
 

@@ -60,6 +60,7 @@ export class Handles {
   drop(marker) {
     const { key, of, north_m, east_m, value } = this.take(marker);
     this.dragged = null;
+    this.asked.dragged(); // a heading is turned about its vehicle at once
     if (of) this.asked.changed(key, value); else this.asked.moved(key, north_m, east_m);
   }
 

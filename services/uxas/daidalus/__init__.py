@@ -1,1 +1,1 @@
-"""Detect and avoid on the bus: the DAIDALUS message series, detection, and the answer to a conflict."""
+"""Detect and avoid on the bus: the DAIDALUS message series, detection, and conflict resolution."""

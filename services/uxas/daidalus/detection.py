@@ -1,10 +1,11 @@
-"""DAIDALUS_WCV_Detection: who will take well clear from a vehicle, when, and which manoeuvres keep it.
+"""DAIDALUS_WCV_Detection: predicts losses of well clear of a vehicle and the manoeuvres that avoid
+them.
 
-AirVehicleState of the ownship and of others -> WellClearViolationIntervals at each state of the
-ownship, from the proved engine (`core.daa.session`); DAIDALUSConfiguration once, before the first.
-Intervals are of headings (true) and of airspeeds, as DAIDALUS has them with wind; without wind these
-are courses and ground speeds. A dimension of which nothing can be said (the own value is out of its
-range) is one NEAR interval over the whole range, and a ServiceStatus says why.
+AirVehicleState of ownship and intruders -> WellClearViolationIntervals at each ownship state, from
+the proved engine (`core.daa.session`); DAIDALUSConfiguration once, before the first. Intervals are
+of (true) headings and airspeeds, as in DAIDALUS with wind; without wind these are courses and
+ground speeds. A dimension that cannot be evaluated (own value out of range) is one NEAR interval
+over the whole range, and a ServiceStatus gives the reason.
 """
 
 from __future__ import annotations
@@ -26,12 +27,13 @@ from cratous.spec.errors import BadInput
 STATE, STARTED = "afrl.cmasi.AirVehicleState", "uxas.messages.uxnative.StartupComplete"
 REMOVED = "afrl.cmasi.RemoveEntities"
 TELL_MS = 500
-"""Aircraft tell their states so often [ms]: in two such turns half of the vehicles look at each."""
+"""Usual interval of aircraft states [ms]: with a period of two intervals, half of the vehicles compute at each."""
 
 
 class Known(NamedTuple):
-    """The newest state of each vehicle, the history, whether the parameters were told, what was warned of, and at which
-    state of the vehicle it has looked last [ms]."""
+    """Latest state of each vehicle, DAA session, whether the parameters were sent, active warnings,
+    and time of the ownship state last evaluated [ms].
+    """
 
     session: Session
     states: dict[int, Any]
@@ -44,7 +46,7 @@ Step = tuple[Known, Iterable[Any]]
 
 
 def told_of(own: Any, wind: Wind) -> OwnState:
-    """What the message tells of the ownship: heading and speed in the air."""
+    """Ownship state as reported in the message: heading and airspeed."""
     at = own.Location
     return OwnState(
         own.ID,
@@ -58,7 +60,7 @@ def told_of(own: Any, wind: Wind) -> OwnState:
 
 
 class DaidalusDetection:
-    """For one vehicle. period_ms: it looks no more often than this; vehicles by turns, so that not all do at once."""
+    """Detection for one vehicle. period_ms: minimum interval between evaluations, staggered between vehicles."""
 
     subscribes: tuple[str, ...] = (STATE, STARTED, REMOVED)
 
@@ -94,7 +96,7 @@ class DaidalusDetection:
         for number, other in sorted(state.states.items()):
             if number == own.ID:
                 continue
-            # a state may be ahead of the ownship's as well as behind it
+            # an intruder's state may be earlier or later than the ownship's
             early, late = sorted((own.Time, other.Time))
             if not in_time(early, late, self._stale_ms):
                 why.append(f"vehicle {number}: its state is too old, it is left out")
@@ -119,7 +121,7 @@ class DaidalusDetection:
         return self._warn(state, why, out)
 
     def _warn(self, state: Known, why: list[str], out: list[Any]) -> Step:
-        """Each reason is told when it comes up, whatever its numbers, and again after it was gone."""
+        """Send a warning for each new reason, ignoring its numbers, and again if it recurs after a break."""
         kinds = {
             text: "".join(c for c in text if not c.isdigit() and c not in ".-e") for text in why
         }

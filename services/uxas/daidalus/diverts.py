@@ -1,10 +1,11 @@
-"""Which manoeuvre answers a conflict: candidates, each decided by kernels against bands and zones.
+"""Selects the manoeuvre that resolves a conflict: kernels check each candidate against bands and
+zones.
 
-A candidate's value must lie in no band (`heading_blocked`, `value_blocked`), and the way that is flown
-to it and on from it, wind included, must obey every zone (`first_bad_leg`). If no value is outside of
-all bands, values in FAR bands are allowed, then those in MID bands: less severe than what they avoid.
-Of those that hold, the one nearest to the wanted value is taken, with a distance to the bands if there
-is room for it; if none holds, the reasons say of each severity what is in the way.
+A candidate's value must lie in no band (`heading_blocked`, `value_blocked`), and the path flown to
+it and onwards, including wind, must respect every zone (`first_bad_leg`). If no value is outside
+all bands, values in FAR bands are allowed, then those in MID bands: less severe than what they
+avoid. Of the valid candidates, the closest to the wanted value is taken, with a distance to the
+bands if there is room; if there is none, the reasons say for each severity what prevents it.
 """
 
 from __future__ import annotations
@@ -24,9 +25,9 @@ from cratous.spec.mission import Position, Zone
 
 KINDS = {"Heading": "hdir", "GroundSpeed": "hs", "VerticalSpeed": "vs", "Altitude": "alt"}
 ROOM = {"Heading": 5.0, "GroundSpeed": 10.0, "VerticalSpeed": 5.0, "Altitude": 20.0}
-"""Distance to the bands where there is room [deg, m/s, m/s, m]; the values of OpenUxAS."""
+"""Distance to the bands, if there is room [deg, m/s, m/s, m]; the values of OpenUxAS."""
 SEVERITIES = (("FAR", "MID", "NEAR"), ("MID", "NEAR"), ("NEAR",))
-"""Regions that must not be entered, best first."""
+"""Sets of regions to avoid, most preferred first."""
 RESUME_REGIONS = SEVERITIES[1]
 
 
@@ -39,9 +40,10 @@ class Band(NamedTuple):
 
 
 class Flight(NamedTuple):
-    """How the vehicle flies now, relative to the air: position in the plane, heading [deg], airspeed
-    and climb [m/s]; the wind; what it can do; the altitude that it makes for [m], and how fast it
-    changes altitude when told to [m/s]."""
+    """Current state of the vehicle relative to the air: position in the plane, heading [deg],
+    airspeed and climb rate [m/s]; wind; performance; target altitude [m]; and its climb rate for
+    altitude changes [m/s].
+    """
 
     position: Position
     heading: float
@@ -54,8 +56,9 @@ class Flight(NamedTuple):
 
 
 class Manoeuvre(NamedTuple):
-    """What is commanded: heading [deg], airspeed, climb [m/s] and altitude [m]; the kind and value
-    that was chosen; the regions that it keeps out of."""
+    """The command: heading [deg], airspeed and climb rate [m/s], and altitude [m]; the chosen kind
+    and value; the regions that it avoids.
+    """
 
     kind: str
     value: float
@@ -66,7 +69,7 @@ class Manoeuvre(NamedTuple):
     avoids: tuple[str, ...]
 
     def text(self) -> str:
-        """In words; it says which less severe bands it does not avoid."""
+        """The manoeuvre in words, including the less severe bands that it does not avoid."""
         unit = {"Heading": "deg", "Altitude": "m"}.get(self.kind, "m/s")
         left = [r for r in SEVERITIES[0] if r not in self.avoids]
         in_spite = f", in {' and '.join(left)} bands, as no other is free" if left else ""
@@ -74,14 +77,14 @@ class Manoeuvre(NamedTuple):
 
 
 class Found(NamedTuple):
-    """The manoeuvre, or None and why there is none."""
+    """The manoeuvre, or None with the reasons."""
 
     manoeuvre: Manoeuvre | None
     why: tuple[str, ...] = ()
 
 
 def bands(message: Any, kind: str) -> tuple[Band, ...]:
-    """The conflict bands of a kind of manoeuvre in WellClearViolationIntervals."""
+    """The conflict bands for a kind of manoeuvre in WellClearViolationIntervals."""
     _, field, intervals, regions, *_ = SERIES[KINDS[kind]]
     pairs = zip(getattr(message, intervals), getattr(message, regions), strict=False)
     ends = ((getattr(one, field), region) for one, region in pairs)
@@ -95,7 +98,7 @@ def blocked(kind: str, value: float, found: Iterable[Band], avoids: tuple[str, .
 
 
 def path(now: Flight, m: Manoeuvre, horizon: float) -> list[Position]:
-    """The corners of the way of a manoeuvre over the ground: a turn in short chords, then straight."""
+    """The corners of a manoeuvre's ground track: a turn as short chords, then straight."""
     rise = m.altitude - now.position.alt_m
     lasts = abs(rise / m.climb) if m.climb else 0.0
     motion = Motion(now.position, math.radians(now.heading), now.speed, now.climb)
@@ -111,7 +114,7 @@ def path(now: Flight, m: Manoeuvre, horizon: float) -> list[Position]:
 
 
 def zone_met(now: Flight, m: Manoeuvre, zones: tuple[Zone, ...], horizon: float) -> Zone | None:
-    """A zone that the way of a manoeuvre would break, or None."""
+    """A zone that a manoeuvre's path would violate, or None."""
     if not zones:
         return None
     bad = first_bad_leg(path(now, m, horizon), zones)
@@ -119,15 +122,17 @@ def zone_met(now: Flight, m: Manoeuvre, zones: tuple[Zone, ...], horizon: float)
 
 
 def horizons(now: Flight, lookahead: float) -> tuple[float, ...]:
-    """How far ahead zones count [s]: over the look-ahead; if all ways meet one, until the vehicle
-    could have turned back, which is renewed at every instant."""
+    """Horizons for zones [s]: the look-ahead time; then, for use if all paths violate a zone within
+    it, the time in which the vehicle could turn back, which is re-evaluated at every instant.
+    """
     motion = Motion(now.position, 0.0, now.speed, 0.0)
     return lookahead, turn_back_s(motion, now.ability)
 
 
 def made(now: Flight, kind: str, value: float, avoids: tuple[str, ...], limits: Any) -> Manoeuvre:
-    """The manoeuvre to a value; the rest stays as it is, a climb to the present goal included, since
-    bands take it to go on."""
+    """The manoeuvre to a value; other values stay unchanged, including a climb towards the target
+    altitude, which the bands assume to continue.
+    """
     heading, speed, climb, altitude = now.heading, now.speed, 0.0, now.position.alt_m
     if (now.goal_alt - altitude) * now.climb > 0:
         climb, altitude = now.climb, now.goal_alt
@@ -152,7 +157,7 @@ def divert(
     limits: Any,
     zones: tuple[Zone, ...],
 ) -> Found:
-    """The manoeuvre of a kind that is nearest to a wanted value and holds.
+    """The valid manoeuvre of a kind closest to a wanted value.
 
     message: WellClearViolationIntervals; limits: DAIDALUSConfiguration.
     """
@@ -166,7 +171,7 @@ def divert(
         if not values:
             why.append(f"{kind}: every value lies in a {' or '.join(avoids)} band")
             continue
-        # values with room around them first, so the vehicle does not fly along an edge
+        # values with a margin first, so that the vehicle does not fly along the edge of a band
         roomy = [v for v in values if _has_room(kind, v, found, avoids)]
         met: dict[str, None] = {}
         for horizon in horizons(now, limits.LookAheadTime):
@@ -190,14 +195,14 @@ def still_good(
     zones: tuple[Zone, ...],
     traffic: bool,
 ) -> bool:
-    """True if a manoeuvre that is flown still holds; traffic: bands count, not only zones."""
+    """True if the manoeuvre being flown is still valid; traffic: check bands too, not only zones."""
     if traffic and blocked(m.kind, m.value, bands(message, m.kind), m.avoids):
         return False
     return zone_met(now, m, zones, horizons(now, 0.0)[1]) is None
 
 
 def candidates(kind: str, wanted: float, found: Iterable[Band], limits: Any) -> list[float]:
-    """Values to try, nearest to the wanted one first: it, a grid, and beside the edges of bands."""
+    """Values to try, closest to the wanted one first: that value, a grid, and values beside band edges."""
     values = {wanted, *_grid(kind, wanted, limits)}
     for band in found:
         for edge, sign in ((band.low, -1.0), (band.high, 1.0)):
@@ -211,7 +216,7 @@ def candidates(kind: str, wanted: float, found: Iterable[Band], limits: Any) -> 
 
 
 def _turn(value: float, wanted: float) -> tuple[float, float]:
-    """Size of the turn, to the right before to the left."""
+    """Size of the turn, right turns before left turns."""
     right = (value - wanted) % 360.0
     return min(right, 360.0 - right), right
 

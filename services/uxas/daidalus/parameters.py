@@ -1,7 +1,9 @@
-"""The attributes of DAIDALUS_WCV_Detection, the parameters that they make, and the message that tells them.
+"""Attributes of DAIDALUS_WCV_Detection, the DAA parameters they define, and the message that
+reports them.
 
-Names, units and defaults are those of OpenUxAS. What it drops without a word (values that do not fit
-together) is refused. `Configuration` is ours: a preset or a .conf file, which attributes then change.
+Names, units and defaults are those of OpenUxAS. Values that OpenUxAS drops silently because they
+are inconsistent are refused. `Configuration` is an extension: a preset or a .conf file, which
+attributes then modify.
 """
 
 from __future__ import annotations
@@ -35,7 +37,7 @@ TINY = 1e-6
 
 
 class Told(NamedTuple):
-    """An attribute: how it is read, the field of `Parameters`, its size there, the message's field."""
+    """An attribute: how it is read, the field of `Parameters`, its scale there, and the message's field."""
 
     attr: Attr
     field: str
@@ -78,7 +80,7 @@ PARTS: dict[str, Told] = {
     "VerticalNMAC": Told(number(100 * FOOT), "vertical_nmac_m"),
     "HorizontalContourThreshold": Told(number(180.0, 0.0, 180.0), "contour_thr_rad", DEG),
 }
-"""Attributes that are one parameter each."""
+"""Attributes that correspond to one parameter each."""
 
 ALERTING: dict[str, Attr] = {
     "TTHR": number(35.0),
@@ -91,7 +93,7 @@ ALERTING: dict[str, Attr] = {
     "EarlyAlertTime3": number(55.0),
     "HorizontalDetectionType": choice("TAUMOD", "TAUMOD", "TCPA", "TEP"),
 }
-"""Attributes that make the alerter: one volume, three levels."""
+"""Attributes that define the alerter: one volume, three levels."""
 
 ATTRIBUTES: dict[str, Attr] = {
     "VehicleID": whole(-1, -1),
@@ -112,12 +114,12 @@ ORDERED = (
     ("AlertTime3", "AlertTime2"),
     ("AlertTime2", "AlertTime1"),
 )
-"""Pairs of which the first is at most the second; ranges must not be empty."""
+"""Pairs whose first value must not exceed the second; ranges must not be empty."""
 STRICT = 3
 
 
 def parameters_of(entry: Entry, values: Mapping[str, Any]) -> Parameters:
-    """The parameters that a service's attributes say; BadInput for values that do not fit together."""
+    """The parameters from a service's attributes; BadInput for inconsistent values."""
     if values[CONFIGURATION]:
         return _changed(entry, values)
     for k, (low, high) in enumerate(ORDERED):
@@ -138,7 +140,7 @@ def parameters_of(entry: Entry, values: Mapping[str, Any]) -> Parameters:
 
 
 def _alerter(v: Mapping[str, Any], levels: int) -> Alerter:
-    """Three levels of one volume; of the most severe `levels` of them bands are made."""
+    """An alerter with three levels of one volume; bands are computed for the `levels` most severe ones."""
     kind = DETECTORS.index(f"WCV_{v['HorizontalDetectionType']}")
     volume = Volume(kind, v["MinHorizontalRecovery"], v["MinVerticalRecovery"], v["TTHR"])
     return Alerter(
@@ -157,7 +159,7 @@ def _alerter(v: Mapping[str, Any], levels: int) -> Alerter:
 
 
 def _changed(entry: Entry, values: Mapping[str, Any]) -> Parameters:
-    """A configuration of DAIDALUS with the attributes that are given; its alerters are its own."""
+    """A DAIDALUS configuration modified by the given attributes; its alerters are kept."""
     given = [name for name in entry.attributes if name in ALERTING]
     if given:
         _refuse(entry, given[0], f"alerters from {CONFIGURATION} alone", values[CONFIGURATION])
@@ -190,8 +192,10 @@ def _refuse(entry: Entry, item: str, expected: str, got: str) -> None:
 
 
 def configuration_message(vehicle: int, p: Parameters) -> Any:
-    """DAIDALUSConfiguration: what is used, in the message's units. Levels are those of the first
-    alerter, volume those of its most severe level; CollisionAvoidanceBandsFactor is a flag there."""
+    """DAIDALUSConfiguration with the parameters in use, in the message's units. Levels are those of
+    the first alerter, the volume that of its most severe level; CollisionAvoidanceBandsFactor is a
+    flag there.
+    """
     fields = {
         part.sent or name: getattr(p, part.field) / part.size
         for name, part in PARTS.items()
@@ -219,7 +223,7 @@ def configuration_message(vehicle: int, p: Parameters) -> Any:
 
 
 def turn_rate_deg_s(p: Any, speed: float) -> float:
-    """Turn rate of a DAIDALUSConfiguration at a speed [m/s]; 0 where it turns at once [deg/s]."""
+    """Turn rate in a DAIDALUSConfiguration at a speed [m/s]; 0 for instantaneous turns [deg/s]."""
     if p.TurnRate or not p.BankAngle or not speed:
         return float(p.TurnRate)
     return math.degrees(G_M_S2 * math.tan(math.radians(p.BankAngle)) / speed)

@@ -1,13 +1,12 @@
-"""DAIDALUS_WCV_Response: what a vehicle does about a predicted loss of well clear, and how it comes back.
+"""DAIDALUS_WCV_Response: resolves predicted losses of well clear, and returns to the mission afterwards.
 
-WellClearViolationIntervals and DAIDALUSConfiguration of the vehicle, its states and missions, and zones
--> VehicleActionCommand (a FlightDirectorAction), MissionCommand (back to the mission) and ServiceStatus
-(each change, with the reason). The states are those of `spec.contracts.responses`; what is done is
-decided by `response_step`, from facts that kernels decide. A manoeuvre is renewed when it no longer
-holds, or when somebody else commands the vehicle in the meantime.
+WellClearViolationIntervals and DAIDALUSConfiguration of the vehicle, its states and missions, and zones ->
+VehicleActionCommand (a FlightDirectorAction), MissionCommand (back to the mission) and ServiceStatus (each change,
+with the reason). The states are those of `spec.contracts.responses`; `response_step` decides what to do, from facts
+that kernels decide. A manoeuvre is renewed when it is no longer valid, or when another commander has intervened.
 
-Right of way: the lower id has it, but only before a vehicle that is known to answer conflicts itself,
-because its intervals are heard; and not once the loss is nearer than `RightOfWayLimit`.
+Right of way: the lower id has it, but only before a vehicle known to resolve conflicts itself, because its intervals
+are received; and not once the loss is nearer than `RightOfWayLimit`.
 """
 
 from __future__ import annotations
@@ -58,21 +57,20 @@ KEEP_IN, KEEP_OUT = "afrl.cmasi.KeepInZone", "afrl.cmasi.KeepOutZone"
 REMOVE_ZONES = "afrl.cmasi.RemoveZones"
 
 FREE_MS = 2000
-"""The way back must have been free for this long [ms]."""
+"""Time for which the return path must have been clear [ms]."""
 AGAIN_MS = 5000
-"""A command to go back that has had no effect after this is given again [ms]."""
+"""Time after which a return command without effect is repeated [ms]."""
 HEARD_MS = 5000
-"""A vehicle whose intervals were heard in this time answers conflicts itself [ms]."""
+"""A vehicle whose intervals were received within this time resolves conflicts itself [ms]."""
 STANDARD_TURN_DEG_S = 3.0
 STANDARD_ACCELERATION_M_S2 = 2.0
 STANDARD_CLIMB_M_S = 2.54
 
 
 class Answering(NamedTuple):
-    """All that is known: the response; messages about the vehicle; zones by id, and as they bind; the
-    waypoint that it makes for; the manoeuvre that is flown (None: to be commanded anew); since when
-    the way back is free, and when it was sent back; intruders that are answered; who was heard when;
-    commands so far; and what was last said."""
+    """State of the service: response; messages about the vehicle; zones by id, and as geometry; next waypoint;
+    manoeuvre being flown (None: to be commanded again); time since which the return path is clear, and of the return
+    command; intruders being resolved; when each vehicle was last heard; number of commands; last status."""
 
     response: Response = Response(0, False)
     parameters: Any = None
@@ -95,7 +93,7 @@ Step = tuple[Answering, Iterable[Any]]
 
 
 class DaidalusResponse:
-    """For one vehicle."""
+    """Conflict resolution for one vehicle."""
 
     subscribes: tuple[str, ...] = (
         PLAN,
@@ -110,8 +108,8 @@ class DaidalusResponse:
     )
 
     def __init__(self, name: str, vehicle: int, kind: str, limit: float | None) -> None:
-        """kind: of manoeuvres (`diverts.KINDS`); limit: the nearest loss that right of way waits for
-        [s], None: half of the alerting time."""
+        """kind: of manoeuvres (`diverts.KINDS`); limit: least time to a loss at which right of way is used [s], None:
+        half of the alerting time."""
         self.name, self._vehicle, self._kind, self._limit = name, vehicle, kind, limit
 
     def start(self) -> Answering:
@@ -150,13 +148,12 @@ class DaidalusResponse:
 
     @staticmethod
     def _commanded(state: Answering, command: Any) -> Answering:
-        """A mission, or a part of one: it replaces the manoeuvre in the vehicle, which is commanded
-        anew."""
+        """Process a mission, or part of one: it replaces the manoeuvre in the vehicle, which is commanded again."""
         return state._replace(mission=command, flown=None, waypoint=command.FirstWaypoint)
 
     @staticmethod
     def _flown(state: Answering, own: Any) -> Answering:
-        """A state; the waypoint counts while the vehicle is on its mission."""
+        """Process an own state; its waypoint counts only while the vehicle flies its mission."""
         if not state.response.off and _waypoint(state.mission, own.CurrentWaypoint) is not None:
             state = state._replace(waypoint=own.CurrentWaypoint)
         frame = frame_at(own.Location)
@@ -205,7 +202,7 @@ class DaidalusResponse:
         return self._do(state, act, found, reasons, now_ms)
 
     def _conflicts(self, state: Answering, message: Any) -> dict[int, float]:
-        """Intruders whose predicted loss is soon, and how soon [s]."""
+        """Intruders with an imminent predicted loss, and the time to it [s]."""
         p = state.parameters
         pairs = zip(message.EntityList, message.TimeToViolationList, strict=False)
         return {
@@ -249,7 +246,7 @@ class DaidalusResponse:
 
     @staticmethod
     def _bank_turn(state: Answering, speed: float) -> float:
-        """Turn rate at the greatest bank angle of the vehicle's configuration, else a standard turn."""
+        """Turn rate at the maximum bank angle of the vehicle's configuration, otherwise a standard turn."""
         profile = getattr(state.configuration, "NominalFlightProfile", None)
         bank = profile.MaxBankAngle if profile is not None else 0.0
         if not bank or not speed:
@@ -257,7 +254,7 @@ class DaidalusResponse:
         return math.degrees(G_M_S2 * math.tan(math.radians(bank)) / speed)
 
     def _wanted(self, state: Answering, flight: Flight, goal: Any) -> float:
-        """The value that a manoeuvre should be near: the present one; on hold that of the way back."""
+        """The preferred value of a manoeuvre: the present one; on hold, that of the return path."""
         if self._kind == "Heading":
             return flight.heading if goal is None else _heading_to(state, flight, goal)
         if self._kind == "GroundSpeed":
@@ -269,7 +266,7 @@ class DaidalusResponse:
     def _way_back(
         self, state: Answering, flight: Flight, goal: Any, message: Any, zones: Any
     ) -> tuple[bool, str]:
-        """Whether the way to the next waypoint is free of bands and zones, and if not why."""
+        """Whether the path to the next waypoint is clear of bands and zones, and if not, why."""
         if not state.response.off:
             return False, ""
         if goal is None:
@@ -289,7 +286,7 @@ class DaidalusResponse:
         return True, ""
 
     def _taken(self, state: Answering) -> bool:
-        """The vehicle says that it flies a waypoint of its mission."""
+        """Whether the vehicle reports that it flies to a waypoint of its mission."""
         known = _waypoint(state.mission, state.own.CurrentWaypoint) is not None
         return known and state.own.Mode.name != "FlightDirector"
 
@@ -334,8 +331,7 @@ class DaidalusResponse:
         )
 
     def _say(self, state: Answering, kind: str, text: str, out: list[Any]) -> Step:
-        """A status whenever it differs from the last one by more than its numbers, or something is
-        commanded."""
+        """Send a status if it differs from the last one by more than its numbers, or if something is commanded."""
         gist = kind + "".join(c for c in text if not c.isdigit())
         if gist == state.said and not out:
             return state, out
@@ -372,7 +368,7 @@ def _heading_to(state: Answering, flight: Flight, goal: Any) -> float:
 
 
 def _better(found: Found, flown: Manoeuvre | None, wanted: float) -> bool:
-    """A manoeuvre is nearer to the wanted value than the one that is flown, by a fair amount."""
+    """Whether a manoeuvre is closer to the wanted value than the one being flown, by a clear margin."""
     if found.manoeuvre is None or flown is None or flown.kind != found.manoeuvre.kind:
         return False
     worst, best = (_apart(m.kind, m.value, wanted) for m in (flown, found.manoeuvre))

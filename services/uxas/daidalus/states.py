@@ -1,8 +1,8 @@
-"""AirVehicleStates as detect and avoid takes them: one plane at the ownship, one instant, one wind.
+"""Converts AirVehicleStates for detect and avoid: one plane at the ownship, one instant, one wind.
 
-The velocity over ground is course, ground speed and vertical speed; the wind is what the ownship
-reports (WindDirection is where it comes from), and is subtracted from every velocity. Another
-aircraft's state is moved along its velocity to the ownship's time.
+The ground velocity is course, ground speed and vertical speed; the wind is what the ownship reports
+(WindDirection is where it comes from), and is subtracted from every velocity. An intruder's state
+is extrapolated along its velocity to the ownship's time.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from cratous.core.daa.state import Aircraft
 
 
 class Wind(NamedTuple):
-    """Where the air goes [m/s]."""
+    """Wind velocity [m/s], in the direction towards which the air moves."""
 
     east: float = 0.0
     north: float = 0.0
@@ -34,7 +34,7 @@ def wind_of(state: Any) -> Wind:
 
 
 def air_vector(state: Any, wind: Wind) -> tuple[float, float]:
-    """Heading in [0, 360) [deg] and airspeed [m/s] of an aircraft that moves as its state says."""
+    """Heading in [0, 360) [deg] and airspeed [m/s] of an aircraft from its state."""
     east, north = ground(state)
     east, north = east - wind.east, north - wind.north
     heading = math.degrees(math.atan2(east, north)) % 360.0
@@ -42,10 +42,10 @@ def air_vector(state: Any, wind: Wind) -> tuple[float, float]:
 
 
 def aircraft(own: Any, state: Any, wind: Wind) -> Aircraft:
-    """An aircraft in the plane at the ownship and at its time, relative to the air.
+    """An aircraft in the ownship's plane at the ownship's time, relative to the air.
 
-    An altitude of another type than the ownship's cannot be compared: it is taken to be the same,
-    which misses no conflict.
+    An altitude of another type than the ownship's cannot be compared: it is assumed to be equal, so
+    that no conflict is missed.
     """
     here, there = own.Location, state.Location
     place = project(
@@ -71,5 +71,5 @@ def aircraft(own: Any, state: Any, wind: Wind) -> Aircraft:
 
 
 def comparable(own: Any, state: Any) -> bool:
-    """True if the altitudes are of one type (AGL or MSL)."""
+    """True if both altitudes have the same reference (AGL or MSL)."""
     return bool(own.Location.AltitudeType.name == state.Location.AltitudeType.name)

@@ -1,7 +1,7 @@
-"""Zones as they bind a vehicle that diverts: polygons in a plane, with their padding.
+"""Active zones for a diverting vehicle: padded polygons in a plane.
 
-What cannot be judged binds nobody and is named: a zone that is no polygon, and one that the vehicle
-has already broken, from which any way out is better than none.
+Zones that cannot be checked are ignored and named: a zone that is no polygon, and one that the
+vehicle has already violated, from which any way out is better than none.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from cratous.spec.errors import BadInput
 from cratous.spec.mission import Frame, Position, Zone
 
 CELL_DEG = 0.5
-"""The plane is that of the nearest corner of such a grid, so zones are converted rarely."""
+"""The plane's origin is the nearest point of a grid of this size, so that zones are converted rarely."""
 
 
 class Surroundings(NamedTuple):
-    """The plane, its zones, and what is to be said of zones that cannot be taken as they are."""
+    """The plane, its zones, and remarks on zones that could not be converted exactly."""
 
     frame: Frame | None = None
     places: Places | None = None
@@ -30,20 +30,20 @@ class Surroundings(NamedTuple):
     missing: tuple[str, ...] = ()
 
     def position(self, place: Any) -> Position:
-        """A place (a Location3D or a Waypoint) in the plane."""
+        """Position of a Location3D or Waypoint in the plane."""
         assert self.places is not None
         north, east = self.places.local(place.Latitude, place.Longitude)
         return Position(north, east, float(place.Altitude))
 
     def binding(self, here: Position) -> tuple[tuple[Zone, ...], tuple[str, ...]]:
-        """The zones that are not broken already, and the labels of those that are."""
+        """The zones not violated at `here`, and the labels of the violated ones."""
         broken = [zone for zone in self.zones if first_bad_leg([here], [zone]) is not None]
         kept = tuple(zone for zone in self.zones if zone not in broken)
         return kept, tuple(zone.label for zone in broken)
 
 
 def frame_at(location: Any) -> Frame:
-    """The frame of a place."""
+    """The frame to which a location belongs."""
     latitude, longitude = (
         CELL_DEG * round(x / CELL_DEG) for x in (location.Latitude, location.Longitude)
     )
@@ -53,8 +53,8 @@ def frame_at(location: Any) -> Frame:
 def surroundings(frame: Frame, bodies: Iterable[Any], altitudes: str) -> Surroundings:
     """KeepInZones and KeepOutZones as polygons in the plane of a frame.
 
-    altitudes: the type (AGL, MSL) of the vehicle's altitudes; a zone whose altitudes are of the other
-    type cannot be compared, and binds at every altitude.
+    altitudes: reference (AGL, MSL) of the vehicle's altitudes; a zone with altitudes of the other
+    reference cannot be compared, and applies at every altitude.
     """
     places, zones, missing = Places(frame), [], []
     for body in bodies:

@@ -1,0 +1,155 @@
+"""Whether a theorem's goals could be false, if a kernel's result were free, at more than a few arguments.
+
+A condition in a goal (`c.implies(x == 3, ...)`) restricts a theorem like a premise, but is not among its premises. So
+the claim is stated once more with results that may have any value of their type: where a goal is then false, but not
+with other results of definitions too, it relates the kernel to the definition. Two such points with neighbouring
+arguments are required, as `argument_values` requires for premises.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, get_args, get_origin, get_type_hints
+
+import z3
+
+from cratous.core.kernel import Fold
+from cratous.proofs.engine.argument_values import Given, Possible
+from cratous.proofs.engine.claim import Claim
+from cratous.proofs.engine.lift import join
+from cratous.proofs.engine.terms import free_names, fresh, known, leaves, statement
+from cratous.proofs.statements.closed_definitions import full_name
+
+PARTS = 3000
+"""A question with more distinct subterms is not asked."""
+
+
+@dataclass(repr=False)
+class FreeResults(Claim):
+    """A claim whose uses of kernels and definitions can each be switched to an arbitrary result."""
+
+    switches: dict[int, z3.BoolRef] = field(default_factory=dict)
+    given: dict[int, tuple[Any, ...]] = field(default_factory=dict)
+    said: list[tuple[list[z3.BoolRef], list[z3.BoolRef], z3.BoolRef]] = field(default_factory=list)
+    free: dict[Any, tuple[z3.BoolRef, Any]] = field(default_factory=dict)
+    kept: list[Any] = field(default_factory=list)
+    number: int = 0
+
+    def _freed(self, what: str, function: Callable[..., Any], args: Any, value: Any) -> Any:
+        terms = [known(leaf) for leaf in leaves(args)]
+        if not any(map(free_names, terms)):
+            return value
+        self.kept += terms
+        key = (what, function, tuple(term.get_id() for term in terms))
+        if key not in self.free:
+            name = f"{what}!{full_name(function)}!{len(self.free)}"
+            any_value = _any(name, get_type_hints(function)["return"])
+            self.free[key] = z3.Bool(f"{name}!switch"), any_value
+        switch, any_value = self.free[key]
+        return join([(switch, any_value), (z3.Not(switch), value)])
+
+    def use(self, kernel: Callable[..., Any], *args: Any, when: Any = True) -> Any:
+        value = self._freed("kernel", kernel, args, super().use(kernel, *args, when=when))
+        key = ("kernel", kernel, tuple(known(leaf).get_id() for leaf in leaves(args)))
+        if key in self.free:
+            self.switches[self.number] = self.free[key][0]
+        self.given[self.number] = args
+        self.number += 1
+        return value
+
+    def define(self, definition: Callable[..., Any], *args: Any) -> Any:
+        return self._freed("definition", definition, args, super().define(definition, *args))
+
+    def fold(self, kernel_fold: Fold[Any], **how: Any) -> None:
+        """No goal is recorded here: only premises restrict it."""
+        self.number += 1 if kernel_fold.finish is None else 2
+
+    def step(self, goal: Any, text: str) -> None:
+        """Ignored: an intermediate step is not a goal."""
+
+    def show(self, goal: Any, text: str = "the claim") -> None:
+        self.said.append((list(self.premises), list(self.facts), statement(goal)))
+
+    def cases(self, *conditions: Any, goal: Any, text: str = "the claim") -> None:
+        self.show(goal, text)
+
+    def _owe(self, kind: str, text: str, goal: z3.BoolRef) -> None:
+        """The parts of an induction are goals; other obligations are ignored here."""
+        if kind in ("base", "step", "use"):
+            self.said.append((list(self.premises), list(self.facts), goal))
+
+    def _closed(self, *_: Any) -> None:
+        """Ignored, like other obligations."""
+
+    def arguments(self, use: int) -> list[z3.ExprRef]:
+        """The arguments of a use as stated, without literals."""
+        off = [(switch, z3.BoolVal(False)) for switch, _ in self.free.values()]
+        terms = [known(leaf) for leaf in leaves(self.given.get(use, ()))]
+        return [z3.simplify(z3.substitute(term, *off)) for term in terms if free_names(term)]
+
+    def excluded(self, use: int, by_definition: str = "") -> z3.BoolRef:
+        """Some goal excludes a result of this use; by_definition: because of the result of this definition."""
+        switches = [switch for switch, _ in self.free.values()]
+        ours = self.switches[use]
+        off = [(s, z3.BoolVal(s.eq(ours))) for s in switches]
+        meant = [
+            (s, z3.BoolVal(s.eq(ours) or str(s).startswith(f"definition!{by_definition}!")))
+            for s in switches
+        ]
+        found = []
+        name = ours.decl().name()
+        for premises, facts, goal in self.said:
+            if name not in free_names(z3.And(*premises, goal)):
+                continue  # the goal does not depend on this use
+            here = z3.And(*premises)
+            wrong = z3.substitute(z3.And(here, *facts, z3.Not(goal)), *off)
+            right = z3.substitute(z3.Implies(here, goal), *meant)
+            found.append(z3.And(wrong, right) if by_definition else wrong)
+        return z3.Or(*found)
+
+
+def _is_large(term: z3.ExprRef) -> bool:
+    """Whether it has more than PARTS subterms: the solver's effort does not count reading them."""
+    seen: set[int] = set()
+    todo = [term]
+    while todo and len(seen) <= PARTS:
+        part = todo.pop()
+        if part.get_id() not in seen:
+            seen.add(part.get_id())
+            todo += part.children()
+    return len(seen) > PARTS
+
+
+def _any(name: str, kind: Any) -> Any:
+    if get_origin(kind) is tuple:
+        return tuple(_any(f"{name}.{k}", part) for k, part in enumerate(get_args(kind)))
+    return fresh(name, kind)
+
+
+def decides(claim: FreeResults, use: int, meant: str, possible: Possible) -> bool:
+    """Whether some goal decides this use's result at more than a few arguments, as far as the solver finds.
+
+    meant: the definition through which it does; empty where that was evaluated at known numbers, which are in the
+    goals. False for uses with masks.
+    """
+    terms = claim.arguments(use)
+    if use not in claim.switches or any(map(z3.is_bv, terms)):
+        return False
+    excluded = claim.excluded(use, meant)
+    numbers = [term for term in terms if not z3.is_bool(term)]
+    if _is_large(z3.And(excluded, *[term == term for term in terms])):
+        return False
+    if numbers and len(Given([excluded], possible).many(numbers)) < len(_different(numbers)):
+        return False
+    if len(numbers) == len(terms):
+        return bool(numbers) or possible([excluded]) == "sat"
+    # both values of a truth value count, though a definition may decide nothing at one of them
+    truths = [term for term in terms if z3.is_bool(term)]
+    plain = Given([claim.excluded(use)], possible)
+    decided = bool(numbers) or possible([excluded]) == "sat"
+    return decided and len(plain.many(truths)) == len(_different(truths))
+
+
+def _different(terms: list[z3.ExprRef]) -> set[int]:
+    return {term.get_id() for term in terms}

@@ -1,0 +1,231 @@
+"""Whether a theorem's goals would be false if a kernel had another result, at pseudo-random values.
+
+A condition in a goal (`c.implies(x == 3, ...)`) restricts a theorem like a premise. So the statement is run once more
+at the places of `nudged`, with the result of a use of a kernel replaced: some goal must then be false, at a place and
+at a minute offset from it, and must not be false if the result of a definition is replaced too. Only then does this
+goal relate the kernel to the definition, for as many arguments as change.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from hashlib import sha256
+from typing import Any, NamedTuple
+
+import z3
+
+from cratous.core.kernel import qualified
+from cratous.proofs.engine.argument_values import Place, enough
+from cratous.proofs.engine.terms import leaves
+from cratous.proofs.running.late_values import now
+from cratous.proofs.running.nudged import STOPS, Nudged, Observed, no_lemma
+from cratous.proofs.running.statement import truth
+from cratous.proofs.statements.closed_definitions import full_name
+
+NO, GOAL, BY_DEFINITION = 0, 1, 2
+"""No goal excludes another result; one does; one does because of the result of a definition."""
+
+PLACES = 600
+"""The most places tried."""
+
+Call = tuple[Callable[..., Any], tuple[Any, ...]]
+"""A function, and the numbers passed to it."""
+
+
+class Statement(NamedTuple):
+    """A statement; uses: the uses of kernels to decide, by number, each with its kernel's name and its arguments
+    other than literals.
+
+    meant: the definition's full name; rows: uses whose goals refer to it without a condition, but not by a result
+    that could be replaced (it is evaluated at literals).
+    """
+
+    run: Callable[[Any], None]
+    uses: Mapping[int, tuple[str, Mapping[Place, z3.ExprRef]]]
+    meant: str
+    rows: frozenset[int]
+
+
+def decided(
+    statement: Statement, seed: str, calls: int, enough_of: Callable[[set[int]], bool]
+) -> set[int]:
+    """The uses whose results the goals are found to decide at many values; enough_of: ends the search.
+
+    calls: the most calls of functions.
+    """
+    asked = {use: terms for use, (_, terms) in statement.uses.items()}
+    values: dict[Place, set[Any]] = {place: set() for use in asked.values() for place in use}
+    many: set[Place] = set()
+    meant: set[int] = set()
+    found: set[int] = set()
+    left = [calls]
+    hairs = (0, 1) if any(z3.is_real(t) for use in asked.values() for t in use.values()) else (0,)
+    for number in range(PLACES):
+        places = [_Place(statement, f"{seed} {number}", some, left) for some in hairs]
+        for use in sorted(asked.keys() - found):
+            how = _least(place.holds(use) for place in places)
+            if how == NO:
+                continue
+            if how == BY_DEFINITION:
+                meant.add(use)
+            here, beside = places[0].base.arguments, places[-1].base.arguments
+            for at, term in asked[use].items():
+                # both values of a truth value count, though a definition may decide nothing at one of them
+                if at in here and at in beside and (how == BY_DEFINITION or z3.is_bool(term)):
+                    values[at].add(here[at])
+                    moved = here[at] != beside[at]
+                    if moved if z3.is_real(term) else enough(term, values[at]):
+                        many.add(at)
+            if use in meant and asked[use].keys() <= many:
+                found.add(use)
+                if enough_of(found):
+                    return found
+        if len(found) == len(asked) or left[0] <= 0:
+            break
+    return found
+
+
+def _least(found: Iterator[int]) -> int:
+    least = BY_DEFINITION
+    for one in found:
+        least = min(least, one)
+        if least == NO:
+            break
+    return least
+
+
+class _InUnit(Nudged):
+    """Pseudo-random reals from 0 to 1."""
+
+    def real(self, name: str) -> Fraction:
+        said = int(sha256(f"{self.seed} in unit {name}".encode()).hexdigest(), 16)
+        return Fraction(said >> 128, 2**128) + super().real(name) % Fraction(1, 2**130)
+
+
+class _Place:
+    """The runs of a statement at one place."""
+
+    def __init__(self, of: Statement, seed: str, hairs: int, left: list[int]) -> None:
+        self.statement, self.uses, self.rows, self.meant = of.run, of.uses, of.rows, of.meant
+        self.seed, self.hairs, self.left = seed, hairs, left
+        # some statements about a fraction (from 0 to 1) seldom apply elsewhere
+        self.values = _InUnit if int(sha256(seed.encode()).hexdigest(), 16) % 2 else Nudged
+
+    @functools.cached_property
+    def base(self) -> _Replaced:
+        """The run of the statement as it is."""
+        return self._run({}, strict=False)
+
+    def _run(self, results: Mapping[Call, Any], *, strict: bool = True) -> _Replaced:
+        values = self.values(self.seed, self.hairs)
+        on = _Replaced(values, no_lemma, results=results, strict=strict)
+        with contextlib.suppress(*STOPS):
+            if self.left[0] > 0:
+                self.statement(on)
+        self.left[0] -= 1 + len(on.found)
+        return on
+
+    def holds(self, use: int) -> int:
+        """Whether some goal excludes another result of this use: NO, GOAL or BY_DEFINITION."""
+        call = self.base.kernels.get(use)
+        if call not in self.base.found or qualified(call[0]) != self.uses[use][0]:
+            return NO
+        found = NO
+        for other in _others(self.base.found[call], self.seed):
+            wrong = self._run({call: other})
+            if not wrong.false:
+                continue
+            if use in self.rows:
+                return BY_DEFINITION
+            found = GOAL
+            for meant in wrong.definitions:
+                if meant not in wrong.found or full_name(meant[0]) != self.meant:
+                    continue
+                for result in (other, *leaves(other), *_others(wrong.found[meant], self.seed)):
+                    if _shape(result) != _shape(wrong.found[meant]):
+                        continue
+                    right = self._run({call: other, meant: result})
+                    if any(n <= right.asked and n not in right.false for n in wrong.false):
+                        return BY_DEFINITION
+                    if right.outside and right.asked < max(wrong.false):
+                        return BY_DEFINITION
+        return found
+
+
+@dataclass
+class _Replaced(Observed):
+    """A run of a statement with some results replaced; records which goals are false."""
+
+    results: Mapping[Call, Any] = field(default_factory=dict)
+    strict: bool = True
+    kernels: dict[int, Call] = field(default_factory=dict)
+    definitions: list[Call] = field(default_factory=list)
+    false: set[int] = field(default_factory=set)
+    asked: int = 0
+    outside: bool = False
+
+    def __post_init__(self) -> None:
+        self.given, self.found = self.results, dict[Call, Any]()
+
+    def premise(self, condition: Any) -> None:
+        self.outside = True
+        with contextlib.nullcontext() if self.strict else contextlib.suppress(*STOPS):
+            super().premise(condition)
+        self.outside = False
+
+    def use(self, kernel: Callable[..., Any], *args: Any, when: Any = True) -> Any:
+        self.kernels[self.uses] = (kernel, now(args))
+        return super().use(kernel, *args, when=when)
+
+    def define(self, definition: Callable[..., Any], *args: Any) -> Any:
+        call = (definition, now(args))
+        if call not in self.definitions:
+            self.definitions.append(call)
+        return super().define(definition, *args)
+
+    def _run(self, function: Callable[..., Any], args: tuple[Any, ...]) -> Any:
+        call = (function, now(args))
+        if call not in self.found:
+            self.found[call] = (
+                self.given[call] if call in self.given else super()._run(function, args)
+            )
+        return self.found[call]
+
+    def show(self, goal: Any, text: str = "the claim") -> None:
+        self.asked += 1
+        if not truth(goal):
+            self.false.add(self.asked)
+
+    def cases(self, *conditions: Any, goal: Any, text: str = "the claim") -> None:
+        self.show(goal, text)
+
+
+def _others(value: Any, seed: str) -> Iterator[Any]:
+    """Other values of the same type; of a record, with one field changed at a time."""
+    if isinstance(value, tuple):
+        for k, part in enumerate(value):
+            for other in _others(part, f"{seed}.{k}"):
+                parts = [*value[:k], other, *value[k + 1 :]]
+                yield type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
+    elif isinstance(value, bool):
+        yield not value
+    elif isinstance(value, int):
+        yield from (value + apart for apart in (1, -1, 2, -2, 7, -7))
+    elif isinstance(value, Fraction):
+        by = 1 + Fraction(int(sha256(seed.encode()).hexdigest(), 16), 2**256)
+        yield from (
+            value + by,
+            value - by,
+            value + by / 64,
+            value - by / 64,
+            value + 64 * by,
+            value - 64 * by,
+        )
+
+
+def _shape(value: Any) -> Any:
+    return tuple(map(_shape, value)) if isinstance(value, tuple) else type(value)
