@@ -1,8 +1,8 @@
-"""G1 of vehicles that merge: does any vehicle pass the fix too soon after another? Exact, between samples.
+"""G1 of vehicles that merge: does any vehicle pass the fix too soon after another? Exact, also between samples.
 
-Each stay of a vehicle in the entry zone, the closed disc about the fix, is one passage, at the instant at which it is
-nearest to the fix, the first of equals. With a + t v on a leg that is at t = -a.v / |v|^2, held to the leg: a rational
-number, of which no root is taken.
+Each stay of a vehicle in the entry zone, the closed disc about the fix, is one passage, at the first instant at
+which it is nearest to the fix. On a leg a + t v that is t = -a.v / |v|^2, clipped to the leg: a rational number,
+without a square root.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, seconds
 
 
 def rows(mission: Mission, flown: dict[int, Track]) -> Iterator[Row]:
-    """One row for each two vehicles that merge."""
+    """One row for each pair of vehicles that merge."""
     fix = mission.fix
     if fix is None:
         return
@@ -77,7 +77,7 @@ def passages(fix: Fix, track: Track) -> list[Fraction]:
 
 
 def _nearest(fix: Fix, before: State, after: State) -> tuple[Fraction, Fraction]:
-    """The least distance from the fix on a leg, squared, and when that is [ms]."""
+    """The square of the least distance from the fix on a leg [m2], and its time [ms]."""
     north = Fraction(before.north_m) - Fraction(fix.north_m)
     east = Fraction(before.east_m) - Fraction(fix.east_m)
     moved_n, moved_e = (Fraction(after[k]) - Fraction(before[k]) for k in (1, 2))

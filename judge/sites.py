@@ -1,4 +1,4 @@
-"""Places of a mission: where vehicles may land, and the fix at which they merge."""
+"""Places of a mission: landing sites, and the fix at which vehicles merge."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from cratous.judge.fields import Node
 
 
 class Site(NamedTuple):
-    """A disc on which vehicles may land: its middle, its ground [m MSL], its radius."""
+    """A disc on which vehicles may land: its centre, its ground [m MSL], its radius."""
 
     name: str
     north_m: float
@@ -18,7 +18,7 @@ class Site(NamedTuple):
 
 
 class Fix(NamedTuple):
-    """Where vehicles merge: its name and place, who passes it how far apart in time, and the radius of the entry zone."""
+    """A merge fix: name, place, the vehicles that merge there, their separation in time, radius of the entry zone."""
 
     name: str
     north_m: float
@@ -29,7 +29,7 @@ class Fix(NamedTuple):
 
 
 def fix_of(data: Node) -> Fix:
-    """As the log has it; BadInput if it does not fit."""
+    """The merge fix as logged. BadInput if it is malformed."""
     north_m, east_m, entry_m = data.reals("north_m", "east_m", "entry_m")
     who = frozenset(one.whole for one in data["vehicles"])
     name, apart_ms = data["name"].text, data["separation_ms"].whole
@@ -37,6 +37,6 @@ def fix_of(data: Node) -> Fix:
 
 
 def site_of(data: Node) -> Site:
-    """As the log has it; BadInput if it does not fit."""
+    """The landing site as logged. BadInput if it is malformed."""
     numbers = data.reals("north_m", "east_m", "ground_m", "radius_m")
     return Site(data["name"].text, *numbers)

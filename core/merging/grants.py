@@ -1,7 +1,7 @@
 """Which slots a member grants, as transition kernels. Definitions: `spec.merging.grants`.
 
-Whatever a leader proposes, or several of them: a member grants a vehicle one time for each request, apart from all that
-it has granted to others, so that slots for which there is a majority are apart.
+For each request of a vehicle a member grants at most one time, apart from the times last granted to all other
+vehicles, whatever one or several leaders propose. So any two slots with a majority are apart.
 """
 
 from typing import NamedTuple
@@ -10,14 +10,14 @@ from cratous.core.kernel import fold, kernel
 
 
 class Grant(NamedTuple):
-    """The last that a member has granted to a vehicle. request: of which, 0 nothing yet; time: at the fix [ms]."""
+    """The last slot that a member granted to a vehicle. request: its number, 0 for none yet; time: at the fix [ms]."""
 
     request: int
     time: int
 
 
 class Answer(NamedTuple):
-    """grant: afterwards; yes: what was proposed is."""
+    """grant: the grant afterwards; yes: whether the proposed slot is granted."""
 
     grant: Grant
     yes: bool
@@ -25,8 +25,11 @@ class Answer(NamedTuple):
 
 @kernel(implements="merging.grants.all_leave_room", nonnegative=("separation",))
 def room_beside(so_far: bool, request: int, time: int, asked: int, separation: int) -> bool:
-    """With what is granted to one more of the other vehicles. request, time: as in `Grant`; asked: the time at the fix
-    that is proposed [ms]; separation: between two of them [ms], >= 0."""
+    """Whether the time also leaves room for one more of the other vehicles.
+
+    so_far: the result for those before; request, time: that vehicle's `Grant`; asked: the proposed time at the
+    fix [ms]; separation: least time between two slots [ms], >= 0.
+    """
     return so_far and (request == 0 or asked - time >= separation or time - asked >= separation)
 
 
@@ -37,8 +40,11 @@ has_room = fold(
 
 @kernel(implements="merging.grants.is_after_proposal")
 def grant_asked(grant: Grant, asked: Grant, room: bool) -> Answer:
-    """A slot is proposed for a vehicle. asked: for which request, > 0, and when; room: it is apart from what is
-    granted to all others (`has_room`)."""
+    """The answer to a slot proposed for a vehicle.
+
+    grant: the vehicle's grant so far; asked: the proposed slot, request > 0; room: it is apart from the grants of
+    all other vehicles (`has_room`).
+    """
     if asked.request > grant.request and room:
         return Answer(asked, True)
     same = asked.request == grant.request and asked.time == grant.time

@@ -1,8 +1,8 @@
-"""Arrival slots at a merge fix, from the earliest and the latest arrival of each vehicle. Definitions: `spec.merging.slots`.
+"""Arrival slots at a merge fix, from each vehicle's earliest and latest arrival. Definitions: `spec.merging.slots`.
 
-In one order each vehicle gets the first time that its window and those before it leave (`in_line`): then nobody of that
-order can have less delay. `slots_of` looks through orders, the one of the earliest arrivals first, to the first in
-which everybody has a slot; where there is none, no assignment exists.
+In a given order each vehicle gets the earliest time in its window after those before it (`in_line`); no assignment
+in that order gives any vehicle less delay. `slots_of` searches the orders, beginning with that of the earliest
+arrivals, for the first in which every vehicle has a slot; if there is none, no assignment exists.
 """
 
 from collections.abc import Iterator, Sequence
@@ -12,7 +12,7 @@ from cratous.core.kernel import driver, fold, kernel
 
 
 class Line(NamedTuple):
-    """free: from when on the fix is free [ms]; fits: each so far has a slot; time: of the last one [ms]."""
+    """free: time from which the fix is free [ms]; fits: each vehicle so far has a slot; time: of the last slot [ms]."""
 
     free: int
     fits: bool
@@ -21,8 +21,11 @@ class Line(NamedTuple):
 
 @kernel(implements="merging.slots.is_next_slot", nonnegative=("separation",))
 def slot_step(line: Line, earliest: int, latest: int, separation: int) -> Line:
-    """With the slot of one more vehicle, which can be there from earliest until latest [ms]. separation: between two
-    of them [ms], >= 0. Once one has none the line stays as it is."""
+    """The line with the slot of one more vehicle.
+
+    earliest, latest: its window at the fix [ms]; separation: least time between two slots [ms], >= 0. Once a vehicle
+    has no slot, the line no longer changes.
+    """
     time = max(line.free, earliest)
     if not line.fits or time > latest:
         return Line(line.free, False, line.time)
@@ -35,7 +38,7 @@ in_line = fold(
 
 
 class Wanted(NamedTuple):
-    """When a vehicle can be at the fix [ms]: a slot that it has is the only time."""
+    """The window of a vehicle at the fix [ms]; for a vehicle with a slot, that time only."""
 
     vehicle_id: int
     earliest: int
@@ -43,15 +46,18 @@ class Wanted(NamedTuple):
 
 
 Slots = tuple[tuple[int, int], ...]
-"""Vehicle and time [ms], in order."""
+"""Vehicle ids and times [ms], in the order of passing the fix."""
 MOST = 8
-"""Orders of more vehicles are not looked through."""
+"""Largest number of vehicles whose orders are searched."""
 
 
 @driver(checked_by=("slot_step",))
 def slots_of(wanted: Sequence[Wanted], separation: int) -> Slots | None:
-    """A slot for each, in the first order in which there is one, orders by earliest arrival first; None where no
-    assignment exists. ValueError for more than MOST vehicles."""
+    """A slot for each vehicle, in the first order in which all fit, beginning with that of the earliest arrivals.
+
+    separation: least time between two slots [ms], >= 0. None if no assignment exists. ValueError for more than
+    MOST vehicles.
+    """
     if len(wanted) > MOST:
         raise ValueError(f"{len(wanted)} vehicles at one fix, {MOST} at most")
     first = sorted(wanted, key=lambda one: (one.earliest, one.latest, one.vehicle_id))

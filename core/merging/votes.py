@@ -1,7 +1,7 @@
 """Votes for a leader among the vehicles that merge at a fix, as transition kernels. Definitions: `spec.merging.votes`.
 
-Terms and votes are those of Raft (Ongaro, Ousterhout 2014), without its log: what is agreed upon are slots, which members
-grant (`core.merging.grants`).
+Terms and votes are those of Raft (Ongaro, Ousterhout 2014), without its log: the members agree on slots, by granting
+them (`core.merging.grants`).
 """
 
 from typing import NamedTuple
@@ -10,14 +10,14 @@ from cratous.core.kernel import fold, kernel
 
 
 class Seat(NamedTuple):
-    """latest: the latest term that a member knows; voted: whom it has voted for in it, 0 nobody yet."""
+    """latest: the latest term that a member knows; voted: the candidate it voted for in that term, 0 for none yet."""
 
     latest: int
     voted: int
 
 
 class Vote(NamedTuple):
-    """seat: afterwards; yes: the member is for the candidate in that term."""
+    """seat: the seat afterwards; yes: whether the candidate has the member's vote in that term."""
 
     seat: Seat
     yes: bool
@@ -25,7 +25,7 @@ class Vote(NamedTuple):
 
 @kernel(implements="merging.votes.is_after_ask")
 def seat_asked(seat: Seat, term: int, candidate: int) -> Vote:
-    """A candidate asks for a vote in a term, or its leader speaks in it. candidate: its id, > 0."""
+    """The answer to a candidate that requests a vote in a term, or to its leader. candidate: the sender's id, > 0."""
     if term < seat.latest:
         return Vote(seat, False)
     if term == seat.latest and seat.voted != 0 and seat.voted != candidate:
@@ -34,7 +34,7 @@ def seat_asked(seat: Seat, term: int, candidate: int) -> Vote:
 
 
 class Standing(NamedTuple):
-    """seat: afterwards; stands: the member does."""
+    """seat: the seat afterwards; stands: whether the member stands for election."""
 
     seat: Seat
     stands: bool
@@ -42,7 +42,7 @@ class Standing(NamedTuple):
 
 @kernel(implements="merging.votes.stands_in")
 def seat_stands(seat: Seat, member: int) -> Standing:
-    """The member stands in the next term; not in one that could not be counted. member: its id, > 0."""
+    """The member stands for election in the next term, unless its term has reached 2^60. member: its id, > 0."""
     if seat.latest >= 1152921504606846976:
         return Standing(seat, False)
     return Standing(Seat(seat.latest + 1, member), True)
@@ -50,7 +50,7 @@ def seat_stands(seat: Seat, member: int) -> Standing:
 
 @kernel(implements="merging.votes.counted")
 def tally_step(count: int, has: bool) -> int:
-    """One member more is looked at. has: it is for what is counted; no more than 2^30 are counted."""
+    """The count with one more member. has: whether that member is counted; the count stops at 2^30."""
     if has and count < 1073741824:
         return count + 1
     return count
@@ -61,5 +61,5 @@ tally = fold(name="tally", implements="merging.votes.number_with", step=tally_st
 
 @kernel(implements="merging.votes.is_majority")
 def is_majority(count: int, members: int) -> bool:
-    """True iff so many are more than half of the members."""
+    """True iff the count is more than half of the members."""
     return count + count > members

@@ -273,7 +273,7 @@ def _event(flight: Flight, short: str, body: dict[str, Any]) -> None:
 
 
 def _merges(body: dict[str, Any]) -> str:
-    """How a vehicle flies over a merge fix, in words."""
+    """A `MergeState` in words."""
     leader = f"led by {body['Leader']}" if body["Leader"] else "without a leader"
     slot = f", slot {body['Slot'] / 1000:.2f} s" if body["Slot"] >= 0 else ""
     return (

@@ -34,7 +34,7 @@ def give_up(config: Config, state: State, out: Out) -> State:
         under_ms = chain.leg.flown_ms(chain.suspended, state.now_ms)
         # a take-off does not count as time of avoidance
         under_ms -= take_off_of(state, chain.vehicle)
-        # nor is what its slot at a merge fix takes
+        # nor does the time for its slot at a merge fix
         longest_ms = avoiding_ms + merging_ms(state.mission, vid)
         if chain.item is None:
             if chain.suspended and leg_given_up(0, 0, under_ms, ANEW_MS):

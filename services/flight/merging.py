@@ -1,7 +1,7 @@
-"""The direct links over which vehicles that merge at a fix talk, and what their ICAROUS is told of it before the flight.
+"""The direct links between vehicles that merge at a fix, and the configuration of their ICAROUS instances for it.
 
-What one says at a heartbeat comes to the others at the next one, or never: which is asked for by the mission, the same for
-the same seed.
+A message sent at a heartbeat arrives at the next one, or is lost: as the mission's faults say, the same for the same
+seed.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from cratous.spec.mission import Mission
 
 
 def merge_fix(mission: Mission, vehicle_id: int) -> Fix | None:
-    """The fix where a vehicle merges with others; None where it does not."""
+    """The fix at which a vehicle merges; None for none."""
     merging = merges(mission, vehicle_id)
     if merging is None:
         return None
@@ -32,7 +32,7 @@ def merge_fix(mission: Mission, vehicle_id: int) -> Fix | None:
 
 
 class DirectTalk:
-    """What was said at the last heartbeat and is on its way."""
+    """The direct links: messages sent and not yet delivered."""
 
     def __init__(self, mission: Mission, instances: Collection[int]) -> None:
         merging = merging_of(mission)
@@ -41,11 +41,11 @@ class DirectTalk:
         self._said: list[Tells] = []
 
     def tell(self, said: Tells) -> None:
-        """A member says something to all others."""
+        """Send a member's message to all others."""
         self._said.append(said)
 
     def come(self, now_ms: int) -> Iterator[tuple[int, Talk]]:
-        """What comes to whom now."""
+        """Messages delivered now, each with the id of its recipient."""
         said, self._said = self._said, []
         for one in said:
             for other in self._members:

@@ -143,7 +143,7 @@ def take_off_state(said: TakesOff) -> Any:
 
 
 def merge_state(said: Merges) -> Any:
-    """How a vehicle flies over a merge fix, and what it knows of the election, as a `MergeState`."""
+    """A `MergeState`: the stage, request and slot of a vehicle that merges, and the election as it knows it."""
     return lmcp.new(
         "MergeState",
         VehicleID=said.vehicle_id,
@@ -158,7 +158,7 @@ def merge_state(said: Merges) -> Any:
 
 
 def of_instance(said: Foresees | WithoutLink | TakesOff | Hears | Merges) -> Any:
-    """What an instance says to the record, as a message."""
+    """An instance's notice for the record, as a message."""
     match said:
         case Foresees():
             return conflict(said)

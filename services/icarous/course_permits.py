@@ -39,7 +39,7 @@ def refused(course: Course, sensed: Sensed, scene: Scene, daa: Daa, beat_s: floa
 
 
 def refused_soon(course: Course, sensed: Sensed, scene: Scene, daa: Daa, beat_s: float) -> str:
-    """The same of what is flown of it within the look-ahead, where it is longer than that."""
+    """As `refused`, but a course longer than the look-ahead is checked only within the look-ahead."""
     pieces = way_along(sensed.motion, course.left, scene.lookahead_s, pace=course.pace).pieces
     flown_m = sum(piece.duration_s * _speed_m_s(piece) for piece in pieces)
     left_m = 0.0 if course.track is None else course.track.length_m - course.s_m

@@ -1,4 +1,4 @@
-"""What an instance knows about the fix where it merges, and remembers of it."""
+"""The merge fix of an instance, and the instance's state of the merge."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cratous.spec.mission import Position
 
 
 class Fix(NamedTuple):
-    """What does not change: the fix and its zones [m], who merges there, and how far slots are apart."""
+    """Fixed configuration: the fix, the radii of its zones [m], and the configuration of the agreement on slots."""
 
     name: str
     place: Vec2
@@ -24,7 +24,7 @@ class Fix(NamedTuple):
 
 
 class Followed(NamedTuple):
-    """The way that was told, and where on it the vehicle is [m of arc length]."""
+    """The announced route, and the vehicle's position on it [m of arc length]."""
 
     points: tuple[Position, ...]
     track: Track
@@ -32,9 +32,12 @@ class Followed(NamedTuple):
 
 
 class Merging(NamedTuple):
-    """stage: as the kernels have it; merger: what the members have agreed upon, as far as this one knows; way: of the
-    vehicle, None where none was told; course: what is flown, None where nothing is permitted, or UxAS flies; slot: at
-    the fix [ms], None for none."""
+    """State of a merge.
+
+    stage: numbered as in `core.merging.stages`; merger: this member's state of the agreement on slots; way: the
+    vehicle's route, None if none was announced; course: the course being flown, None if none is permitted or UxAS
+    flies; slot: at the fix [ms], None for none.
+    """
 
     stage: int = AWAY
     merger: Merger = Merger()

@@ -1,10 +1,10 @@
-"""How the members of a merge fix agree upon slots: `handle(state, what has come) -> (state, what is said)`.
+"""How the vehicles that merge at a fix, its members, agree on slots; pure functions on a member's state.
 
-At each heartbeat a member says all that it knows to the others: its term and vote, what it wants, what it has granted, and,
-as a leader, what it proposes. So a message that is lost is made good by the next one, and one that comes late or twice
-says nothing new. Who leads is voted for by terms; a leader proposes slots; a slot counts for its vehicle once a majority of
-the members has granted it for its present request. What a member grants is decided by kernels (`core.merging`), so
-slots that count are apart whoever leads, and however many believe that they do.
+At each heartbeat a member sends its whole state to the others: its term and vote, its request, its grants, and, as
+leader, its proposals. So the next message makes up for a lost one, and an overtaken or duplicate one is ignored.
+Members elect a leader by terms; the leader proposes slots; a slot is valid once a majority of the members has granted it for
+the vehicle's present request. Kernels (`core.merging`) decide what a member grants, so valid slots are apart even if
+several members take themselves for the leader.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ from cratous.spec.mission import Position
 
 FOLLOWS, STANDS, LEADS = 0, 1, 2
 LOST_MS = 2000
-"""A leader counts as lost when nothing was heard of it for this long [ms],"""
+"""Silence after which the first member takes the leader for lost [ms]."""
 LATER_MS = 1000
-"""by each member so much later than by the one before it [ms], so that they do not all stand at once."""
+"""Each member takes it for lost this much later than the one before it, so that not all stand at once [ms]."""
 WAITS_MS = 6000
-"""A request without a slot is made anew after this long [ms]."""
+"""Time after which a request without a slot is replaced by a new one [ms]."""
 STALE_MS = 3000
-"""What a member wanted so long ago is not scheduled any more [ms]."""
+"""Age from which a member's request is no longer scheduled [ms]."""
 NOTHING = Grant(0, 0)
 
 
 class Slot(NamedTuple):
-    """A time at the fix [ms] for one request of a vehicle."""
+    """A time at the fix [ms] for one request of a vehicle; request: its number."""
 
     vehicle_id: int
     request: int
@@ -40,7 +40,7 @@ class Slot(NamedTuple):
 
 
 class Wish(NamedTuple):
-    """When a vehicle can be at the fix [ms]. request: as which of its requests it asks, 0 for none."""
+    """A vehicle's request and its window at the fix [ms]. request: its number, 0 for none."""
 
     request: int = 0
     earliest: int = 0
@@ -48,8 +48,11 @@ class Wish(NamedTuple):
 
 
 class Said(NamedTuple):
-    """All that a member says at a heartbeat. term, voted, role: of the election; book: what it has granted last to each
-    vehicle; proposed: as a leader; flies: the way by which ICAROUS flies it, () where UxAS does."""
+    """A member's message at a heartbeat.
+
+    at_ms: when it was sent [ms]; term, voted, role: of the election; book: its last grant to each vehicle; proposed:
+    slots it proposes as leader; flies: the route flown by its ICAROUS, () if UxAS flies.
+    """
 
     member: int
     at_ms: int
@@ -63,7 +66,7 @@ class Said(NamedTuple):
 
 
 class Talks(NamedTuple):
-    """What does not change: the members in order of their ids, whose talk it is, and how far slots are apart [ms]."""
+    """Fixed configuration: the members in order of their ids, this member's id, and the time between slots [ms]."""
 
     members: tuple[int, ...]
     me: int
@@ -71,8 +74,12 @@ class Talks(NamedTuple):
 
 
 class Merger(NamedTuple):
-    """seat, role: of the election; led_ms: when a leader was last heard, or it stood [ms]; book, proposed: as it says
-    them; heard: what each other member has said last; wish, asked_ms: its request, and since when [ms]."""
+    """State of a member.
+
+    seat, role: of the election; led_ms: when it last heard a leader or candidate, led or stood [ms]; book, proposed: as
+    in `Said`; heard: the last message of each other member; wish, asked_ms: its request, and when it was made [ms];
+    requests: number of requests so far.
+    """
 
     seat: Seat = Seat(0, 0)
     role: int = FOLLOWS
@@ -86,7 +93,7 @@ class Merger(NamedTuple):
 
 
 def hear(talks: Talks, merger: Merger, said: Said, now_ms: int) -> Merger:
-    """Another member has said something; BadInput if it is none."""
+    """The state after another member's message. BadInput if the sender is not another member."""
     if said.member not in talks.members or said.member == talks.me:
         members = ", ".join(map(str, talks.members))
         raise BadInput(
@@ -94,10 +101,10 @@ def hear(talks: Talks, merger: Merger, said: Said, now_ms: int) -> Merger:
         )
     before = _last(merger, said.member)
     if before is not None and not lasted(before.at_ms, said.at_ms, 1):
-        return merger  # overtaken: what it said is in what was heard since
+        return merger  # overtaken by a newer message, which contains its content
     others = tuple(one for one in merger.heard if one.member != said.member)
     merger = merger._replace(heard=(*others, said))
-    # whoever votes in a newer term tells that there is one
+    # a vote in a newer term shows that there is one
     whom = said.member if said.role != FOLLOWS else said.voted
     newer = said.term > merger.seat.latest
     if whom and (newer or said.role != FOLLOWS):
@@ -115,7 +122,10 @@ def hear(talks: Talks, merger: Merger, said: Said, now_ms: int) -> Merger:
 def beat(
     talks: Talks, merger: Merger, flies: tuple[Position, ...], now_ms: int
 ) -> tuple[Merger, Said]:
-    """A heartbeat: stand or lead, and say all. merger: with what its vehicle wants now; flies: as in `Said`."""
+    """The state after a heartbeat, in which the member may stand or lead, and its message to the others.
+
+    merger: with its present request; flies: as in `Said`.
+    """
     if merger.role == STANDS and _elected(talks, merger):
         merger = merger._replace(role=LEADS, proposed=())
     if merger.role != LEADS:
@@ -124,7 +134,7 @@ def beat(
             standing = seat_stands(merger.seat, talks.me)
             role = STANDS if standing.stands else FOLLOWS
             merger = merger._replace(seat=standing.seat, role=role, led_ms=now_ms, proposed=())
-            if role == STANDS and _elected(talks, merger):  # alone
+            if role == STANDS and _elected(talks, merger):  # the only member
                 merger = merger._replace(role=LEADS)
     if merger.role == LEADS:
         merger = merger._replace(proposed=_proposals(talks, merger, now_ms), led_ms=now_ms)
@@ -135,8 +145,11 @@ def beat(
 
 
 def asked(merger: Merger, wants: bool, anew: bool, now_ms: int) -> tuple[Merger, int]:
-    """The number of the vehicle's request, 0 where it wants nothing. anew: it does not use the slot that it had, or may
-    get; so does who has waited for one too long."""
+    """The number of the vehicle's request, 0 if it needs no slot.
+
+    wants: whether it needs a slot; anew: whether it gives up its present request, with the slot that it has or may
+    get, for a new one.
+    """
     request = merger.wish.request
     if not wants or (request and not anew):
         return merger, request if wants else 0
@@ -145,12 +158,12 @@ def asked(merger: Merger, wants: bool, anew: bool, now_ms: int) -> tuple[Merger,
 
 
 def waited(merger: Merger, now_ms: int) -> bool:
-    """Whether the present request is so old that it is made anew, if there is no slot for it."""
+    """Whether the present request is so old that it is replaced if it has no slot."""
     return not in_time(merger.asked_ms, now_ms, WAITS_MS)
 
 
 def slot_of(talks: Talks, merger: Merger, vehicle_id: int, request: int) -> int | None:
-    """The time [ms] for which there is a majority; None where there is none."""
+    """The time [ms] that a majority has granted for a request of a vehicle; None if there is none."""
     if not request:
         return None
     books = [merger.book, *(one.book for one in merger.heard)]
@@ -163,7 +176,7 @@ def slot_of(talks: Talks, merger: Merger, vehicle_id: int, request: int) -> int 
 
 
 def leader_of(merger: Merger, me: int) -> int:
-    """Who leads in its term, as far as the member knows, 0 for nobody."""
+    """Id of the leader of the member's term, as far as the member knows; 0 for none."""
     if merger.role == LEADS:
         return me
     term = merger.seat.latest
@@ -185,7 +198,7 @@ def _elected(talks: Talks, merger: Merger) -> bool:
 
 
 def _granted(talks: Talks, merger: Merger, proposed: tuple[Slot, ...]) -> Merger:
-    """With what this member grants of what is proposed."""
+    """The state after this member's answers to the proposed slots."""
     book = {one.vehicle_id: Grant(one.request, one.time) for one in merger.book}
     for vehicle_id, request, time in proposed:
         others = [grant for number, grant in book.items() if number != vehicle_id]
@@ -197,7 +210,7 @@ def _granted(talks: Talks, merger: Merger, proposed: tuple[Slot, ...]) -> Merger
 
 
 def _wishes(talks: Talks, merger: Merger, now_ms: int) -> Iterator[tuple[int, Wish]]:
-    """What each vehicle wants, as far as it is known."""
+    """The known requests that are not stale, by vehicle."""
     yield talks.me, merger.wish
     for one in merger.heard:
         if in_time(one.at_ms, now_ms, STALE_MS):
@@ -205,7 +218,7 @@ def _wishes(talks: Talks, merger: Merger, now_ms: int) -> Iterator[tuple[int, Wi
 
 
 def _proposals(talks: Talks, merger: Merger, now_ms: int) -> tuple[Slot, ...]:
-    """What a leader proposes: slots that were proposed or granted stay, and everybody else who wants one gets one."""
+    """The leader's proposals: slots already proposed or granted stay; each other request gets one if possible."""
     wishes = {who: wish for who, wish in _wishes(talks, merger, now_ms) if wish.request}
     books = [merger.proposed, merger.book, *(one.book for one in merger.heard)]
     taken = dict[int, Slot]()
@@ -216,7 +229,7 @@ def _proposals(talks: Talks, merger: Merger, now_ms: int) -> tuple[Slot, ...]:
         )
         now = [slot for slot in slots if slot.request == request]
         if now:
-            # one that it has proposed itself, else the one that most have granted
+            # its own proposal, else the one with the most grants
             ours = [slot for slot in merger.proposed if slot in now]
             taken[who] = (
                 ours[0] if ours else max(now, key=lambda slot: (now.count(slot), -slot.time))
@@ -229,7 +242,7 @@ def _proposals(talks: Talks, merger: Merger, now_ms: int) -> tuple[Slot, ...]:
         times = dict(all_of)
         taken |= {who: Slot(who, wish.request, times[who]) for who, wish in new.items()}
         return tuple(taken[who] for who in sorted(taken))
-    # not all of them can have one: those have that come first
+    # there is no slot for all: the first to arrive get theirs
     for who in sorted(new, key=lambda number: (new[number].earliest, number)):
         window = Wanted(who, new[who].earliest, new[who].latest)
         found = slots_of([*fixed, window], talks.apart_ms)

@@ -1,8 +1,8 @@
-"""How an instance flies over a merge fix: by a slot that a majority of the members has granted, or it holds outside.
+"""How an instance flies over a merge fix: to its slot, granted by a majority of the members, or holding outside.
 
-Which stage it is in is answered by the kernel `merge_step` at each heartbeat, at which speed it is there in time by the kernel
-`pace`. The way that UxAS has told is flown at that speed, or a circle, if they are permitted from where the vehicle is
-(`course_permits`); where not even a circle is, the manoeuvre that deviates least is flown, as in any takeover.
+At each heartbeat the kernel `merge_step` decides the stage, and the kernel `pace` the speed at which the vehicle
+arrives at its slot. The route announced by UxAS is flown at that speed, or a circle, if permitted from the present position
+(`course_permits`); if not even a circle is permitted, the manoeuvre of least deviation is flown, as in any takeover.
 """
 
 from __future__ import annotations
@@ -37,25 +37,26 @@ from cratous.spec.mission.plan import Pose
 from cratous.spec.records import replace
 
 WAITS_MS = 3_600_000
-"""Who can wait has a slot within this [ms]."""
+"""The window of a vehicle that can still wait ends this much later [ms]."""
 STEADY_MS = 3000
-"""So long before its slot a vehicle keeps its speed [ms]."""
+"""The speed is kept for this time before the slot [ms]."""
 ORIGIN = Vec2(0.0, 0.0)
 PASSED_M = 1.0
-"""The fix is behind a vehicle that is no farther before it on its way [m]."""
+"""The fix counts as passed from this distance before it, along the route [m]."""
 BEATS = 4
-"""Where a vehicle is on its way is looked for as far ahead of where it was as it flies in so many heartbeats."""
+"""The position on the route is searched as far ahead as the vehicle flies in this number of heartbeats."""
 LEGS = 24
-"""A lap is said as so many legs."""
+"""Number of legs in which a lap is announced."""
 HEARD_MS = 2000
-"""The way that a member says is reckoned with for so long [ms]: four heartbeats."""
+"""Time for which a member's announced route is used [ms]."""
 BEFORE = "the slot at the fix is later: a circle is flown"
 WITHOUT = "no slot at the fix: a circle is flown"
 
 
 class Ahead(NamedTuple):
-    """What lies ahead of a vehicle. left_m: how far it is along its way to the fix, None where it does not pass it; the
-    rest: as the kernel `merge_step` asks."""
+    """The fix as seen from the vehicle. left_m: distance to it along the route, None if it is not ahead on it; near,
+    inside, entered: as in the kernel `merge_step`.
+    """
 
     left_m: float | None
     near: bool
@@ -64,7 +65,7 @@ class Ahead(NamedTuple):
 
 
 def heard(config: Config, state: State, message: Talk) -> State:
-    """Another member has said something."""
+    """The state after another member's message. BadInput if the sender is not another member."""
     fix, before = config.merging, state.merging
     if fix is None:
         return state
@@ -75,7 +76,7 @@ def heard(config: Config, state: State, message: Talk) -> State:
 def heartbeat(
     config: Config, state: State, sensed: Sensed
 ) -> tuple[State, tuple[Merges | Tells, ...]]:
-    """The stage at this heartbeat, with the course that is flown in it, what is new, and what it says to the others."""
+    """The state after a heartbeat, a notice for the record if the merge changed, and the message to the others."""
     fix, before, now_ms = config.merging, state.merging, sensed.now_ms
     if fix is None:
         return state, ()
@@ -104,7 +105,7 @@ def heartbeat(
 
 
 def with_members(config: Config, state: State, now_ms: int) -> Told:
-    """What was told of the others, and by which way a member is flown by its ICAROUS, which it says itself."""
+    """What was told of the others, with the routes of members as announced by the ICAROUS that flies them."""
     told = state.told
     if config.merging is None:
         return told
@@ -121,7 +122,7 @@ def with_members(config: Config, state: State, now_ms: int) -> Told:
 
 
 def _flies(course: Course | None, sensed: Sensed, for_s: float) -> tuple[Position, ...]:
-    """The points by which a course is flown, of a circle as many laps as are flown in this time [s]."""
+    """The points of a course; of a circle, those of the laps within this time [s]."""
     here = sensed.motion.position
     if course is None:
         return ()
@@ -134,7 +135,7 @@ def _flies(course: Course | None, sensed: Sensed, for_s: float) -> tuple[Positio
 
 
 def reason(merging: Merging) -> str:
-    """Why ICAROUS has a vehicle that merges."""
+    """The reason for which ICAROUS has authority over a vehicle that merges; "" for none."""
     if merging.stage == IN_SLOT:
         return f"merging: it is flown to be at the fix at {(merging.slot or 0) / 1000:g} s"
     if merging.stage == HOLDING:
@@ -145,7 +146,7 @@ def reason(merging: Merging) -> str:
 def flown(
     config: Config, state: State, sensed: Sensed, in_turn: frozenset[int]
 ) -> tuple[State, Choice]:
-    """The manoeuvre to fly now: along the course, or around what is in the way of all of them."""
+    """The manoeuvre to fly now: along the course, or one of avoidance if none is permitted."""
     course = state.merging.course
     if course is not None:
         choice = courses.steered(course, sensed, config.heartbeat_ms / 1000)
@@ -154,7 +155,7 @@ def flown(
 
 
 def _told(fix: Fix, before: Merging, after: Merging) -> tuple[int, int, int, int, int]:
-    """What is said when it changes: stage, term, leader, request and slot."""
+    """Stage, term, leader, request and slot (-1: none), recorded when one of them changes."""
     merger = after.merger
     leader = talk.leader_of(merger, fix.talks.me)
     slot = -1 if after.slot is None else after.slot
@@ -169,7 +170,7 @@ def _followed(
         return None
     window_m = BEATS * beat_s * motion.speed_m_s
     if before is None or before.points is not points:
-        # a way that is told anew begins about here
+        # a newly announced route begins near the present position
         before, window_m = Followed(points, Track(points, motion.heading_rad), 0.0), ON_PATH_M
         window_m += 2 * BEATS * beat_s * motion.speed_m_s
     near = before.track.nearest(motion.position, before.at_m, window_m)
@@ -200,7 +201,7 @@ def _ahead(fix: Fix, course: Course | None, way: Followed | None, sensed: Sensed
 def _agreed(
     fix: Fix, before: Merging, state: State, sensed: Sensed, ahead: Ahead
 ) -> tuple[Merger, int | None, Arrival | None]:
-    """The request with its window, the slot that it has, and at which speed it would be there in time."""
+    """The state with the present request and its window, the slot, and the speed to arrive at it; None for none."""
     merger, now_ms = before.merger, sensed.now_ms
     slot = (
         talk.slot_of(fix.talks, merger, fix.talks.me, merger.wish.request) if ahead.near else None
@@ -224,7 +225,9 @@ def _agreed(
 def _arrival(
     before: Merging, sensed: Sensed, state: State, ahead: Ahead, slot: int | None
 ) -> Arrival | None:
-    """At which speed the vehicle is at the fix at its slot. Who holds goes on only where it need not be flown slowest."""
+    """The speed at which the vehicle arrives at its slot. In a hold, the slowest one considered is midway
+    between the slowest and the announced speed.
+    """
     if slot is None or ahead.left_m is None:
         return None
     ability, left_s = sensed.ability, (slot - sensed.now_ms) / 1000
@@ -243,7 +246,7 @@ def _flown(
     going: Course | None,
     arrival: Arrival | None,
 ) -> Course | None:
-    """The course of a stage that is permitted: what is flown, if it is still, else one from here."""
+    """The permitted course of a stage: the present one continued, or a new one from here; None if there is none."""
     if stage not in (IN_SLOT, HOLDING):
         return None
     scene, beat_s = scene_of(config, state, sensed), config.heartbeat_ms / 1000
@@ -261,7 +264,7 @@ def _flown(
 def _onward(
     config: Config, state: State, sensed: Sensed, going: Course | None, arrival: Arrival | None
 ) -> tuple[Course, ...]:
-    """The way that was told from here, at the speed of the slot."""
+    """Courses along the announced route from here, at the speed for the slot."""
     fix, way, motion, ability = config.merging, state.merging.way, sensed.motion, sensed.ability
     if fix is None or way is None or arrival is None:
         return ()

@@ -58,7 +58,7 @@ class Sensed(NamedTuple):
 
 
 class Talk(NamedTuple):
-    """Another vehicle that merges at the same fix has said something, over the direct link."""
+    """The message of another vehicle that merges at the same fix, over the direct link."""
 
     now_ms: int
     said: Said
@@ -116,8 +116,11 @@ class TakesOff(NamedTuple):
 
 
 class Merges(NamedTuple):
-    """To the record. stage: how the vehicle merges from now on, by the numbers of `core.merging.stages`; term, leader: of
-    the election, 0 for nobody; request, slot: its present request, 0 for none, and its slot [ms], -1 for none."""
+    """To the record: how the vehicle merges.
+
+    stage: from now on, numbered as in `core.merging.stages`; term, leader: of the election, leader 0 for none;
+    request: number of its present request, 0 for none; slot: at the fix [ms], -1 for none.
+    """
 
     vehicle_id: int
     now_ms: int
@@ -130,7 +133,7 @@ class Merges(NamedTuple):
 
 
 class Tells(NamedTuple):
-    """To the others that merge at the same fix, over the direct links."""
+    """To the other vehicles that merge at the same fix, over the direct links."""
 
     vehicle_id: int
     said: Said

@@ -1,4 +1,4 @@
-"""The section `daa.guidance` of a mission file as `Guidance`; the schema has its bounds."""
+"""Reads the section `daa.guidance` of a mission file as `Guidance`; the schema has its bounds."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cratous.spec.mission import GuidedWellClear, Mission, WellClear
 
 
 def guided(volume: WellClear, data: dict[str, Any] | None) -> WellClear:
-    """The volume with what the section says; as it is where there is none."""
+    """The volume with the guidance of the section; unchanged without a section."""
     if data is None:
         return volume
     said = {name: type(getattr(USUAL, name))(value) for name, value in data.items()}
@@ -22,7 +22,7 @@ def guided(volume: WellClear, data: dict[str, Any] | None) -> WellClear:
 
 @as_errors
 def guidance_problems(mission: Mission) -> Iterator[Finding]:
-    """More looks that have to agree than are counted."""
+    """Problems of the guidance: an alerting_m greater than alerting_n."""
     guidance = guidance_of(mission.daa.well_clear)
     agree, looks = guidance.alerting_m, guidance.alerting_n
     if agree > looks:

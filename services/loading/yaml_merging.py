@@ -1,4 +1,4 @@
-"""The section `merging` of a mission file as `Merging`; the schema has its bounds."""
+"""Reads the section `merging` of a mission file as `Merging`; the schema has its bounds."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from cratous.spec.mission import GroundedVehicle, Mission, Vehicle
 from cratous.spec.mission.merging import DirectFaults, Merging, Silence
 
 SEPARATION_S = 20.0
-"""Between two vehicles, where a mission does not say it [s]; ICAROUS's own default."""
+"""Default time between two vehicles at the fix, as in ICAROUS [s]."""
 BESIDE = {
     "sensing": "what is flown over a merge fix is not permitted against sensed tracks",
     "link_loss": "a vehicle that acts by itself without the link keeps no slot",
@@ -27,12 +27,13 @@ BESIDE = {
 ORIGIN = Vec2(0.0, 0.0)
 FOR_GOOD_MS = 86_400_000
 CIRCLES = 3.0
-"""A circle that begins as the schedule zone is entered keeps out of the entry zone if there are so many radii between
-them."""
+"""Least distance between the rims of the schedule and entry zones, in turn radii: a hold begun at the one stays out of
+the other.
+"""
 
 
 def yaml_merging(document: Document, places: Places) -> Merging | None:
-    """The fix at which vehicles merge; None where the mission has none."""
+    """The fix at which vehicles merge; None for none. BadInput if a section that excludes it is there."""
     data = document.data.get("merging")
     if data is None:
         return None
@@ -75,7 +76,7 @@ def _faults(data: dict[str, Any]) -> DirectFaults:
 
 @as_errors
 def merging_problems(mission: Mission) -> Iterator[Finding]:
-    """What does not make sense of a merge fix: who cannot merge there, zones without room, slots too near to be kept."""
+    """Problems of a merge fix: vehicles that cannot merge, zones without room, slots too near for well clear."""
     merging = merging_of(mission)
     if merging is None:
         return
@@ -106,7 +107,7 @@ def merging_problems(mission: Mission) -> Iterator[Finding]:
 
 
 def _no_room(merging: Merging, vehicle: Vehicle, mission: Mission, item: str) -> Iterator[Finding]:
-    # not needed where nobody merges
+    # loaded only if vehicles merge
     from cratous.services.flight.dynamics import turn_radius_m
     from cratous.services.icarous.ending import TURN_MARGIN
 
@@ -132,5 +133,5 @@ def _no_room(merging: Merging, vehicle: Vehicle, mission: Mission, item: str) ->
 
 
 def _within(one_m: float, other_m: float) -> bool:
-    """Whether a distance is no greater than another one [m]."""
+    """Whether one distance is at most another [m]."""
     return near_line(Vec2(one_m, 0.0), ORIGIN, ORIGIN, other_m)

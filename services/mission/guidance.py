@@ -1,4 +1,4 @@
-"""How alerts and bands follow one another in a mission's flight."""
+"""Persistence and hysteresis of a mission's alerts and bands."""
 
 from __future__ import annotations
 
@@ -9,5 +9,5 @@ USUAL = Guidance()
 
 
 def guidance_of(volume: WellClear) -> Guidance:
-    """Of a volume: as its mission says, or as usual."""
+    """The guidance given with a volume, or the default."""
     return volume.guidance if isinstance(volume, GuidedWellClear) else USUAL

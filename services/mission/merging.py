@@ -1,4 +1,4 @@
-"""Where a mission's vehicles merge, if they do."""
+"""The fix at which a mission's vehicles merge, and times that follow from it."""
 
 from __future__ import annotations
 
@@ -8,28 +8,30 @@ from cratous.spec.mission import MergingDaa, Mission
 from cratous.spec.mission.merging import Merging
 
 TOLERANCE_MS = 1000
-"""A vehicle may be so much before or after its slot [ms]; slots are farther apart by twice as much."""
+"""How early or late a vehicle may be at its slot [ms]; slots are farther apart by twice this."""
 
 
 def merging_of(mission: Mission) -> Merging | None:
-    """The fix at which vehicles merge; None where the mission has none."""
+    """The fix at which vehicles merge; None if the mission has none."""
     return mission.daa.merging if isinstance(mission.daa, MergingDaa) else None
 
 
 def merges(mission: Mission, vehicle_id: int) -> Merging | None:
-    """The same for one vehicle; None where it is none of those that merge."""
+    """The fix at which a vehicle merges; None for none."""
     merging = merging_of(mission)
     return merging if merging is not None and vehicle_id in merging.vehicles else None
 
 
 def apart_ms(merging: Merging) -> int:
-    """How far slots are apart [ms]."""
+    """Time between two slots [ms]."""
     return merging.separation_ms + 2 * TOLERANCE_MS
 
 
 def merging_ms(mission: Mission, vehicle_id: int) -> int:
-    """For how long ICAROUS may fly a vehicle because it merges [ms]: across the coordination zone at its slowest, and while
-    all others pass the fix before it; 0 where it does not merge."""
+    """Longest time for which ICAROUS may fly a vehicle to merge [ms]; 0 if it does not merge.
+
+    It is that across the coordination zone at the slowest speed, and a slot for each vehicle that merges.
+    """
     merging = merges(mission, vehicle_id)
     if merging is None:
         return 0

@@ -1,7 +1,8 @@
-"""G1 of vehicles that merge: that any two pass the fix no nearer in time than the separation, by where they were.
+"""G1 of vehicles that merge: any two pass the fix at least the separation time apart, judged by their positions.
 
-A vehicle passes the fix where it is nearest to it in a stay in the entry zone, once a stay. Between two states it flies
-straight, so when that was is known to a millisecond; of two instants that round to both sides it is not said.
+A vehicle passes the fix when it is nearest to it during a stay in the entry zone, once per stay. Between two states it
+flies straight. Passing times are rounded to milliseconds in both directions; if the verdict depends on the rounding,
+it is unknown.
 """
 
 from __future__ import annotations
@@ -29,15 +30,16 @@ KERNELS = tuple(qualified(kernel) for kernel in DECIDE)
 
 @dataclass
 class Stays:
-    """The stays of one vehicle in the entry zone: of each the least distance squared [m2] and when that was [ms]; inside:
-    the last leg was in one."""
+    """Stays of one vehicle in the entry zone. found: of each, the least distance squared [m2] and its time [ms];
+    inside: whether the last leg reached the zone.
+    """
 
     found: list[tuple[float, float]] = field(default_factory=list)
     inside: bool = False
 
 
 class MergeWatch:
-    """When each vehicle that merges passed the fix; nothing where the mission has none."""
+    """Watches when each vehicle that merges passes the fix; no rows for a mission without a fix."""
 
     def __init__(self, mission: Mission, presence: Presence) -> None:
         self._mission, self._merging, self._presence = mission, merging_of(mission), presence
@@ -45,7 +47,7 @@ class MergeWatch:
         self._stays = {number: Stays() for number in members}
 
     def step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
-        """Two successive instants."""
+        """Take in the samples of two successive instants."""
         merging = self._merging
         if merging is None:
             return
@@ -71,7 +73,7 @@ class MergeWatch:
             stays.inside = True
 
     def verdicts(self, ending: Ending) -> list[Verdict]:
-        """One verdict for each two vehicles."""
+        """One verdict for each pair of vehicles that merge."""
         return [self._verdict(*pair, ending) for pair in merging_pairs(self._mission)]
 
     def _verdict(self, one: int, other: int, ending: Ending) -> Verdict:

@@ -66,12 +66,12 @@ def eligible_item(task: int) -> str:
 
 
 def merge_item(fix: str, one: int, other: int) -> str:
-    """The row on two vehicles that merge at a fix."""
+    """Name of the row on a pair of vehicles that merge at a fix."""
     return f"separation at {fix}: vehicles {one} and {other}"
 
 
 def merging_pairs(mission: Mission) -> list[tuple[int, int]]:
-    """Every two vehicles that merge."""
+    """All pairs of vehicles that merge."""
     merging = merging_of(mission)
     return [] if merging is None else list(combinations(sorted(merging.vehicles), 2))
 

@@ -1,4 +1,4 @@
-"""Parameters of a merge fix: what the mission says, what follows from it, and what is fixed."""
+"""Parameters of a merge fix: those given in the mission, derived ones, and fixed ones."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cratous.spec.mission import Mission
 
 
 def merging_rows(mission: Mission, written: Any) -> Iterator[Parameter]:
-    """All of them; none where vehicles do not merge. written: what the mission file says."""
+    """The parameters of the merge fix; none if the mission has none. written: the mission file's data."""
     merging = merging_of(mission)
     if merging is None:
         return

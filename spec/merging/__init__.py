@@ -1,1 +1,1 @@
-"""What must be true where vehicles merge at a fix: of their slots, of votes, and of what members grant."""
+"""Definitions for merging at a fix: slots, votes for a leader, slots granted by members, and stages of a vehicle."""

@@ -1,7 +1,7 @@
-"""What a member grants: at most one slot for each request of a vehicle, apart from what it has granted to the others.
+"""What a member grants: at most one slot for each request of a vehicle, apart from the slots granted to the others.
 
-A vehicle that wants another slot asks by a greater number, and from then on does not use what it had. A slot is used when a
-majority of the members has granted it for the present request. Milliseconds.
+A vehicle that needs another slot makes a request with a greater number, and no longer uses its earlier slot. A slot is
+used once a majority of the members has granted it for the present request. Times are in milliseconds.
 """
 
 from __future__ import annotations
@@ -14,32 +14,33 @@ NONE = 0
 
 
 class Grant(NamedTuple):
-    """The last that a member has granted to a vehicle. request: of which, 0 nothing yet; time: at the fix."""
+    """The last slot that a member granted to a vehicle. request: its number, 0 for none yet; time: at the fix."""
 
     request: int
     time: int
 
 
 class Answer(NamedTuple):
-    """grant: afterwards; yes: what was proposed is."""
+    """grant: the grant afterwards; yes: whether the proposed slot is granted."""
 
     grant: Grant
     yes: bool
 
 
 def leaves_room(request: int, time: int, asked: int, separation: int) -> bool:
-    """A time is apart from what is granted to another vehicle, if anything is."""
+    """The time `asked` is apart from the slot granted to another vehicle, if there is one."""
     return request == NONE or apart(asked, time, separation)
 
 
 def all_leave_room(so_far: bool, request: int, time: int, asked: int, separation: int) -> bool:
-    """The others so far leave room, and one more does."""
+    """The other vehicles so far leave room, and so does one more."""
     return so_far and leaves_room(request, time, asked, separation)
 
 
 def is_after_proposal(before: Grant, asked: Grant, room: bool, after: Answer) -> bool:
-    """A slot is granted where it is for a newer request than any before, with room; what has been granted is granted still;
-    anything else changes nothing."""
+    """A slot with room is granted to a newer request than any granted before; a slot already granted is confirmed.
+    Any other proposal is refused. Only a newly granted slot changes the grant.
+    """
     if asked.request > before.request and room:
         return after == Answer(asked, True)
     again = asked == before and asked.request != NONE
@@ -47,5 +48,5 @@ def is_after_proposal(before: Grant, asked: Grant, room: bool, after: Answer) ->
 
 
 def used(current: int, request: int, granted: bool) -> bool:
-    """A slot counts for its vehicle: it is for the present request, and a member has granted it."""
+    """A slot is valid for its vehicle: it is for the present request, and has been granted."""
     return granted and current == request

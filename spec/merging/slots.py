@@ -1,4 +1,4 @@
-"""Arrival slots at a merge fix: each in its vehicle's window, any two apart by the separation time. Milliseconds."""
+"""Arrival slots at a merge fix: each in its vehicle's window, any two apart by the separation time. In milliseconds."""
 
 from __future__ import annotations
 
@@ -6,24 +6,24 @@ from typing import NamedTuple
 
 
 def in_window(earliest: int, latest: int, time: int) -> bool:
-    """A time at which a vehicle can be there."""
+    """The time lies in the vehicle's window, in which it can be at the fix."""
     return not (time < earliest or time > latest)
 
 
 def apart(one: int, other: int, separation: int) -> bool:
-    """Two times are no nearer than the separation, whichever is first."""
+    """Two times differ by at least the separation, in either order."""
     if one < other:
         return other - one >= separation
     return one - other >= separation
 
 
 def follows(free: int, earliest: int, latest: int, time: int) -> bool:
-    """A slot that comes after all before it: when they leave the fix free, and in the vehicle's window."""
+    """A slot may follow those before it: the fix is free, and the time is in the vehicle's window."""
     return time >= free and in_window(earliest, latest, time)
 
 
 class Place(NamedTuple):
-    """free: from when on the fix is free [ms]; fits: each so far has a slot; time: of the last one [ms]."""
+    """free: time from which the fix is free [ms]; fits: each vehicle so far has a slot; time: of the last slot [ms]."""
 
     free: int
     fits: bool
@@ -33,8 +33,12 @@ class Place(NamedTuple):
 def is_next_slot(
     t: int, before: Place, earliest: int, latest: int, separation: int, after: Place
 ) -> bool:
-    """If each before has a slot: no time before `after.time` would do for this vehicle, that one does, and the fix is free
-    again a separation later; or none would do, and that is said. If not, it stays so. FOR ALL t."""
+    """`after` is the place with the slot of one more vehicle. FOR ALL t.
+
+    If each vehicle before has a slot, then either `after.time` is the earliest slot that may follow for this vehicle,
+    and the fix is free again a separation later; or no time may follow, and `after.fits` is False. If a vehicle
+    before has none, `after.fits` is False.
+    """
     if not before.fits:
         return not after.fits
     does = follows(before.free, earliest, latest, t)

@@ -1,27 +1,31 @@
-"""What a vehicle does on its way over a merge fix: it asks for a slot, is flown to be there in time, or holds outside."""
+"""The stages of a vehicle that merges at a fix: it requests a slot, is flown to its slot, or holds outside."""
 
 from __future__ import annotations
 
 AWAY, ASKING, IN_SLOT, HOLDING = 0, 1, 2, 3
-"""The fix is not on its way, or too far ahead; it asks for a slot; it is flown so as to be there at its time; a circle is
-flown until it may go on."""
+"""AWAY: the fix is not on its route, or too far ahead; ASKING: it requests a slot; IN_SLOT: it is flown to arrive at
+its slot; HOLDING: it flies a circle until it may continue.
+"""
 
 
 def is_stage(stage: int) -> bool:
-    """It is one of the four."""
+    """The number is that of one of the four stages."""
     return not (stage < AWAY or stage > HOLDING)
 
 
 def goes_on(slotted: bool, early: bool, entered: bool) -> bool:
-    """It may fly on: it has a slot, and is not too early for it at any speed, or too near to wait."""
+    """The vehicle may continue: it has a slot, and can be late enough for it, or is too near to wait."""
     return slotted and (entered or not early)
 
 
 def is_after_heartbeat(
     before: int, near: bool, inside: bool, slotted: bool, early: bool, entered: bool, after: int
 ) -> bool:
-    """near: the fix is ahead, and nearer than where it is asked for a slot; inside: nearer than where it is flown by
-    its slot; entered: too near to wait."""
+    """The stage after a heartbeat.
+
+    near: the fix is ahead, and the vehicle in the coordination zone; inside: in the schedule zone; slotted: it has a
+    slot; early: at any speed it would arrive before its slot; entered: in the entry zone, too near to wait.
+    """
     if not near:
         return after == AWAY
     if goes_on(slotted, early, entered):
@@ -32,10 +36,10 @@ def is_after_heartbeat(
 
 
 def must_fly(stage: int, foreseen: bool) -> bool:
-    """ICAROUS has a reason to have the vehicle: another one, or it flies by its slot or holds."""
+    """ICAROUS must have authority: the vehicle is flown to its slot, holds, or there is another reason."""
     return foreseen or not (stage < IN_SLOT or stage > HOLDING)
 
 
 def may_go_back(stage: int, free: bool) -> bool:
-    """UxAS may be offered the vehicle: the way back is free, and it neither flies by its slot nor holds."""
+    """UxAS may be offered the vehicle: the way back is free, and it is neither flown to its slot nor holding."""
     return free and (stage < IN_SLOT or stage > HOLDING)

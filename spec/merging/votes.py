@@ -1,4 +1,4 @@
-"""Votes for a leader among the vehicles that merge at a fix: one a term, and a majority makes a leader."""
+"""Votes for a leader among the vehicles that merge at a fix: one per member and term; a majority elects a leader."""
 
 from __future__ import annotations
 
@@ -8,40 +8,40 @@ NOBODY = 0
 
 
 class Seat(NamedTuple):
-    """latest: the latest term that a member knows; voted: whom it has voted for in it, 0 nobody yet."""
+    """latest: the latest term that a member knows; voted: the candidate it voted for in that term, 0 for none yet."""
 
     latest: int
     voted: int
 
 
 class Vote(NamedTuple):
-    """seat: afterwards; yes: the member is for the candidate in that term."""
+    """seat: the seat afterwards; yes: whether the candidate has the member's vote in that term."""
 
     seat: Seat
     yes: bool
 
 
 def is_majority(count: int, members: int) -> bool:
-    """Those who are not among them are fewer than they are."""
+    """The counted members are more than those not counted."""
     return members - count < count
 
 
 def counted(before: int, has: bool, after: int) -> bool:
-    """Who is among them is one more."""
+    """The count goes up by one exactly if the member is counted."""
     return after - before == (1 if has else 0)
 
 
 MOST = 1 << 30
-"""No more members are counted."""
+"""Largest count."""
 
 
 def number_with(before: int, has: bool) -> int:
-    """How many are among them with one more member, up to MOST."""
+    """The count with one more member, at most MOST. has: whether that member is counted."""
     return min(before + (1 if has else 0), MOST)
 
 
 def is_after_ask(before: Seat, term: int, candidate: int, after: Vote) -> bool:
-    """A member is for whoever asks first in a term, and for nobody else in it; a term that is over is answered by no."""
+    """A member votes for the first candidate that asks in a term and for no other; earlier terms are refused."""
     if term < before.latest:
         return after == Vote(before, False)
     free = term > before.latest or before.voted == NOBODY
@@ -51,5 +51,5 @@ def is_after_ask(before: Seat, term: int, candidate: int, after: Vote) -> bool:
 
 
 def stands_in(before: Seat, member: int, after: Seat) -> bool:
-    """Who stands does so in a term of which it knows nothing yet, and votes for itself."""
+    """A member stands for election in a later term than any it knows, and votes for itself."""
     return after.latest > before.latest and after.voted == member

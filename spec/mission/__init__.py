@@ -226,7 +226,7 @@ class WellClear:
 
 @dataclass(frozen=True)
 class GuidedWellClear(WellClear):
-    """The same where the mission says how alerts and bands of it follow one another in time."""
+    """A volume for which the mission sets the persistence and hysteresis of alerts and bands."""
 
     guidance: Guidance = field(default_factory=Guidance)
 
@@ -309,7 +309,7 @@ class LinkLossDaa(OrderedDaa):
 
 @dataclass(frozen=True)
 class MergingDaa(OrderedDaa):
-    """The same where vehicles merge at a fix."""
+    """Detect and avoid of a mission in which vehicles merge at a fix."""
 
     merging: Merging = field(default_factory=Merging)
 

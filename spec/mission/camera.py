@@ -18,9 +18,9 @@ class Camera:
     max_azimuth_rad: float = 3.14159265
     wavelength: str = "AllAny"
     pixels: int = 0
-    """How many pixels an image is wide; 0: not known."""
+    """Image width in pixels; 0: not known."""
     zoom_rad: tuple[float, ...] = ()
-    """Narrower fields of view that it has [rad]; with `zooms`, also all between the narrowest and hfov."""
+    """Narrower fields of view available [rad]; with `zooms`, all between the narrowest and hfov as well."""
     zooms: bool = False
     camera_id: int = 0
-    """The payload id of the camera itself; `payload_id` is its gimbal's."""
+    """The payload id of the camera itself; `payload_id` is that of its gimbal."""

@@ -1,20 +1,23 @@
-"""How alerts and bands of a flight follow one another in time. Defaults: RTCA DO-365B."""
+"""Persistence and hysteresis of alerts and bands in flight. Defaults: RTCA DO-365B."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 KNOT, FOOT = 1852.0 / 3600.0, 0.3048
-"""In m/s, and in m."""
+"""One knot [m/s] and one foot [m]."""
 
 
 @dataclass(frozen=True)
 class Guidance:
-    """alerting_m, alerting_n: a level is shown once it was found in so many of the last so many looks, a second apart;
-    hysteresis_s: a level or band that was shown stays for so long; persistence_s, and the preferred changes: the side that is
-    preferred is held for so long, and unless another one differs by more, with bands_persistence; recovery_shrinks: where
-    recovery keeps no cylinder it is looked for with one that is smaller by recovery_factor of it, and it is shown
-    recovery_stable_s after the earliest time; conflict_crit, recovery_crit: bands of conflict, of recovery keep to the side that both choose."""
+    """alerting_m, alerting_n: a level is shown if found in alerting_m of the last alerting_n evaluations, 1 s apart.
+    hysteresis_s: time for which a shown level or band stays. With bands_persistence, a preferred resolution is held for
+    persistence_s, and unless another one differs by more than preferred_heading_deg, preferred_speed_m_s,
+    preferred_climb_m_s or preferred_alt_m. recovery_shrinks: if no recovery keeps the cylinder, one is searched with a
+    cylinder smaller by the share recovery_factor. recovery_stable_s: recovery is shown this much after the earliest
+    time at which it is possible. conflict_crit, recovery_crit: conflict bands, or recovery bands, keep to the side that
+    both aircraft choose (coordination).
+    """
 
     alerting_m: int = 2
     alerting_n: int = 4

@@ -1,4 +1,4 @@
-"""Where vehicles of a mission merge: a fix that they pass one after the other, at slots that they agree upon."""
+"""Merging: a fix that vehicles of a mission pass one after the other, at slots that they agree on."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class Silence(NamedTuple):
-    """The direct link of a vehicle is gone from the one to the other [ms]: it says and hears nothing."""
+    """An interval [ms] in which a vehicle's direct link is down: it sends and receives nothing."""
 
     vehicle: int
     from_ms: int
@@ -16,7 +16,7 @@ class Silence(NamedTuple):
 
 @dataclass(frozen=True)
 class DirectFaults:
-    """What fails on the direct links, the same for the same seed. loss: share of the messages that do not come."""
+    """Faults of the direct links, the same for the same seed. loss: share of the messages that are lost, 0 to 1."""
 
     seed: int = 0
     loss: float = 0.0
@@ -25,9 +25,12 @@ class DirectFaults:
 
 @dataclass(frozen=True)
 class Merging:
-    """name, north_m, east_m: of the fix; vehicles: those that merge there; separation_ms: between two that pass it;
-    coordination_m: nearer than this they ask for a slot; schedule_m: nearer than this nobody flies on without one; entry_m:
-    nearer than this nobody waits any more."""
+    """A fix at which vehicles merge.
+
+    name, north_m, east_m: of the fix; vehicles: ids of those that merge there; separation_ms: least time between two
+    that pass it. Distances from the fix: within coordination_m a vehicle requests a slot, within schedule_m it does
+    not continue without one, within entry_m it no longer waits.
+    """
 
     name: str = ""
     north_m: float = 0.0

@@ -1,5 +1,5 @@
-"""Whoever asks a member for its vote, or speaks as a leader, in whatever terms, order and number, and however often it stands
-itself: it is for one candidate at most in each term, and its term does not go back."""
+"""In each term a member votes for at most one candidate, and its term never decreases, whatever candidates and leaders
+ask of it, in any terms, order and number, and however often it stands itself."""
 
 from typing import Any
 

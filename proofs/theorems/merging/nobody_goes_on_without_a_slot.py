@@ -1,5 +1,6 @@
-"""In the schedule zone a vehicle without a slot of a majority holds; who flies by a slot has one. While it does either,
-ICAROUS has the vehicle and offers it to nobody; with the fix behind it, or far ahead, all is as without merging."""
+"""In the schedule zone a vehicle without a slot granted by a majority holds; a vehicle is flown to a slot only if it
+has one. In both stages ICAROUS has the vehicle and makes no offer; with the fix behind it, or far ahead, all is as
+without merging."""
 
 from cratous.core.authority.cycle import cycle_flown
 from cratous.core.merging.stages import merge_step, merging_lets_go, merging_takes

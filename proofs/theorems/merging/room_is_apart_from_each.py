@@ -1,5 +1,5 @@
-"""A slot that has room is apart from what is granted to each of the other vehicles, of any number; where it has none, one
-of them is why."""
+"""A slot found to have room is apart from those granted to each of the other vehicles, of any number; a slot found to
+have none is not apart from one of them."""
 
 from typing import Any
 

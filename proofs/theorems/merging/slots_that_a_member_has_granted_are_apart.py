@@ -1,6 +1,6 @@
-"""Whatever is proposed to a member, by however many leaders of whatever terms, lost, late, twice and in any order, and however
-often vehicles ask anew: of any two vehicles, the slots that it has granted for the requests that are theirs now are
-apart by the separation time. So are any two slots for each of which there is a majority, as two majorities share a member."""
+"""The slots that a member has granted for the present requests of any two vehicles are apart by the separation time,
+whatever is proposed to it, by any number of leaders of any terms, lost, late, repeated and in any order, and however
+often vehicles make new requests. So are any two such slots with a majority each, as two majorities share a member."""
 
 from typing import Any
 

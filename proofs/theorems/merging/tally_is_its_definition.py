@@ -1,5 +1,4 @@
-"""The kernel counts the members that are for something as they are counted one by one, for every number of members, up to
-2^30 of them."""
+"""The kernel's count of members equals counting them one by one, for any number of members, up to a count of 2^30."""
 
 from typing import Any
 

@@ -1,5 +1,5 @@
-"""Of any number of members, up to 2^30: two majorities share one; so where no member is for both of two things there is at
-most one of them for which there is a majority."""
+"""Of any number of members up to 2^30, two majorities share a member; so if no member supports both of two proposals,
+at most one of them has a majority."""
 
 from typing import Any
 
