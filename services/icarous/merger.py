@@ -2,8 +2,8 @@
 
 At each heartbeat a member sends its whole state to the others: its term and vote, its request, its grants, and, as
 leader, its proposals. So the next message makes up for a lost one, and an overtaken or duplicate one is ignored.
-Members elect a leader by terms; the leader proposes slots; a slot is valid once a majority of the members has granted it for
-the vehicle's present request. Kernels (`core.merging`) decide what a member grants, so valid slots are apart even if
+Members elect a leader by terms; the leader proposes slots; a slot is valid once a majority of the members has granted
+it for the vehicle's present request. Kernels (`core.merging`) decide what a member grants, so valid slots are apart even if
 several members take themselves for the leader.
 """
 

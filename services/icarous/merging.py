@@ -1,8 +1,8 @@
 """How an instance flies over a merge fix: to its slot, granted by a majority of the members, or holding outside.
 
 At each heartbeat the kernel `merge_step` decides the stage, and the kernel `pace` the speed at which the vehicle
-arrives at its slot. The route announced by UxAS is flown at that speed, or a circle, if permitted from the present position
-(`course_permits`); if not even a circle is permitted, the manoeuvre of least deviation is flown, as in any takeover.
+arrives at its slot. The route announced by UxAS is flown at that speed, or a circle, if permitted from the present
+position (`course_permits`); if not even a circle is permitted, the manoeuvre of least deviation is flown, as in any takeover.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def heard(config: Config, state: State, message: Talk) -> State:
 def heartbeat(
     config: Config, state: State, sensed: Sensed
 ) -> tuple[State, tuple[Merges | Tells, ...]]:
-    """The state after a heartbeat, a notice for the record if the merge changed, and the message to the others."""
+    """The state after a heartbeat, a notice for the record if it changed that, and the message to the others."""
     fix, before, now_ms = config.merging, state.merging, sensed.now_ms
     if fix is None:
         return state, ()
@@ -155,7 +155,7 @@ def flown(
 
 
 def _told(fix: Fix, before: Merging, after: Merging) -> tuple[int, int, int, int, int]:
-    """Stage, term, leader, request and slot (-1: none), recorded when one of them changes."""
+    """Stage, term, leader, request and slot (-1: none), for the record."""
     merger = after.merger
     leader = talk.leader_of(merger, fix.talks.me)
     slot = -1 if after.slot is None else after.slot

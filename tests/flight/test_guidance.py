@@ -1,4 +1,4 @@
-"""How alerts and bands follow one another in flight is what the mission says, or what an imported parameter file does."""
+"""Persistence and hysteresis of alerts and bands are set by the mission, or by an imported parameter file."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def whose(guidance: Guidance | None) -> Whose:
 
 
 def levels(guidance: Guidance, looks: int) -> list[int]:
-    """The level that is shown of one that is far away at four looks, and in the way from then on, at each look."""
+    """The shown levels for an intruder in conflict, at each evaluation after four in which it is far away."""
     bands, shown = None, []
     for k in range(4 + looks):
         other = CROSSING if k >= 4 else CROSSING._replace(position=Position(9e4, 9e4, 300.0))
@@ -63,7 +63,7 @@ def test_each_item_reaches_the_engine() -> None:
     assert (p.persistence_preferred_vs_m_s, p.persistence_preferred_alt_m) == (10.0, 11.0)
     assert (p.ca_bands, p.ca_factor, p.recovery_stability_time_s) == (False, 0.3, 12.0)
     assert (p.conflict_crit, p.recovery_crit) == (True, False)
-    # and none of them is what it is without being said
+    # and none of them has its default
     usual = asdict(Guidance())
     assert all(value != usual[name] for name, value in asdict(said).items())
 

@@ -1,5 +1,4 @@
-"""Vehicles that merge pass the fix one after the other, by slots that a majority has granted, and everybody who watches
-knows."""
+"""Vehicles that merge pass the fix one after the other, at slots granted by a majority, as monitor and judge confirm."""
 
 from __future__ import annotations
 
@@ -34,33 +33,33 @@ FAR_M, BEYOND_M = 4000.0, 3000.0
 
 
 class Merged(Flown):
-    """A flight, of which is asked who passed the fix when."""
+    """A flight with merging."""
 
     def stages(self, vehicle: int) -> list[str]:
-        """The stages of a vehicle, one after the other."""
+        """The successive stages of a vehicle."""
         said = [b.Stage.name for b in self.told("MergeState") if b.VehicleID == vehicle]
         return [s for k, s in enumerate(said) if not k or said[k - 1] != s]
 
     def passed(self, vehicle: int) -> int:
-        """When it was nearest to the fix, which is the origin, of the states that were told [ms]."""
+        """Time of the logged state nearest to the fix, which is the origin [ms]."""
         states = [b for b in self.told("TruthState") if b.VehicleID == vehicle]
         return min((math.hypot(b.North, b.East), b.Time) for b in states)[1]
 
     def slot(self, vehicle: int) -> int:
-        """The last slot that a vehicle had [ms]."""
+        """The last slot of a vehicle [ms]."""
         return [b.Slot for b in self.told("MergeState") if b.VehicleID == vehicle and b.Slot >= 0][
             -1
         ]
 
     def rows(self, log: list[Any] | None = None) -> dict[str, Outcome]:
-        """What the monitor says of every two."""
+        """The monitor's outcomes for all pairs."""
         return {
             item: v.outcome for item, v in self.verdicts(log).items() if "separation at" in item
         }
 
 
 def mission_file(root: Path, folder: Path, count: int = 3, **merging: Any) -> Path:
-    """So many vehicles that come to the fix at one time, from directions of less than a half circle."""
+    """A mission of `count` vehicles that arrive at the fix at one time, from within a half circle."""
     data = yaml.safe_load((root / EXAMPLE).read_text())
     del data["expect"]
     vehicles, tasks = [], []
@@ -85,7 +84,7 @@ def flown(path: Path) -> Merged:
 
 
 def assert_merged(flight: Merged, folder: Path) -> None:
-    """All pass at their slots, far enough apart, as monitor and judge see it, and the mission is complete."""
+    """All pass at their slots, far enough apart for monitor and judge, and the mission is complete."""
     merging = merging_of(flight.mission)
     assert merging is not None
     assert flight.result.outcome == "complete"
@@ -112,9 +111,9 @@ def test_the_leader_is_lost_and_all_pass_one_after_the_other(
 ) -> None:
     assert_merged(example, tmp_path)
     leaders = [b.Leader for b in example.told("MergeState") if b.VehicleID == 3 and b.Leader]
-    assert leaders[0] == 2  # as vehicle 1 asks nobody yet
+    assert leaders[0] == 2  # its first record with a leader: vehicle 1 is silent by then
     assert {b.Leader for b in example.told("MergeState") if b.VehicleID == 1} >= {1, 2}
-    # one takeover each, with the reason, and back behind the fix
+    # one takeover each, with the reason, and a handback beyond the fix
     for one in (1, 2, 3):
         taken, back = (b for b in example.told("AuthorityChange") if b.VehicleID == one)
         assert taken.Owner.name == "ICAROUS"

@@ -1,4 +1,4 @@
-"""Slots at a merge fix, and how members agree upon them: whoever leads, and whatever is lost, late or comes twice."""
+"""Slots at a merge fix, and the agreement on them: with any leader, and lost, late or repeated messages."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ from cratous.spec.errors import BadInput
 
 BEAT_MS, APART_MS = 500, 22_000
 Lost = Callable[[int, int, int], bool]
-"""Whether what one member says at an instant [ms] does not come to another."""
+"""Whether the message of one member at an instant [ms] to another one is lost."""
 
 
 def nothing(one: int, other: int, now_ms: int) -> bool:
-    """All comes."""
+    """No message is lost."""
     return False
 
 
 class Members:
-    """Members that all come to the fix at one time, and ask for a slot from an instant on."""
+    """Members that all arrive at the fix at about one time, and request a slot from an instant on."""
 
     def __init__(self, count: int, asks_ms: int = 5000, lost: Lost = nothing) -> None:
         ids = tuple(range(1, count + 1))
@@ -49,7 +49,7 @@ class Members:
         self.led: dict[int, set[int]] = {}
 
     def step(self, anew: frozenset[int] = frozenset()) -> None:
-        """A heartbeat of all. anew: who does not use the slot that they have any more."""
+        """A heartbeat of all. anew: members that give up their slots."""
         now, said, self.said = self.now_ms, self.said, []
         for one in said:
             for n in self.talks:
@@ -72,7 +72,7 @@ class Members:
         self.check()
 
     def check(self) -> None:
-        """What must be so at every instant."""
+        """Invariants: one leader per term; slots apart."""
         assert all(len(leaders) == 1 for leaders in self.led.values()), self.led
         times = [time for time in self.slots.values() if time is not None]
         assert all(abs(a - b) >= APART_MS for a, b in combinations(times, 2)), self.slots
@@ -92,7 +92,7 @@ def test_all_get_a_slot_in_the_order_in_which_they_come(count: int) -> None:
     members.run(9000)
     assert members.all_have_one
     assert sorted(members.slots, key=lambda n: members.slots[n] or 0) == sorted(members.slots)
-    # nobody waits longer than those before it ask for
+    # no vehicle waits longer than for those before it
     times = [time for time in members.slots.values() if time is not None]
     assert max(times) - min(times) == APART_MS * (count - 1)
     assert {leader_of(state, n) for n, state in members.states.items()} == {1}
@@ -138,7 +138,7 @@ def test_whatever_is_lost_slots_are_apart_and_each_term_has_one_leader(seed: int
 
     members = Members(count, lost=lost)
     while members.now_ms < 60_000:
-        # now and then somebody cannot use its slot any more
+        # now and then a member can no longer use its slot
         members.step(frozenset(n for n in members.states if drawn.random() < 0.02))
     members.run(80_000)
     assert members.all_have_one
@@ -150,7 +150,7 @@ def test_late_twice_and_out_of_order_changes_nothing(seed: int) -> None:
     said = list[Said]()
     for _ in range(160):
         said += members.said
-        # any that was ever said, in any order, as often as it comes
+        # any message ever sent, in any order, any number of times
         members.said = [one for one in said if drawn.random() < 0.05]
         drawn.shuffle(members.said)
         members.step()
@@ -204,7 +204,7 @@ def test_who_comes_first_goes_first_where_that_is_possible() -> None:
     long = 1000
     wanted = [Wanted(1, 30, long), Wanted(2, 10, long), Wanted(3, 12, long)]
     assert slots_of(wanted, 10) == ((2, 10), (3, 20), (1, 30))
-    # one that can be there at one time alone goes before one that can wait
+    # one that can be there at one time only goes before one that can wait
     assert slots_of([Wanted(1, 10, long), Wanted(2, 12, 12)], 10) == ((2, 12), (1, 22))
     assert slots_of([Wanted(1, 10, 15), Wanted(2, 12, 18)], 10) is None
     with pytest.raises(ValueError, match="at one fix"):
