@@ -8,6 +8,7 @@ from typing import Any
 
 from cratous.core.avoidance.way_ahead import near_line
 from cratous.core.kernel import Vec2
+from cratous.core.routing.dubins import turn_radius_m
 from cratous.core.tasks.rendezvous import spares_a_lap
 from cratous.services.loading.checks import Finding, as_errors
 from cratous.services.loading.document import Document
@@ -108,7 +109,6 @@ def merging_problems(mission: Mission) -> Iterator[Finding]:
 
 def _no_room(merging: Merging, vehicle: Vehicle, mission: Mission, item: str) -> Iterator[Finding]:
     # loaded only if vehicles merge
-    from cratous.services.flight.dynamics import turn_radius_m
     from cratous.services.icarous.ending import TURN_MARGIN
 
     slow, fast = vehicle.min_speed_m_s, vehicle.max_speed_m_s
