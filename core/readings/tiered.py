@@ -7,7 +7,6 @@ that counts calls gets each loop together with what runs it (`entered_by`), so t
 """
 
 import contextlib
-import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -15,9 +14,8 @@ from typing import Any
 from cratous.core.kernel import qualified
 
 Loop = Callable[..., Any]
-SOON, LOADED, WORTH = 300, 3_000, 60_000
-"""Work after which the compiled loop is used: if it is cached and the compiler is loaded, if it is only cached (loading
-the compiler takes half a second), and if it is not kept."""
+SOON, WORTH = 300, 60_000
+"""Amount of work after which the compiled loop is used: if it is cached, and if it is not."""
 _at_once: list[bool] = [False]
 _entered: list[Callable[[Loop, Loop], Loop] | None] = [None]
 _done: Counter[str] = Counter()
@@ -65,8 +63,7 @@ def _is_time(function: Loop, before: int, done: int) -> bool:
     if _at_once[-1] or done > WORTH:
         return True
     # checked periodically: a parallel process may have compiled it since
-    step = SOON if "numba" in sys.modules else LOADED
-    return (done - 1) // step > max(before - 1, 0) // step and _is_kept(function)
+    return (done - 1) // SOON > max(before - 1, 0) // SOON and _is_kept(function)
 
 
 def _is_kept(function: Loop) -> bool:

@@ -4,11 +4,15 @@ from fractions import Fraction
 
 import pytest
 
+from cratous.core.algebra.steps import tasks_with
 from cratous.core.kernel import qualified
+from cratous.core.ledger import PRODUCT
 from cratous.proofs.claim import Claim
+from cratous.proofs.engine.reachable_paths import ALL
 from cratous.proofs.engine.terms import free_names, known, leaves
 from cratous.proofs.statements import decided, free_results, other_results
 from cratous.proofs.statements.closed_definitions import full_name
+from cratous.spec.algebra.operators import stands_in_one_of
 
 
 def decides(x: float, n: int) -> bool:
@@ -138,6 +142,18 @@ def test_two_uses_of_the_same_arguments_have_one_result():
 
     assert not _by_runs(state)
     assert not _by_the_solver(state)
+
+
+def test_a_run_whose_values_decide_too_little_is_followed_by_others(monkeypatch):
+    theorem, use = "algebra_tasks_with_is_its_definition", (qualified(tasks_with), 0)
+    group = (full_name(stands_in_one_of), {use: ALL})
+
+    def found(seed: str) -> bool:
+        return bool(decided.decided(theorem, PRODUCT.theorems, seed, [group]))
+
+    assert found("seed37")
+    monkeypatch.setattr(decided, "TRIES", 0)
+    assert not found("seed37")
 
 
 def test_other_values_are_of_the_same_type_and_differ():
