@@ -30,6 +30,7 @@ RELATIONS = "relations"
 ITEMS = (
     ("G1", rf"zone: keep_(?:in|out) {NUMBER}, flight of vehicle {NUMBER}", "zone"),
     ("G1", rf"eligibility: task {NUMBER} in flight", "eligible"),
+    ("G1", rf"separation at [A-Za-z0-9_-]+: vehicles {NUMBER} and {NUMBER}", "merge"),
     ("G1", r"flight: choice", "choice"),
     ("G1", r"flight: .*", RELATIONS),
     ("G2", rf"well clear of {NUMBER} and {NUMBER}", "pair"),

@@ -13,6 +13,7 @@ from cratous.judge import (
     compare,
     heartbeat,
     log,
+    merging,
     mission_file,
     relations,
     separation,
@@ -115,8 +116,14 @@ def judged(mission: Mission, found: log.Log) -> list[Row]:
     flight = Flight(mission, found, flown, done)
     served = service.served(flight)
     good = {task for task, (verdict, *_) in served.items() if verdict == HOLDS}
+    merged = list(merging.rows(mission, flown))
     safe = [*zones.rows(mission, flown), *separation.rows(mission, flown)]
-    rows = [*safe, *relations.rows(mission, found, done, good), *service.rows(flight, served)]
+    rows = [
+        *safe,
+        *merged,
+        *relations.rows(mission, found, done, good),
+        *service.rows(flight, served),
+    ]
     rows += authority.rows(mission, found, flown)
     rows += take_off.rows(mission, found, flown)
     rows += alone.rows(mission, found, flown)
@@ -130,7 +137,7 @@ def judged(mission: Mission, found: log.Log) -> list[Row]:
 
 def _not_missed(row: Row, lossy: str) -> Row:
     """A violation by the absence of a message becomes unknown if messages are missing."""
-    by_presence = row.guarantee == "G2" or row.subject[0] in ("zone", "eligible")
+    by_presence = row.guarantee == "G2" or row.subject[0] in ("zone", "eligible", "merge")
     if not lossy or by_presence or row.verdict != VIOLATED:
         return row
     return replace(row, verdict=UNKNOWN, note=f"{lossy}; else: {row.note}")

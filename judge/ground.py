@@ -13,7 +13,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from cratous.judge.log import State
-from cratous.judge.mission import Mission, Site
+from cratous.judge.mission import Mission
+from cratous.judge.sites import Site
 from cratous.judge.tracks import Track
 from cratous.judge.verdict import seconds
 

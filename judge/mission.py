@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from cratous.judge.fields import Node
 from cratous.judge.plane import fault_of_ring
+from cratous.judge.sites import Fix, Site, fix_of, site_of
 from cratous.judge.views import in_log
 from cratous.spec.errors import BadInput
 
@@ -94,16 +95,6 @@ class Traffic(NamedTuple):
     vanishes_ms: int | None
 
 
-class Site(NamedTuple):
-    """A disc on which vehicles may land: its centre, its ground [m MSL], its radius."""
-
-    name: str
-    north_m: float
-    east_m: float
-    ground_m: float
-    radius_m: float
-
-
 class WithoutLink(NamedTuple):
     """The lost-link procedure, named as in the log; the silence that starts it; whether bridge lines may be lost or
     late while a connection is up."""
@@ -151,6 +142,7 @@ class Mission:
     terrain_m: float = 0.0
     sites: tuple[Site, ...] = ()
     without_link: WithoutLink | None = None
+    fix: Fix | None = None
 
     @property
     def grounds(self) -> dict[int, float]:
@@ -211,7 +203,7 @@ def from_log(data: Node) -> Mission:
         fails = lines_fail(simulation.get("bridge_faults"), "_ms")
         choice = loss["choice"].one_of(*CHOICES).capitalize()
         without_link = WithoutLink(choice, _not_negative(loss["after_ms"]), fails)
-        sites = tuple(_site(one) for one in loss.get("sites", []))
+        sites = tuple(site_of(one) for one in loss.get("sites", []))
     mission = Mission(
         name=data["name"].text,
         latitude_deg=frame["latitude_deg"].real,
@@ -233,6 +225,7 @@ def from_log(data: Node) -> Mission:
         terrain_m=frame.get("terrain_m", 0.0).real,
         sites=sites,
         without_link=without_link,
+        fix=fix_of(data["daa"]["merging"]) if data["daa"].has("merging") else None,
     )
     check(mission, data)
     return mission
@@ -244,6 +237,8 @@ def check(mission: Mission, data: Node) -> None:
         raise data["daa"].wrong("a well-clear volume without negative sizes")
     if not abs(mission.latitude_deg) <= 90:
         raise data["frame"].wrong("a latitude from -90 to 90")
+    if mission.fix is not None and not mission.fix.vehicles <= mission.vehicles.keys():
+        raise data["merging" if data.has("merging") else "daa"].wrong("vehicles that exist")
     known = {*mission.vehicles, *mission.tasks}
     named = [*mission.vehicle_said, *mission.task_said]
     strange = [n for n in named if n not in known]
@@ -290,11 +285,6 @@ def refuse_bad_ring(ring: tuple[Point, ...], data: Node) -> None:
             item=data.item,
             expected="at least three corners, and edges that meet nowhere else",
         )
-
-
-def _site(data: Node) -> Site:
-    numbers = data.reals("north_m", "east_m", "ground_m", "radius_m")
-    return Site(data["name"].text, *numbers)
 
 
 def lines_fail(faults: Node, unit: str) -> bool:

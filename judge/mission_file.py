@@ -16,6 +16,7 @@ import yaml
 from cratous.judge import mission as m
 from cratous.judge.earth import to_local
 from cratous.judge.fields import Node
+from cratous.judge.sites import Fix, Site
 from cratous.judge.views import in_file
 from cratous.spec.errors import BadInput
 
@@ -108,13 +109,20 @@ class _Reader:
             terrain_m=self.terrain_m,
             sites=tuple(self.site(one) for one in root.get("landing_sites", [])),
             without_link=without_link,
+            fix=self.fix(root["merging"]) if root.has("merging") else None,
         )
 
-    def site(self, data: Node) -> m.Site:
+    def fix(self, data: Node) -> Fix:
+        """The fix at which vehicles merge."""
+        who = frozenset(one.whole for one in data["vehicles"])
+        place, apart_ms = self.point(data["fix"]["position"]), _ms(data.get("separation_s", 20))
+        return Fix(data["fix"]["name"].text, *place, who, apart_ms, data["entry_m"].real)
+
+    def site(self, data: Node) -> Site:
         """A landing site; its ground defaults to the terrain."""
         place = data["position"]
         ground = place.get("alt_m", self.terrain_m).real
-        return m.Site(data["name"].text, *self.point(place), ground, data["radius_m"].real)
+        return Site(data["name"].text, *self.point(place), ground, data["radius_m"].real)
 
     def point(self, data: Node) -> m.Point:
         """A position in metres, in degrees, or as a pair of metres."""

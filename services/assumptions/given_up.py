@@ -10,6 +10,7 @@ from cratous.services.assumptions.authority import icarous_has
 from cratous.services.assumptions.link import DeliveryWatch
 from cratous.services.assumptions.observed import Message, Record
 from cratous.services.mission.leg_bounds import LONGEST_LOOKAHEADS, MOST_TAKEOVERS
+from cratous.services.mission.merging import merging_ms
 from cratous.spec.mission import GroundedVehicle, Mission
 from cratous.spec.mission.changes import VEHICLE_HOLDS
 
@@ -49,7 +50,8 @@ class GivenUpWatch:
         self._legs = {v: _Leg() for v in mission.instances}
         self._beat_ms = mission.simulation.heartbeat_ms
         longest_ms = round(1000 * LONGEST_LOOKAHEADS * mission.daa.lookahead_s)
-        self._longest_ms = longest_ms + LATE_BEATS * self._beat_ms
+        longest_ms += LATE_BEATS * self._beat_ms
+        self._longest_ms = {v: longest_ms + merging_ms(mission, v) for v in mission.instances}
         self._last_ms: dict[int, int] = {}
         self._alone: set[int] = set()
         self._delivery = DeliveryWatch(mission)
@@ -105,7 +107,7 @@ class GivenUpWatch:
         self._last_ms[vid], leg.since_ms = now_ms, now_ms
         if not leg.task_id or vid in self._alone or vid in self._holders:
             return
-        given_up = leg_given_up(leg.takeovers, MOST_TAKEOVERS, 0, self._longest_ms)
+        given_up = leg_given_up(leg.takeovers, MOST_TAKEOVERS, 0, self._longest_ms[vid])
         leg.takeovers += 1
         self._record.see(leg.takeovers)
         text = f"takeover {leg.takeovers} of vehicle {vid} on its way to task {leg.task_id}"
@@ -116,7 +118,7 @@ class GivenUpWatch:
         if not leg.task_id:
             return
         flown_ms = leg.flown_ms(now_ms)
-        given_up = leg_given_up(0, MOST_TAKEOVERS, flown_ms, self._longest_ms)
+        given_up = leg_given_up(0, MOST_TAKEOVERS, flown_ms, self._longest_ms[vid])
         text = f"vehicle {vid} was flown for {flown_ms / 1000:g} s by ICAROUS on its way to task {leg.task_id}"
         if vid in self._spared:
             if given_up and not self._record.gaps:

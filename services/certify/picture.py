@@ -73,6 +73,9 @@ def map_view(report: dict[str, Any]) -> dict[str, Any]:
             shown += [(corner[0], corner[1]) for corner in zone["vertices"]]
     sites = mission.get("daa", {}).get("link_loss", {}).get("sites", ())
     shown += [(site["north_m"], site["east_m"]) for site in sites]
+    merging = mission.get("daa", {}).get("merging")
+    fixes = [] if merging is None else [{**merging, "radius_m": merging["entry_m"]}]
+    shown += [(fix["north_m"], fix["east_m"]) for fix in fixes]
     scale = Scale(shown)
     tasks = [_task(task, scale) for task in mission["tasks"]]
     taken: list[Box] = []
@@ -94,6 +97,7 @@ def map_view(report: dict[str, Any]) -> dict[str, Any]:
             for zone, from_s in zones
         ],
         "sites": [{"name": site["name"], **_hold(site, scale)} for site in sites],
+        "fixes": [{"name": fix["name"], **_hold(fix, scale)} for fix in fixes],
         "tasks": tasks,
         "footprints": [
             {

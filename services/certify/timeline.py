@@ -262,12 +262,23 @@ def _event(flight: Flight, short: str, body: dict[str, Any]) -> None:
         _note(flight, time_ms, int(body["VehicleID"]), f"without the link: {body['Reason']}")
     elif short == "TakeOffState":
         _note(flight, time_ms, int(body["VehicleID"]), f"take-off: {body['Reason']}")
+    elif short == "MergeState":
+        _note(flight, time_ms, int(body["VehicleID"]), _merges(body))
     elif short == "CommandDropped":
         text = f"command dropped by the gate: {body['Reason']}"
         _note(flight, time_ms, int(body["VehicleID"]), text)
     elif short == "ModeRefused":
         text = f"mode of ICAROUS refused: {body['Reason']} ({body['Epoch']})"
         _note(flight, time_ms, int(body["VehicleID"]), text)
+
+
+def _merges(body: dict[str, Any]) -> str:
+    """A `MergeState` in words."""
+    leader = f"led by {body['Leader']}" if body["Leader"] else "without a leader"
+    slot = f", slot {body['Slot'] / 1000:.2f} s" if body["Slot"] >= 0 else ""
+    return (
+        f"merging: {body['Stage']}, term {body['Term']} {leader}, request {body['Request']}{slot}"
+    )
 
 
 def _refused(flight: Flight, time_ms: int, body: dict[str, Any]) -> None:

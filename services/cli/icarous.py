@@ -200,6 +200,7 @@ def craft_of(path: Path, vehicle_id: int, dialect: Dialect, digest: str | None =
     from cratous.services.loading import load
     from cratous.services.mission.frames import Projection
     from cratous.services.mission.ground import floor_of
+    from cratous.services.mission.merging import merging_of
     from cratous.services.mission.take_off import grounded
 
     mission = load(path)
@@ -218,6 +219,14 @@ def craft_of(path: Path, vehicle_id: int, dialect: Dialect, digest: str | None =
             item="link_loss",
             expected="no link_loss, or cratous run without --processes",
             got=mission.link_loss.choice.value,
+        )
+    if (merging := merging_of(mission)) is not None:
+        raise BadInput(
+            "vehicles merge at a fix, about which a program of its own does not talk",
+            where=str(path),
+            item="merging",
+            expected="no merging, or cratous run without --processes",
+            got=merging.name,
         )
     if grounded(mission):
         raise BadInput(

@@ -12,6 +12,7 @@ from cratous.services.flight.messages import Flown, Look, Route, Say
 from cratous.services.flight.remaining_path import points_ahead, points_left
 from cratous.services.flight.sensing import looks
 from cratous.services.flight.task_transitions import NAME
+from cratous.services.mission.merging import merges
 from cratous.spec.mission.link_loss import WithoutLink
 from cratous.spec.records import replace
 
@@ -19,7 +20,7 @@ AHEAD_S = 30
 """Routes are sent this much farther than the look-ahead [s]."""
 
 WHOLE_M = 1e6
-"""Length told of a route that is to be flown to its end without the link [m]."""
+"""Length told of a route that is to be flown to its end without the link, or over a merge fix [m]."""
 
 
 def command(
@@ -50,7 +51,8 @@ def route(state: State, vehicle_id: int, out: Out) -> State:
     opens_ms = opens(state, chain.item, chain.since_ms) if chain.item is not None else 0
     ahead_m = chain.vehicle.max_speed_m_s * (state.mission.daa.lookahead_s + AHEAD_S)
     loss = state.mission.link_loss
-    if loss is not None and loss.choice is WithoutLink.FINISH:
+    whole = loss is not None and loss.choice is WithoutLink.FINISH
+    if whole or merges(state.mission, vehicle_id) is not None:
         ahead_m = WHOLE_M
     speed = chain.item.speed_m_s if chain.item and not chain.holds else chain.speed_m_s
     out.append(Route(vehicle_id, points_ahead(chain, opens_ms, ahead_m), speed, chain.s_m))

@@ -15,6 +15,7 @@ from cratous.services.flight.executive_state import Config, Out, State
 from cratous.services.flight.task_transitions import circling, fail
 from cratous.services.mission.landing import MAX_ACCELERATION_M_S2
 from cratous.services.mission.leg_bounds import LONGEST_LOOKAHEADS, MOST_TAKEOVERS
+from cratous.services.mission.merging import merging_ms
 from cratous.services.mission.take_off import take_off_ms
 from cratous.spec.mission import Vehicle
 from cratous.spec.records import replace
@@ -25,7 +26,7 @@ ANEW_MS = 10_000
 
 def give_up(config: Config, state: State, out: Out) -> State:
     """Fail the items whose legs exceed the bounds, and send ICAROUS the new routes of their vehicles."""
-    longest_ms = round(1000 * LONGEST_LOOKAHEADS * state.mission.daa.lookahead_s)
+    avoiding_ms = round(1000 * LONGEST_LOOKAHEADS * state.mission.daa.lookahead_s)
     for vid in config.instances:
         chain = state.find(vid)
         if chain is None or chain.unlinked or chain.holds or vid in dict(state.landed):
@@ -33,6 +34,8 @@ def give_up(config: Config, state: State, out: Out) -> State:
         under_ms = chain.leg.flown_ms(chain.suspended, state.now_ms)
         # a take-off does not count as time of avoidance
         under_ms -= take_off_of(state, chain.vehicle)
+        # nor does the time for its slot at a merge fix
+        longest_ms = avoiding_ms + merging_ms(state.mission, vid)
         if chain.item is None:
             if chain.suspended and leg_given_up(0, 0, under_ms, ANEW_MS):
                 state = _circle_here(config, state, chain, out)

@@ -28,6 +28,7 @@ from cratous.services.flight.executive import Executive
 from cratous.services.flight.executive_state import Config
 from cratous.services.flight.holding import Ground
 from cratous.services.flight.link_end import UxasEnd
+from cratous.services.flight.merging import DirectTalk, merge_fix
 from cratous.services.flight.messages import (
     AskPlan,
     Beat,
@@ -64,14 +65,7 @@ from cratous.services.flight.messages import (
     Watch,
     Wished,
 )
-from cratous.services.flight.notices import (
-    conflict,
-    guidance,
-    link_loss_state,
-    take_off_state,
-    truth,
-    uxas_heard,
-)
+from cratous.services.flight.notices import guidance, of_instance, truth
 from cratous.services.flight.result import FlightResult
 from cratous.services.flight.take_off import take_off
 from cratous.services.flight.vehicle import VehicleNode
@@ -84,10 +78,12 @@ from cratous.services.icarous.messages import (
     Guides,
     Hears,
     Line,
+    Merges,
     Offers,
     Sensed,
     Steer,
     TakesOff,
+    Tells,
     ToInstance,
     Uncertified,
     Up,
@@ -174,6 +170,7 @@ class Flight:
                 records=True,
                 lost_link=lost_link(mission, vid),
                 take_off=take_off(mission, vid),
+                merging=merge_fix(mission, vid),
             )
             for vid in instances
         }
@@ -182,6 +179,7 @@ class Flight:
         self.waiting: dict[int, list[ToInstance]] = {vid: [] for vid in instances}
         self.carriers = surveillance.carriers(mission, instances)
         self.seen = dict.fromkeys(self.carriers, Surveillance())
+        self.direct = DirectTalk(mission, instances)
         self.gated = lmcp.types["GatedCommand"]
         self.commands, self.now_ms, self.outcome = 0, 0, ""
 
@@ -235,6 +233,8 @@ class Flight:
             self._link(Connected(now, (vid,)))
         self._link(Beat(now, self._everyone()))
         self._exchange()
+        for vid, talk in self.direct.come(now):
+            self._instance(vid, talk)
         for vid in self.instances:
             self._vehicle(vid, self._surveillance(vid, now))
         self._exchange()
@@ -359,14 +359,10 @@ class Flight:
                     self._instance(vid, given._replace(hand=hand))
                 case Offers(vid) | Uncertified(vid):
                     self._vehicle(vid, Held(self.now_ms, answer))
-                case Foresees(vid):
-                    self._publish(conflict(answer), f"icarous/{vid}")
-                case WithoutLink(vid):
-                    self._publish(link_loss_state(answer), f"icarous/{vid}")
-                case TakesOff(vid):
-                    self._publish(take_off_state(answer), f"icarous/{vid}")
-                case Hears(vid):
-                    self._publish(uxas_heard(answer), f"icarous/{vid}")
+                case Foresees(vid) | WithoutLink(vid) | TakesOff(vid) | Hears(vid) | Merges(vid):
+                    self._publish(of_instance(answer), f"icarous/{vid}")
+                case Tells():
+                    self.direct.tell(answer)
                 case Guides(vid):
                     projection = self.icarous[vid].config.projection
                     self._publish(guidance(answer, projection), f"icarous/{vid}")

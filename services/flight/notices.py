@@ -10,7 +10,14 @@ from cratous.core.authority.gate import ICAROUS, UXAS, Gate, epoch_given
 from cratous.services.flight.commands import SENDERS
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.holding import Change
-from cratous.services.icarous.messages import Foresees, Guides, Hears, TakesOff, WithoutLink
+from cratous.services.icarous.messages import (
+    Foresees,
+    Guides,
+    Hears,
+    Merges,
+    TakesOff,
+    WithoutLink,
+)
 from cratous.services.logs.records import fingerprint, to_data
 from cratous.services.mission.frames import Projection, compass, place_and_velocity
 from cratous.spec.mission.plan import Plan
@@ -133,6 +140,36 @@ def uxas_heard(said: Hears) -> Any:
 def take_off_state(said: TakesOff) -> Any:
     """A `TakeOffState`: how a vehicle leaves the ground, or why it waits."""
     return _mode_told("TakeOffState", said)
+
+
+def merge_state(said: Merges) -> Any:
+    """A `MergeState`: the stage, request and slot of a vehicle that merges, and the election as it knows it."""
+    return lmcp.new(
+        "MergeState",
+        VehicleID=said.vehicle_id,
+        Time=said.now_ms,
+        Stage=said.stage,
+        Term=said.term,
+        Leader=said.leader,
+        Request=said.request,
+        Slot=said.slot,
+        Reason=said.reason,
+    )
+
+
+def of_instance(said: Foresees | WithoutLink | TakesOff | Hears | Merges) -> Any:
+    """An instance's notice for the record, as a message."""
+    match said:
+        case Foresees():
+            return conflict(said)
+        case WithoutLink():
+            return link_loss_state(said)
+        case TakesOff():
+            return take_off_state(said)
+        case Hears():
+            return uxas_heard(said)
+        case Merges():
+            return merge_state(said)
 
 
 def _mode_told(name: str, said: WithoutLink | TakesOff, **more: Any) -> Any:

@@ -33,6 +33,7 @@ def _map(report: Data) -> Picture:
         ("traffic", "traffic", "traffic"), ("zones", "keep-out", "keep_out"),
         ("zones", "keep-in", "keep_in"), ("footprints", "some of the footprints", "footprint 0"),
         ("sites", "landing site", "site"), ("holds", "loiter", "hold"),
+        ("fixes", "entry zone of the merge fix", "hold"),
     ):  # fmt: skip
         caption += [(said, style)] if view[key] else []
     return Picture("Map", view["width"], view["height"], tuple(_map_shapes(view)), tuple(caption))
@@ -48,6 +49,9 @@ def _map_shapes(view: Data) -> Iterator[Shape]:
     for site in view["sites"]:
         yield Disc((site["x"], site["y"]), site["r"], "site")
         yield Label((site["x"] + site["r"] + 4, site["y"] + 4), site["name"], soft=True)
+    for fix in view["fixes"]:
+        yield Disc((fix["x"], fix["y"]), fix["r"], "hold")
+        yield Label((fix["x"] + fix["r"] + 4, fix["y"] + 4), fix["name"], soft=True)
     for task in view["tasks"]:
         x, y = task["x"], task["y"]
         if task["radius"]:

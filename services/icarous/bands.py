@@ -4,9 +4,9 @@ Once a second, while a loss of well clear is predicted or ICAROUS flies, the pro
 (`core.daa.session`) evaluates the present motion and all traffic in straight flight. Two levels: corrective
 (MID) is the mission's buffered volume within the look-ahead; warning (NEAR) is the unbuffered volume within
 the time at which even the vehicle with the right of way acts. M of N, hysteresis, persistence and recovery
-follow DO-365B. An intruder known only within bounds is evaluated with the SUM volume, with the bounds as
-deviations. Directions and speeds are over ground. Zones and announced routes are not considered here:
-`core.avoidance` and the permit decide what is flown.
+follow the mission's `daa.guidance`, by default DO-365B. An intruder known only within bounds is evaluated with
+the SUM volume, with the bounds as deviations. Directions and speeds are over ground. Zones and announced routes
+are not considered here: `core.avoidance` and the permit decide what is flown.
 """
 
 from __future__ import annotations
@@ -24,11 +24,10 @@ from cratous.core.daa.state import ALT, HDIR, HS, VS, Aircraft, Sigma
 from cratous.services.icarous.band_history import AlertHistory, Bands, DimensionHistory
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.traffic_monitor import nearest
+from cratous.services.mission.guidance import guidance_of
 from cratous.spec.daa.parameters import (
     DCPA,
     DEG,
-    FOOT,
-    KNOT,
     MID,
     NEAR,
     NMAC_HALF_HEIGHT_M,
@@ -40,7 +39,13 @@ from cratous.spec.daa.parameters import (
     Parameters,
     Volume,
 )
-from cratous.spec.mission import Daa, Position, Resolution, Velocity, WellClear
+from cratous.spec.mission import (
+    Daa,
+    Position,
+    Resolution,
+    Velocity,
+    WellClear,
+)
 
 PERIOD_MS = 1000
 """Interval of the evaluation [ms]."""
@@ -52,15 +57,6 @@ HIGHEST_M = 1e5
 """No ceiling: altitudes are bounded by what is reachable within the look-ahead [m MSL]."""
 FIRST = {Resolution.ALTITUDE: ALT, Resolution.SPEED: HS}
 """The band dimension of a manoeuvre kind that a mission may prefer."""
-M, N = 2, 4
-HYSTERESIS_S, PERSISTENCE_S = 5.0, 4.0
-PREFERRED_DEG, PREFERRED_M_S = 15.0, 100 * KNOT
-PREFERRED_UP_M_S, PREFERRED_UP_M = 250 * FOOT / 60, 250 * FOOT
-SHRINKS = 0.1
-STABLE_S = 3.0
-"""M of N, hysteresis and persistence times, preferred changes, and the recovery cylinder's shrink factor.
-Source: RTCA DO-365B.
-"""
 
 
 class Whose(NamedTuple):
@@ -81,6 +77,7 @@ def parameters_of(whose: Whose, ability: Ability, sum_volumes: bool) -> Paramete
     wide = buffered(own, daa.buffer)
     acts_s = nearest(ability, wide, heartbeat_ms).last_s
     climb, reach = ability.max_climb_m_s, reach_m(daa, ability)
+    told = guidance_of(own)
 
     def level(volume: WellClear, time_s: float, region: int) -> Level:
         v = Volume(kind, volume.dthr_m, volume.zthr_m, volume.tthr_s, volume.tcoa_s)
@@ -109,21 +106,22 @@ def parameters_of(whose: Whose, ability: Ability, sum_volumes: bool) -> Paramete
         vertical_rate_m_s=climb,
         min_horizontal_recovery_m=own.dthr_m,
         min_vertical_recovery_m=own.zthr_m,
-        ca_bands=True,
-        ca_factor=SHRINKS,
+        ca_bands=told.recovery_shrinks,
+        ca_factor=told.recovery_factor,
         horizontal_nmac_m=min(NMAC_RADIUS_M, own.dthr_m),
         vertical_nmac_m=min(NMAC_HALF_HEIGHT_M, own.zthr_m),
-        recovery_stability_time_s=STABLE_S,
-        hysteresis_time_s=HYSTERESIS_S,
-        persistence_time_s=PERSISTENCE_S,
-        bands_persistence=True,
-        persistence_preferred_hdir_rad=PREFERRED_DEG * DEG,
-        persistence_preferred_hs_m_s=PREFERRED_M_S,
-        persistence_preferred_vs_m_s=PREFERRED_UP_M_S,
-        persistence_preferred_alt_m=PREFERRED_UP_M,
-        alerting_m=M,
-        alerting_n=N,
-        recovery_crit=True,
+        recovery_stability_time_s=told.recovery_stable_s,
+        hysteresis_time_s=told.hysteresis_s,
+        persistence_time_s=told.persistence_s,
+        bands_persistence=told.bands_persistence,
+        persistence_preferred_hdir_rad=told.preferred_heading_deg * DEG,
+        persistence_preferred_hs_m_s=told.preferred_speed_m_s,
+        persistence_preferred_vs_m_s=told.preferred_climb_m_s,
+        persistence_preferred_alt_m=told.preferred_alt_m,
+        alerting_m=told.alerting_m,
+        alerting_n=told.alerting_n,
+        conflict_crit=told.conflict_crit,
+        recovery_crit=told.recovery_crit,
         urgency_strategy=DCPA,
         h_pos_z_score=1.0,
         h_vel_z_score_min=1.0,

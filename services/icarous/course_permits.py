@@ -15,7 +15,9 @@ from collections.abc import Iterator
 from cratous.core.avoidance.manoeuvre import Motion, way_along
 from cratous.core.avoidance.prediction import Piece, after, first_violation_s
 from cratous.core.avoidance.resolution import Scene
+from cratous.core.avoidance.way_ahead import near_line
 from cratous.core.geofence.clearance import leg_keeps
+from cratous.core.kernel import Vec2
 from cratous.core.permit.remainder import hold_at, hold_permits, zones_permit
 from cratous.core.routing.polylines import circle_points
 from cratous.services.icarous.course import Course
@@ -24,6 +26,7 @@ from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.permits import way_is_clear
 from cratous.spec.mission import Daa, Position, Zone
 
+ORIGIN = Vec2(0.0, 0.0)
 LEGS = 24
 """Number of legs per lap; the polyline deviates by 1 % of the radius."""
 TAKEN = "somebody is on its ground"
@@ -35,6 +38,38 @@ def refused(course: Course, sensed: Sensed, scene: Scene, daa: Daa, beat_s: floa
     return next(_refused(course, sensed, scene, daa, beat_s), "")
 
 
+def refused_soon(course: Course, sensed: Sensed, scene: Scene, daa: Daa, beat_s: float) -> str:
+    """As `refused`, but a course longer than the look-ahead is checked only within the look-ahead."""
+    pieces = way_along(sensed.motion, course.left, scene.lookahead_s, pace=course.pace).pieces
+    flown_m = sum(piece.duration_s * _speed_m_s(piece) for piece in pieces)
+    left_m = 0.0 if course.track is None else course.track.length_m - course.s_m
+    ends = near_line(Vec2(left_m, 0.0), ORIGIN, ORIGIN, flown_m)
+    if not course.left or ends:
+        return refused(course, sensed, scene, daa, beat_s)
+    aside_m = sensed.motion.speed_m_s * beat_s / 2
+    found = (*_against_zones(pieces, scene, aside_m), *_against_others(pieces, sensed, scene, daa))
+    return next(iter(found), "")
+
+
+def _speed_m_s(piece: Piece) -> float:
+    return math.hypot(piece.velocity.north_m_s, piece.velocity.east_m_s)
+
+
+def _against_zones(pieces: tuple[Piece, ...], scene: Scene, aside_m: float) -> Iterator[str]:
+    for zone in scene.zones:
+        if not all(_keeps(piece, zone, aside_m) for piece in pieces):
+            yield f"zone {zone.id} is in the way"
+
+
+def _against_others(
+    pieces: tuple[Piece, ...], sensed: Sensed, scene: Scene, daa: Daa
+) -> Iterator[str]:
+    for other in sensed.intruders:
+        meets = first_violation_s(pieces, other, scene.volume) is not None
+        if meets or not way_is_clear(pieces, other, daa):
+            yield f"it is not permitted against {other.id}"
+
+
 def _refused(
     course: Course, sensed: Sensed, scene: Scene, daa: Daa, beat_s: float
 ) -> Iterator[str]:
@@ -44,18 +79,11 @@ def _refused(
         motion = motion._replace(speed_m_s=course.pace.speed_m_s)
     # between two commands the vehicle flies straight on, where the route may turn
     aside_m = motion.speed_m_s * beat_s / 2
-    for zone in scene.zones:
-        if not all(_keeps(piece, zone, aside_m) for piece in pieces):
-            yield f"zone {zone.id} is in the way"
+    yield from _against_zones(pieces, scene, aside_m)
     if course.site is not None:
         if course.site.name in sensed.taken:
             yield TAKEN
-        yield from (
-            f"it is not permitted against {other.id}"
-            for other in sensed.intruders
-            if first_violation_s(pieces, other, scene.volume) is not None
-            or not way_is_clear(pieces, other, daa)
-        )
+        yield from _against_others(pieces, sensed, scene, daa)
         return
     disc_m = course.hold.radius_m + TRACKING_S * motion.speed_m_s
     if not zones_permit(course.middle, scene.zones, disc_m):

@@ -29,7 +29,8 @@ from cratous.core.authority.take_off import departure_lets_go, departure_takes
 from cratous.core.authority.timeliness import in_time
 from cratous.core.avoidance.manoeuvre import velocity_of
 from cratous.core.avoidance.resolution import Choice
-from cratous.services.icarous import asking, link_loss, messages, permits, take_off
+from cratous.core.merging.stages import merging_lets_go, merging_takes
+from cratous.services.icarous import asking, link_loss, merging, messages, permits, take_off
 from cratous.services.icarous.ending import TURN_MARGIN
 from cratous.services.icarous.foresight import (
     looked_s,
@@ -100,6 +101,8 @@ class Instance:
                 # a waypoint index is meaningless for another route
                 goal = state.goal if told.waypoints is state.told.waypoints else 0
                 return replace(state, told=told, goal=goal, asking=asked), ()
+            case messages.Talk():
+                return merging.heard(self.config, state, message), ()
             case messages.Sensed():
                 return self._beat(state, message)
 
@@ -116,8 +119,9 @@ class Instance:
                 motion=sensed.motion._replace(speed_m_s=sensed.ability.min_speed_m_s)
             )
         until_s = self._needed_s(state, watches, sensed.now_ms)
+        told = merging.with_members(self.config, state, sensed.now_ms)
         ways, others = with_ways(
-            state.ways, state.told, able, self.config.daa, beat_s, state.courses, until_s
+            state.ways, told, able, self.config.daa, beat_s, state.courses, until_s
         )
         state, sensed = replace(state, told=beaten(state.told)), sensed._replace(intruders=others)
         # an intruder with a known route is predicted along it, in a turn as well
@@ -134,13 +138,14 @@ class Instance:
         state = replace(state, cycle=cycle, courses=now, ways=ways, beats=state.beats + 1)
         state, up = take_off.heartbeat(self.config, state, sensed)
         state, lost = link_loss.heartbeat(self.config, state, sensed)
+        state, merges = merging.heartbeat(self.config, state, sensed)
         if watches:
             state, out = self._watch(state, sensed, in_turn)
         else:
             state, out = self._fly(state, sensed, in_turn)
         beat = Heartbeat(sequence=state.beats, time_s=sensed.now_ms / 1000)
         state, hears = self._hears(state, sensed.now_ms)
-        return state, (*up, *lost, *hears, *out, messages.Up(self.config.vehicle_id, beat))
+        return state, (*up, *lost, *merges, *hears, *out, messages.Up(self.config.vehicle_id, beat))
 
     def _hears(self, state: State, now_ms: int) -> tuple[State, tuple[messages.Hears, ...]]:
         """A change of whether UxAS is heard, for the record; not reported here if the instance has a
@@ -177,12 +182,15 @@ class Instance:
         state, conflict = self._foreseen(state, sensed, in_turn)
         state, said = self._guided(state, sensed, bool(state.threats))
         takes = loss_takes(state.no_link.loss, conflict is not None)
+        takes = merging_takes(state.merging.stage, takes)
         cycled = cycle_watched(state.cycle, takes, sensed.now_ms, RELAPSE_MS)
         if cycled.act == NOTHING:
             return replace(state, cycle=cycled.cycle), said
         sensed = sensed._replace(intruders=to_their_ends(state.ways, sensed.intruders))
         if conflict is None or state.no_link.loss.mode != LINKED:
-            state, out = self._by_itself(state, sensed, in_turn, cycled, NO_LINK)
+            linked = state.no_link.loss.mode == LINKED
+            why = merging.reason(state.merging) if linked else NO_LINK
+            state, out = self._by_itself(state, sensed, in_turn, cycled, why)
             return state, (*said, *out)
         vid, first_s = self.config.vehicle_id, conflict.first_s
         reason = f"{conflict.why}: loss predicted in {first_s:.1f} s"
@@ -207,7 +215,7 @@ class Instance:
         cycled: Cycled,
         why: str,
     ) -> Step:
-        """Take over because UxAS is not heard, or to take off."""
+        """Take over because UxAS is not heard, to take off, or to merge."""
         state = replace(state, cycle=cycled.cycle, goal=state.told.next_index)
         state, choice = self._flown_by_itself(state, sensed, in_turn)
         wish = messages.Wish(self.config.vehicle_id, cycled.act, why, 0)
@@ -217,9 +225,11 @@ class Instance:
     def _flown_by_itself(
         self, state: State, sensed: messages.Sensed, in_turn: frozenset[int]
     ) -> tuple[State, Choice]:
-        """The manoeuvre of a take-off, or of flight without the link."""
+        """The manoeuvre of a take-off, of flight without the link, or over a merge fix."""
         if take_off.departs(self.config, state):
             return take_off.flown(self.config, state, sensed)
+        if state.no_link.loss.mode == LINKED:
+            return merging.flown(self.config, state, sensed, in_turn)
         return link_loss.flown(self.config, state, sensed, in_turn)
 
     def _foreseen(
@@ -251,7 +261,7 @@ class Instance:
         departure = take_off.rising(self.config, state).departure
         departs = take_off.departs(self.config, state)
         lost = state.no_link.loss.mode != LINKED
-        alone = departs or lost
+        alone = departs or merging_takes(state.merging.stage, lost)
         lasting = state.search.waits(sensed.now_ms)
         free = not alone and way_back_is_free(self.config, state, sensed, in_turn, lasting)
         proposed, asked = None, list[messages.FromInstance]()
@@ -259,7 +269,7 @@ class Instance:
             state, proposed, asked = self._proposed(state, sensed, in_turn, free)
         heard_ms, before = state.told.heard_ms, state.held
         free = loss_lets_go(state.no_link.loss, free or proposed is not None)
-        free = departure_lets_go(departure, free)
+        free = merging_lets_go(state.merging.stage, departure_lets_go(departure, free))
         cycled = cycle_flown(state.cycle, free, heard_ms, sensed.now_ms, LINK_LOST_MS, PERSIST_MS)
         state = replace(state, cycle=cycled.cycle)
         if alone:
@@ -273,7 +283,8 @@ class Instance:
             reason = f"{UXAS_WAY} (request {proposed})" if of_uxas else REASONS[cycled.act]
             out.append(messages.Wish(vid, cycled.act, reason, 0))
         # along a course the heading changes at each heartbeat: not recorded
-        on_course = departs or (lost and state.no_link.course is not None)
+        course = state.no_link.course if lost else state.merging.course
+        on_course = departs or course is not None
         changed = not on_course and (before is None or describe(before) != text)
         said = f"offer withdrawn; {text}" if cycled.act == WITHDRAW else text
         if changed or cycled.act == WITHDRAW:

@@ -16,6 +16,7 @@ from cratous.core.avoidance.manoeuvre import Ability, Motion
 from cratous.core.avoidance.prediction import Intruder
 from cratous.core.permit.hand import Hand
 from cratous.services.icarous.certificate import Certificate
+from cratous.services.icarous.merger import Said
 from cratous.spec.mission import Velocity
 
 if TYPE_CHECKING:
@@ -54,6 +55,13 @@ class Sensed(NamedTuple):
     taken: frozenset[str] = frozenset()
     on_ground: bool = False
     rolling: tuple[int, ...] = ()
+
+
+class Talk(NamedTuple):
+    """The message of another vehicle that merges at the same fix, over the direct link."""
+
+    now_ms: int
+    said: Said
 
 
 # from the instance ------------------------------------------------------------------------------
@@ -107,6 +115,30 @@ class TakesOff(NamedTuple):
     reason: str
 
 
+class Merges(NamedTuple):
+    """To the record: how the vehicle merges.
+
+    stage: from now on, numbered as in `core.merging.stages`; term, leader: of the election, leader 0 for none;
+    request: number of its present request, 0 for none; slot: at the fix [ms], -1 for none.
+    """
+
+    vehicle_id: int
+    now_ms: int
+    stage: int
+    term: int
+    leader: int
+    request: int
+    slot: int
+    reason: str
+
+
+class Tells(NamedTuple):
+    """To the other vehicles that merge at the same fix, over the direct links."""
+
+    vehicle_id: int
+    said: Said
+
+
 class Hears(NamedTuple):
     """To the record: whether UxAS is heard, sent when that changes; last_ms: when its last line arrived."""
 
@@ -155,7 +187,18 @@ class Up(NamedTuple):
     line: Message
 
 
-ToInstance = Line | Sensed
+ToInstance = Line | Sensed | Talk
 FromInstance = (
-    Wish | Foresees | Hears | Guides | WithoutLink | TakesOff | Offers | Uncertified | Steer | Up
+    Wish
+    | Foresees
+    | Hears
+    | Guides
+    | WithoutLink
+    | TakesOff
+    | Merges
+    | Tells
+    | Offers
+    | Uncertified
+    | Steer
+    | Up
 )

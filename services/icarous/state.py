@@ -17,6 +17,7 @@ from cratous.services.icarous.course import Course
 from cratous.services.icarous.ending import Beside
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.lost import LostLink, NoLink
+from cratous.services.icarous.merge_state import Fix, Merging
 from cratous.services.icarous.others import Ways
 from cratous.services.icarous.traffic_monitor import Threat, Tracks
 from cratous.services.mission.frames import Projection
@@ -33,7 +34,8 @@ class Config(NamedTuple):
 
     original: the UxAS end is the original's, whose WAYPT lines carry a running count; certifies: each command
     comes with a certificate for the gate; records: alerts and bands are recorded; lost_link: behaviour while
-    UxAS is not heard, None if the mission sets none; take_off: its take-off, None if it starts in the air.
+    UxAS is not heard, None if the mission sets none; take_off: its take-off, None if it starts in the air;
+    merging: the fix at which it merges, None for none.
     """
 
     vehicle_id: int
@@ -45,6 +47,7 @@ class Config(NamedTuple):
     records: bool = False
     lost_link: LostLink | None = None
     take_off: TakeOff | None = None
+    merging: Fix | None = None
 
 
 class Rising(NamedTuple):
@@ -103,7 +106,7 @@ class State:
     routes of other own vehicles; asking: requests for a way back; bands: last alerts and bands; no_link:
     state without the link; pace_ms: until when UxAS may be accelerating after a handback [ms]; unheard: UxAS
     was not heard at the last heartbeat; rising: state of the take-off; beside: last zone check for the final
-    hold.
+    hold; merging: state of the merge.
     """
 
     cycle: Cycle = START
@@ -123,6 +126,7 @@ class State:
     unheard: bool = False
     rising: Rising = field(default_factory=Rising)
     beside: Beside | None = None
+    merging: Merging = field(default_factory=Merging)
 
     def paces(self, now_ms: int) -> bool:
         """Whether UxAS may still be accelerating the vehicle to the announced speed after a handback."""

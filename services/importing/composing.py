@@ -241,6 +241,14 @@ def _rest(settings: dict[str, Setting], parts: Parts, notes: list[str]) -> dict[
         found["daa"] = {"well_clear": thresholds}
     if "daa.lookahead_s" in settings:
         found.setdefault("daa", {})["lookahead_s"] = settings["daa.lookahead_s"].value
+    told = "daa.guidance."
+    guidance = {
+        item.removeprefix(told): one.value
+        for item, one in settings.items()
+        if item.startswith(told)
+    }
+    if guidance:
+        found.setdefault("daa", {})["guidance"] = guidance
     if "bridge.instances" in settings:
         found["bridge"] = {"instances": settings["bridge.instances"].value}
     if found.get("bridge"):

@@ -31,10 +31,13 @@ from cratous.services.loading.start_distances import close_starts
 from cratous.services.loading.take_off import on_their_ground, take_off_problems
 from cratous.services.loading.take_off import words as take_off_words
 from cratous.services.loading.yaml_bridge_faults import yaml_bridge_faults
+from cratous.services.loading.yaml_guidance import guidance_problems, guided
 from cratous.services.loading.yaml_link_loss import place_problems, yaml_link_loss
 from cratous.services.loading.yaml_link_loss import words as link_loss_words
+from cratous.services.loading.yaml_merging import merging_problems, yaml_merging
 from cratous.services.loading.yaml_sensing import yaml_sensing
 from cratous.services.loading.yaml_task import yaml_task
+from cratous.services.mission.merging import merging_of
 from cratous.services.mission.take_off import grounded
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import (
@@ -47,6 +50,7 @@ from cratous.spec.mission import (
     LinkLoss,
     LinkLossDaa,
     LivePlanningMission,
+    MergingDaa,
     Mission,
     OrderedDaa,
     OrderedSensedDaa,
@@ -70,6 +74,8 @@ from cratous.spec.mission.changes import (
     WindChange,
     ZoneEnd,
 )
+from cratous.spec.mission.merging import Merging
+from cratous.spec.mission.merging import words as merging_words
 from cratous.spec.mission.sensing import Sensing
 from cratous.spec.mission.sensing import words as sensing_words
 
@@ -117,6 +123,7 @@ def finish(mission: Mission, where: Any) -> Mission:
     later = tuple(c.zone for c in mission.changes if c.zone is not None)
     refuse(mission_problems(replace(mission, zones=(*mission.zones, *later)), where))
     refuse([*change_problems(mission, where), *zone_end_problems(mission, where)])
+    refuse(list(guidance_problems(mission, where)))
     notes: list[str] = []
     problems: list[BadInput] = []
 
@@ -143,6 +150,8 @@ def finish(mission: Mission, where: Any) -> Mission:
         notes.append(sensing_words(mission.sensing))
     if mission.link_loss is not None:
         notes.append(link_loss_words(mission.link_loss))
+    if (merging := merging_of(mission)) is not None:
+        notes.append(merging_words(merging))
     if grounded(mission):
         notes.append(take_off_words(mission))
     mission = replace(mission, zones=zones, changes=known)
@@ -150,6 +159,7 @@ def finish(mission: Mission, where: Any) -> Mission:
         *place_problems(mission, where),
         *ground_problems(mission, where),
         *take_off_problems(mission, where),
+        *merging_problems(mission, where),
     )
     refuse([*start_problems(mission, where), *places])
     said = [*mission.notes, *notes, *warnings_of(mission)]
@@ -175,6 +185,7 @@ def _mission(document: Document, seed: int) -> Mission:
     instances, simulation = _instances(document, vehicles), _simulation(document)
     sensing = yaml_sensing(document, simulation, len(instances))
     link_loss = yaml_link_loss(document, places, simulation, len(instances))
+    merging = yaml_merging(document, places)
     kind = LivePlanningMission if live else Mission
     return kind(
         name=data["name"],
@@ -184,7 +195,7 @@ def _mission(document: Document, seed: int) -> Mission:
         tasks=tuple(
             yaml_task(entry, places, document.where, k) for k, entry in enumerate(data["tasks"])
         ),
-        daa=_daa(data.get("daa", {}), sensing, link_loss),
+        daa=_daa(data.get("daa", {}), sensing, link_loss, merging),
         zones=tuple(_zone(entry, places) for entry in data.get("zones", [])),
         traffic=tuple(_traffic(entry, places) for entry in data.get("traffic", [])),
         relations=data.get("relations", "").strip(),
@@ -301,14 +312,21 @@ def _traffic(data: dict[str, Any], places: Places) -> Traffic:
     )
 
 
-def _daa(data: dict[str, Any], sensing: Sensing | None, link_loss: LinkLoss | None) -> Daa:
+def _daa(
+    data: dict[str, Any],
+    sensing: Sensing | None,
+    link_loss: LinkLoss | None,
+    merging: Merging | None,
+) -> Daa:
     volume = {name: float(value) for name, value in data.get("well_clear", {}).items()}
     kept: dict[str, Any] = {"close_starts": bool(data.get("close_starts", False))}
     kept |= {name: float(data[name]) for name in ("lookahead_s", "buffer") if name in data}
-    volume_kept = replace(DEFAULT_WELL_CLEAR, **volume)
+    volume_kept = guided(replace(DEFAULT_WELL_CLEAR, **volume), data.get("guidance"))
     first = Resolution(data.get("resolution", Resolution.HEADING))
     if link_loss is not None:
         return LinkLossDaa(volume_kept, **kept, resolution=first, link_loss=link_loss)
+    if merging is not None:
+        return MergingDaa(volume_kept, **kept, resolution=first, merging=merging)
     if first is Resolution.HEADING:  # the default: keeps the established name
         return (
             Daa(volume_kept, **kept)

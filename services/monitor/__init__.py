@@ -19,6 +19,7 @@ from cratous.services.monitor.constraints import ConstraintWatch
 from cratous.services.monitor.hand import HandWatch
 from cratous.services.monitor.landing import LandingWatch
 from cratous.services.monitor.link_loss import LinkLossWatch
+from cratous.services.monitor.merging import MergeWatch
 from cratous.services.monitor.observation import Ending, Presence
 from cratous.services.monitor.required_rows import END, missing, promised, watched
 from cratous.services.monitor.samples import Sample, Sampler
@@ -63,6 +64,7 @@ class Monitor:
         self.hand = HandWatch.of(mission)
         self.link_loss = LinkLossWatch(mission, self.landing.down, self.presence)
         self.take_off = TakeOffWatch(mission, self.presence)
+        self.merging = MergeWatch(mission, self.presence)
         self._assumed = AssumptionWatch(mission, on_board)
         self._last_ms, self._over = 0, False
         self._tell, self._tell_broken = on_violation, on_broken
@@ -128,6 +130,7 @@ class Monitor:
         self.presence.step(before, after)
         self.constraints.step(before, after)
         self.take_off.step(before, after)
+        self.merging.step(before, after)
         flown = self.landing.step(before, after)
         if all(flown):
             self.separation.step(*flown)
@@ -157,6 +160,7 @@ class Monitor:
         ending = Ending(self._last_ms, self._over)
         found = [
             *self.constraints.verdicts(seen, ending),
+            *self.merging.verdicts(ending),
             *self.separation.verdicts(seen, ending),
             *self.completion.verdicts(seen),
             *self.authority.verdicts(),

@@ -7,9 +7,11 @@ accepted or a log happens to contain. A promised row without a verdict is unknow
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Set
+from itertools import combinations
 from typing import NamedTuple
 
 from cratous.services.mission.known_zones import zones_of
+from cratous.services.mission.merging import merging_of
 from cratous.services.mission.take_off import grounded
 from cratous.services.monitor.observation import Span, in_the_air
 from cratous.services.monitor.plan_check import WHOLE
@@ -61,6 +63,17 @@ def fence_item(zone: Zone, vehicle: int) -> str:
 def eligible_item(task: int) -> str:
     """Name of the row on the eligibility of the vehicle that flew a task."""
     return f"eligibility: task {task} in flight"
+
+
+def merge_item(fix: str, one: int, other: int) -> str:
+    """Name of the row on a pair of vehicles that merge at a fix."""
+    return f"separation at {fix}: vehicles {one} and {other}"
+
+
+def merging_pairs(mission: Mission) -> list[tuple[int, int]]:
+    """All pairs of vehicles that merge."""
+    merging = merging_of(mission)
+    return [] if merging is None else list(combinations(sorted(merging.vehicles), 2))
 
 
 def pair_item(own: int, other: int) -> str:
@@ -141,6 +154,9 @@ def promised(seen: Watched, present: Collection[str] = ()) -> Iterator[Row]:
     yield from (Row("G1", item) for item in relation_items(seen, present))
     for task in seen.tasks:
         yield Row("G1", eligible_item(task))
+    if (merging := merging_of(mission)) is not None:
+        for one, other in merging_pairs(mission):
+            yield Row("G1", merge_item(merging.name, one, other), (one, other))
     pairs = pairs_of(mission, seen.end_ms)
     yield from (Row("G2", pair_item(*pair), pair) for pair in pairs)
     met = {number for pair in pairs for number in pair}

@@ -52,35 +52,87 @@ GROUPS = (
     Group("", "climbs are flown at max_climb_m_s", (
         ("vertical_rate", "500.0", "fpm"),
     )),
-    Group("", "of bands (`cratous daa`), which steer no flight here", (
+    Group("", "the bands look at all headings, and at all speeds that the airframe can fly", (
         ("left_hdir", "180.0", "deg"), ("right_hdir", "180.0", "deg"),
         ("below_relative_hs", "100.0", "knot"), ("above_relative_hs", "100.0", "knot"),
+    )),
+    Group("", "the bands look at what max_climb_m_s reaches within lookahead_s", (
         ("below_relative_vs", "5000.0", "fpm"), ("above_relative_vs", "5000.0", "fpm"),
         ("below_relative_alt", "10000.0", "ft"), ("above_relative_alt", "10000.0", "ft"),
+    )),
+    Group("", "the bands step by 5 deg, and by a twelfth of what the airframe can do", (
         ("step_hdir", "1.0", "deg"), ("step_hs", "2.0", "knot"), ("step_vs", "100.0", "fpm"),
-        ("step_alt", "50.0", "ft"), ("min_horizontal_recovery", "30.0", "ft"),
-        ("min_vertical_recovery", "30.0", "ft"), ("recovery_hdir", "true", ""),
-        ("recovery_hs", "true", ""), ("recovery_vs", "true", ""), ("recovery_alt", "true", ""),
-        ("ca_bands", "true", ""), ("ca_factor", "0.1", ""), ("recovery_stability_time", "3.0", "s"),
-        ("hysteresis_time", "3.0", "s"), ("persistence_time", "3.0", "s"),
-        ("bands_persistence", "true", ""), ("persistence_preferred_hdir", "5.0", "deg"),
-        ("persistence_preferred_hs", "2.0", "knot"), ("persistence_preferred_vs", "50.0", "fpm"),
-        ("persistence_preferred_alt", "30.0", "ft"), ("contour_thr", "180.0", "deg"),
+        ("step_alt", "50.0", "ft"),
+    )),
+    Group("", "recovery begins with the cylinder of the thresholds: dthr_m, zthr_m", (
+        ("min_horizontal_recovery", "30.0", "ft"), ("min_vertical_recovery", "30.0", "ft"),
+    )),
+    Group("", "recovery is always looked for where nothing keeps well clear, and may be flown", (
+        ("recovery_hdir", "true", ""), ("recovery_hs", "true", ""), ("recovery_vs", "true", ""),
+        ("recovery_alt", "true", ""),
+    )),
+    Group("daa.guidance.recovery_shrinks", "", (
+        ("ca_bands", "true", ""),
+    )),
+    Group("daa.guidance.recovery_factor", "", (
+        ("ca_factor", "0.1", ""),
+    )),
+    Group("daa.guidance.recovery_stable_s", "", (
+        ("recovery_stability_time", "3.0", "s"),
+    )),
+    Group("daa.guidance.hysteresis_s", "", (
+        ("hysteresis_time", "3.0", "s"),
+    )),
+    Group("daa.guidance.persistence_s", "", (
+        ("persistence_time", "3.0", "s"),
+    )),
+    Group("daa.guidance.bands_persistence", "", (
+        ("bands_persistence", "true", ""),
+    )),
+    Group("daa.guidance.preferred_heading_deg", "", (
+        ("persistence_preferred_hdir", "5.0", "deg"),
+    )),
+    Group("daa.guidance.preferred_speed_m_s", "", (
+        ("persistence_preferred_hs", "2.0", "knot"),
+    )),
+    Group("daa.guidance.preferred_climb_m_s", "", (
+        ("persistence_preferred_vs", "50.0", "fpm"),
+    )),
+    Group("daa.guidance.preferred_alt_m", "", (
+        ("persistence_preferred_alt", "30.0", "ft"),
+    )),
+    Group("", "contours are not looked for in flight", (
+        ("contour_thr", "180.0", "deg"),
+    )),
+    Group("", "the bands resolve the region MID: the buffered volume within lookahead_s", (
         ("corrective_region", "NEAR", ""),
     )),
-    Group("", "G2 judges the well-clear volume, and no smaller one", (
+    Group("", "500 ft and 100 ft, or the thresholds where they are less; not judged", (
         ("horizontal_nmac", "5.0", "ft"), ("vertical_nmac", "5.5", "ft"),
     )),
-    Group("", "alerts of `cratous daa`; in flight a predicted loss counts after a fixed time", (
-        ("alerting_m", "2", ""), ("alerting_n", "4", ""), ("ownship_centric_alerting", "true", ""),
+    Group("daa.guidance.alerting_m", "", (
+        ("alerting_m", "2", ""),
+    )),
+    Group("daa.guidance.alerting_n", "", (
+        ("alerting_n", "4", ""),
+    )),
+    Group("", "who takes over and when is decided by predicted losses, not by alert levels", (
+        ("ownship_centric_alerting", "true", ""),
+    )),
+    Group("", "two levels: the buffered volume, and the volume itself as late as all have to act", (
         ("default_alert_1_region", "NEAR", ""), ("default_alert_1_alerting_time", "10.0", "s"),
         ("default_alert_1_early_alerting_time", "15.0", "s"),
-        ("default_alert_1_spread_hdir", "0.0", "deg"), ("default_alert_1_spread_hs", "0.0", "knot"),
-        ("default_alert_1_spread_vs", "0.0", "fpm"), ("default_alert_1_spread_alt", "0.0", "ft"),
         ("default_alert_1_detector", "det_1", ""),
     )),
-    Group("", "which side to take is decided by the right of way and by ways that are told", (
-        ("conflict_crit", "false", ""), ("recovery_crit", "false", ""),
+    Group("", "the levels in flight have no spread", (
+        ("default_alert_1_spread_hdir", "0.0", "deg"), ("default_alert_1_spread_hs", "0.0", "knot"),
+        ("default_alert_1_spread_vs", "0.0", "fpm"), ("default_alert_1_spread_alt", "0.0", "ft"),
+    )),
+    Group("daa.guidance.conflict_crit", "", (
+        ("conflict_crit", "false", ""),
+    )),
+    Group("daa.guidance.recovery_crit", "", (
+        ("recovery_crit", "false", ""),
     )),
     Group("", "how far off a track may be is `sigmas` of the section `sensing`", (
         ("h_pos_z_score", "0.0", ""), ("h_vel_z_score_min", "0.0", ""),
@@ -164,9 +216,12 @@ GROUPS = (
     Group("", "ways have no layers of altitude", (
         ("alt_bins", "1", ""),
     )),
-    Group("", "no merging at crossings", (
+    Group("", "the section `merging` of a mission says it, with its fix, which no such file names", (
         ("separation_time", "20.0", "s"), ("coordination_zone", "90.0", "m"),
-        ("schedule_zone", "70.0", "m"), ("entry_zone", "60.0", "m"), ("corridor_width", "0.0", "m"),
+        ("schedule_zone", "70.0", "m"), ("entry_zone", "60.0", "m"),
+    )),
+    Group("", "slots are times at one fix: corridors have no width", (
+        ("corridor_width", "0.0", "m"),
     )),
     Group("", "what ICAROUS does next is decided by proved kernels, not by priorities", (
         ("Priority_Takeoff", "1", ""), ("Priority_NominalDeparture", "6", ""),

@@ -8,6 +8,7 @@ present speed.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import asdict
 from math import degrees
 from pathlib import Path
 from typing import Any
@@ -26,9 +27,11 @@ from cratous.services.loading.document import read_document
 from cratous.services.loading.schema import mission_schema
 from cratous.services.loading.yaml_mission import MAX_BANK_DEG, MAX_CLIMB_M_S
 from cratous.services.mission.ground import GROUND_MARGIN, floor_of
+from cratous.services.mission.guidance import guidance_of
 from cratous.services.mission.landing import MAX_ACCELERATION_M_S2
 from cratous.services.mission.leg_bounds import LONGEST_LOOKAHEADS, MOST_TAKEOVERS
 from cratous.services.parameters.landing import landing_rows
+from cratous.services.parameters.merging import merging_rows
 from cratous.services.parameters.parameter import DEFAULT, DERIVED, FIXED, GIVEN, Parameter
 from cratous.services.parameters.sensed import SECTION, rows_of
 from cratous.services.parameters.take_off import take_off_rows
@@ -54,7 +57,7 @@ def parameters_of(mission: Mission, path: Path) -> tuple[Parameter, ...]:
     """
     written = _written(path)
     rows = [*_of_mission(mission, written), *_of_sensing(mission, written)]
-    rows += _of_link_loss(mission, written)
+    rows += [*_of_link_loss(mission, written), *merging_rows(mission, written)]
     for k, vehicle in enumerate(mission.vehicles):
         rows += _of_vehicle(vehicle, _at(written, ("vehicles", k)))
         if vehicle.id in mission.instances:
@@ -79,6 +82,7 @@ def _at(data: Any, key: tuple[str | int, ...]) -> Any:
 
 def _of_mission(mission: Mission, written: Any) -> Iterator[Parameter]:
     daa, simulation = mission.daa, mission.simulation
+    guidance = guidance_of(daa.well_clear)
     for section, name, value in (
         ("daa.well_clear", "dthr_m", daa.well_clear.dthr_m),
         ("daa.well_clear", "zthr_m", daa.well_clear.zthr_m),
@@ -87,6 +91,7 @@ def _of_mission(mission: Mission, written: Any) -> Iterator[Parameter]:
         ("daa", "lookahead_s", daa.lookahead_s),
         ("daa", "buffer", daa.buffer),
         ("daa", "close_starts", daa.close_starts),
+        *(("daa.guidance", name, value) for name, value in asdict(guidance).items()),
         ("simulation", "step_ms", simulation.step_ms),
         ("simulation", "heartbeat_ms", simulation.heartbeat_ms),
         ("simulation", "limit_s", simulation.limit_ms / 1000),

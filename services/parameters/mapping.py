@@ -30,6 +30,10 @@ def settings_of(given: Mapping[str, Given], speed_m_s: float) -> dict[str, Setti
             continue
         if one.name.name == "turn_rate":
             value = degrees(atan(float(value) * speed_m_s / GRAVITY_M_S2))
+        if one.name.unit == "deg" and item.endswith("_deg"):
+            value = degrees(float(value))
+        if one.name.name in ("alerting_m", "alerting_n") and float(value).is_integer():
+            value = int(float(value))
         if one.name.name in ("min_vs", "max_vs"):
             value = abs(float(value))
             before = found.get(item)

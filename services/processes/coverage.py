@@ -14,6 +14,7 @@ from cratous.services.loading.places import Places
 from cratous.services.loading.uxas_cfg import Sent
 from cratous.services.loading.uxas_tasks import Interests
 from cratous.services.loading.uxas_tasks import task as read_task
+from cratous.services.mission.merging import merging_of
 from cratous.services.mission.take_off import grounded
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import FaultySimulation, Mission, TaskKind
@@ -82,6 +83,8 @@ def _asked(mission: Mission, original: bool) -> Iterator[tuple[str, bool, str, s
     yield "sensing", sensed, "ICAROUS is given what sensors see", "no sensing"
     lost = mission.link_loss is not None
     yield "link_loss", lost, "the mission says what is flown without the link", "no link_loss"
+    merges = merging_of(mission) is not None
+    yield "merging", merges, "vehicles merge at a fix", "no merging"
     waits = bool(grounded(mission))
     yield "vehicles.start", waits, "a vehicle starts on the ground", "vehicles in the air"
     high = mission.frame.terrain_m != 0

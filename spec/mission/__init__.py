@@ -12,7 +12,10 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import NamedTuple
 
+from cratous.spec.mission.camera import Camera as Camera
+from cratous.spec.mission.guidance import Guidance
 from cratous.spec.mission.link_loss import LandingSite, WithoutLink
+from cratous.spec.mission.merging import Merging
 from cratous.spec.mission.sensing import Sensing
 from cratous.spec.mission.simulation import FaultySimulation as FaultySimulation
 from cratous.spec.mission.simulation import Simulation as Simulation
@@ -41,27 +44,6 @@ class Frame:
     latitude_deg: float
     longitude_deg: float
     terrain_m: float = 0.0
-
-
-@dataclass(frozen=True)
-class Camera:
-    """A camera on a gimbal. Angles in radians; azimuth clockwise from the nose, elevation up."""
-
-    payload_id: int = 1
-    hfov_rad: float = 0.785398
-    aspect: float = 4 / 3
-    min_elevation_rad: float = -1.5708
-    max_elevation_rad: float = 0.0
-    min_azimuth_rad: float = -3.14159265
-    max_azimuth_rad: float = 3.14159265
-    wavelength: str = "AllAny"
-    pixels: int = 0
-    """Image width in pixels; 0: not known."""
-    zoom_rad: tuple[float, ...] = ()
-    """Narrower fields of view available [rad]; with `zooms`, all between the narrowest and hfov as well."""
-    zooms: bool = False
-    camera_id: int = 0
-    """The payload id of the camera itself; `payload_id` is that of its gimbal."""
 
 
 @dataclass(frozen=True)
@@ -118,11 +100,8 @@ class TaskKind(StrEnum):
 
 
 SEARCHES = (
-    TaskKind.LINE_SEARCH,
-    TaskKind.POINT_SEARCH,
-    TaskKind.AREA_SEARCH,
-    TaskKind.PATTERN_SEARCH,
-)
+    TaskKind.LINE_SEARCH, TaskKind.POINT_SEARCH, TaskKind.AREA_SEARCH, TaskKind.PATTERN_SEARCH,
+)  # fmt: skip
 """The kinds served by camera coverage."""
 AREAS = (TaskKind.AREA_SEARCH, TaskKind.PATTERN_SEARCH)
 """The kinds for which an entire area has to be seen."""
@@ -245,6 +224,13 @@ class WellClear:
     tcoa_s: float
 
 
+@dataclass(frozen=True)
+class GuidedWellClear(WellClear):
+    """A volume for which the mission sets the persistence and hysteresis of alerts and bands."""
+
+    guidance: Guidance = field(default_factory=Guidance)
+
+
 class Resolution(StrEnum):
     """Kinds of resolution manoeuvres: heading: turns; altitude: climbs and descents; speed: slower or faster flight."""
 
@@ -319,6 +305,13 @@ class LinkLossDaa(OrderedDaa):
     """Detect and avoid in a mission that specifies what is flown while UxAS is not heard."""
 
     link_loss: LinkLoss = field(default_factory=lambda: LinkLoss(WithoutLink.LOITER))
+
+
+@dataclass(frozen=True)
+class MergingDaa(OrderedDaa):
+    """Detect and avoid of a mission in which vehicles merge at a fix."""
+
+    merging: Merging = field(default_factory=Merging)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,1 @@
+"""Merging at a fix: arrival slots, votes for a leader, slots granted by members, and stages of a vehicle."""
