@@ -14,7 +14,8 @@ from cratous.spec.mission import Frame
 
 ORIGIN = ("latitude", "longitude")
 VIEW = ("north", "east", "height", "width", "pixels_per_m")
-LARGEST = 1e9
+LARGEST = 1e12
+"""Well beyond the centre of any view a page shows (1e9 m), as tiles at its edge are requested too."""
 
 
 class Beneath:

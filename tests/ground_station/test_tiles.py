@@ -146,6 +146,11 @@ def test_the_policy_allows_pictures_of_that_origin_alone(log: Path) -> None:
             400, "expected latitude=DEG&longitude=DEG, the origin of a frame",
         )  # fmt: skip
         assert ask(port, f"/tiles.json?latitude=89&longitude=9&{view}").status == 422
+        far = view.replace("north=0&east=0", "north=-1000000001&east=1000000005")
+        told = ask(
+            port, f"/tiles.json?latitude=45&longitude=9&{far}"
+        )  # a tile at the edge of a far view
+        assert (told.status, told.data()) == (200, {"tiles": []})
         for bad in ("", "north=0", view.replace("2000", "nan"), view.replace("0.2", "0"),
                     view.replace("2000", "-1"), view.replace("north=0", "north=1e300")):  # fmt: skip
             assert ask(port, f"/tiles.json?latitude=45&longitude=9&{bad}").status == 400

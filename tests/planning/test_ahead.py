@@ -286,11 +286,14 @@ def test_what_is_made_meanwhile_is_used_from_then_on(
     monkeypatch.setattr(tiered, "_done", Counter())
     monkeypatch.setattr(tiered, "_compiled", {})
     monkeypatch.setattr(tiered, "_is_kept", lambda _: kept[0])
-    assert tiered.swift(direct_many, tiered.WORTH - 1_000) is direct_many
+    assert tiered.swift(direct_many, tiered.WORTH - 10_000) is direct_many
     kept[0] = True
     assert tiered.swift(direct_many, 1) is direct_many  # it is not looked for each time
-    assert tiered.swift(direct_many, tiered.SOON) is machine(direct_many)
+    assert tiered.swift(direct_many, tiered.SOON) is direct_many  # nor loaded for little
+    assert tiered.swift(direct_many, tiered.LOADED) is machine(direct_many)
     assert tiered.swift(direct_many, 1) is machine(direct_many)
+    # the compiler is loaded now: another loop is used sooner
+    assert tiered.swift(route_many, tiered.SOON + 1) is machine(route_many)
 
 
 def test_routes_are_searched_in_blocks_and_each_asks_what_there_is(
