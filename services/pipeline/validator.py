@@ -2,7 +2,7 @@
 
 Every request gets a ticket on arrival. When its turn comes it is validated against what is known
 (`validity`): a valid one is published as UniqueAutomationRequest; one that lacks only initialised tasks waits
-(except for kinds that no service handles: `unserved`); any other is answered with the reasons. One is in the
+(except for kinds that no service handles: `external_tasks`); any other is answered with the reasons. One is in the
 pipeline at a time; each is answered once, in order, by its response, by an error, or when its time limit is
 over.
 

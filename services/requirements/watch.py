@@ -131,7 +131,7 @@ class Watch:
 
     def all(self, samples: Iterable[tuple[int, Sample]]) -> None:
         """Process all samples of a finished trace, none of which was processed yet: by columns
-        where that is faster (`whole`), with the same outcome.
+        where that is faster (`finished_trace`), with the same outcome.
         """
         whole = ((time, self._calculated.row(row)) for time, row in samples)
         taken, kept = iter(whole), Columns(self._names)

@@ -34,6 +34,7 @@ from cratous.services.planning.assign import solve
 from cratous.services.planning.assign_warm import simple_instance
 from cratous.services.planning.detours import many_detours
 from cratous.services.planning.inputs import Inputs
+from cratous.services.planning.pending_compilation import AROUND, ASSIGNMENT, ROUTES
 from cratous.services.planning.zones import roadmaps
 from cratous.services.startup import ahead, sample_missions, warm
 from cratous.spec.assignment.search import ORDER, AssignmentProblem, Choice
@@ -105,7 +106,7 @@ def test_what_may_not_be_needed_stands_back(
     back: list[tuple[str, int]] = []
     monkeypatch.setattr(ahead, "_stand_back", lambda process, by: back.append((process.name, by)))
     ahead.begin([mission(ahead.MANY_TASKS)])
-    assert back == [(pending_compilation.ROUTES, ahead.BEHIND)]
+    assert back == [(ROUTES, ahead.BEHIND)]
 
 
 def test_on_one_core_who_answers_waits_before_and_who_plans_compiles(
@@ -124,10 +125,7 @@ def test_on_one_core_who_answers_waits_before_and_who_plans_compiles(
 
 def test_who_needs_machine_code_waits_for_it_once(begun: list[Started]) -> None:
     ahead.begin([mission(ahead.MANY_TASKS)])
-    assert [process.name for process in begun] == [
-        pending_compilation.ROUTES,
-        pending_compilation.ASSIGNMENT,
-    ]
+    assert [process.name for process in begun] == [ROUTES, ASSIGNMENT]
     choices = tuple(Choice(t, 1, 1, (1,)) for t in (1, 2, 3, 4))
     rows = tuple(tuple(None if a == b else 1 for b in range(4)) for a in range(5))
     problem = AssignmentProblem("", (1,), (0,), choices, (rows,), "|(p1 p2 p3 p4)")
@@ -142,16 +140,10 @@ def test_what_is_compiled_for_routes_goes_by_whether_many_lead_around_zones(
 ) -> None:
     few = ahead.MANY_TASKS - 1
     ahead.begin([mission(few, wall(-2000.0)), mission(ahead.MANY_TASKS, wall(3000.0))])
-    assert [process.name for process in begun] == [
-        pending_compilation.ROUTES,
-        pending_compilation.ASSIGNMENT,
-    ]
+    assert [process.name for process in begun] == [ROUTES, ASSIGNMENT]
     begun.clear()
     ahead.begin([mission(few), mission(ahead.MANY_TASKS, wall(-2000.0))])
-    assert [process.name for process in begun] == [
-        pending_compilation.AROUND,
-        pending_compilation.ASSIGNMENT,
-    ]
+    assert [process.name for process in begun] == [AROUND, ASSIGNMENT]
 
 
 def test_ways_across_a_zones_box_are_many_or_not() -> None:
@@ -182,9 +174,7 @@ def test_many_that_lead_around_get_the_ways_that_direct_ones_and_the_rest_get() 
         assert one.tobytes() == other.tobytes()
 
 
-@pytest.mark.parametrize(
-    ("east_m", "name"), [(320.0, pending_compilation.AROUND), (3000.0, pending_compilation.ROUTES)]
-)
+@pytest.mark.parametrize(("east_m", "name"), [(320.0, AROUND), (3000.0, ROUTES)])
 def test_who_searches_many_ways_waits_for_the_search_that_they_need(
     monkeypatch: pytest.MonkeyPatch, east_m: float, name: str
 ) -> None:
@@ -211,9 +201,7 @@ def test_who_searches_many_ways_waits_for_the_search_that_they_need(
     searched.clear()
     ours.routes.prepare(0, pairs)
     assert waited == [name]
-    assert set(searched) == {
-        {pending_compilation.AROUND: "lengths_around", pending_compilation.ROUTES: "routes"}[name]
-    }
+    assert set(searched) == {{AROUND: "lengths_around", ROUTES: "routes"}[name]}
 
 
 def test_a_process_that_nobody_waited_for_is_ended(begun: list[Started]) -> None:
@@ -262,7 +250,7 @@ def test_who_has_begun_plans_nothing_that_the_gate_refuses(
 
     def refused(**_: Any) -> None:
         names = [process.name for process in begun]
-        assert names == [ahead.SQUARES, pending_compilation.ROUTES, pending_compilation.ASSIGNMENT]
+        assert names == [ahead.SQUARES, ROUTES, ASSIGNMENT]
         raise Refused("the code is not what was proved")
 
     monkeypatch.setattr(ahead, "MANY_TASKS", 1)
@@ -282,7 +270,7 @@ def test_such_a_process_leaves_machine_code_and_says_nothing(tmp_path: Path) -> 
         "from cratous.core.routing.bulk import direct_many; print(is_kept(direct_many))"
     )
     own = {**os.environ, "CRATOUS_CACHE": str(tmp_path / "cache")}
-    lines = [["-c", ask], ["-P", "-m", ahead.__name__, pending_compilation.ROUTES], ["-c", ask]]
+    lines = [["-c", ask], ["-P", "-m", ahead.__name__, ROUTES], ["-c", ask]]
     runs = [
         subprocess.run([sys.executable, *line], env=own, capture_output=True, check=True)
         for line in lines
