@@ -7,7 +7,6 @@ zeros of decimals are omitted, as in its example.
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -94,14 +93,6 @@ class _Plain(NamedTuple):
     words: Mapping[str, str]
 
 
-@functools.cache
-def _plain_fields(kind: type[Message]) -> tuple[str, tuple[_Plain, ...]]:
-    """The beginning of the lines of a type of message, and its fields; of a text there is no plain form."""
-    layout = LAYOUT_IN[Dialect.CRATOUS][kind]
-    begins = f"{layout.tag}," + (f"type{layout.form}," if layout.form else "")
-    return begins, tuple(_plain(field, kind) for field in layout.fields)
-
-
 def _plain(field: FieldLayout, kind: type[Message]) -> _Plain:
     low, most, digits = -LARGEST_NUMBER, LARGEST_NUMBER, ""
     suffix: str | None = None
@@ -119,11 +110,21 @@ def _plain(field: FieldLayout, kind: type[Message]) -> _Plain:
     )
 
 
+_PLAIN = {
+    kind: (
+        f"{layout.tag}," + (f"type{layout.form}," if layout.form else ""),
+        tuple(_plain(field, kind) for field in layout.fields),
+    )
+    for kind, layout in LAYOUT_IN[Dialect.CRATOUS].items()
+}
+"""The beginning of the lines of each type of message, and its fields."""
+
+
 def _plain_line(message: Message, limits: Limits) -> bytes | None:
     """The line of a message in our dialect if each value is of its type and within its bounds, as nearly all are; None
     otherwise, and `encode` writes it or says what is wrong.
     """
-    begins, fields = _plain_fields(type(message))
+    begins, fields = _PLAIN[type(message)]
     parts = [begins]
     for attribute, label, optional, digits, suffix, low, most, high, words in fields:
         value = getattr(message, attribute)

@@ -11,7 +11,7 @@ import contextlib
 import functools
 import sys
 import time
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -75,7 +75,7 @@ def _plainly(function: Callable[..., Any]) -> Callable[..., Any]:
 LOADED_S, SOON_S = 0.5, 0.05
 """Time in CPython after which a function's machine code is used, if it is kept: what loading the compiler takes, and
 what loading the function takes where the compiler is loaded."""
-_took_s: Counter[Callable[..., Any]] = Counter()
+_took_s: defaultdict[Callable[..., Any], float] = defaultdict(float)
 _asked_s: dict[Callable[..., Any], float] = {}
 
 

@@ -5,9 +5,10 @@ a fold's call, the exact reading of one state), has an entry that counts and for
 original code, which runs unchanged; calls between kernels are counted too. The function objects are
 kept, so no call is missed however a reference is held; threads count, other processes do not.
 
-A loop over arrays (`core.readings.tiered`) runs in CPython or as machine code, whichever is
-available. Its entry is counted, but the functions it calls are not: they are listed as parts of it,
-so that counts do not depend on the cache.
+A loop over arrays (`core.readings.tiered`), or of a small assignment (`core.assignment.compiled`),
+runs in CPython or as machine code, whichever is available. Its entry is counted, but the functions
+it calls are not: they are listed as parts of it, so that counts do not depend on the cache. In
+CPython it runs as a copy that calls no counting entries (`services.certify.uncounted`).
 
 The ledger's gate compares code with files, so it is queried beforehand: while counting, it vouches
 for nothing.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections import Counter
+from collections import defaultdict
 from dataclasses import replace
 from typing import Any
 
@@ -149,7 +149,9 @@ def test_a_small_instance_is_counted_and_answered_alike_whatever_runs_it(
     i = arrays_of(problem(3, 2))
     ran, found = list[str](), []
     for took_s in (0.0, 1e9):
-        monkeypatch.setattr(in_machine_code, "_took_s", Counter(dict.fromkeys(LOOPS, took_s)))
+        monkeypatch.setattr(
+            in_machine_code, "_took_s", defaultdict(float, dict.fromkeys(LOOPS, took_s))
+        )
         monkeypatch.setattr(in_machine_code, "is_kept", lambda _: True)
         monkeypatch.setattr(in_machine_code, "_timed", lambda f, run, *given: run(*given))
         monkeypatch.setattr(
@@ -172,7 +174,7 @@ def test_machine_code_takes_over_only_where_it_is_kept(monkeypatch: pytest.Monke
 
     monkeypatch.setattr(in_machine_code, "is_kept", no)
     monkeypatch.setattr(in_machine_code, "_asked_s", {})
-    monkeypatch.setattr(in_machine_code, "_took_s", Counter({ways_hold: 1.0}))
+    monkeypatch.setattr(in_machine_code, "_took_s", defaultdict(float, {ways_hold: 1.0}))
     for _ in range(3):
         assert in_machine_code._sooner(ways_hold) is ways_hold
         assert in_machine_code._sooner(shortest_ways) is shortest_ways
