@@ -29,7 +29,6 @@ from cratous.core.readings.machine.compiled import Reading, compiled, machine
 from cratous.core.tasks.footprints import points_in_quads
 from cratous.core.well_clear.now import vertical_violation
 from cratous.services.certify.evidence import LOOP, PYTHON, Calls, counted, is_data
-from cratous.services.certify.uncounted import uncounted
 from cratous.services.cli import job, main
 from cratous.services.flight.loop import fly
 from cratous.services.loading import load
@@ -173,35 +172,6 @@ def test_a_loop_counts_once_whatever_runs_it(monkeypatch: pytest.MonkeyPatch) ->
     }
     assert qualified(locate) not in found[0]["within"]
     assert found[0]["within"][qualified(orient)] == [qualified(points_in_quads)]
-
-
-LIMIT = 2
-
-
-def rising(n: int, *, by: int = 1) -> int:
-    return (
-        n if n >= LIMIT else rising(n + by, by=by) + orient(Vec2(0, 0), Vec2(1, 0), Vec2(0, n)) * 0
-    )
-
-
-def changing(n: int) -> int:
-    global LIMIT
-    LIMIT = n
-    return n
-
-
-def test_a_copy_calls_copies_and_reads_the_same_names(monkeypatch: pytest.MonkeyPatch) -> None:
-    name = registered(monkeypatch, rising)
-    with counted() as calls:
-        assert uncounted(rising)(0) == 2
-        assert uncounted(rising)(0, by=3) == 3
-        assert rising(1) == 2
-        assert inspect.unwrap(rising).__code__ is uncounted(rising).__code__
-    assert calls.data()["called"] == {name: {PYTHON: 2}, qualified(orient): {PYTHON: 1}}
-
-
-def test_what_assigns_to_its_module_is_not_copied() -> None:
-    assert uncounted(changing) is changing
 
 
 def test_a_loop_that_is_no_kernel_is_listed_with_what_stands_in_it() -> None:
