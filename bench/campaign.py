@@ -110,7 +110,7 @@ def main() -> int:
     parser.add_argument("files", nargs="*", type=Path)
     parser.add_argument("--runs", type=int, default=20)
     asked = parser.parse_args()
-    gc.set_threshold(20_000, 5, 10)  # as in the command
+    gc.set_threshold(100_000, 10, 10)  # as in the command
     os.environ["PYTHONPATH"] = os.pathsep.join([str(HERE.parent), os.environ.get("PYTHONPATH", "")])
     examples = HERE.parents[1] / "examples"
     for file in asked.files or [examples / name for name in FILES]:

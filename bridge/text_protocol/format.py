@@ -8,6 +8,8 @@ zeros of decimals are omitted, as in its example.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import NamedTuple
 
 from cratous.bridge.text_protocol.dialects import LAYOUT_IN, Dialect
 from cratous.bridge.text_protocol.layouts import (
@@ -50,6 +52,10 @@ def encode(
 
     dialect: in which it is written; in dialects other than ours there are no epochs and no request numbers.
     """
+    if dialect is Dialect.CRATOUS:
+        plain = _plain_line(message, limits)
+        if plain is not None:
+            return plain
     layout = LAYOUT_IN[dialect][type(message)]
     parts = [f"type{layout.form}"] if layout.form else []
     for field in layout.fields:
@@ -69,6 +75,79 @@ def encode(
             ) from None
     tag = layout.tag if dialect is Dialect.THESIS else layout.tag + ","
     return (tag + ",".join(parts) + ",\n").encode("ascii")
+
+
+class _Plain(NamedTuple):
+    """How a field is written in our dialect. digits: of decimals, for a float; suffix: after an integer, None where
+    none may stand; low, most: bounds of both; high: name of the limit of an integer; words: by our names of them.
+    """
+
+    attribute: str
+    label: str
+    optional: bool
+    digits: str
+    suffix: str | None
+    low: float
+    most: float
+    high: str
+    words: Mapping[str, str]
+
+
+def _plain(field: FieldLayout, kind: type[Message]) -> _Plain:
+    low, most, digits = -LARGEST_NUMBER, LARGEST_NUMBER, ""
+    suffix: str | None = None
+    if field.kind is Kind.REAL:
+        digits = ".6f"
+    elif field.kind is Kind.DEGREES:
+        most = 90 if "lat" in field.label else 180
+        low, digits = -most, ".9f"
+    elif field.kind in (Kind.COUNT, Kind.BARE):
+        low = low if field.low is None else field.low
+        suffix = "" if field.kind is Kind.BARE and kind is not FenceVertex else ".0"
+    words = {word.strip("_"): word for word in field.words} if field.kind is Kind.WORD else {}
+    return _Plain(
+        field.attribute, field.label, field.optional, digits, suffix, low, most, field.high, words
+    )
+
+
+_PLAIN = {
+    kind: (
+        f"{layout.tag}," + (f"type{layout.form}," if layout.form else ""),
+        tuple(_plain(field, kind) for field in layout.fields),
+    )
+    for kind, layout in LAYOUT_IN[Dialect.CRATOUS].items()
+}
+"""The beginning of the lines of each type of message, and its fields."""
+
+
+def _plain_line(message: Message, limits: Limits) -> bytes | None:
+    """The line of a message in our dialect if each value is of its type and within its bounds, as nearly all are; None
+    otherwise, and `encode` writes it or says what is wrong.
+    """
+    begins, fields = _PLAIN[type(message)]
+    parts = [begins]
+    for attribute, label, optional, digits, suffix, low, most, high, words in fields:
+        value = getattr(message, attribute)
+        if value is None and optional:
+            continue
+        if type(value) is float:
+            # below the largest number, but up to 90 and 180 degrees
+            if not digits or not (low < value < most or abs(value) == most < LARGEST_NUMBER):
+                return None
+            parts.append(f"{label}{value:{digits}},")
+        elif type(value) is int:
+            highest = getattr(limits, high) if high else most
+            if suffix is None or not low <= value <= highest or not -most < value < most:
+                return None
+            parts.append(f"{label}{value}{suffix},")
+        elif type(value) is str and value in words:
+            parts.append(f"{label}{words[value]},")
+        else:
+            return None
+    if len(parts) == 1:
+        return None
+    parts.append("\n")
+    return "".join(parts).encode("ascii")
 
 
 def _text(

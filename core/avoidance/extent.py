@@ -20,7 +20,7 @@ Bounds = tuple[Extent, float]
 
 MOST_WAYS = 4096
 _latest: list[tuple[Sequence[Leg], tuple[float, Bounds | None]]] = [((), (0.0, None))]
-_ways: dict[int, tuple[Sequence[Leg], float, Bounds | None]] = {}
+_ways: dict[tuple[int, float], tuple[Sequence[Leg], Bounds | None]] = {}
 
 
 def fastest(legs: Sequence[Leg]) -> float:
@@ -44,13 +44,13 @@ def reached_until(way: Sequence[Leg], until_s: float) -> Bounds | None:
     """The bounds of a path up to an instant [s]; None if it begins no sooner. An intruder that stays where its path
     ends adds no position to these.
     """
-    known = _ways.get(id(way))
-    if known is not None and known[0] is way and known[1] == until_s:
-        return known[2]
+    known = _ways.get((id(way), until_s))
+    if known is not None and known[0] is way:
+        return known[1]
     said = bounds(way, until_s)
     if len(_ways) >= MOST_WAYS:
         _ways.clear()
-    _ways[id(way)] = way, until_s, said
+    _ways[id(way), until_s] = way, said
     return said
 
 
@@ -58,12 +58,27 @@ def bounds(legs: Sequence[Leg], until_s: float) -> Bounds | None:
     """The bounds of consecutive legs up to an instant [s]; None if none begins before it."""
     low_n = low_e = math.inf
     high_n = high_e = speed = -math.inf
+    # compared, not by min and max: a long path is looked through at each heartbeat
     for start_s, duration_s, (north, east, _), (north_s, east_s, _) in legs:
         if start_s >= until_s:
             break
-        lasts_s = min(duration_s, until_s - start_s)
-        there_n, there_e = north + north_s * lasts_s, east + east_s * lasts_s
-        low_n, high_n = min(low_n, north, there_n), max(high_n, north, there_n)
-        low_e, high_e = min(low_e, east, there_e), max(high_e, east, there_e)
-        speed = max(speed, math.hypot(north_s, east_s))
+        left_s = until_s - start_s
+        lasts_s = duration_s if duration_s < left_s else left_s
+        there_n, there_e, leg_m_s = (
+            north + north_s * lasts_s,
+            east + east_s * lasts_s,
+            math.hypot(north_s, east_s),
+        )
+        south_m, north_m = (north, there_n) if north < there_n else (there_n, north)
+        west_m, east_m = (east, there_e) if east < there_e else (there_e, east)
+        if south_m < low_n:
+            low_n = south_m
+        if north_m > high_n:
+            high_n = north_m
+        if west_m < low_e:
+            low_e = west_m
+        if east_m > high_e:
+            high_e = east_m
+        if leg_m_s > speed:
+            speed = leg_m_s
     return None if low_n == math.inf else ((low_n, high_n, low_e, high_e), speed)

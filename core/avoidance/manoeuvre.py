@@ -121,23 +121,27 @@ def way_along(
     if pace is not None and pace.acceleration_m_s2 > 0 and pace.speed_m_s != now.speed_m_s:
         return _paced(now, points, horizon_s, pace)
     pieces: list[Piece] = []
-    p, t = now.position, start_s
-    last = velocity_of(now.heading_rad, now.speed_m_s, 0.0)
+    p, t, last, speed = now.position, start_s, None, now.speed_m_s
+    # as Piece(...) and Velocity(...), in a third of the time: paths have many legs
+    new = tuple.__new__
     for q in points:
-        north, east = q.north_m - p.north_m, q.east_m - p.east_m
+        north, east = q[0] - p[0], q[1] - p[1]
         length = math.hypot(north, east)
         if length < 1.0:
             continue
-        duration = length / now.speed_m_s
-        up = (q.alt_m - p.alt_m) / duration
-        v = Velocity(north / duration, east / duration, -up)
-        pieces.append(Piece(t, min(duration, horizon_s - t), p, v))
+        duration, left_s = length / speed, horizon_s - t
+        up = (q[2] - p[2]) / duration
+        v = new(Velocity, (north / duration, east / duration, -up))
+        pieces.append(new(Piece, (t, duration if duration < left_s else left_s, p, v)))
         t += duration
-        last = v._replace(down_m_s=0.0)
-        p = q
+        last, p = v, q
         if t >= horizon_s:
             return Way(tuple(pieces), None)
-    return Way(tuple(pieces), Piece(t, horizon_s - t, p, last))
+    if last is None:
+        on = velocity_of(now.heading_rad, now.speed_m_s, 0.0)
+    else:
+        on = last._replace(down_m_s=0.0)
+    return Way(tuple(pieces), Piece(t, horizon_s - t, p, on))
 
 
 PACED_OFF_M = 0.5

@@ -8,8 +8,10 @@ of the volume clear; the caller has to check that the path also keeps the volume
 from __future__ import annotations
 
 import contextlib
+import math
 from collections.abc import Sequence
 
+from cratous.core.avoidance.extent import reached_until
 from cratous.core.avoidance.prediction import (
     EXACT,
     STANDING,
@@ -85,11 +87,28 @@ def hold_permits(
     """
     if hold.velocity != STANDING:
         raise ValueError("a hold does not stand")
+    if other.way and out_of_reach_of(hold, other, volume.dthr_m + hold_m):
+        return True
     return all(
         _hold_permits(part, straight_on, volume, hold_m, rise_m)
         for run, straight_on in meetings((hold,), other)
         for part in run
     )
+
+
+def out_of_reach_of(hold: Piece, other: Intruder, radius_m: float) -> bool:
+    """True only if an intruder on a path comes nowhere within a radius of a place [m] until a hold there ends: a bound
+    on where the path leads by then, with a metre for rounding.
+    """
+    until_s = hold.start_s + hold.duration_s
+    met = reached_until(other.way, until_s)
+    if met is None or not until_s < math.inf:
+        return False
+    (south, north, west, east), _ = met
+    far_n = max(south - hold.position.north_m, hold.position.north_m - north, 0.0)
+    far_e = max(west - hold.position.east_m, hold.position.east_m - east, 0.0)
+    off_m = other.hold_m + other.spread.after(until_s).wide_m
+    return math.hypot(far_n, far_e) > 1 + radius_m + off_m
 
 
 def _hold_permits(

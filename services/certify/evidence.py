@@ -5,9 +5,10 @@ a fold's call, the exact reading of one state), has an entry that counts and for
 original code, which runs unchanged; calls between kernels are counted too. The function objects are
 kept, so no call is missed however a reference is held; threads count, other processes do not.
 
-A loop over arrays (`core.readings.tiered`) runs in CPython or as machine code, whichever is
-available. Its entry is counted, but the functions it calls are not: they are listed as parts of it,
-so that counts do not depend on the cache.
+A loop over arrays (`core.readings.tiered`), or of a small assignment (`core.assignment.compiled`),
+runs in CPython or as machine code, whichever is available. Its entry is counted, but the functions
+it calls are not: they are listed as parts of it, so that counts do not depend on the cache. In
+CPython it runs as a copy that calls no counting entries (`services.certify.uncounted`).
 
 The ledger's gate compares code with files, so it is queried beforehand: while counting, it vouches
 for nothing.
@@ -16,7 +17,6 @@ for nothing.
 from __future__ import annotations
 
 import contextlib
-import inspect
 import itertools
 import threading
 from collections import Counter
@@ -27,9 +27,10 @@ from typing import Any
 
 from cratous.core import ledger
 from cratous.core.kernel import REGISTRY, Fold, entry_of, qualified
-from cratous.core.kernel.sources import names_of, ours, reached
+from cratous.core.kernel.sources import reached
 from cratous.core.readings import exact, tiered
 from cratous.core.readings.machine.compiled import EXACT, Reading
+from cratous.services.certify.uncounted import entered, uncounted
 from cratous.spec.errors import BadInput
 
 PYTHON, LOOP = "CPython", "CPython or machine code"
@@ -50,6 +51,7 @@ class Calls:
         self._known = frozenset(REGISTRY)
         self._late: list[str] = []
         self._parts: dict[str, list[str]] = {}
+        self._copies: dict[str, Callable[..., Any]] = {}
         self._taken: Counter[str] = Counter()
 
     def entry(self, name: str) -> Callable[[], int]:
@@ -71,22 +73,30 @@ class Calls:
     def looped(self, function: Callable[..., Any], run: Callable[..., Any]) -> Callable[..., Any]:
         """A loop that counts one entry, whichever way it runs."""
         ran = run.run if isinstance(run, Reading) else run
+        plain = self._plain(function) if ran is function else None
 
         def loop(*given: Any) -> Any:
             self._add(function, LOOP)
-            if ran is not function:
+            if plain is None:
                 return ran(*given)
             with self._apart(function):
-                return ran(*given)
+                return plain(*given)
 
         return loop
+
+    def _plain(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        """The loop without entries that count, made once."""
+        name = qualified(function)
+        if name not in self._copies:
+            self._copies[name] = uncounted(function)
+        return self._copies[name]
 
     @contextlib.contextmanager
     def _apart(self, function: Callable[..., Any]) -> Iterator[None]:
         """While active, entries into a loop and into its parts are not counted; one loop at a time."""
         name = qualified(function)
         if name not in self._parts:
-            self._parts[name] = sorted(_enters(function) & self._known)
+            self._parts[name] = sorted(entered(function).keys() & self._known)
         keys = [(part, PYTHON) for part in self._parts[name]]
         counts = [(key[0], self._counts[key]) for key in keys if key in self._counts]
         with _looping:
@@ -153,19 +163,6 @@ def _parts(function: Any) -> set[str]:
     }
 
 
-def _enters(function: Callable[..., Any]) -> set[str]:
-    """The functions that a function calls directly or indirectly, itself included, while entries are counted."""
-    found, todo = {qualified(function)}, [function]
-    while todo:
-        plain = inspect.unwrap(todo.pop())
-        for used in names_of(plain.__code__):
-            callee = plain.__globals__.get(used)
-            if inspect.isfunction(callee) and ours(callee) and qualified(callee) not in found:
-                found.add(qualified(callee))
-                todo.append(callee)
-    return found
-
-
 @contextlib.contextmanager
 def counted() -> Iterator[Calls]:
     """Count all entries in the `with` block; read the result (`Calls.data`) after it.
@@ -179,12 +176,13 @@ def counted() -> Iterator[Calls]:
         )
     try:
         ledger.load_all()  # functions registered later have no counting entry
-        from cratous.core.assignment import layers
+        from cratous.core.assignment import compiled, layers
 
         layers.forget()
         calls = Calls()
         with contextlib.ExitStack() as stack:
             stack.enter_context(tiered.entered_by(calls.looped))
+            stack.enter_context(compiled.entered_by(calls.looped))
             stack.callback(calls.close)
             for name, entry in REGISTRY.items():
                 if not isinstance(entry.function, Fold):

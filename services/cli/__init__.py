@@ -105,7 +105,7 @@ def main(argv: list[str] | None = None) -> int:
     as_json = "--json" in arguments
     if argv is None:
         # most objects live until the end: collect garbage less often
-        gc.set_threshold(20_000, 5, 10)
+        gc.set_threshold(100_000, 10, 10)
         # the process ends with the command: no final collection is needed
         atexit.register(gc.freeze)
     try:

@@ -2,17 +2,29 @@
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
 
+import numpy as np
 import pytest
 from fuzz_lines import WAYS, End, changed
 from wire_messages import ATTITUDE, OWN_POSITION, RESET, ROUTE_REQUEST, TRAFFIC
 
 from cratous.bridge import text_protocol as tp
+from cratous.bridge.text_protocol import format
 from cratous.bridge.text_protocol.authenticated_lines import Seal
 from cratous.bridge.text_protocol.dialects import Dialect
-from cratous.bridge.text_protocol.layouts import LAYOUTS, ORIGINAL_LIMITS, WIDE_LIMITS
+from cratous.bridge.text_protocol.layouts import (
+    LAYOUT_OF,
+    LAYOUTS,
+    ORIGINAL_LIMITS,
+    WIDE_LIMITS,
+    Limits,
+)
+from cratous.spec.errors import BadInput
 
 DOWN = tp.Direction.DOWN
 WRITTEN: list[tp.Message] = [
@@ -160,3 +172,35 @@ def test_a_changed_line_is_read_alike_however_it_is_cut(
             refused += bool(wrong) or not any(isinstance(r, tp.Message) for r in records)
     assert refused > len(short), "most of what is changed is no message"
     assert End(way, dialect, True).read(line)[0] != [], "and the line itself is one"
+
+
+VALUES = (
+    *(0, 1, -1, 50, 64, 65, 255, 100_000, 100_001, 10**14, 10**15 - 1, 10**15, -(10**15), 10**40),
+    *(0.0, -0.0, 1.5, 90.0, -90.0, 90.000001, 180.0, -180.0, 180.1, 9.99999e14, 1e15, -1e15, 1e300, 1e-300),
+    *(math.inf, -math.inf, math.nan, True, False, None, "", "UXAS", "KEEPIN", "KEEPOUT", "_UXAS_", "ACTIVE", "é"),
+    *((), [1], b"1", np.float64(2.5), np.int64(3), Fraction(1, 3)),
+)  # fmt: skip
+
+
+def written(message: tp.Message, limits: Limits) -> object:
+    """The line of a message, or how it is refused."""
+    try:
+        return tp.encode(message, limits=limits)
+    except BadInput as error:
+        return str(error)
+
+
+@pytest.mark.parametrize("limits", [ORIGINAL_LIMITS, WIDE_LIMITS])
+@pytest.mark.parametrize("message", KINDS, ids=lambda message: type(message).__name__)
+def test_a_line_written_at_once_is_that_written_field_by_field(
+    message: tp.Message, limits: Limits, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = [message]
+    for field in LAYOUT_OF[type(message)].fields:
+        asked += [replace(message, **{field.attribute: value}) for value in VALUES]
+    at_once = [written(one, limits) for one in asked]
+    plain = [format._plain_line(one, limits) for one in asked]
+    monkeypatch.setattr(format, "_plain_line", lambda *_: None)
+    assert at_once == [written(one, limits) for one in asked]
+    if message in WRITTEN:
+        assert plain[0] == at_once[0]

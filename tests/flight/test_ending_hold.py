@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import random
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -14,9 +15,22 @@ from mission_tools import must_fly
 
 from cratous.core.authority.gate import Gate
 from cratous.core.avoidance.manoeuvre import way_along
-from cratous.core.avoidance.prediction import STANDING, Intruder, first_violation_s
+from cratous.core.avoidance.prediction import (
+    EXACT,
+    STANDING,
+    Intruder,
+    Spread,
+    first_violation_s,
+    meetings,
+)
 from cratous.core.avoidance.resolution import Scene
-from cratous.core.permit.remainder import hold_at, hold_permits, zones_permit
+from cratous.core.permit.remainder import (
+    _hold_permits,
+    hold_at,
+    hold_permits,
+    out_of_reach_of,
+    zones_permit,
+)
 from cratous.core.routing.polylines import Track
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.remaining_path import points_ahead
@@ -213,3 +227,48 @@ def test_the_end_of_a_way_beside_a_zone_is_flown() -> None:
     result, log = flown(replace(mission, traffic=(), zones=(zone,)))
     assert (result.outcome, result.takeovers) == ("complete", 0)
     assert not of_type(log, "Conflict")
+
+
+def test_a_hold_out_of_reach_of_a_path_is_one_that_is_permitted() -> None:
+    """What is skipped is what the kernels permit, asked leg by leg."""
+    rng, skipped, asked = random.Random(5), 0, 0
+    for _ in range(400):
+        speed, at = (
+            rng.uniform(15, 40),
+            Position(rng.uniform(-9e3, 9e3), rng.uniform(-9e3, 9e3), 300.0),
+        )
+        points = tuple(
+            Position(at.north_m + rng.uniform(-900, 900), at.east_m + rng.uniform(-900, 900), 300.0)
+            for _ in range(4)
+        )
+        motion = NORTH._replace(position=at, speed_m_s=speed)
+        way = way_along(motion, points, 90.0).pieces
+        spread = rng.choice(
+            (EXACT, Spread(rng.uniform(0, 50), 2.0, 10.0, 0.5, rng.choice((20.0, math.inf))))
+        )
+        other = Intruder(9, at, way[0].velocity, True, way, rng.choice((0.0, 200.0)), spread)
+        place = Position(rng.uniform(-3e3, 3e3), rng.uniform(-3e3, 3e3), 300.0)
+        hold, radius_m = (
+            hold_at(place, rng.uniform(0, 30), rng.uniform(31, 60)),
+            rng.uniform(0, 400),
+        )
+        permitted = all(
+            _hold_permits(part, straight_on, WIDE, radius_m, RISE_M)
+            for run, straight_on in meetings((hold,), other)
+            for part in run
+        )
+        asked += 1
+        if out_of_reach_of(hold, other, WIDE.dthr_m + radius_m):
+            skipped += 1
+            assert permitted
+        assert hold_permits(hold, other, WIDE, radius_m, RISE_M) == permitted
+    assert asked / 4 < skipped < asked
+
+
+def test_a_hold_just_within_reach_of_a_path_is_asked_about() -> None:
+    way = way_along(NORTH, (GOAL,), 90.0).pieces
+    other = Intruder(9, NORTH.position, way[0].velocity, True, way, 100.0, Spread(20.0, 1.0))
+    for beyond_m, far in ((0.5, False), (1.5, True)):
+        aside_m = WIDE.dthr_m + HOLD_M + 100.0 + 20.0 + 60.0 + beyond_m
+        hold = hold_at(Position(300.0, aside_m, 300.0), 20.0, 60.0)
+        assert out_of_reach_of(hold, other, WIDE.dthr_m + HOLD_M) is far
