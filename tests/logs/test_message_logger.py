@@ -135,11 +135,14 @@ def test_an_older_log_stays(tmp_path: Path) -> None:
 
 def test_the_envelope_of_the_wire_is_kept(tmp_path: Path) -> None:
     raw = lmcp.binary.pack(lmcp.new("AirVehicleState", ID=9))[:-4] + b"\0\0\0\0"
-    outside: dict[str, Any] = {"address": "eid100.sid5", "group": "g", "entity_id": 100, "service_id": 7}
+    outside: dict[str, Any] = {
+        "address": "eid100.sid5",
+        "group": "g",
+        "entity_id": 100,
+        "service_id": 7,
+    }
     logger = MessageLogger(tmp_path, [LogRule("eid")])
-    envelope = Envelope(
-        seq=4, time_ms=8, source="tcp", topic=STATE, body=None, raw=raw, **outside
-    )
+    envelope = Envelope(seq=4, time_ms=8, source="tcp", topic=STATE, body=None, raw=raw, **outside)
     state, said = logger.handle(logger.start(), envelope, 8)
     assert list(said) == []
     logger.stop(state)
