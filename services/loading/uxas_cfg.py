@@ -63,8 +63,11 @@ class Sent:
 
     @cached_property
     def places(self) -> tuple[tuple[float, float], ...]:
-        """Latitude and longitude [degrees] of every position inside the object."""
-        return tuple(locations(self.body))
+        """Latitude and longitude [degrees] of every position inside the object, but not of what its cameras
+        see, which reaches to the horizon.
+        """
+        names = (name for name in self.body.names if name != "PayloadStateList")
+        return tuple(locations([getattr(self.body, name) for name in names]))
 
 
 @dataclass(frozen=True)
