@@ -85,7 +85,9 @@ class Routes:
         """The route, or none with the reason."""
         key = self._ends(vehicle, before, to)
         if key not in self._found:
-            self._found[key] = self._search(*key)
+            found = self._found[key] = self._search(*key)
+            ms = flight_ms(found.length_m, key[1].speed_m_s) if found.points else None
+            self._times.setdefault(key, ms)
         return self._found[key]
 
     def over(self, vehicle: int, before: int, to: int, points: Sequence[Position]) -> Route:
