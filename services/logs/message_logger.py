@@ -21,7 +21,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -213,9 +212,10 @@ def entry_of(envelope: Envelope) -> tuple[Entry, BadInput | None]:
         body: str | bytes = envelope.packed
     except BadInput as error:
         problem = error
-        body = canonical({"$text": repr(envelope.body)[:10_000]})
-        with suppress(BadInput):
+        try:
             body = lmcp.to_json(envelope.body)
+        except BadInput:
+            body = canonical({"$text": repr(envelope.body)[:10_000]})
     entity, service = (getattr(envelope, name, 0) for name in ("entity_id", "service_id"))
     outside = (
         getattr(envelope, "address", "") or None,
