@@ -291,19 +291,18 @@ def arrays(problem: AssignmentProblem, part: Part) -> Instance:
     index = [*picked, len(p.choices)]
     shape = (len(p.vehicles), len(index), len(picked))
     travel, added = np.full(shape, FAR, np.int64), np.zeros(shape, np.int64)
+    weighed = [
+        (rows, per)
+        for rows, per in ((p.distance_mm, p.cost.distance), (p.energy_mj, p.cost.energy))
+        if per and rows
+    ]
     for v in range(len(p.vehicles)):
         for a, row in enumerate(index):
-            for b, k in enumerate(picked):
-                way = p.travel_ms[v][row][k]
-                if way is None:
-                    continue
-                travel[v, a, b] = way
-                for rows, per in (
-                    (p.distance_mm, p.cost.distance),
-                    (p.energy_mj, p.cost.energy),
-                ):
-                    if per and rows:
-                        added[v, a, b] += per * (rows[v][row][k] or 0)
+            ways = p.travel_ms[v][row]
+            travel[v, a] = [FAR if ways[k] is None else ways[k] for k in picked]
+            for rows, per in weighed:
+                costs = rows[v][row]
+                added[v, a] += [0 if ways[k] is None else per * (costs[k] or 0) for k in picked]
     may = [[int(v in p.choices[k].vehicles) for k in picked] for v in p.vehicles]
     options = [(p.choices[k].task_id, p.choices[k].duration_ms) for k in picked]
     weight = (p.cost.makespan, p.cost.team)
