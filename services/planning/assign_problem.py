@@ -299,7 +299,7 @@ def arrays(problem: AssignmentProblem, part: Part) -> Instance:
     for v in range(len(p.vehicles)):
         for a, row in enumerate(index):
             ways = p.travel_ms[v][row]
-            travel[v, a] = [FAR if ways[k] is None else ways[k] for k in picked]
+            travel[v, a] = [FAR if (way := ways[k]) is None else way for k in picked]
             for rows, per in weighed:
                 costs = rows[v][row]
                 added[v, a] += [0 if ways[k] is None else per * (costs[k] or 0) for k in picked]
