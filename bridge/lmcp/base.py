@@ -52,14 +52,16 @@ class LmcpObject:
 
     def _set(self, given: dict[str, Any]) -> None:
         """Set fields by name, each value checked; BadInput with the nearest names for an unknown one."""
-        for name, value in given.items():
-            check = self._checks.get(name)
-            if check is None:
-                raise unknown_field(type(self), name)
-            try:
-                setattr(self, name, check(value))
-            except BadInput as err:
-                raise within(err, f"{type(self).__name__}.{name}") from None
+        checks, name = self._checks, ""
+        try:
+            for name, value in given.items():
+                setattr(self, name, checks[name](value))
+        except BadInput as err:
+            raise within(err, f"{type(self).__name__}.{name}") from None
+        except KeyError:
+            if name in checks:
+                raise
+            raise unknown_field(type(self), name) from None
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):

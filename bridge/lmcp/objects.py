@@ -36,6 +36,8 @@ def real(value: Any) -> float:
 
 def real32(value: Any) -> float:
     """A number that fits 32 bits; kept as given, rounded to 32 bits only on the wire."""
+    if type(value) is float and -3.4e38 < value < 3.4e38:
+        return value
     number = real(value)
     # Half a unit above the largest real32, where rounding to nearest would overflow.
     if abs(number) >= 3.4028235677973366e38 and not math.isinf(number):
@@ -47,6 +49,8 @@ def _integer(kind: str) -> Check:
     low, high = model.INTEGER_RANGES[kind]
 
     def check(value: Any) -> int:
+        if type(value) is int and low <= value <= high:
+            return value
         try:
             number = index(value)
         except TypeError:
@@ -67,6 +71,8 @@ def _boolean(value: Any) -> bool:
 
 
 def _text(value: Any) -> str:
+    if type(value) is str:
+        return value
     if not isinstance(value, str):
         raise _wrong("text", value)
     return str(value)
@@ -119,12 +125,12 @@ def _array(field: model.Field, one: Check) -> Check:
     def check(value: Any) -> list[Any]:
         if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
             raise _wrong("a list", value)
-        result = []
-        for i, element in enumerate(value):
-            try:
+        result: list[Any] = []
+        try:
+            for element in value:
                 result.append(one(element))
-            except BadInput as err:
-                raise within(err, f"[{i}]") from None
+        except BadInput as err:
+            raise within(err, f"[{len(result)}]") from None
         if field.array and len(result) != field.array:
             raise _wrong(f"{field.array} elements", value)
         return result

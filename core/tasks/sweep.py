@@ -89,7 +89,11 @@ def _row(own: Sequence[Corner], y: float) -> tuple[float, float]:
 
 
 def _length(own: Sequence[Corner]) -> Callable[[float], float]:
-    return lambda y: _row(own, y)[1] - _row(own, y)[0]
+    def length(y: float) -> float:
+        low, high = _row(own, y)
+        return high - low
+
+    return length
 
 
 def _edge_of(own: Sequence[Corner], inner: float, outer: float, least_m: float) -> float:

@@ -11,8 +11,9 @@ services of an entity (`eid100.sidall`) or of their group, which receive it if t
 any other address, whose subscribers receive it. Bodies are LMCP objects of `cratous.bridge.lmcp`.
 
 A service may also have `prefixes`: it receives every message whose address begins with one of them (bridges,
-loggers); `wake(state, key, now_ms)`, called when a `Wake` that it requested is due; and `stop(state)`, called
-when it leaves. Wakes are due in virtual time, ordered by time, then by age.
+loggers); `outlet`, true if it sends messages out of the process and publishes nothing: it receives each
+message before the others; `wake(state, key, now_ms)`, called when a `Wake` that it requested is due; and
+`stop(state)`, called when it leaves. Wakes are due in virtual time, ordered by time, then by age.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ import heapq
 from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple, Protocol
 
 from cratous.spec.records import replace
@@ -49,6 +51,13 @@ class Envelope:
     def to(self) -> str:
         """The address used on the wire: the message's own, or else its type."""
         return self.address or self.topic
+
+    @cached_property
+    def packed(self) -> bytes:
+        """The body's bytes, encoded once for all who need them. BadInput if it has no form on the wire."""
+        from cratous.bridge.lmcp import binary
+
+        return self.raw or binary.pack(self.body)
 
 
 class Send(NamedTuple):
@@ -256,11 +265,14 @@ class Bus:
             if len(self._routes) > 10_000:  # addresses come from outside
                 self._routes.clear()
             topics = self._topics_of(envelope.body)
-            found = self._routes[key] = tuple(
+            wanting = (
                 service
                 for service in self._services.values()
                 if self._wants(service, envelope.address, topics)
             )
+            # a peer can work on a message while the services here do
+            outlets_first = sorted(wanting, key=lambda one: not getattr(one, "outlet", False))
+            found = self._routes[key] = tuple(outlets_first)
         return found
 
     def _wants(self, service: Any, address: str, topics: tuple[str, ...]) -> bool:

@@ -49,18 +49,30 @@ def camera_of(asked: Asked, flyer: Flyer) -> Camera | None:
 
 def station(asked: Asked, slot: int, flyer: Flyer, there: Motion, terrain_m: float) -> Station:
     """The circle of a slot, from 0, around an entity at the position of its motion."""
+    return _circle(asked, slot, _radius_m(asked, flyer, terrain_m), there)
+
+
+def _radius_m(asked: Asked, flyer: Flyer, terrain_m: float) -> float:
+    """Radius of the circle of slot 0 [m]."""
     radius = flyer.radius_m
+    if asked.kind in ("BlockadeTask", "EscortTask") or asked.tower is not None:
+        return radius
+    assert asked.looks is not None
+    for view in tilted(asked.looks, camera_of(asked, flyer)):
+        # a camera that cannot look down sees the centre only from a wide circle
+        tilt = max(-view.elevation_rad, LEAST_TILT_RAD)
+        radius = max(radius, (flyer.alt_m - terrain_m) / math.tan(tilt))
+    return radius
+
+
+def _circle(asked: Asked, slot: int, radius: float, there: Motion) -> Station:
+    """The circle of a slot; radius: that of slot 0 [m]."""
     if asked.kind == "BlockadeTask":
         return Station(_between(asked, slot, radius, there), radius)
     if asked.tower is not None:
         return Station(there.at, radius)  # its motion is that of the midpoint
     if asked.kind == "EscortTask":
         return Station(there.ahead(asked.standoff_m), radius)
-    assert asked.looks is not None
-    for view in tilted(asked.looks, camera_of(asked, flyer)):
-        # a camera that cannot look down sees the centre only from a wide circle
-        tilt = max(-view.elevation_rad, LEAST_TILT_RAD)
-        radius = max(radius, (flyer.alt_m - terrain_m) / math.tan(tilt))
     return Station(there.at, radius + slot * RING_M)
 
 
@@ -70,10 +82,11 @@ def reached_from(
     """The entity's motion when a vehicle in straight flight reaches its station, and the distance that it has
     flown by then [m]; None if it does not reach it.
     """
+    radius = _radius_m(asked, flyer, terrain_m)
 
     def at_time(seconds: float) -> tuple[Motion, float]:
         there = motion._replace(at=motion.after(seconds))
-        return there, _way_m(asked, start, there, station(asked, slot, flyer, there, terrain_m))
+        return there, _way_m(asked, start, there, _circle(asked, slot, radius, there))
 
     def late(seconds: float) -> bool:
         left_m = at_time(seconds)[1]

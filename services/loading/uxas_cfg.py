@@ -7,7 +7,9 @@ a folder `inputs` beside it; both are searched, and a note says which was used.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +41,18 @@ PLAYED = frozenset(
 """Services of UxAS whose role is taken by CRATOUS services."""
 
 
+def locations(body: Any) -> Iterator[tuple[float, float]]:
+    """Latitude and longitude [degrees] of every position inside an object."""
+    if isinstance(body, (list, tuple)):
+        for part in body:
+            yield from locations(part)
+    elif hasattr(body, "Latitude") and hasattr(body, "Longitude"):
+        yield float(body.Latitude), float(body.Longitude)
+    elif hasattr(body, "names"):
+        for name in body.names:
+            yield from locations(getattr(body, name))
+
+
 @dataclass(frozen=True)
 class Sent:
     """A message file: its object, its position in the configuration, and when it is sent [ms]."""
@@ -46,6 +60,14 @@ class Sent:
     body: Any
     where: str
     time_ms: int
+
+    @cached_property
+    def places(self) -> tuple[tuple[float, float], ...]:
+        """Latitude and longitude [degrees] of every position inside the object, but not of what its cameras
+        see, which reaches to the horizon.
+        """
+        names = (name for name in self.body.names if name != "PayloadStateList")
+        return tuple(locations([getattr(self.body, name) for name in names]))
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ def frame_of(cfg: Configuration, earlier: Frame | None = None) -> Frame:
     The earlier frame is kept if it is near the middle, so that a task has the same coordinates in
     the next request. BadInput if there is no position.
     """
-    places = [place for sent in cfg.messages for place in parts.locations(sent.body)]
+    places = [place for sent in cfg.messages for place in sent.places]
     if not places:
         raise BadInput("no message has a place", where=str(cfg.path), expected="vehicles")
     # invalid positions are refused where they are needed

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from math import hypot, isfinite, radians
 from typing import Any
 
@@ -23,18 +23,6 @@ STRAIGHT_DOWN_RAD = radians(-85.0)
 def safe_name(text: str) -> str:
     """A valid mission name from a folder's name: letters, digits, '_' and '-'."""
     return re.sub(r"[^A-Za-z0-9_-]+", "-", text).strip("-_") or "mission"
-
-
-def locations(body: Any) -> Iterator[tuple[float, float]]:
-    """Latitude and longitude [degrees] of every position inside an object."""
-    if isinstance(body, (list, tuple)):
-        for part in body:
-            yield from locations(part)
-    elif hasattr(body, "Latitude") and hasattr(body, "Longitude"):
-        yield float(body.Latitude), float(body.Longitude)
-    elif hasattr(body, "names"):
-        for name in body.names:
-            yield from locations(getattr(body, name))
 
 
 def point(location: Any, places: Places, sent: Sent, item: str) -> Position:

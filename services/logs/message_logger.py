@@ -12,7 +12,8 @@ after each one that is logged.
 
 Its decision is a pure step (`choose`); the log that receives the messages is the shell. The body is
 logged as its LMCP bytes, as received from outside if available, so that types without a model are
-logged too. If the log cannot be written it continues, reports it on the bus (ServiceStatus, once at
+logged too. On a bus, the text files are written once the messages queued with theirs are delivered,
+at most WAITING_MOST messages late, so that a response does not wait for them. If the log cannot be written it continues, reports it on the bus (ServiceStatus, once at
 the start and once at the end of the failure), and counts what is lost.
 """
 
@@ -20,12 +21,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
-from cratous.services.bus import Envelope
+from cratous.services.bus import Envelope, Wake
 from cratous.services.logs.entry import Entry, to_object
 from cratous.services.logs.records import canonical
 from cratous.services.logs.store import LogStore, cannot_write
@@ -36,6 +36,8 @@ from cratous.spec.files.limits import integer_of
 STEM = "messageLog"
 _NAME = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9._-]{0,99}")
 SERVICE_TYPE = "MessageLoggerDataService"
+WAITING_MOST = 1000
+"""Number of messages of which the text may still be written."""
 
 
 class LogRule(NamedTuple):
@@ -85,6 +87,7 @@ class MessageLogger:
         self._texts: TextFiles | None = None
         if text_limit > 0:
             self._texts = TextFiles(folder, f"{stem}_{number}", text_limit, files_per_folder)
+        self._waiting: list[Entry] = []
         self._tap_state = self.start()
 
     @classmethod
@@ -150,7 +153,25 @@ class MessageLogger:
         self.log.write(entry)
         said: list[Any] = [] if problem is None else [_status("Warning", str(problem))]
         if self._texts is not None:
-            self._texts.write(entry, _xml(entry))
+            self._waiting.append(entry)
+            if len(self._waiting) >= WAITING_MOST:
+                self._write_texts()
+            elif len(self._waiting) == 1:
+                said.append(Wake(0))
+        return self._judged(state, said)
+
+    def wake(self, state: LoggerState, key: None, now_ms: int) -> tuple[LoggerState, Iterable[Any]]:
+        """Write the text files."""
+        self._write_texts()
+        return self._judged(state, [])
+
+    def _write_texts(self) -> None:
+        waiting, self._waiting = self._waiting, []
+        if self._texts is not None:
+            for entry in waiting:
+                self._texts.write(entry, _xml(entry))
+
+    def _judged(self, state: LoggerState, said: list[Any]) -> tuple[LoggerState, Iterable[Any]]:
         trouble = self.log.trouble or (self._texts.trouble if self._texts is not None else "")
         if bool(trouble) != state.complained:
             state = state._replace(complained=bool(trouble))
@@ -165,6 +186,7 @@ class MessageLogger:
     def tap(self, envelope: Envelope) -> None:
         """The same for `Bus.tap`: every message, in order; errors are shown in `log.trouble`."""
         self._tap_state, _ = self.handle(self._tap_state, envelope, envelope.time_ms)
+        self._write_texts()
 
     def stop(self, state: LoggerState) -> None:
         """The service leaves the bus."""
@@ -172,6 +194,7 @@ class MessageLogger:
 
     def close(self) -> None:
         """Write the remaining messages and close the log; BadInput if something is not on disk."""
+        self._write_texts()
         if self._texts is not None:
             self._texts.close()
         self.log.close()
@@ -185,15 +208,14 @@ class MessageLogger:
 def entry_of(envelope: Envelope) -> tuple[Entry, BadInput | None]:
     """The log entry of a message, and the error if its body has no LMCP form (then logged as text)."""
     problem: BadInput | None = None
-    body: str | bytes | None = getattr(envelope, "raw", None)
-    if body is None:
+    try:
+        body: str | bytes = envelope.packed
+    except BadInput as error:
+        problem = error
         try:
-            body = lmcp.binary.pack(envelope.body)
-        except BadInput as error:
-            problem = error
+            body = lmcp.to_json(envelope.body)
+        except BadInput:
             body = canonical({"$text": repr(envelope.body)[:10_000]})
-            with suppress(BadInput):
-                body = lmcp.to_json(envelope.body)
     entity, service = (getattr(envelope, name, 0) for name in ("entity_id", "service_id"))
     outside = (
         getattr(envelope, "address", "") or None,

@@ -62,6 +62,8 @@ def _hints(cls: type) -> dict[str, Any]:
 
 
 def _read(hint: Any, data: Any, item: str) -> Any:
+    if type(data) is hint and hint in _WORDS:
+        return data
     origin = get_origin(hint)
     if hint is Any:
         return data
@@ -79,8 +81,6 @@ def _read(hint: Any, data: Any, item: str) -> Any:
         return _read_record(hint, data, item)
     if hint is float and type(data) is int:
         return float(data)
-    if hint in (bool, int, float, str) and type(data) is hint:
-        return data
     raise _misfit(item, _WORDS.get(hint, str(hint)), data)
 
 
@@ -111,9 +111,11 @@ def _read_record(cls: Any, data: Any, item: str) -> Any:
     if not isinstance(data, dict):
         raise _misfit(item, f"an object with {', '.join(_names(cls))}", data)
     # a subclass record is recognised by its fields; one that adds none is read as its base class
-    if not _names(cls) or set(data) != set(_names(cls)):
-        cls = next((c for c in _below(cls) if set(data) == set(_names(c))), cls)
-    hints, names = _hints(cls), _names(cls)
+    names = _names(cls)
+    if not names or data.keys() != set(names):
+        cls = next((c for c in _below(cls) if data.keys() == set(_names(c))), cls)
+        names = _names(cls)
+    hints = _hints(cls)
     for name in data:
         if name not in names:
             raise BadInput("unknown field", item=f"{item}.{name}", expected=", ".join(names))
@@ -136,10 +138,11 @@ def _below(cls: Any) -> Iterator[Any]:
         yield from _below(one)
 
 
-def _names(cls: Any) -> list[str]:
+@cache
+def _names(cls: Any) -> tuple[str, ...]:
     if hasattr(cls, "_fields"):
-        return list(cls._fields)
-    return [f.name for f in dataclasses.fields(cls)] if dataclasses.is_dataclass(cls) else []
+        return tuple(cls._fields)
+    return tuple(f.name for f in dataclasses.fields(cls)) if dataclasses.is_dataclass(cls) else ()
 
 
 def _misfit(item: str, expected: str, got: Any) -> BadInput:

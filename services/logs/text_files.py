@@ -2,8 +2,9 @@
 
 Each message is a line `time_ms address$attributes` and its XML. A file holds `limit` messages, a
 folder `per_folder` files: `messageLog_0.txt`, or `messageLog_0/messageLog_0.txt` if the number of files is
-limited. Each message is flushed to the operating system when written, so that a killed process
-loses none; the database is the log of record.
+limited. Each message is flushed to the operating system when written; on a bus it is written once the
+messages queued with it are delivered, so a killed process may lose those of its last burst. The
+database is the log of record.
 """
 
 from __future__ import annotations

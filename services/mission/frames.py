@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
+from threading import get_ident
 from typing import TYPE_CHECKING, Any
 
 from cratous.spec.mission import Frame, Position, Velocity
@@ -43,15 +44,8 @@ class Projection:
 
     @cached_property
     def _projection(self) -> Any:
-        import pyproj
-
-        shape = {"ellps": "WGS84"} if self._sphere_m is None else {"R": self._sphere_m}
-        return pyproj.Proj(
-            proj="aeqd",
-            **shape,
-            lat_0=self.frame.latitude_deg,
-            lon_0=self.frame.longitude_deg,
-        )
+        place = self.frame.latitude_deg, self.frame.longitude_deg
+        return _projection_of(get_ident(), *place, self._sphere_m)
 
     def to_local(self, lat_deg: float, lon_deg: float) -> tuple[float, float]:
         """(north, east) [m] of a latitude and longitude [deg]."""
@@ -88,6 +82,17 @@ class Projection:
         import pyproj
 
         return float(pyproj.Geod(ellps="WGS84").inv(a[1], a[0], b[1], b[0])[2])
+
+
+@lru_cache(64)
+def _projection_of(
+    thread: int, latitude_deg: float, longitude_deg: float, sphere_m: float | None
+) -> Any:
+    """The projection of a frame; making one takes longer than using it. thread: each has its own."""
+    import pyproj
+
+    shape = {"ellps": "WGS84"} if sphere_m is None else {"R": sphere_m}
+    return pyproj.Proj(proj="aeqd", **shape, lat_0=latitude_deg, lon_0=longitude_deg)
 
 
 def place_and_velocity(p: Position, v: Velocity) -> dict[str, float]:

@@ -7,6 +7,7 @@ read from the message.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
@@ -16,11 +17,13 @@ from cratous.services.loading.uxas_parts import heading, point
 from cratous.services.mission.frames import Projection, compass
 from cratous.services.pipeline.outside import Outside
 from cratous.services.planning.routes import Routes
-from cratous.services.planning.spacing import TOLERANCE, spaced
+from cratous.services.planning.spacing import TOLERANCE, needed
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.mission.plan import Pose
 
 _Spot = tuple[float, float, float, str]
+_needed = lru_cache(64)(needed)
+"""The path of a task is the same in its next request."""
 
 
 def _spot(location: Any) -> _Spot:
@@ -107,7 +110,9 @@ class RequestPlaces:
         if outside is None or not outside.separation_m:
             return points
         least_m = max(outside.separation_m, radius_m)
-        return spaced(points, least_m, TOLERANCE * radius_m, self._finder.kept_clear(radius_m))
+        zones = tuple(self._finder.kept_clear(radius_m))
+        kept = _needed(tuple(points), least_m, TOLERANCE * radius_m, zones)
+        return [points[k] for k in kept]
 
     def waypoints(
         self, points: Sequence[Position], first: int, speed_m_s: float, tasks: Sequence[int]

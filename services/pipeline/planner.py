@@ -128,15 +128,15 @@ def _plans(contexts: Contexts, request: Any, constraints: Sequence[Any]) -> list
     if request.IsCostOnlyRequest:  # all at once, which is faster
         routes.prepare(vehicle, [(k, k) for k in range(len(ways))])
     for k, constraint in enumerate(constraints):
+        found = None if request.IsCostOnlyRequest else routes.route(vehicle, k, k)
         cost = routes.travel_ms(vehicle, k, k)
         if cost is None:
             reason = routes.route(vehicle, k, k).reason
             plans.append(refused(constraint.RouteID, (reason,)))
             continue
         plan = lmcp.new("RoutePlan", RouteID=constraint.RouteID, RouteCost=cost)
-        if not request.IsCostOnlyRequest:
-            path = routes.route(vehicle, k, k).points
-            plan.Waypoints = _waypoints(contexts, places, request.VehicleID, path)
+        if found is not None:
+            plan.Waypoints = _waypoints(contexts, places, request.VehicleID, found.points)
         plans.append(plan)
     return plans
 

@@ -32,6 +32,8 @@ from cratous.spec.algebra import meaning as algebra_meaning
 from cratous.spec.assignment.search import ORDER, TIME, AssignmentProblem, Rows
 from cratous.spec.errors import BadInput
 
+WHOLE_END = 1 << 40
+"""Numbers of a problem are below this."""
 BRANCHES_MAX = 4096
 """Most resolutions of the alternatives examined, the first ones."""
 
@@ -135,7 +137,9 @@ def _timeless(p: AssignmentProblem) -> None:
 
 
 def _range(p: AssignmentProblem) -> None:
-    ways = sum(max((w or 0 for row in rows for w in row), default=0) for rows in p.travel_ms)
+    ways = sum(
+        max((max(filter(None, row), default=0) for row in rows), default=0) for rows in p.travel_ms
+    )
     horizon = max(p.ready_ms) + sum(c.duration_ms for c in p.choices) + len(p.tasks) * ways
     horizon += sum(value for _, value in p.release_ms)
     _refuse(
@@ -287,19 +291,18 @@ def arrays(problem: AssignmentProblem, part: Part) -> Instance:
     index = [*picked, len(p.choices)]
     shape = (len(p.vehicles), len(index), len(picked))
     travel, added = np.full(shape, FAR, np.int64), np.zeros(shape, np.int64)
+    weighed = [
+        (rows, per)
+        for rows, per in ((p.distance_mm, p.cost.distance), (p.energy_mj, p.cost.energy))
+        if per and rows
+    ]
     for v in range(len(p.vehicles)):
         for a, row in enumerate(index):
-            for b, k in enumerate(picked):
-                way = p.travel_ms[v][row][k]
-                if way is None:
-                    continue
-                travel[v, a, b] = way
-                for rows, per in (
-                    (p.distance_mm, p.cost.distance),
-                    (p.energy_mj, p.cost.energy),
-                ):
-                    if per and rows:
-                        added[v, a, b] += per * (rows[v][row][k] or 0)
+            ways = p.travel_ms[v][row]
+            travel[v, a] = [FAR if (way := ways[k]) is None else way for k in picked]
+            for rows, per in weighed:
+                costs = rows[v][row]
+                added[v, a] += [0 if ways[k] is None else per * (costs[k] or 0) for k in picked]
     may = [[int(v in p.choices[k].vehicles) for k in picked] for v in p.vehicles]
     options = [(p.choices[k].task_id, p.choices[k].duration_ms) for k in picked]
     weight = (p.cost.makespan, p.cost.team)
@@ -356,16 +359,20 @@ def _table(p: AssignmentProblem, rows: Sequence[Rows], name: str) -> None:
                 len(row),
             )
             for k, value in enumerate(row):
-                if value is not None:
-                    _whole(value, f"{name}[{v}][{a}][{k}]")
+                if value is None or (type(value) is int and 0 <= value < WHOLE_END):
+                    continue  # a large table has a million values
+                _whole(value, f"{name}[{v}][{a}][{k}]")
 
 
 def _whole(value: object, item: str) -> None:
+    """Refuse a value that is not a whole number from 0 to WHOLE_END."""
+    if type(value) is int and 0 <= value < WHOLE_END:
+        return
     good = isinstance(value, int) and not isinstance(value, bool)
     _refuse(not good, "not an integer", item, "an integer, 0 or more", repr(value))
     assert isinstance(value, int)
     _refuse(value < 0, "below zero", item, "0 or more", value)
-    _refuse(value >= 1 << 40, "too large", item, f"less than {1 << 40}", value)
+    _refuse(value >= WHOLE_END, "too large", item, f"less than {WHOLE_END}", value)
 
 
 def _twice(values: Sequence[object], item: str) -> None:

@@ -83,13 +83,7 @@ def problem_of(
     )  # fmt: skip
     count = len(options)
     travel = tuple(
-        tuple(
-            tuple(
-                None if v_id not in choices[k].vehicles else travel_ms(v, a, k)
-                for k in range(count)
-            )
-            for a in (*range(count), START)
-        )
+        _times(travel_ms, v, [v_id in choice.vehicles for choice in choices])
         for v, v_id in enumerate(ids)
     )
     weighed = COSTS[mission.cost]
@@ -125,6 +119,15 @@ def power_w(vehicle: Vehicle) -> float:
             got="nothing",
         )
     return vehicle.power_w
+
+
+def _times(travel_ms: Travel, vehicle: int, able: Sequence[bool]) -> Rows:
+    """The travel times of a vehicle, from each option and from its start, to each option that it may do."""
+    every = range(len(able))
+    return tuple(
+        tuple([travel_ms(vehicle, a, k) if able[k] else None for k in every])
+        for a in (*every, START)
+    )
 
 
 def _per_ms(rows: Rows, options: Sequence[Option], rates: Sequence[float]) -> Rows:

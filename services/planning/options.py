@@ -12,7 +12,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
+from cratous.core.geofence.mission_leg_arrays import first_bad
 from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.core.readings.tiered import swift
 from cratous.core.routing.visibility import circle, name_of
 from cratous.core.tasks.coverage import outline
 from cratous.core.tasks.outside import area_outside, points_outside
@@ -282,6 +284,7 @@ def hold_rooms(pose: Pose, radius_m: float, zones: Sequence[Zone]) -> tuple[Hold
     if not zones:  # no circles to compute, and no machine code to load
         return tuple(HoldRoom(clockwise, HOLD_FACTORS[0] * radius_m) for clockwise in (True, False))
     rooms = []
+    swift(first_bad, 10 * len(zones))  # announces the work: a circle has some fifty legs
     for clockwise in (True, False):
         for factor in HOLD_FACTORS:
             if first_bad_leg(circle(pose, factor * radius_m, clockwise), zones) is None:

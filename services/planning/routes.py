@@ -23,6 +23,8 @@ from cratous.spec.mission.plan import Pose
 
 Ends = tuple[Pose, Flyer, Pose]
 """What a route depends on: start pose, vehicle class, end pose."""
+Leg = tuple[Pose, Pose]
+"""The ends of a route of a known vehicle class."""
 
 
 class Ending(Protocol):
@@ -60,7 +62,9 @@ class Routes:
         self._out: dict[tuple[Pose, float], WayOut | None] = {}
         self._maps: dict[float, tuple[Roadmap, ...]] = {}
         self._found: dict[Ends, Route] = {}
-        self._times: dict[Ends, int | None] = {}
+        # by class first: a class with its cameras is dear to hash
+        self._times: dict[Flyer, dict[Leg, int | None]] = {flyer: {} for flyer in self.flyers}
+        self._times_of = [self._times[flyer] for flyer in self.flyers]
 
     def between(self, options: Sequence[Ending]) -> Routes:
         """The same routes between other ends; both share one cache."""
@@ -70,22 +74,30 @@ class Routes:
 
     def take_over(self, earlier: Routes, known: Collection[Pose]) -> None:
         """Reuse times found between these poses, among the same zones by the same vehicles."""
-        if self._times or earlier.flying != self.flying:
+        if any(self._times.values()) or earlier.flying != self.flying:
             return
         self._maps.update(earlier._maps)
-        for ends, ms in earlier._times.items():
-            if ends[0] in known and ends[2] in known:
-                self._times[ends] = ms
+        for flyer, times in earlier._times.items():
+            mine = self._times.get(flyer, {})
+            for leg, ms in times.items():
+                if leg[0] in known and leg[1] in known:
+                    mine[leg] = ms
+
+    def _leg(self, vehicle: int, before: int, to: int) -> Leg:
+        start = self.poses[vehicle] if before == START else self.options[before].end
+        return start, self.options[to].start
 
     def _ends(self, vehicle: int, before: int, to: int) -> Ends:
-        start = self.poses[vehicle] if before == START else self.options[before].end
-        return start, self.flyers[vehicle], self.options[to].start
+        start, end = self._leg(vehicle, before, to)
+        return start, self.flyers[vehicle], end
 
     def route(self, vehicle: int, before: int, to: int) -> Route:
         """The route, or none with the reason."""
         key = self._ends(vehicle, before, to)
         if key not in self._found:
-            self._found[key] = self._search(*key)
+            found = self._found[key] = self._search(*key)
+            ms = flight_ms(found.length_m, key[1].speed_m_s) if found.points else None
+            self._times_of[vehicle].setdefault((key[0], key[2]), ms)
         return self._found[key]
 
     def over(self, vehicle: int, before: int, to: int, points: Sequence[Position]) -> Route:
@@ -144,13 +156,12 @@ class Routes:
 
     def prepare(self, vehicle: int, pairs: Iterable[tuple[int, int]]) -> None:
         """Compute the travel times of many (before, to) pairs at once, each pair of poses of a class once."""
-        wanted = dict.fromkeys(self._ends(vehicle, *pair) for pair in pairs)
-        left = [key for key in wanted if key not in self._times]
-        flyer = self.flyers[vehicle]
+        wanted = dict.fromkeys(self._leg(vehicle, *pair) for pair in pairs)
+        flyer, times = self.flyers[vehicle], self._times_of[vehicle]
+        left = [leg for leg in wanted if leg not in times]
         if flyer.max_climb_m_s <= 0:
-            flat = [key for key in left if key[0].alt_m == key[2].alt_m]
-            self._times.update((key, None) for key in left if key not in set(flat))
-            left = flat
+            times.update((leg, None) for leg in left if leg[0].alt_m != leg[1].alt_m)
+            left = [leg for leg in left if leg[0].alt_m == leg[1].alt_m]
         around = len(left) > pending_compilation.MANY_WAYS and self._lead_around(left)
         kind = pending_compilation.AROUND if around else pending_compilation.ROUTES
         if len(left) > pending_compilation.WORTH_WAITING[kind]:
@@ -158,34 +169,34 @@ class Routes:
         for roadmap in self._roadmaps(flyer.radius_m):
             if not left:
                 return
-            outs = [self._way_out(start, flyer.radius_m) for start, _, _ in left]
-            begun = [out.end if out else key[0] for out, key in zip(outs, left, strict=True)]
-            starts, ends = np.array(begun, float), np.array([key[2] for key in left], float)
+            outs = [self._way_out(start, flyer.radius_m) for start, _ in left]
+            begun = [out.end if out else leg[0] for out, leg in zip(outs, left, strict=True)]
+            starts, ends = np.array(begun, float), np.array([leg[1] for leg in left], float)
             search = lengths_around if around else routes
             found = search(starts, ends, flyer.radius_m, roadmap, _slope(flyer))
             rest = []
-            for key, out, code, metres in zip(
-                left, outs, found.codes, found.metres.tolist(), strict=True
+            for leg, out, code, metres in zip(
+                left, outs, found.codes.tolist(), found.metres.tolist(), strict=True
             ):
                 if code == FOUND:
                     way_m = metres + (out.length_m if out else 0.0)
-                    self._times[key] = flight_ms(way_m, flyer.speed_m_s)
+                    times[leg] = flight_ms(way_m, flyer.speed_m_s)
                 else:
-                    rest.append(key)
+                    rest.append(leg)
             left = rest
-        self._times.update((key, None) for key in left)
+        times.update((leg, None) for leg in left)
 
-    def _lead_around(self, ways: Sequence[Ends]) -> bool:
+    def _lead_around(self, ways: Sequence[Leg]) -> bool:
         """Whether many of these routes are expected to lead around zones."""
-        starts, ends = (np.array([key[k][:2] for key in ways], float) for k in (0, 2))
+        starts, ends = (np.array([leg[k][:2] for leg in ways], float) for k in (0, 1))
         return many_detours(starts, ends, self.zones)
 
     def travel_ms(self, vehicle: int, before: int, to: int) -> int | None:
         """Travel time [ms], or None if no route was found."""
-        key = self._ends(vehicle, before, to)
-        if key not in self._times:
+        leg, times = self._leg(vehicle, before, to), self._times_of[vehicle]
+        if leg not in times:
             self.prepare(vehicle, [(before, to)])
-        return self._times[key]
+        return times[leg]
 
 
 def _slope(flyer: Flyer) -> float:

@@ -27,6 +27,13 @@ def spaced(
     then be farther than off_m from its new leg or above or below it, or the leg would violate the zones
     (without padding).
     """
+    return tuple(points[k] for k in needed(points, least_m, off_m, zones))
+
+
+def needed(
+    points: Sequence[Position], least_m: float, off_m: float, zones: Sequence[Zone]
+) -> tuple[int, ...]:
+    """The indices of the points that `spaced` keeps."""
     last, kept = len(points) - 1, [0]
 
     def leads(a: int, b: int) -> bool:
@@ -47,7 +54,7 @@ def spaced(
         if not leads(kept[-3], last):
             break
         del kept[-2]
-    return tuple(points[k] for k in kept)
+    return tuple(kept)
 
 
 def near(p: Position, q: Position, least_m: float) -> bool:

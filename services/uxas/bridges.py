@@ -56,6 +56,7 @@ class Bridge:
     """A port on the bus; the runtime calls `pump` when the port has input."""
 
     subscribes: tuple[str, ...] = ()
+    outlet = True
 
     def __init__(self, name: str, host: Host, identity: Identity, port: Port, rules: Rules) -> None:
         self.name, self.port, self.rules = name, port, rules
@@ -118,7 +119,7 @@ class Bridge:
         return same
 
     def _parts(self, envelope: Envelope) -> tuple[bytes, ...]:
-        payload = envelope.raw or lmcp.binary.pack(envelope.body)
+        payload = envelope.packed
         if self.rules.impact:
             series, name = envelope.body.type_name.split("/")
             return f"lmcp:{series.upper()}:{name}".encode(), payload
@@ -189,7 +190,7 @@ class Bridge:
 def pack(envelope: Envelope, payload: bytes | None = None) -> bytes:
     """A message of the bus as the bytes of one frame."""
     if payload is None:
-        payload = envelope.raw or lmcp.binary.pack(envelope.body)
+        payload = envelope.packed
     return wire.enclose(
         envelope.topic,
         payload,

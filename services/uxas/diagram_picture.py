@@ -6,8 +6,8 @@ from html import escape
 from typing import Any, NamedTuple
 
 from cratous.services.loading.coordinates import Places
-from cratous.services.loading.uxas_cfg import Sent
-from cratous.services.loading.uxas_parts import corners_of, locations, point
+from cratous.services.loading.uxas_cfg import Sent, locations
+from cratous.services.loading.uxas_parts import corners_of, point
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Frame
 

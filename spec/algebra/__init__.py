@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -29,6 +29,7 @@ ABSOLUTE, RELATIVE = "absolute", "relative"
 MAX_DEPTH = 200
 MAX_TASK_ID = 2**63 - 1
 MAX_TIME_MS = TIME_LIMIT_MS - 1
+_KEPT_LENGTH = 2000
 
 
 @dataclass(frozen=True)
@@ -76,9 +77,7 @@ def parse(
     Raises AlgebraError, and no other error, for a text that is not a term.
     """
     try:
-        _refuse_blank_or_deep(text)
-        term = _syntax(text)
-        _refuse_twice(term)
+        term = _kept(text) if len(text) <= _KEPT_LENGTH else _read(text)
         if known is not None:
             _refuse_unknown(term, known)
     except Refusal as no:
@@ -112,6 +111,16 @@ def parallel_of(ids: Iterable[int]) -> Term:
     if not tasks:
         raise BadInput("there is no task to do", expected="at least one task", got="none")
     return parse(f"|({' '.join(f'p{task}' for task in tasks)})")
+
+
+def _read(text: str) -> Term:
+    _refuse_blank_or_deep(text)
+    term = _syntax(text)
+    _refuse_twice(term)
+    return term
+
+
+_kept = lru_cache(256)(_read)  # one request is read by several services
 
 
 def _syntax(text: str) -> Term:

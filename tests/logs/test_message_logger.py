@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib.util
 import resource
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -14,7 +13,7 @@ from log_tools import STATE, full_disk
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus, Envelope
 from cratous.services.logs.entry import to_object
-from cratous.services.logs.message_logger import LogRule, MessageLogger
+from cratous.services.logs.message_logger import WAITING_MOST, LogRule, MessageLogger
 from cratous.services.logs.sqlite_log import SqliteLog
 from cratous.spec.errors import BadInput
 
@@ -136,11 +135,14 @@ def test_an_older_log_stays(tmp_path: Path) -> None:
 
 def test_the_envelope_of_the_wire_is_kept(tmp_path: Path) -> None:
     raw = lmcp.binary.pack(lmcp.new("AirVehicleState", ID=9))[:-4] + b"\0\0\0\0"
-    outside = {"address": "eid100.sid5", "group": "g", "entity_id": 100, "service_id": 7}
+    outside: dict[str, Any] = {
+        "address": "eid100.sid5",
+        "group": "g",
+        "entity_id": 100,
+        "service_id": 7,
+    }
     logger = MessageLogger(tmp_path, [LogRule("eid")])
-    envelope: Any = SimpleNamespace(
-        seq=4, time_ms=8, source="tcp", topic=STATE, body=None, raw=raw, **outside
-    )
+    envelope = Envelope(seq=4, time_ms=8, source="tcp", topic=STATE, body=None, raw=raw, **outside)
     state, said = logger.handle(logger.start(), envelope, 8)
     assert list(said) == []
     logger.stop(state)
@@ -215,3 +217,35 @@ def test_a_small_day_of_traffic(root: Path, tmp_path: Path) -> None:
     assert figures.memory_end_mb - figures.memory_tenth_mb < 20
     found = logged(tmp_path / "messageLog_0.sqlite")
     assert len(found) == 2410
+
+
+def test_the_text_is_written_after_the_messages_that_follow(tmp_path: Path) -> None:
+    """A response does not wait for the text of the messages before it; the database has them."""
+    logger = MessageLogger(tmp_path, text_limit=9)
+    had: list[tuple[int, int]] = []
+
+    class Answering:
+        name, subscribes = "answering", (STATE, KEEP_ALIVE)
+
+        def start(self) -> None:
+            return None
+
+        def handle(self, state: None, envelope: Envelope, now_ms: int) -> tuple[None, list[Any]]:
+            texts = sum(p.read_text().count("$lmcp|") for p in tmp_path.glob("*.txt"))
+            had.append((logger.log.count, texts))
+            return None, [lmcp.new(KEEP_ALIVE)] if envelope.topic == STATE else []
+
+    bus = Bus(lmcp.full_names)
+    bus.add(logger)
+    bus.add(Answering())
+    bus.publish(lmcp.new("AirVehicleState"), "sim")
+    bus.run_until(0)
+    assert had == [(1, 0), (2, 0)]
+    (text,) = tmp_path.glob("*.txt")
+    assert text.read_text().count("$lmcp|") == 2
+    for _ in range(WAITING_MOST):
+        bus.publish(lmcp.new(KEEP_ALIVE), "sim")
+    bus.run()
+    written = sum(p.read_text().count("$lmcp|") for p in tmp_path.glob("*.txt"))
+    assert written == WAITING_MOST + 2
+    logger.stop(logger.start())

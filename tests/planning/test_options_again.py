@@ -96,6 +96,14 @@ def test_options_are_made_anew_where_what_they_depend_on_is_another(
     assert made == [5, 5]
 
 
+def test_the_frame_stays_where_a_camera_looks_far(tmp_path: Path, made: list[int]) -> None:
+    rig = Rig(tmp_path)
+    rig.tell(*vehicle(1), loiter(5), request(5))
+    seen = lmcp.new("CameraState", PayloadID=1, Centerpoint=place(0.8), Footprint=[place(0.8)])
+    rig.tell(moved(1, 0.0).copy(PayloadStateList=[seen]), request(5))
+    assert made == [5]
+
+
 def test_where_there_are_no_zones_no_circle_is_held_against_them(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -62,6 +62,25 @@ def test_a_type_reaches_its_own_and_base_subscribers_and_prefixes():
     assert kinds(other) == []
 
 
+def test_what_sends_out_receives_before_the_services_that_came_earlier():
+    order = []
+
+    class Noting(Listener):
+        def handle(self, state, envelope, now_ms):
+            order.append((self.name, envelope.packed))
+            return state, ()
+
+    first, out, other = (Noting(name, STATE) for name in ("first", "out", "other"))
+    out.outlet = True
+    bus = make(first, out, other)
+    state = lmcp.new("AirVehicleState", ID=7)
+    bus.publish(state, "x")
+    bus.run()
+    assert [name for name, _ in order] == ["out", "first", "other"]
+    assert {id(packed) for _, packed in order} == {id(order[0][1])}  # encoded once
+    assert order[0][1] == lmcp.binary.pack(state)
+
+
 def test_a_subscription_to_a_type_is_no_prefix():
     listener = Listener("a", "afrl.cmasi.Task")
     bus = make(listener)
