@@ -52,12 +52,13 @@ def lasts(before: int, after: int, now: int, reserve: int) -> bool:
 
 
 def may_take_over(hand: Hand, offer: Offer, now: int, reserve: int) -> bool:
-    """An offer may replace the certificate in hand: it branches off it, neither in the past nor after its expiry,
-    covers all known changes, and does not reduce the expiry below the reserve.
+    """An offer may replace the certificate in hand: it branches off it, neither in the past nor after its expiry, has
+    a later number, covers all known changes, and does not reduce the expiry below the reserve.
     """
+    later = not offer.id <= hand.id
     in_time = not (offer.sigma_ms < now or offer.sigma_ms > hand.expiry_ms)
     knows = offer.base == hand.id and offer.knowledge == hand.knowledge
-    return knows and in_time and lasts(hand.expiry_ms, offer.expiry_ms, now, reserve)
+    return later and knows and in_time and lasts(hand.expiry_ms, offer.expiry_ms, now, reserve)
 
 
 def is_after_offer(before: Hand, offer: Offer, now: int, reserve: int, after: Hand) -> bool:
