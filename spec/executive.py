@@ -68,8 +68,8 @@ def is_after_event(life: int, event: int, after: int) -> bool:
     """
     if settled(life):
         return after == life
-    if event == END and life == LEFT:
-        return after == LEFT
+    if event == END and life != BEGUN:
+        return after == life
     if event == BEGIN:
         return after == BEGUN
     if event == END:

@@ -39,7 +39,7 @@ def accepts(hand: Hand, offer: Offer, now: int, reserve: int) -> bool:
 
     now: [ms]; reserve: least remaining time of the certificate [ms], >= 0.
     """
-    if offer.base != hand.id or offer.knowledge != hand.knowledge:
+    if offer.base != hand.id or offer.id <= hand.id or offer.knowledge != hand.knowledge:
         return False
     if offer.sigma_ms < now or offer.sigma_ms > hand.expiry_ms:
         return False

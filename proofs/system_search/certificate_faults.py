@@ -27,6 +27,14 @@ def _as_if(**changed: str) -> HandDesign:
     return HandDesign(step)
 
 
+def _any_base(hand: Hand, kind: int, offer: Offer, permitted: bool, now: int, reserve: int) -> Hand:
+    if kind != OFFERED:
+        return hand_step(hand, kind, offer, permitted, now, reserve)
+    based = offer._replace(base=hand.id, id=max(offer.id, hand.id + 1))
+    after = hand_step(hand, kind, based, permitted, now, reserve)
+    return after._replace(id=offer.id) if after.id == based.id else after
+
+
 def _begun(hand: Hand, kind: int, offer: Offer, permitted: bool, now: int, reserve: int) -> Hand:
     if kind == OFFERED:
         offer = offer._replace(sigma_ms=max(offer.sigma_ms, now))
@@ -85,7 +93,7 @@ def _kept(hand: Hand, kind: int, offer: Offer, permitted: bool, now: int, reserv
 HAND_FAULTS = {
     "certificate-without-base": HandFault(
         "a certificate is taken that begins on another trajectory than the one that is flown",
-        _as_if(base="id"),
+        HandDesign(_any_base),
     ),
     "certificate-for-other-tracks": HandFault(
         "a certificate is taken that was permitted before the newest track was known",

@@ -26,6 +26,7 @@ TAKEOVER_LASTS = "system_a_takeover_that_lasts_is_declared"
 MISSION_ENDS = "system_a_mission_ends"
 SILENCE = "system_silence_is_noticed_within_one_heartbeat"
 HAND = "system_the_hand_is_clear_until_a_surprise_or_its_expiry"
+OFFERED_BEFORE = "system_no_offer_from_before_a_handback_is_taken"
 CLEAR = "system_a_vehicle_is_clear_until_a_surprise_or_an_expiry"
 LOOKED = "system_a_way_that_is_looked_ahead_at_is_clear"
 FENCED = "system_no_zone_is_entered_until_a_surprise_or_an_expiry"
@@ -34,8 +35,8 @@ RANK = "system_the_rank_of_a_mission_falls_at_each_heartbeat"
 SERVED = "system_a_chain_is_served_where_takeovers_and_stays_are_bounded"
 FEW = "system_uxas_counts_a_takeover_once_for_each_intruder_and_surprise"
 BEARS_ON: dict[str, tuple[str, ...]] = {
-    "G1": (FENCED, NEAR_LEGS, HAND),
-    "G2": (CLEAR, LOOKED, HAND),
+    "G1": (FENCED, NEAR_LEGS, HAND, OFFERED_BEFORE),
+    "G2": (CLEAR, LOOKED, HAND, OFFERED_BEFORE),
     "G3": (MISSION_ENDS, RANK, TAKEOVER_LASTS, SERVED, FEW),
     "G4": (*AUTHORITY, TAKEOVER_ENDS, TAKEOVER_LASTS),
     "G5": (SILENCE,),

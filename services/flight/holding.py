@@ -121,13 +121,14 @@ def steered(held: InHand, velocity: Velocity | None, now_ms: int, ground: Ground
 
 
 def left(held: InHand, now_ms: int, ground: Ground, reason: str) -> Kept:
-    """Another trajectory than the held one is flown: the certificate is dropped."""
-    if held.certificate is None:
-        return held, ()
+    """Another trajectory is flown: the certificate is dropped, and no offer made before is accepted any more, even if
+    none was held. Only a held one is reported.
+    """
     before = held.hand
     after = hand_step(before, LEFT, NO_OFFER, False, now_ms, ground.reserve_ms)
     change = Change("Left", before, after, NO_OFFER, False, 0, reason)
-    return held._replace(hand=after, certificate=None, flown=False, over=False), (change,)
+    changes = () if held.certificate is None else (change,)
+    return held._replace(hand=after, certificate=None, flown=False, over=False), changes
 
 
 def seen(

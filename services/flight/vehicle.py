@@ -208,8 +208,10 @@ class VehicleNode:
         if sender == ICAROUS:
             velocity = wanted.velocity if isinstance(wanted, Fly) else None
             kept = holding.steered(after.held, velocity, message.now_ms, self.ground)
-        else:
+        elif after.gate.owner != before.owner:
             kept = holding.left(after.held, message.now_ms, self.ground, HANDED_BACK)
+        else:
+            return after, said
         after, more = self._kept(after, kept, message.now_ms)
         return after, (*said, *more)
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from cratous.core.authority.timeliness import in_time, lasted
 from cratous.core.permit.hand import KNOWN, LEFT, OFFERED, Offer, accepts, hand_passed, hand_step
-from cratous.services.flight.holding import BEATS, RESERVE_BEATS
+from cratous.services.flight.holding import BEATS, NO_OFFER, RESERVE_BEATS
 from cratous.services.icarous.messages import EMPTY
 from cratous.services.system_model.finding import Misfit
 
@@ -74,6 +74,11 @@ class HandModel:
     def commands(self, now_ms: int) -> None:
         """Process a command or takeover by ICAROUS."""
         self.heard_ms = now_ms
+
+    def leaves(self, now_ms: int) -> None:
+        """Process a handback: with a certificate in hand, its `HandState` follows; without one, nothing is reported."""
+        if not self.certificate:
+            self.hand = hand_step(self.hand, LEFT, NO_OFFER, False, now_ms, self.reserve_ms)
 
     def handed_back(self, got: str) -> None:
         """Misfit if UxAS has the vehicle and the certificate is still in hand."""

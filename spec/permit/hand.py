@@ -52,12 +52,13 @@ def lasts(before: int, after: int, now: int, reserve: int) -> bool:
 
 
 def may_take_over(hand: Hand, offer: Offer, now: int, reserve: int) -> bool:
-    """An offer may replace the certificate in hand: it branches off it, neither in the past nor after its expiry,
-    covers all known changes, and does not reduce the expiry below the reserve.
+    """An offer may replace the certificate in hand: it branches off it, neither in the past nor after its expiry, has
+    a later number, covers all known changes, and does not reduce the expiry below the reserve.
     """
+    later = not offer.id <= hand.id
     in_time = not (offer.sigma_ms < now or offer.sigma_ms > hand.expiry_ms)
     knows = offer.base == hand.id and offer.knowledge == hand.knowledge
-    return knows and in_time and lasts(hand.expiry_ms, offer.expiry_ms, now, reserve)
+    return later and knows and in_time and lasts(hand.expiry_ms, offer.expiry_ms, now, reserve)
 
 
 def is_after_offer(before: Hand, offer: Offer, now: int, reserve: int, after: Hand) -> bool:
@@ -68,6 +69,13 @@ def is_after_offer(before: Hand, offer: Offer, now: int, reserve: int, after: Ha
     return after.id == offer.id and after.expiry_ms == offer.expiry_ms and same
 
 
+def is_over(before: Hand, now: int, after: Hand) -> bool:
+    """Nothing is guaranteed any more: what had not expired expires now, and what had keeps its expiry."""
+    if before.expiry_ms < now:
+        return after.expiry_ms == before.expiry_ms
+    return after.expiry_ms == now
+
+
 def is_after_news(before: Hand, permitted: bool, now: int, after: Hand) -> bool:
     """A track or zone has become known. Either the certificate in hand is permitted against it too, and its expiry
     stays; or this is counted as a surprise, and nothing is guaranteed any more. Offers that do not cover the change
@@ -76,7 +84,7 @@ def is_after_news(before: Hand, permitted: bool, now: int, after: Hand) -> bool:
     known = after.id == before.id and after.knowledge == before.knowledge + 1
     if permitted:
         return known and after.expiry_ms == before.expiry_ms and after.surprises == before.surprises
-    return known and after.expiry_ms <= now and after.surprises == before.surprises + 1
+    return known and is_over(before, now, after) and after.surprises == before.surprises + 1
 
 
 OFFERED, KNOWN, LEFT = 0, 1, 2
@@ -94,10 +102,10 @@ def is_after_time(before: Hand, now: int, after: Hand) -> bool:
 
 
 def is_after_leaving(before: Hand, now: int, after: Hand) -> bool:
-    """Another trajectory is flown: nothing is guaranteed any more, and the new id differs, so that no earlier offer
+    """Another trajectory is flown: nothing is guaranteed any more, and it has the next id, so that no earlier offer
     branches off it. Nothing has become known.
     """
-    other = after.id > before.id and after.expiry_ms <= now and after.expiry_ms <= before.expiry_ms
+    other = after.id == before.id + 1 and is_over(before, now, after)
     return other and after.knowledge == before.knowledge and after.surprises == before.surprises
 
 

@@ -188,6 +188,7 @@ def test_only_what_may_take_over_does(certificate: Any) -> None:
     good = offer._replace(id=2, base=1, sigma_ms=now_ms)
     for wrong in (
         good._replace(base=0),
+        good._replace(id=1),
         good._replace(sigma_ms=now_ms - 1),
         good._replace(knowledge=1),
         good._replace(expiry_ms=now_ms + 1999),
@@ -243,6 +244,35 @@ def test_another_manoeuvre_leaves_the_hand_and_the_same_does_not(certificate: An
     gone, (change,) = holding.steered(held, Velocity(0.0, 22.0, 0.0), now_ms, GROUND)
     assert (gone.certificate, change.kind) == (None, "Left")
     assert gone.hand == Hand(2, 0, now_ms, 0)
+
+
+def test_a_handback_with_nothing_in_hand_ends_what_was_offered_before(certificate: Any) -> None:
+    now_ms = certificate.offer.sigma_ms
+    held, said = holding.left(InHand(), now_ms, GROUND, "handed back")
+    assert (held.hand, said) == (Hand(1, 0, now_ms, 0), ())
+    refused, (change,) = holding.offered(held, certificate, now_ms, GROUND)
+    assert (change.kind, refused.certificate) == ("Refused", None)
+
+
+def test_a_log_with_a_handback_with_nothing_in_hand_fits_the_model(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of two stays of ICAROUS the first has no certificate."""
+    keep = VehicleNode._offered
+
+    def later(self: VehicleNode, state: Any, message: Any) -> Any:
+        return keep(self, state, message) if message.now_ms > 100_000 else (state, ())
+
+    slow = Traffic(92, Position(2600.0, 0.0, 300.0), Velocity(9.0, 0.0, 0.0))
+    simulation = replace(meeting().simulation, limit_ms=292_000)
+    mission = replace(meeting(), traffic=(*meeting().traffic, slow), simulation=simulation)
+    monkeypatch.setattr(VehicleNode, "_offered", later)
+    log = flown(mission)
+    owners = [one.body.Owner.name for one in log if one.topic.endswith("AuthorityChange")]
+    assert owners == ["ICAROUS", "UxAS", "ICAROUS"]
+    first = changes(log)[0]
+    assert (first.Change.name, first.Base, first.ID) == ("Offered", 1, 2)
+    assert replay(mission, True, log).finding is None
 
 
 def test_silence_is_asked_for_in_the_mission_file(tmp_path: Path) -> None:

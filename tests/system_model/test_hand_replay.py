@@ -23,6 +23,7 @@ from cratous.spec.system.hand_trace import (
     ANSWER,
     ARRIVES,
     KINDS,
+    LEFT,
     OFFER,
     TIME,
     Entry,
@@ -93,6 +94,32 @@ def test_the_vehicle_flies_a_certificate_a_handback_and_another_certificate() ->
 def test_whatever_the_design_can_do_the_vehicle_does(seed: int) -> None:
     entries = walk(seed)
     assert play_hand(entries) == (len(entries), "")
+
+
+def directed(*wanted: Event) -> list[Entry]:
+    """The design's own steps by these events."""
+    design, found = HandDesign(), list[Entry]()
+    state = design.first()
+    for event in wanted:
+        (step,) = [one for one in design.steps(state) if one.event == event]
+        assert not step.wrong
+        found.append(step.entry)
+        state = step.after
+    return found
+
+
+def test_what_was_offered_before_a_handback_with_nothing_in_hand_is_refused_afterwards() -> None:
+    """ICAROUS has no certificate in hand, offers one that begins later, hands back, and takes over again."""
+    later, left = Event(OFFER, 1, 5, 9), Event(LEFT, 2)
+    again, late = Event(OFFER, 3, 0, 4), Event(ARRIVES, 1)
+    passing = [Event(TIME)] * 5
+    entries = directed(later, left, again, *passing, late)
+    assert entries[-1].text.startswith("the offer of trajectory 1")
+    assert "refused" in entries[-1].text
+    assert play_hand(entries) == (len(entries), "")
+    in_time = directed(later, *passing, late)
+    assert "TAKEN" in in_time[-1].text
+    assert play_hand(in_time) == (len(in_time), "")
 
 
 def test_the_walks_take_every_kind_of_step() -> None:

@@ -32,3 +32,6 @@ def claim(c: Claim) -> None:
     surprise = after.surprises == hand.surprises + 1
     c.show(c.same(surprise, c.negation(allowed)), "a surprise is declared")
     c.show(c.implies(after.expiry_ms > now, allowed), "what is certain was permitted")
+    other = Hand(*[c.integer(f"other_{name}") for name in ("id", "know", "expiry", "surprises")])
+    another = c.define(permit.is_after_news, hand, allowed, now, other)
+    c.show(c.implies(another, c.same(other, after)), "and no other")

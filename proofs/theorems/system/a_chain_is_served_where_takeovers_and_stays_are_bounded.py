@@ -61,9 +61,10 @@ def claim(c: Claim) -> None:
             course.since_ms
             <= course.own_ms + (bounds.items - left) * stays + c.when(done, 0, flown.under_ms),
         )
-        shape = c.all_of(phases, c.same(flown.phase == executive.DONE, done), numbers, lives)
+        shape = c.all_of(c.same(flown.phase == executive.DONE, done), numbers, lives)
         begun = c.any_of(done, begun)
-        return c.all_of(c.implies(course.bounded, c.all_of(shape, begun, times)), goal(state))
+        bounded = c.implies(course.bounded, c.all_of(shape, begun, times))
+        return c.all_of(phases, bounded, goal(state))
 
     def after(state: list[Any]) -> Any:
         return after_beat(c, state[0], beat, fails, how)
