@@ -5,10 +5,11 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
-from cratous.core.tasks.coverage import outline, square_array, square_side_m
-from cratous.core.tasks.sweep import Piece, Swath, SwathOf, swath, unjoined_m
+from cratous.core.tasks.coverage import area_m2, outline, square_array, square_side_m
+from cratous.core.tasks.sweep import Piece, Swath, SwathOf, strips_needed, swath, unjoined_m
 from cratous.services.mission.sensor import footprints, looks_over
 from cratous.services.planning.flyers import Flyer
 from cratous.services.planning.smoothing import MARGIN
@@ -58,6 +59,29 @@ def lane_width_m(swath_of: SwathOf, heading_rad: float) -> float:
     """Lane width for a heading, flown in both directions [m]; 0 if no swath exists."""
     seen = [swath_of(h) for h in (heading_rad, heading_rad + math.pi)]
     return max(0.0, min((s.width_m if s is not None else 0.0) for s in seen))
+
+
+def swath_along(site: Site, heading_rad: float, view: View) -> Swath | None:
+    """The swath of a pass with a view that is fixed over ground [rad]; the same, but for its last digits, for every
+    heading at the same angle to the view.
+    """
+    aside = replace(view, azimuth_rad=round(view.azimuth_rad - heading_rad, 9))
+    return swaths_of(site, aside)(0.0)
+
+
+def lanes_length_m(site: Site, heading_rad: float, lead_m: float, seen: Swath) -> float:
+    """Approximate length of parallel lanes over the area with their turns [m]; infinite if there are too many.
+
+    The lanes are as many as for the whole width, and on average as long as the area's mean chord.
+    """
+    count = strips_needed(site.vertices, heading_rad, seen.width_m) if seen.width_m > 0 else 0
+    if count == 0:
+        return math.inf
+    c, s = math.cos(heading_rad), math.sin(heading_rad)
+    across = [e * c - n * s for n, e in site.vertices]
+    chord_m = area_m2(site.vertices) / (max(across) - min(across))
+    settled_m = max(chord_m + seen.near_m - seen.far_m + 1.2 * lead_m, lead_m)
+    return count * (settled_m + math.pi * site.flyer.radius_m)
 
 
 def swaths_of(site: Site, view: View | None) -> SwathOf:

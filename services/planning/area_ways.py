@@ -41,7 +41,9 @@ from cratous.services.planning.area_site import (
     Site,
     candidate_of,
     lane_width_m,
+    lanes_length_m,
     site_of,
+    swath_along,
     swaths_of,
 )
 from cratous.services.planning.area_views import best_view, open_view
@@ -222,14 +224,17 @@ def _share(
 
 
 def _along_lanes(site: Site, lead_m: float) -> list[Candidate]:
-    """Lanes, each with the view along them that needs the fewest."""
+    """Lanes, each with the view that needs the shortest way."""
     found = []
     for heading in _headings(site):
-
-        def width_of(view: View, heading: float = heading) -> float:
-            return lane_width_m(swaths_of(site, view), heading)
-
-        view = best_view(site.task, site.camera, site.height_m, heading, width_of, site.vertices)
+        view = best_view(
+            site.task,
+            site.camera,
+            site.height_m,
+            heading,
+            functools.partial(swath_along, site, heading),
+            functools.partial(lanes_length_m, site, heading, lead_m),
+        )
         swath_of = swaths_of(site, view)
         if lane_width_m(swath_of, heading) > 0:
             found += _lanes_along(site, heading, swath_of, lead_m, view)
