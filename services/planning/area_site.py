@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 
 from cratous.core.tasks.coverage import area_m2, outline, square_array, square_side_m
 from cratous.core.tasks.sweep import Piece, Swath, SwathOf, strips_needed, swath, unjoined_m
-from cratous.services.mission.sensor import footprints, looks_over
+from cratous.services.mission.sensor import footprints, looks_over, zoomed
+from cratous.services.planning.area_views import open_view
 from cratous.services.planning.flyers import Flyer
 from cratous.services.planning.smoothing import MARGIN
 from cratous.spec.mission import Camera, Task, View
@@ -87,7 +88,13 @@ def lanes_length_m(site: Site, heading_rad: float, lead_m: float, seen: Swath) -
 def swaths_of(site: Site, view: View | None) -> SwathOf:
     """The swath by heading, narrowed by one square on each side so that squares at the seams are covered."""
     least_m = GLANCE_S * site.flyer.speed_m_s + site.side_m
-    return functools.partial(_swath, site.camera, view, site.height_m, site.side_m, least_m)
+    camera = camera_with(site, view)
+    return functools.partial(_swath, camera, view, site.height_m, site.side_m, least_m)
+
+
+def camera_with(site: Site, view: View | None) -> Camera:
+    """The camera as it is zoomed for a view."""
+    return zoomed(site.camera, site.task, site.height_m, view if open_view(site.task) else None)
 
 
 @functools.lru_cache(maxsize=4096)

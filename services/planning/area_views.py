@@ -11,12 +11,14 @@ import math
 from collections.abc import Callable
 
 from cratous.core.tasks.sweep import Swath
-from cratous.services.mission.sensor import elevation_rad, sample_distance_m
+from cratous.services.mission.sensor import sample_distance_m, zoomed
 from cratous.services.planning.point_ways import STRAIGHT_DOWN_RAD
 from cratous.spec.mission import AREAS, Camera, Pattern, Task, View
 
-TILTS_DEG = (-75.0, -60.0, -55.0, -50.0, -45.0, -40.0, -35.0, -30.0)
-"""Tilts tried besides straight down, steepest first [deg]; the limit set by the sample distance is added."""
+TILTS_DEG = (-75.0, -60.0, -55.0, -50.0, -45.0, -40.0, -35.0, -30.0, -25.0, -20.0)
+"""Tilts tried besides straight down [deg]; the limits set by the sample distance are added, one for each field of view."""
+SHALLOWEST_SHARP_DEG = -20.0
+"""Shallowest tilt if the task requires a ground sample distance, which the image centre then meets [deg]."""
 SHALLOWEST_DEG = -45.0
 """Shallowest tilt if the task requires no ground sample distance [deg]: the image centre is then seen from
 1.4 times the distance straight down.
@@ -26,6 +28,9 @@ ASIDE_DEG = (0.0, 30.0, 45.0, 60.0)
 """Angles tried between the view and the lanes [deg]."""
 ALIKE = 1.005
 """Ways that differ by less than this factor count as equally long."""
+
+WITHIN = 1 - 1e-8
+"""Factor on the sample distance for which the shallowest tilt is calculated, so that rounding leaves it within."""
 
 
 def open_view(task: Task) -> bool:
@@ -77,11 +82,20 @@ def _tilts(task: Task, camera: Camera, height_m: float) -> list[float]:
     shallowest = math.radians(SHALLOWEST_DEG)
     tilts = [math.radians(degrees) for degrees in TILTS_DEG]
     if camera.min_elevation_rad > STRAIGHT_DOWN_RAD:
-        tilts = sorted((*tilts, camera.min_elevation_rad))
+        tilts.append(camera.min_elevation_rad)
     if task.gsd_m > 0 and camera.pixels:
-        straight_m = sample_distance_m(camera, None, height_m)
-        lowest_m = straight_m * math.sin(-elevation_rad(camera, None))
-        shallowest = min(-math.asin(min(1.0, lowest_m / task.gsd_m)), tilts[-1])
-        tilts = sorted((*tilts, shallowest))
+        shallowest = math.radians(SHALLOWEST_SHARP_DEG)
+        for field in (camera.hfov_rad, *camera.zoom_rad):  # as shallow as each is sharp enough
+            level_m = 2 * height_m * math.tan(field / 2) / camera.pixels
+            tilts.append(-math.asin(min(1.0, level_m / (task.gsd_m * WITHIN))))
+        # some field of view of the camera has to be sharp enough
+        tilts = [tilt for tilt in tilts if _sharp(task, camera, height_m, tilt)]
     low, high = camera.min_elevation_rad, min(camera.max_elevation_rad, shallowest)
-    return [tilt for tilt in tilts if low <= tilt <= high]
+    return [tilt for tilt in sorted(set(tilts)) if low <= tilt <= high]
+
+
+def _sharp(task: Task, camera: Camera, height_m: float, tilt_rad: float) -> bool:
+    """Whether the camera, zoomed in as for a tilt, meets the task's ground sample distance."""
+    view = View(0.0, tilt_rad, True)
+    near = zoomed(camera, task, height_m, view)
+    return sample_distance_m(near, view, height_m) <= task.gsd_m * (1 + 1e-9)

@@ -39,6 +39,7 @@ from cratous.services.mission.sensor import elevation_rad, footprints, looks_ove
 from cratous.services.planning.area_site import (
     Candidate,
     Site,
+    camera_with,
     candidate_of,
     lane_width_m,
     lanes_length_m,
@@ -215,7 +216,7 @@ def _share(
     looks = looks_over(places, view, site.height_m)
     centres = site.squares()
     seen = np.zeros(len(centres), np.bool_)
-    quads = footprints(looks, site.height_m, site.camera, (1 + MARGIN) / 2)
+    quads = footprints(looks, site.height_m, camera_with(site, view), (1 + MARGIN) / 2)
     for some in (quads[::FEWER], quads) if len(quads) > FEW else (quads,):
         # if some of them cover everything, so do all
         if not seen.all():
