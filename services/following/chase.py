@@ -24,6 +24,8 @@ from cratous.spec.mission.plan import Pose
 
 CHASE = ", chased"
 """The end of the label of a chase."""
+CHASED = ("WatchTask", "MultiVehicleWatchTask", "BlockadeTask")
+"""The kinds of tasks for which a chase is offered."""
 FASTER = 1.05
 """Least ratio of a vehicle's greatest speed to its usual one for which a chase is offered."""
 LEAD_S = 5.0
@@ -46,13 +48,13 @@ def chase(
     context: Context, asked: Asked, motion: Motion, usual: Option, vehicle: Vehicle
 ) -> Option | None:
     """A vehicle's chase to the circle of its option at the usual speed; None where none is of use or possible: no
-    higher speed, an entity that stands or is no slower, a relay, a circle too near, or zones in the way.
+    higher speed, an entity that stands or is no slower, a circle too near, zones in the way, or another kind of task.
 
     Its turns are wide enough for its speed.
     """
     flyer, fast = usual.flyer, vehicle.max_speed_m_s
     moves = motion.velocity != (0.0, 0.0) and outruns(motion.velocity, fast)
-    if asked.tower is not None or not moves or fast < FASTER * flyer.speed_m_s:
+    if asked.kind not in CHASED or not moves or fast < FASTER * flyer.speed_m_s:
         return None
     begin = context.inputs.starts[vehicle.id]._replace(alt_m=flyer.alt_m)
     gate = pose_after(begin, 0, LEAD_S * flyer.speed_m_s, 1.0)
