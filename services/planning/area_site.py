@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from cratous.core.tasks.coverage import area_m2, outline, square_array, square_side_m
-from cratous.core.tasks.sweep import Piece, Swath, SwathOf, strips_needed, swath, unjoined_m
+from cratous.core.tasks.sweep import LANES_MOST, Piece, Swath, SwathOf, swath, unjoined_m
 from cratous.services.mission.sensor import footprints, looks_over, zoomed
 from cratous.services.planning.area_views import open_view
 from cratous.services.planning.flyers import Flyer
@@ -62,27 +62,40 @@ def lane_width_m(swath_of: SwathOf, heading_rad: float) -> float:
     return max(0.0, min((s.width_m if s is not None else 0.0) for s in seen))
 
 
-def swath_along(site: Site, heading_rad: float, view: View) -> Swath | None:
-    """The swath of a pass with a view that is fixed over ground [rad]; the same, but for its last digits, for every
-    heading at the same angle to the view.
+def swaths_aside(site: Site) -> Callable[[float, View], Swath | None]:
+    """The swath of a pass along a heading [rad] with a view that is fixed over ground; the same, but for its last
+    digits, for every heading at the same angle to the view, and so computed once.
     """
-    aside = replace(view, azimuth_rad=round(view.azimuth_rad - heading_rad, 9))
-    return swaths_of(site, aside)(0.0)
+    known: dict[tuple[float, float], Swath | None] = {}
+
+    def found(heading_rad: float, view: View) -> Swath | None:
+        aside_rad = round((view.azimuth_rad - heading_rad) % (2 * math.pi), 9)
+        key = (aside_rad, view.elevation_rad)
+        if key not in known:
+            known[key] = swaths_of(site, replace(view, azimuth_rad=aside_rad))(0.0)
+        return known[key]
+
+    return found
 
 
-def lanes_length_m(site: Site, heading_rad: float, lead_m: float, seen: Swath) -> float:
-    """Approximate length of parallel lanes over the area with their turns [m]; infinite if there are too many.
+def lane_lengths(site: Site, heading_rad: float, lead_m: float) -> Callable[[Swath], float]:
+    """The approximate length of parallel lanes over the area with their turns, by their swath [m]; infinite if there
+    are too many.
 
     The lanes are as many as for the whole width, and on average as long as the area's mean chord.
     """
-    count = strips_needed(site.vertices, heading_rad, seen.width_m) if seen.width_m > 0 else 0
-    if count == 0:
-        return math.inf
     c, s = math.cos(heading_rad), math.sin(heading_rad)
     across = [e * c - n * s for n, e in site.vertices]
-    chord_m = area_m2(site.vertices) / (max(across) - min(across))
-    settled_m = max(chord_m + seen.near_m - seen.far_m + 1.2 * lead_m, lead_m)
-    return count * (settled_m + math.pi * site.flyer.radius_m)
+    extent_m = max(across) - min(across)
+    chord_m = area_m2(site.vertices) / extent_m
+
+    def length_m(seen: Swath) -> float:
+        if not seen.width_m * LANES_MOST >= extent_m:
+            return math.inf
+        settled_m = max(chord_m + seen.near_m - seen.far_m + 1.2 * lead_m, lead_m)
+        return math.ceil(extent_m / seen.width_m) * (settled_m + math.pi * site.flyer.radius_m)
+
+    return length_m
 
 
 def swaths_of(site: Site, view: View | None) -> SwathOf:

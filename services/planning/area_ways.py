@@ -41,10 +41,10 @@ from cratous.services.planning.area_site import (
     Site,
     camera_with,
     candidate_of,
+    lane_lengths,
     lane_width_m,
-    lanes_length_m,
     site_of,
-    swath_along,
+    swaths_aside,
     swaths_of,
 )
 from cratous.services.planning.area_views import best_view, open_view
@@ -226,15 +226,15 @@ def _share(
 
 def _along_lanes(site: Site, lead_m: float) -> list[Candidate]:
     """Lanes, each with the view that needs the shortest way."""
-    found = []
+    found, seen = [], swaths_aside(site)
     for heading in _headings(site):
         view = best_view(
             site.task,
             site.camera,
             site.height_m,
             heading,
-            functools.partial(swath_along, site, heading),
-            functools.partial(lanes_length_m, site, heading, lead_m),
+            functools.partial(seen, heading),
+            lane_lengths(site, heading, lead_m),
         )
         swath_of = swaths_of(site, view)
         if lane_width_m(swath_of, heading) > 0:
