@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
@@ -10,9 +11,9 @@ from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.commands import location
 from cratous.services.flight.dynamics import AirState, clamp, wrap
 from cratous.services.mission.frames import Projection
-from cratous.services.mission.sensor import footprint, zoomed
-from cratous.services.planning.targets import Angles, target_from
-from cratous.spec.mission import Frame, Mission, Position, Task, Vehicle
+from cratous.services.mission.sensor import footprint
+from cratous.services.planning.targets import Angles, flown_camera, target_from
+from cratous.spec.mission import Camera, Frame, Mission, Position, Task, Vehicle
 
 
 class Looks(NamedTuple):
@@ -29,7 +30,11 @@ def looks(
     task = mission.task(chain.item.task_id) if chain.item is not None else None
     frame = mission.frame
     target = None if chain.suspended else target_of(chain, task, state, frame.terrain_m)
-    payloads = camera_states(vehicle, state, target, projection, frame, task)
+    cameras = vehicle.cameras
+    if task is not None and target is not None:
+        height_m, made_for = vehicle.cruise_alt_m - frame.terrain_m, made_for_of(chain)
+        cameras = tuple(flown_camera(one, task, height_m, made_for) for one in cameras)
+    payloads = camera_states(cameras, state, target, projection, frame)
     return Looks(payloads, [task.id] if task is not None and target is not None else [])
 
 
@@ -39,31 +44,30 @@ def target_of(
     """The ground point to look at, as the flown option was planned; None while no task is flown."""
     if task is None or chain.phase is not Phase.TASK:
         return None
-    item = chain.item
-    made_for = Angles(None, 0.0)
-    if item is not None:
-        made_for = Angles(item.view_elevation_rad, item.view_azimuth_rad)
-    cameras = chain.vehicle.cameras
+    cameras, made_for = chain.vehicle.cameras, made_for_of(chain)
     return target_from(state.position, state.heading_rad, task, made_for, cameras, terrain_m)
 
 
+def made_for_of(chain: Chain) -> Angles:
+    """The view for which the flown option was made."""
+    item = chain.item
+    return (
+        Angles(None, 0.0)
+        if item is None
+        else Angles(item.view_elevation_rad, item.view_azimuth_rad)
+    )
+
+
 def camera_states(
-    vehicle: Vehicle,
+    cameras: Sequence[Camera],
     state: AirState,
     target: Position | None,
     projection: Projection,
     frame: Frame,
-    task: Task | None = None,
 ) -> list[Any]:
-    """One `CameraState` per camera, angles in degrees, with its footprint if it has a target.
-
-    task: the task that the target serves; a camera with zoom zooms in as the task requires.
-    """
+    """One `CameraState` per camera as it is zoomed, angles in degrees, with its footprint if it has a target."""
     states = []
-    for wide in vehicle.cameras:
-        camera = wide
-        if task is not None and target is not None:
-            camera = zoomed(wide, task, vehicle.cruise_alt_m - frame.terrain_m)
+    for camera in cameras:
         azimuth, elevation = 0.0, camera.min_elevation_rad
         corners: list[Any] = []
         if target is not None:

@@ -216,6 +216,7 @@ class FollowingTaskService(TaskService):
         for part in state.parts:
             own, more = super().handle(part.state, envelope, now_ms)
             if topic == ROUTES:
+                more = [parts_of.at_speed(part, one) for one in more]
                 part = self._implemented(part, more)
             state = state.with_part(part._replace(state=own))
             out += more if topic == ROUTES else ()

@@ -7,7 +7,7 @@ vehicles is a choice among the combinations that assign a different vehicle to e
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import permutations
 from typing import Any
 
@@ -18,6 +18,7 @@ from cratous.core.routing.dubins import pose_after
 from cratous.core.routing.loiter_discs import broken_by
 from cratous.core.routing.visibility import name_of
 from cratous.core.tasks.stations import in_ring, outruns
+from cratous.services.following.chase import CHASE, chase
 from cratous.services.following.motion import Motion
 from cratous.services.following.stations import (
     Station,
@@ -65,11 +66,14 @@ def options_of(
         return [], [Dropped(task.id, tuple(v.id for v in able), "", text)]
     for slot in range(asked.needed):
         for k, vehicle in enumerate(able):
-            number = slot * len(able) + k + 1
+            number = 2 * (slot * len(able) + k) + 1
             start = context.inputs.starts[vehicle.id]
             found = _option(context, task, asked, motion, slot, vehicle, start)
             if isinstance(found, Option):
                 made.append(named(found, number, vehicle.id))
+                hurried = chase(context, asked, motion, found, vehicle)
+                if hurried is not None:
+                    made.append(named(hurried, number + 1, vehicle.id))
             elif slot == 0 or "region" in found.label:
                 dropped.append(found._replace(vehicles=(vehicle.id,)))
     return made, dropped
@@ -173,21 +177,31 @@ def _way_in(
 
 def slot_of(option: Option) -> int:
     """The slot of an option, from 0."""
-    return int(option.label.removeprefix("slot ")) - 1
+    return int(option.label.removeprefix("slot ").removesuffix(CHASE)) - 1
 
 
 def offered(context: Context, task_id: int, options: Sequence[Option], needed: int) -> Any:
     """TaskPlanOptions; without options if too few vehicles are left for all slots."""
     if needed == 1:
         return offer(context, task_id, options)
-    by_slot = {(slot_of(o), o.vehicles[0]): o.option_id for o in options}
+    slow, soon = dict[tuple[int, int], int](), dict[tuple[int, int], int]()
+    for option in options:  # a chase follows the other option of its vehicle and slot
+        at = (slot_of(option), option.vehicles[0])
+        soon[at] = option.option_id
+        slow.setdefault(at, option.option_id)
+    found, chases = _all_ways(slow, needed), _all_ways(soon, needed)
+    more = chases if chases != found and 2 * len(found) <= WAYS_MOST else []
+    return choice(context, task_id, options, [*more, *found])
+
+
+def _all_ways(by_slot: Mapping[tuple[int, int], int], needed: int) -> list[list[int]]:
+    """The combinations that assign different vehicles to all slots, as option numbers."""
     vehicles = sorted({vehicle for _, vehicle in by_slot})
-    ways = [
+    return [
         [by_slot[slot, vehicle] for slot, vehicle in enumerate(chosen)]
         for chosen in permutations(vehicles, needed)
         if all((slot, vehicle) in by_slot for slot, vehicle in enumerate(chosen))
     ]
-    return choice(context, task_id, options, ways)
 
 
 def choice(

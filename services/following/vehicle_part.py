@@ -10,6 +10,8 @@ from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.kernel import Vec2
 from cratous.core.routing.loiter_discs import broken_by
 from cratous.core.routing.visibility import name_of
+from cratous.core.tasks.stations import in_ring
+from cratous.services.following.chase import is_chase, speed_of
 from cratous.services.following.motion import Motion
 from cratous.services.following.stations import Station, at_station, camera_of, station
 from cratous.services.following.task_options import slot_of
@@ -31,7 +33,8 @@ class Part(NamedTuple):
     state: task state for this vehicle; option: the one it flies, in the context of its request; begins:
     number of the waypoint from which it follows; then: the waypoint at which it continues; held: the circle
     commanded last; seen_ms: when it was last heard; there: whether it then did what the task requires;
-    blocked: reported reason why it does not reach its circle.
+    blocked: reported reason why it does not reach its circle; hurries: it chases, and is still more than two radii
+    from its circle's centre.
     """
 
     state: State
@@ -43,6 +46,7 @@ class Part(NamedTuple):
     seen_ms: int = 0
     there: bool = False
     blocked: str = ""
+    hurries: bool = False
 
     @property
     def vehicle(self) -> int:
@@ -78,6 +82,8 @@ def heard(part: Part, body: Any, asked: Asked, motion: Motion, fresh: bool, now_
     # aim at where the entity will be after about the duration of a turn
     led = motion._replace(at=motion.after(flyer.radius_m / flyer.speed_m_s))
     goal = station(asked, slot, flyer, led, frame.terrain_m)
+    near = in_ring(now.at, at, 0, 2 * now.radius_m)
+    part = part._replace(hurries=is_chase(part.option) and not near)
     zone = _in_the_way(part, here, goal)
     if zone:
         return part._replace(there=there, seen_ms=now_ms, blocked=zone)
@@ -121,7 +127,9 @@ def circling(part: Part, task: int, number: int, asked: Asked, motion: Motion) -
 def loiter(part: Part, task: int) -> Any:
     """The LoiterAction of the circle commanded last, of unlimited duration."""
     assert part.held is not None
-    flyer, middle = part.option.flyer, Position(*part.held.at, part.option.flyer.alt_m)
+    middle, speed = Position(*part.held.at, part.option.flyer.alt_m), part.option.flyer.speed_m_s
+    if part.hurries:
+        speed = speed_of(part.option, part.context.inputs.mission.vehicle(part.vehicle))
     return lmcp.new(
         "LoiterAction",
         AssociatedTaskList=[task],
@@ -129,9 +137,19 @@ def loiter(part: Part, task: int) -> Any:
         Radius=part.held.radius_m,
         Direction="Clockwise",
         Duration=-1,
-        Airspeed=flyer.speed_m_s,
+        Airspeed=speed,
         Location=_location(part.context, middle),
     )
+
+
+def at_speed(part: Part, made: Any) -> Any:
+    """A TaskImplementationResponse with the speed of a chase on the way from its beginning; others as they are."""
+    if type(made).__name__ != "TaskImplementationResponse" or not is_chase(part.option):
+        return made
+    speed = speed_of(part.option, part.context.inputs.mission.vehicle(part.vehicle))
+    own = [w for w in made.TaskWaypoints if w.AssociatedTasks]
+    there = [w.copy(Speed=speed) for w in own[1:]]
+    return made.copy(TaskWaypoints=[*made.TaskWaypoints[: -len(own)], own[0], *there])
 
 
 def _location(context: Context, at: Position) -> Any:

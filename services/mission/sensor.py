@@ -217,16 +217,17 @@ def sample_distance_m(camera: Camera, view: View | None, height_m: float) -> flo
     return 2 * slant * math.tan(camera.hfov_rad / 2) / camera.pixels
 
 
-def zoomed(camera: Camera, task: Task, height_m: float) -> Camera:
+def zoomed(camera: Camera, task: Task, height_m: float, brought: View | None = None) -> Camera:
     """The camera zoomed in just enough for the task's ground sample distance.
 
-    Unchanged where that is met already, cannot be reached, or is unknown.
+    brought: the planner's view, where the task leaves that open. Unchanged where the distance is met already, cannot
+    be reached, or is unknown.
     """
     if task.gsd_m <= 0 or camera.pixels == 0 or not camera.zoom_rad or height_m <= 0:
         return camera
     slants = [
         height_m / max(math.sin(-elevation_rad(camera, view)), 1e-6)
-        for view in (task.view, *task.views)
+        for view in ((task.view, *task.views) if brought is None else (brought,))
     ]
     widest = 2 * math.atan(task.gsd_m * (1 - 1e-9) * camera.pixels / (2 * max(slants)))
     fits = [field for field in (camera.hfov_rad, *camera.zoom_rad) if field <= widest]

@@ -8,7 +8,6 @@ from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.core.authority.timeliness import lasted
-from cratous.services.mission.sensor import zoomed
 from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.coordinates import RequestPlaces
 from cratous.services.pipeline.outside import Outside
@@ -16,7 +15,7 @@ from cratous.services.pipeline.status import status
 from cratous.services.planning.options import Option
 from cratous.services.planning.performance_classes import camera_for
 from cratous.services.planning.stages import hold_of
-from cratous.services.planning.targets import Angles, flown_view
+from cratous.services.planning.targets import Angles, flown_camera, flown_view
 from cratous.spec.errors import NoPlan
 from cratous.spec.mission import Camera, Position, Task
 from cratous.spec.mission.plan import Hold
@@ -143,14 +142,14 @@ def _views(task: Task, option: Option, terrain_m: float) -> list[Any]:
         Azimuth=math.degrees(azimuth_rad),
         Elevation=math.degrees(option.view_elevation_rad),
     )
-    return [look, *_zoom(task, camera, option.flyer.alt_m - terrain_m)]
+    return [look, *_zoom(task, camera, option.flyer.alt_m - terrain_m, made_for)]
 
 
-def _zoom(task: Task, camera: Camera | None, height_m: float) -> list[Any]:
+def _zoom(task: Task, camera: Camera | None, height_m: float, made_for: Angles) -> list[Any]:
     """The field of view for which the option was made, if the camera has several."""
     if camera is None or not camera.zoom_rad:
         return []
-    narrow = zoomed(camera, task, height_m)
+    narrow = flown_camera(camera, task, height_m, made_for)
     return [
         lmcp.new(
             "CameraAction",

@@ -5,11 +5,13 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
-from cratous.core.tasks.coverage import outline, square_array, square_side_m
-from cratous.core.tasks.sweep import Piece, Swath, SwathOf, swath, unjoined_m
-from cratous.services.mission.sensor import footprints, looks_over
+from cratous.core.tasks.coverage import area_m2, outline, square_array, square_side_m
+from cratous.core.tasks.sweep import LANES_MOST, Piece, Swath, SwathOf, swath, unjoined_m
+from cratous.services.mission.sensor import footprints, looks_over, zoomed
+from cratous.services.planning.area_views import open_view
 from cratous.services.planning.performance_classes import Flyer
 from cratous.services.planning.smoothing import MARGIN
 from cratous.spec.mission import Camera, Task, View
@@ -60,10 +62,52 @@ def lane_width_m(swath_of: SwathOf, heading_rad: float) -> float:
     return max(0.0, min((s.width_m if s is not None else 0.0) for s in seen))
 
 
+def swaths_aside(site: Site) -> Callable[[float, View], Swath | None]:
+    """The swath of a pass along a heading [rad] with a view that is fixed over ground; the same, but for its last
+    digits, for every heading at the same angle to the view, and so computed once.
+    """
+    known: dict[tuple[float, float], Swath | None] = {}
+
+    def found(heading_rad: float, view: View) -> Swath | None:
+        aside_rad = round((view.azimuth_rad - heading_rad) % (2 * math.pi), 9)
+        key = (aside_rad, view.elevation_rad)
+        if key not in known:
+            known[key] = swaths_of(site, replace(view, azimuth_rad=aside_rad))(0.0)
+        return known[key]
+
+    return found
+
+
+def lane_lengths(site: Site, heading_rad: float, lead_m: float) -> Callable[[Swath], float]:
+    """The approximate length of parallel lanes over the area with their turns, by their swath [m]; infinite if there
+    are too many.
+
+    The lanes are as many as for the whole width, and on average as long as the area's mean chord.
+    """
+    c, s = math.cos(heading_rad), math.sin(heading_rad)
+    across = [e * c - n * s for n, e in site.vertices]
+    extent_m = max(across) - min(across)
+    chord_m = area_m2(site.vertices) / extent_m
+
+    def length_m(seen: Swath) -> float:
+        if not seen.width_m * LANES_MOST >= extent_m:
+            return math.inf
+        settled_m = max(chord_m + seen.near_m - seen.far_m + 1.2 * lead_m, lead_m)
+        return math.ceil(extent_m / seen.width_m) * (settled_m + math.pi * site.flyer.radius_m)
+
+    return length_m
+
+
 def swaths_of(site: Site, view: View | None) -> SwathOf:
     """The swath by heading, narrowed by one square on each side so that squares at the seams are covered."""
     least_m = GLANCE_S * site.flyer.speed_m_s + site.side_m
-    return functools.partial(_swath, site.camera, view, site.height_m, site.side_m, least_m)
+    camera = camera_with(site, view)
+    return functools.partial(_swath, camera, view, site.height_m, site.side_m, least_m)
+
+
+def camera_with(site: Site, view: View | None) -> Camera:
+    """The camera as it is zoomed for a view."""
+    return zoomed(site.camera, site.task, site.height_m, view if open_view(site.task) else None)
 
 
 @functools.lru_cache(maxsize=4096)

@@ -1,25 +1,36 @@
 """Views over an area whose task leaves the view open.
 
-A view tilted along the lanes, ahead in one direction and back in the other, covers a wider strip than one
-straight down and costs nothing in the turns: all footprints have the same offset from the aircraft.
+A view tilted in one direction over ground, on the way there and on the way back, covers a wider strip than one
+straight down and costs nothing in the turns: all footprints have the same offset from the aircraft. Aslant to the
+lanes the strip is wider still, since it is as wide as the footprint's diagonal.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
-from cratous.core.tasks.sweep import Corner, strips_needed
-from cratous.services.mission.sensor import elevation_rad, sample_distance_m
+from cratous.core.tasks.sweep import Swath
+from cratous.services.mission.sensor import sample_distance_m, zoomed
 from cratous.services.planning.point_paths import STRAIGHT_DOWN_RAD
 from cratous.spec.mission import AREAS, Camera, Pattern, Task, View
 
-TILTS_DEG = (-75.0, -60.0, -55.0, -50.0, -45.0, -40.0, -35.0, -30.0)
-"""Tilts tried besides straight down, steepest first [deg]; the limit set by the sample distance is added."""
+TILTS_DEG = (-75.0, -60.0, -55.0, -50.0, -45.0, -40.0, -35.0, -30.0, -25.0, -20.0)
+"""Tilts tried besides straight down [deg]; the limits set by the sample distance are added, one for each field of view."""
+SHALLOWEST_SHARP_DEG = -20.0
+"""Shallowest tilt if the task requires a ground sample distance, which the image centre then meets [deg]."""
 SHALLOWEST_DEG = -45.0
 """Shallowest tilt if the task requires no ground sample distance [deg]: the image centre is then seen from
 1.4 times the distance straight down.
 """
+
+ASIDE_DEG = (0.0, 30.0, 45.0, 60.0)
+"""Angles tried between the view and the lanes [deg]."""
+ALIKE = 1.005
+"""Ways that differ by less than this factor count as equally long."""
+
+WITHIN = 1 - 1e-8
+"""Factor on the sample distance for which the shallowest tilt is calculated, so that rounding leaves it within."""
 
 
 def open_view(task: Task) -> bool:
@@ -40,23 +51,30 @@ def best_view(
     camera: Camera,
     height_m: float,
     heading_rad: float,
-    width_of: Callable[[View], float],
-    vertices: Sequence[Corner],
+    swath_of: Callable[[View], Swath | None],
+    length_of: Callable[[Swath], float],
 ) -> View | None:
-    """The steepest view along lanes of a heading that needs the fewest lanes; None: straight down.
+    """The view that needs the shortest way along lanes of a heading; None: straight down.
 
-    width_of: strip width of a pass with a view [m], 0 for none. Only views that meet the task's ground sample
-    distance at the image centre are considered, and only for a camera that can look back.
+    swath_of: what a pass along the heading sees with a view; length_of: the length of the lanes that a swath needs
+    [m], infinite for none. Of views that need nearly the same the steepest is taken, and then the one that looks
+    most nearly along the lanes. Only views that meet the task's ground sample distance at the image centre are
+    considered, and only for a camera that can look back.
     """
-    needed: dict[View | None, int] = {}
+    views: list[View | None] = []
     if camera.min_elevation_rad <= STRAIGHT_DOWN_RAD:
-        down = View(heading_rad, -math.pi / 2, True)
-        needed[None] = strips_needed(vertices, heading_rad, width_of(down))
-    around = camera.max_azimuth_rad - camera.min_azimuth_rad >= 2 * math.pi - 1e-6
-    for tilt_rad in _tilts(task, camera, height_m) if around else ():
-        view = View(heading_rad, tilt_rad, True)
-        needed[view] = strips_needed(vertices, heading_rad, width_of(view))
-    return min(needed, key=lambda view: needed[view] or math.inf, default=None)
+        views.append(None)
+    if camera.max_azimuth_rad - camera.min_azimuth_rad >= 2 * math.pi - 1e-6:
+        views += [
+            View((heading_rad + math.radians(aside)) % (2 * math.pi), tilt_rad, True)
+            for tilt_rad in _tilts(task, camera, height_m)
+            for aside in ASIDE_DEG
+        ]
+    down = View(heading_rad, -math.pi / 2, True)
+    seen = [swath_of(down if view is None else view) for view in views]
+    lengths = [math.inf if one is None else length_of(one) for one in seen]
+    enough = ALIKE * min(lengths, default=math.inf)
+    return next((view for view, m in zip(views, lengths, strict=True) if m <= enough), None)
 
 
 def _tilts(task: Task, camera: Camera, height_m: float) -> list[float]:
@@ -64,11 +82,20 @@ def _tilts(task: Task, camera: Camera, height_m: float) -> list[float]:
     shallowest = math.radians(SHALLOWEST_DEG)
     tilts = [math.radians(degrees) for degrees in TILTS_DEG]
     if camera.min_elevation_rad > STRAIGHT_DOWN_RAD:
-        tilts = sorted((*tilts, camera.min_elevation_rad))
+        tilts.append(camera.min_elevation_rad)
     if task.gsd_m > 0 and camera.pixels:
-        straight_m = sample_distance_m(camera, None, height_m)
-        lowest_m = straight_m * math.sin(-elevation_rad(camera, None))
-        shallowest = min(-math.asin(min(1.0, lowest_m / task.gsd_m)), tilts[-1])
-        tilts = sorted((*tilts, shallowest))
+        shallowest = math.radians(SHALLOWEST_SHARP_DEG)
+        for field in (camera.hfov_rad, *camera.zoom_rad):  # as shallow as each is sharp enough
+            level_m = 2 * height_m * math.tan(field / 2) / camera.pixels
+            tilts.append(-math.asin(min(1.0, level_m / (task.gsd_m * WITHIN))))
+        # some field of view of the camera has to be sharp enough
+        tilts = [tilt for tilt in tilts if _sharp(task, camera, height_m, tilt)]
     low, high = camera.min_elevation_rad, min(camera.max_elevation_rad, shallowest)
-    return [tilt for tilt in tilts if low <= tilt <= high]
+    return [tilt for tilt in sorted(set(tilts)) if low <= tilt <= high]
+
+
+def _sharp(task: Task, camera: Camera, height_m: float, tilt_rad: float) -> bool:
+    """Whether the camera, zoomed in as for a tilt, meets the task's ground sample distance."""
+    view = View(0.0, tilt_rad, True)
+    near = zoomed(camera, task, height_m, view)
+    return sample_distance_m(near, view, height_m) <= task.gsd_m * (1 + 1e-9)

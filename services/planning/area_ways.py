@@ -39,9 +39,12 @@ from cratous.services.mission.sensor import elevation_rad, footprints, looks_ove
 from cratous.services.planning.area_site import (
     Candidate,
     Site,
+    camera_with,
     candidate_of,
+    lane_lengths,
     lane_width_m,
     site_of,
+    swaths_aside,
     swaths_of,
 )
 from cratous.services.planning.area_views import best_view, open_view
@@ -219,7 +222,7 @@ def _share(
     looks = looks_over(places, view, site.height_m)
     centres = site.squares()
     seen = np.zeros(len(centres), np.bool_)
-    quads = footprints(looks, site.height_m, site.camera, (1 + MARGIN) / 2)
+    quads = footprints(looks, site.height_m, camera_with(site, view), (1 + MARGIN) / 2)
     for some in (quads[::FEWER], quads) if len(quads) > FEW else (quads,):
         # if some of them cover everything, so do all
         if not seen.all():
@@ -228,14 +231,17 @@ def _share(
 
 
 def _along_lanes(site: Site, lead_m: float) -> list[Candidate]:
-    """Lanes, each with the view along them that needs the fewest."""
-    found = []
+    """Lanes, each with the view that needs the shortest way."""
+    found, seen = [], swaths_aside(site)
     for heading in _headings(site):
-
-        def width_of(view: View, heading: float = heading) -> float:
-            return lane_width_m(swaths_of(site, view), heading)
-
-        view = best_view(site.task, site.camera, site.height_m, heading, width_of, site.vertices)
+        view = best_view(
+            site.task,
+            site.camera,
+            site.height_m,
+            heading,
+            functools.partial(seen, heading),
+            lane_lengths(site, heading, lead_m),
+        )
         swath_of = swaths_of(site, view)
         if lane_width_m(swath_of, heading) > 0:
             found += _lanes_along(site, heading, swath_of, lead_m, view)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from cratous.services.mission.sensor import aim, look_on_line
+from cratous.services.mission.sensor import aim, look_on_line, zoomed
 from cratous.services.planning.area_views import brought_view, open_view
 from cratous.services.planning.performance_classes import camera_for
 from cratous.services.planning.point_paths import tilted
@@ -36,6 +36,11 @@ def flown_view(task: Task, made_for: Angles, cameras: Sequence[Camera]) -> View 
     if asked is not None or made_for.elevation_rad is None or not brought:
         return asked
     return _nearest(made_for.elevation_rad, made_for.azimuth_rad, brought)
+
+
+def flown_camera(camera: Camera, task: Task, height_m: float, made_for: Angles) -> Camera:
+    """The camera as it is zoomed while a task is flown, from a height above ground [m]."""
+    return zoomed(camera, task, height_m, brought_view(task, *made_for))
 
 
 def _nearest(elevation_rad: float, azimuth_rad: float, views: Iterable[View | None]) -> View | None:

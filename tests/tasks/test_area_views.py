@@ -1,4 +1,4 @@
-"""From where an area is seen whose task leaves that open: tilted along the lanes, as far as is sharp enough."""
+"""From where an area is seen whose task leaves that open: tilted, as far as is sharp enough."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import pytest
 from task_tools import FIELD, area, keep_out, options, vehicle
 
 from cratous.core.tasks.coverage import look
-from cratous.core.tasks.sweep import swath
+from cratous.core.tasks.sweep import Swath, swath
 from cratous.services.mission.sensor import sample_distance_m
 from cratous.services.planning import area_ways
-from cratous.services.planning.area_views import best_view, brought_view
-from cratous.services.planning.targets import Angles, flown_view, target_from
+from cratous.services.planning.area_views import ASIDE_DEG, best_view, brought_view
+from cratous.services.planning.targets import Angles, flown_camera, flown_view, target_from
 from cratous.spec.mission import Camera, Position, View
 
 DOWN = -math.pi / 2
@@ -37,7 +37,7 @@ def test_a_swath_ends_where_the_footprint_is_too_short() -> None:
     assert swath(footprint, 0.0, 200.5) is None
 
 
-def test_lanes_are_fewer_with_a_view_along_them_there_and_back() -> None:
+def test_lanes_are_fewer_with_a_view_that_is_the_same_there_and_back() -> None:
     who = vehicle((AROUND,))
     free, _ = options(area(), who)
     down, _ = options(area(view=View(0.0, DOWN, True)), who)
@@ -49,50 +49,93 @@ def test_lanes_are_fewer_with_a_view_along_them_there_and_back() -> None:
         assert view is not None
         assert view.inertial
         assert math.radians(-75.01) < view.elevation_rad < math.radians(-44.99)
-        lane_rad = option.start.heading_rad
-        assert math.remainder(view.azimuth_rad - lane_rad, math.pi) == pytest.approx(0, abs=1e-6)
+        aside = math.degrees(view.azimuth_rad - option.start.heading_rad) % 180
+        assert min(abs(aside - one) for one in (*ASIDE_DEG, 180.0)) == pytest.approx(0, abs=1e-6)
+
+
+def test_a_footprint_aslant_to_the_lanes_covers_a_wider_strip() -> None:
+    """Of a square footprint it is the diagonal, less what is too short; the way over the area is shorter for it."""
+    box = ((-100.0, -100.0), (100.0, -100.0), (100.0, 100.0), (-100.0, 100.0))
+    straight, aslant = swath(box, 0.0, 20.0), swath(box, math.radians(45), 20.0)
+    assert straight is not None
+    assert aslant is not None
+    assert straight.width_m == pytest.approx(200.0, abs=0.01)
+    assert aslant.width_m == pytest.approx(200 * math.sqrt(2) - 20, abs=0.01)
+    task, who = (
+        area(((0.0, 0.0), (0.0, 4000.0), (3000.0, 4000.0), (3000.0, 0.0))),
+        vehicle((AROUND,)),
+    )
+    found, _ = options(task, who)
+    best = min(found, key=lambda one: one.duration_ms)
+    aside = math.degrees(best.view_azimuth_rad - best.start.heading_rad) % 90
+    assert 15 < aside < 75
+    assert best.coverage is not None
+    assert best.coverage >= 0.99
 
 
 @pytest.mark.parametrize("wanted_m", [0.3, 0.36, 0.45, 0.6])
 def test_a_tilted_view_is_as_sharp_as_the_task_asks(wanted_m: float) -> None:
     """At 400 m above ground it is 0.32 m a pixel straight down: too coarse for the first without zooming."""
-    task, who = area(gsd_m=wanted_m), vehicle((replace(AROUND, zoom_rad=(math.radians(22),)),))
+    camera = replace(AROUND, zoom_rad=(math.radians(22),))
+    task, who = area(gsd_m=wanted_m), vehicle((camera,))
     found, _ = options(task, who)
     assert found
     for option in found:
-        view = brought_view(task, option.view_elevation_rad, option.view_azimuth_rad)
-        field = math.radians(22) if wanted_m < 0.32 else AROUND.hfov_rad
-        seen_m = sample_distance_m(replace(AROUND, hfov_rad=field), view, 400.0)
-        assert seen_m <= wanted_m + 1e-9
+        made_for = Angles(option.view_elevation_rad, option.view_azimuth_rad)
+        view, near = brought_view(task, *made_for), flown_camera(camera, task, 400.0, made_for)
+        assert sample_distance_m(near, view, 400.0) <= wanted_m + 1e-9
+        assert option.coverage is not None
+        assert option.coverage >= 0.99
 
 
-def _best(task_view_m: dict[float, float], camera: Camera = AROUND) -> float:
-    """The tilt that is taken if a pass is so wide with each [deg, m]; a square of 1000 m."""
-    square = ((0.0, 0.0), (1000.0, 0.0), (1000.0, 1000.0), (0.0, 1000.0))
+def test_a_camera_that_zooms_in_looks_shallower_at_the_same_sharpness() -> None:
+    """Half the field of view from twice as far shows as wide a strip, and a deeper one."""
+    camera = replace(AROUND, zoom_rad=(math.radians(16),))
+    box = ((0.0, 0.0), (0.0, 5000.0), (5000.0, 5000.0), (5000.0, 0.0))
+    asked = area(box, gsd_m=0.33)
+    wide, _ = options(asked, vehicle((AROUND,)))
+    found, _ = options(asked, vehicle((camera,)))
+    assert min(o.duration_ms for o in found) < 0.8 * min(o.duration_ms for o in wide)
+    best = min(found, key=lambda one: one.duration_ms)
+    made_for = Angles(best.view_elevation_rad, best.view_azimuth_rad)
+    assert flown_camera(camera, asked, 400.0, made_for).hfov_rad == camera.zoom_rad[0]
+    assert best.view_elevation_rad is not None
+    assert math.radians(-60) < best.view_elevation_rad <= math.radians(-20)
 
-    def width_of(view: View) -> float:
-        return task_view_m.get(round(math.degrees(view.elevation_rad)), 0.0)
 
-    view = best_view(area(), camera, 400.0, 0.5, width_of, square)
-    return -90.0 if view is None else round(math.degrees(view.elevation_rad))
+def _best(metres: dict[float, float], camera: Camera = AROUND, aside: float = 0.0) -> float:
+    """The tilt that is taken if the way is so long with each at an angle to the lanes [deg, m]."""
+
+    def swath_of(view: View) -> Swath | None:
+        far = metres.get(round(math.degrees(view.elevation_rad)), 0.0)
+        off = math.degrees(view.azimuth_rad - 0.5) - aside
+        there = far and (abs(off) < 1 or view.elevation_rad == DOWN)
+        return Swath(-far / 2, far / 2, 0.0, 0.0) if there else None
+
+    view = best_view(area(), camera, 400.0, 0.5, swath_of, lambda seen: seen.width_m)
+    if view is None:
+        return -90.0
+    assert math.degrees(view.azimuth_rad - 0.5) == pytest.approx(aside)
+    return round(math.degrees(view.elevation_rad))
 
 
-def test_of_views_that_need_as_few_lanes_the_steepest_is_taken() -> None:
-    assert _best({-90: 300.0, -75: 340.0, -60: 480.0, -55: 500.0, -45: 520.0}) == -60
-    assert _best({-90: 1500.0, -60: 2000.0}) == -90
-    assert _best({-60: 300.0, -45: 700.0}) == -45, "straight down covers nothing"
-    assert _best({-90: 300.0, -30: 5000.0}) == -90, (
+def test_of_views_with_as_short_a_way_the_steepest_is_taken() -> None:
+    assert _best({-90: 9000.0, -75: 7000.0, -60: 5000.0, -55: 5000.0, -45: 4990.0}) == -60
+    assert _best({-90: 2000.0, -60: 2000.0}) == -90
+    assert _best({-60: 7000.0, -45: 3000.0}) == -45, "straight down covers nothing"
+    assert _best({-90: 7000.0, -60: 5000.0}, aside=45.0) == -60
+    assert _best({-90: 3000.0, -30: 500.0}) == -90, (
         "shallower than 45 degrees only for a sample distance"
     )
 
 
 def test_a_camera_that_cannot_look_back_or_up_is_not_tilted() -> None:
-    widths = {-90: 300.0, -60: 2000.0}
-    assert _best(widths, replace(AROUND, min_azimuth_rad=-1.0, max_azimuth_rad=1.0)) == -90
-    assert _best(widths, replace(AROUND, max_elevation_rad=math.radians(-70))) == -90
+    metres = {-90: 3000.0, -60: 2000.0}
+    assert _best(metres, replace(AROUND, min_azimuth_rad=-1.0, max_azimuth_rad=1.0)) == -90
+    assert _best(metres, replace(AROUND, max_elevation_rad=math.radians(-70))) == -90
 
 
-def test_a_camera_that_cannot_look_straight_down_looks_along_the_lanes_there_and_back() -> None:
+def test_a_camera_that_cannot_look_straight_down_looks_the_same_way_there_and_back() -> None:
     """Ahead of the aircraft alone each turn would be longer by how far it looks."""
     shy = replace(AROUND, min_elevation_rad=math.radians(-45), max_elevation_rad=0.0)
     assert _best({-90: 400.0, -45: 400.0}, shy) == -45

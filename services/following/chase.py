@@ -1,0 +1,84 @@
+"""A chase: the way of a vehicle from its present position to its circle about a moving entity, at its greatest speed.
+
+Offered beside the way at the usual speed, which may be flown from anywhere. It is predicted as that one is.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.core.kernel import Vec2
+from cratous.core.routing.dubins import cut, dubins, polyline_length_m, pose_after
+from cratous.core.routing.loiter_discs import broken_by
+from cratous.core.tasks.stations import in_ring, outruns
+from cratous.services.following.motion import Motion
+from cratous.services.following.stations import station
+from cratous.services.following.task_parameters import Asked
+from cratous.services.pipeline.contexts import Context
+from cratous.services.planning.options import Option, hold_rooms
+from cratous.services.planning.performance_classes import flight_ms
+from cratous.spec.mission import Position, Vehicle
+from cratous.spec.mission.plan import Pose
+
+CHASE = ", chased"
+"""The end of the label of a chase."""
+CHASED = ("WatchTask", "MultiVehicleWatchTask", "BlockadeTask")
+"""The kinds of tasks for which a chase is offered."""
+FASTER = 1.05
+"""Least ratio of a vehicle's greatest speed to its usual one for which a chase is offered."""
+LEAD_S = 5.0
+"""A chase begins this far ahead of its vehicle [s]: a state of the vehicle arrives before it is there."""
+ROUNDS, SETTLED_S = 40, 0.5
+"""Rounds in which the time of arrival has to settle to within this [s]."""
+
+
+def is_chase(option: Option) -> bool:
+    """Whether an option is a chase."""
+    return option.label.endswith(CHASE)
+
+
+def speed_of(option: Option, vehicle: Vehicle) -> float:
+    """The speed at which a vehicle flies an option to its circle [m/s]."""
+    return vehicle.max_speed_m_s if is_chase(option) else option.flyer.speed_m_s
+
+
+def chase(
+    context: Context, asked: Asked, motion: Motion, usual: Option, vehicle: Vehicle
+) -> Option | None:
+    """A vehicle's chase to the circle of its option at the usual speed; None where none is of use or possible: no
+    higher speed, an entity that stands or is no slower, a circle too near, zones in the way, or another kind of task.
+
+    Its turns are wide enough for its speed.
+    """
+    flyer, fast = usual.flyer, vehicle.max_speed_m_s
+    moves = motion.velocity != (0.0, 0.0) and outruns(motion.velocity, fast)
+    if asked.kind not in CHASED or not moves or fast < FASTER * flyer.speed_m_s:
+        return None
+    begin = context.inputs.starts[vehicle.id]._replace(alt_m=flyer.alt_m)
+    gate = pose_after(begin, 0, LEAD_S * flyer.speed_m_s, 1.0)
+    wide_m = flyer.radius_m * (fast / flyer.speed_m_s) ** 2
+    slot = int(usual.label.removeprefix("slot ")) - 1
+    zones, terrain_m = context.inputs.zones, context.inputs.mission.frame.terrain_m
+    seconds = 0.0
+    for _ in range(ROUNDS):
+        there = motion._replace(at=motion.after(LEAD_S + seconds))
+        goal = station(asked, slot, flyer, there, terrain_m)
+        if in_ring(goal.at, Vec2(*gate[:2]), 0, goal.radius_m + 2 * wide_m):
+            return None
+        heading = math.atan2(goal.at.y - gate.east_m, goal.at.x - gate.north_m)
+        rim = pose_after(Pose(*goal.at, flyer.alt_m, heading), 0, -goal.radius_m, 1.0)
+        path = tuple(cut(dubins(gate, rim, wide_m), rim))
+        before, seconds = seconds, polyline_length_m(path) / fast
+    if abs(seconds - before) > SETTLED_S:
+        return None
+    if broken_by(Position(*goal.at, flyer.alt_m), goal.radius_m, zones) is not None:
+        return None
+    if first_bad_leg(path, zones) is not None:
+        return None
+    lasts = max(asked.least_ms, flight_ms(polyline_length_m(path), fast))
+    return replace(
+        usual, start=gate, end=rim, path=path, duration_ms=lasts, label=usual.label + CHASE,
+        holds=hold_rooms(gate, flyer.radius_m, zones),
+    )  # fmt: skip

@@ -1,0 +1,70 @@
+"""The way to what moves at the usual speed, and the chase of it at the greatest."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from following_tools import ENTITY, aircraft, escort, moving
+from pipeline_tools import Rig, place, request
+from uxas_flight import local
+
+from cratous.bridge import lmcp
+
+RADIUS_M = 1.1 * 20**2 / (9.80665 * math.tan(math.radians(30)))
+"""The tightest planned turn, and the circle."""
+
+
+def test_who_follows_is_planned_to_its_circle_as_it_is_when_he_gets_there(tmp_path: Path) -> None:
+    """One who flies 20 m/s, 3 km behind what flies 15 m/s away, is a turn behind it after so much less; at his
+    greatest speed, 30 m/s, from 5 s ahead of him on, after a third of that.
+    """
+    rig = Rig(tmp_path)
+    task = lmcp.new("WatchTask", TaskID=5, WatchedEntityID=ENTITY)
+    rig.tell(*aircraft(1, 0.0), *moving(15.0), task, request(5))
+    usual, chase = rig.got("TaskPlanOptions")[0].Options
+    (end, gate, rim, entity) = local(
+        [usual.EndLocation, chase.StartLocation, chase.EndLocation, moving()[1].Location],
+        place(0.0),
+    )
+    seconds = (math.hypot(*entity) - RADIUS_M) / (20 - 15)
+    assert math.hypot(*end) == pytest.approx(20 * seconds, rel=0.02)
+    assert math.hypot(*gate) == pytest.approx(5 * 20, abs=1)
+    seconds = (math.hypot(*entity) + 5 * 15 - RADIUS_M - 5 * 20) / (30 - 15)
+    assert math.dist(gate, rim) == pytest.approx(30 * seconds, rel=0.02)
+    assert chase.Cost == pytest.approx(1000 * seconds, rel=0.02)
+
+
+def test_who_chases_flies_his_greatest_speed_until_he_is_near(tmp_path: Path) -> None:
+    rig = Rig(tmp_path)
+    task = lmcp.new("WatchTask", TaskID=5, WatchedEntityID=ENTITY)
+    rig.tell(*aircraft(1, 0.0), *moving(15.0), task, request(5))
+    (command,) = rig.got("AutomationResponse")[0].MissionCommandList
+    begins = next(k for k, w in enumerate(command.WaypointList) if w.AssociatedTasks)
+    speeds = [w.Speed for w in command.WaypointList]
+    assert set(speeds[: begins + 1]) == {20}, "as usual to where the chase begins"
+    assert set(speeds[begins + 1 :]) == {30}
+    state = aircraft(1, 0.0)[1].copy(AssociatedTasks=[5], CurrentWaypoint=99, Mode="Waypoint")
+    rig.tell(state)
+    rig.tell(state.copy(Location=place(0.03, 0.002), Time=1000))
+    far, near = [c.VehicleActionList[0] for c in rig.got("VehicleActionCommand")]
+    assert [far.Airspeed, near.Airspeed] == pytest.approx([30, 20])
+    assert [far.Radius, near.Radius] == pytest.approx([RADIUS_M] * 2, abs=0.1)
+
+
+@pytest.mark.parametrize("why", ["", "escort", "no faster", "too near", "stands", "zone"])
+def test_no_chase_is_offered_where_none_is_possible_or_of_use(tmp_path: Path, why: str) -> None:
+    task = lmcp.new("BlockadeTask", TaskID=5, BlockedEntityID=ENTITY)
+    configuration, state = aircraft(1, 0.028 if why == "too near" else 0.0)
+    # about where a chase would begin, 100 m ahead
+    area = lmcp.new("Circle", CenterPoint=place(0.0009, 0.0), Radius=40.0)
+    zone = lmcp.new("KeepOutZone", ZoneID=3, Boundary=area, MaxAltitude=1000.0)
+    region = lmcp.new("OperatingRegion", ID=4, KeepOutAreas=[3] if why == "zone" else [])
+    if why == "no faster":
+        configuration = configuration.copy(MaximumSpeed=20.5)
+    what = moving({"stands": 0.0, "too near": 3.0}.get(why, 15.0))
+    rig = Rig(tmp_path)
+    rig.tell(configuration, state, *what, zone, region, escort() if why == "escort" else task)
+    rig.tell(request(5, OperatingRegion=4))
+    assert len(rig.got("TaskPlanOptions")[0].Options) == (1 if why else 2)
