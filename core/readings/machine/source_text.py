@@ -22,6 +22,7 @@ import numpy as np
 
 from cratous.core.kernel import Fold, entry_of
 from cratous.core.kernel.sources import text_of
+from cratous.core.readings.tiered import within
 from cratous.spec.errors import BadInput
 
 NUMBERS = (bool, int, float)
@@ -92,6 +93,8 @@ class SourceText:
         own = f"{function.__module__}.{function.__qualname__}"
         renamed: dict[str, str] = {}
         for used in sorted(_globals(code)):
+            if function.__globals__.get(used) is within:
+                continue  # what runs a part of a loop is the compiler's here
             if used in function.__globals__:
                 renamed[used] = self._reference(function, used, own)
             elif not hasattr(builtins, used):
@@ -182,8 +185,11 @@ class _Renaming(ast.NodeTransformer):
 
     def visit_Call(self, node: ast.Call) -> ast.expr:
         """A call of our own code with number literals converted to the callee's types, so that it is compiled only
-        once.
+        once. `within(f, n)(...)` is `f(...)`.
         """
+        chosen = node.func.func if isinstance(node.func, ast.Call) else None
+        if isinstance(chosen, ast.Name) and self.function.__globals__.get(chosen.id) is within:
+            node.func = node.func.args[0]  # type: ignore[attr-defined]
         called = self.function.__globals__.get(getattr(node.func, "id", ""))
         local = getattr(node.func, "id", "") not in self.renamed
         kinds = {} if local or called is None else _parameters(called)
