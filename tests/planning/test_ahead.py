@@ -21,6 +21,10 @@ from cratous.core.assignment.anytime import greedy, improve
 from cratous.core.assignment.layers import look_ahead, tables
 from cratous.core.assignment.problem import START
 from cratous.core.assignment.tables import latest_tables
+from cratous.core.geofence.mission_leg_arrays import first_bad
+from cratous.core.kernel import qualified
+from cratous.core.ledger import PRODUCT, Keys
+from cratous.core.ledger.module_trees import Tree
 from cratous.core.readings import tiered
 from cratous.core.readings.machine.compiled import machine
 from cratous.core.readings.tiered import at_once
@@ -28,6 +32,7 @@ from cratous.core.routing import visibility
 from cratous.core.routing.bulk import direct_many, route_many
 from cratous.core.routing.visibility import Roadmap, lengths_around, routes
 from cratous.core.tasks.coverage_arrays import mark_seen
+from cratous.services.certify.evidence import counted
 from cratous.services.planning import coming, stages
 from cratous.services.planning import routes as planned
 from cratous.services.planning.assign import solve
@@ -79,13 +84,16 @@ def wall(east_m: float) -> Zone:
 
 
 @pytest.fixture
-def begun(monkeypatch: pytest.MonkeyPatch) -> list[Started]:
+def begun(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[Started]:
     ALL.clear()
     monkeypatch.setattr(subprocess, "Popen", Started)
     monkeypatch.setattr(ahead.atexit, "register", lambda *_: None)
     monkeypatch.setattr(ahead, "_cores", lambda: 2)
     monkeypatch.setattr(ahead, "is_kept", functools.cache(lambda _: False))
+    monkeypatch.setattr(ahead, "private_cache", lambda: tmp_path)
+    (tmp_path / "tables").mkdir()
     monkeypatch.setattr(coming, "_coming", {})
+    monkeypatch.setattr(tiered, "_coming", {})
     return ALL
 
 
@@ -104,7 +112,7 @@ def test_what_may_not_be_needed_stands_back(
 ) -> None:
     back: list[tuple[str, int]] = []
     monkeypatch.setattr(ahead, "_stand_back", lambda process, by: back.append((process.name, by)))
-    ahead.begin([mission(ahead.MANY_TASKS)])
+    ahead.begin([mission(ahead.MANY_ROUTES)])
     assert back == [(coming.ROUTES, ahead.BEHIND)]
 
 
@@ -123,26 +131,56 @@ def test_on_one_core_who_answers_waits_before_and_who_plans_compiles(
 
 
 def test_who_needs_machine_code_waits_for_it_once(begun: list[Started]) -> None:
-    ahead.begin([mission(ahead.MANY_TASKS)])
-    assert [process.name for process in begun] == [coming.ROUTES, coming.ASSIGNMENT]
+    ahead.begin([mission(ahead.MANY_ROUTES)])
+    assert [process.name for process in begun] == [coming.ASSIGNMENT, coming.ROUTES]
     choices = tuple(Choice(t, 1, 1, (1,)) for t in (1, 2, 3, 4))
     rows = tuple(tuple(None if a == b else 1 for b in range(4)) for a in range(5))
     problem = AssignmentProblem("", (1,), (0,), choices, (rows,), "|(p1 p2 p3 p4)")
     for _ in range(2):
         assert solve(problem).cost is not None
     # that a process failed is no reason to wait again, nor not to plan
-    assert [process.waits for process in begun] == [0, 1]
+    assert [process.waits for process in begun] == [1, 0]
 
 
 def test_what_is_compiled_for_routes_goes_by_whether_many_lead_around_zones(
+    begun: list[Started], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(ahead, "MANY_ROUTES", ahead.MANY_TASKS)
+    few = ahead.MANY_ROUTES - 1
+    ahead.begin([mission(few, wall(-2000.0)), mission(ahead.MANY_ROUTES, wall(3000.0))])
+    assert [process.name for process in begun] == [ahead.LEGS, coming.ASSIGNMENT, coming.ROUTES]
+    begun.clear()
+    ahead.begin([mission(few), mission(ahead.MANY_ROUTES, wall(-2000.0))])
+    assert [process.name for process in begun] == [ahead.LEGS, coming.ASSIGNMENT, coming.AROUND]
+
+
+def test_legs_have_machine_code_of_their_own_where_there_are_zones_and_some_tasks(
     begun: list[Started],
 ) -> None:
-    few = ahead.MANY_TASKS - 1
-    ahead.begin([mission(few, wall(-2000.0)), mission(ahead.MANY_TASKS, wall(3000.0))])
-    assert [process.name for process in begun] == [coming.ROUTES, coming.ASSIGNMENT]
-    begun.clear()
-    ahead.begin([mission(few), mission(ahead.MANY_TASKS, wall(-2000.0))])
-    assert [process.name for process in begun] == [coming.AROUND, coming.ASSIGNMENT]
+    ahead.begin([mission(ahead.SOME_TASKS), mission(ahead.SOME_TASKS - 1, wall(3000.0))])
+    assert begun == []
+    ahead.begin([mission(ahead.SOME_TASKS, wall(3000.0))])
+    assert [process.name for process in begun] == [ahead.LEGS]
+
+
+def test_in_an_empty_cache_another_process_reads_files_for_the_gate(
+    begun: list[Started], tmp_path: Path
+) -> None:
+    (tmp_path / "tables").rmdir()
+    ahead.begin([mission(1)])
+    assert [process.name for process in begun] == [ahead.TABLES]
+
+
+def test_what_is_read_for_the_gate_is_what_the_gate_reads(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All of it, so that each file is read by one of the two."""
+    read: list[str] = []
+    monkeypatch.setattr(Tree, "table", lambda _, name: read.append(name))
+    ahead.make_tables()
+    tree = Keys(PRODUCT).tree
+    assert read == [*reversed(tree.every_module)]
+    assert {"cratous.core.ledger.tables", "cratous.spec.mission"} <= {*read}
 
 
 def test_ways_across_a_zones_box_are_many_or_not() -> None:
@@ -249,7 +287,7 @@ def test_who_has_begun_plans_nothing_that_the_gate_refuses(
 
     def refused(**_: Any) -> None:
         names = [process.name for process in begun]
-        assert names == [ahead.SQUARES, coming.ROUTES, coming.ASSIGNMENT]
+        assert names == [ahead.LEGS, ahead.SQUARES, coming.ASSIGNMENT]
         raise Refused("the code is not what was proved")
 
     monkeypatch.setattr(ahead, "MANY_TASKS", 1)
@@ -289,11 +327,47 @@ def test_what_is_made_meanwhile_is_used_from_then_on(
     assert tiered.swift(direct_many, tiered.WORTH - 10_000) is direct_many
     kept[0] = True
     assert tiered.swift(direct_many, 1) is direct_many  # it is not looked for each time
-    assert tiered.swift(direct_many, tiered.SOON) is direct_many  # nor loaded for little
+    monkeypatch.setattr(tiered, "_done", Counter())
+    assert tiered.swift(direct_many, 2 * tiered.SOON) is direct_many  # nor loaded for little
     assert tiered.swift(direct_many, tiered.LOADED) is machine(direct_many)
     assert tiered.swift(direct_many, 1) is machine(direct_many)
     # the compiler is loaded now: another loop is used sooner
     assert tiered.swift(route_many, tiered.SOON + 1) is machine(route_many)
+
+
+def test_what_many_loops_have_done_together_is_worth_loading_the_compiler(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(tiered, "_done", Counter())
+    monkeypatch.setattr(tiered, "_compiled", {})
+    monkeypatch.setattr(tiered, "_is_kept", lambda _: True)
+    for k in range(tiered.LOADED // tiered.SOON):
+        tiered._done[f"loop {k}"] = tiered.SOON
+    assert tiered.swift(direct_many, tiered.SOON) is direct_many  # its own share is small
+    assert tiered.swift(direct_many, 1) is machine(direct_many)
+
+
+def test_legs_within_routes_run_as_machine_code_with_the_same_routes_and_the_same_counts(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A part of a loop is no entry of its own, whatever runs it."""
+    square = ((400.0, -300.0), (400.0, 300.0), (700.0, 300.0), (700.0, -300.0))
+    (roadmap, *_) = roadmaps((Zone(1, ZoneKind.KEEP_OUT, square, 0.0, 500.0),), 60.0)
+    starts = np.array([[0.0, e, 100.0, 0.0] for e in (-900.0, -100.0, 0.0, 250.0, 900.0)])
+    ends = np.array([[1200.0, e, 120.0, 0.5] for e in (-900.0, 0.0, 80.0, 900.0, 550.0)])
+    found, counts, runs = [], [], Counter[str]()
+    for known in ({}, {qualified(first_bad): machine(first_bad)}):
+        monkeypatch.setattr(tiered, "_compiled", dict(known))
+        monkeypatch.setattr(tiered, "_inner", {})
+        roadmap._seen.clear()
+        with counted() as calls:
+            found.append(routes(starts, ends, 60.0, roadmap, 0.2))
+        counts.append(calls.data())
+        runs.update(tiered._inner)
+    assert [*runs] == [qualified(first_bad)]
+    assert counts[0] == counts[1]
+    for one, other in zip(*(each[:3] for each in found), strict=True):
+        assert one.tobytes() == other.tobytes()
 
 
 def test_routes_are_searched_in_blocks_and_each_asks_what_there_is(
