@@ -23,9 +23,7 @@ STEPS = 300
 """Elementary steps of a loop that CPython does in about a tenth of a millisecond, the unit of `swift`."""
 
 
-def machine_for(
-    instance: Any, function: Callable[..., Any], steps: int = 0
-) -> Callable[..., Any]:
+def machine_for(instance: Any, function: Callable[..., Any], steps: int = 0) -> Callable[..., Any]:
     """The function compiled, or for a small instance what `swift` chooses for so many steps; both give the same
     results.
     """

@@ -54,9 +54,10 @@ def within(function: Loop, work: int = 1) -> Loop:
     name = qualified(function)
     if name not in _inner:
         made: Any = _chosen(function, work)
-        if made is function:
-            return function
-        _inner[name] = made.run
+        run: Loop = function if made is function else made.run
+        if run is function:
+            return run
+        _inner[name] = run
     return _inner[name]
 
 
