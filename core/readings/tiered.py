@@ -54,11 +54,9 @@ def within(function: Loop, work: int = 1) -> Loop:
     name = qualified(function)
     if name not in _inner:
         made: Any = _chosen(function, work)
-        run: Loop = function if made is function else made.run
-        if run is function:
-            return run
-        _inner[name] = run
-    return _inner[name]
+        if made is not function:
+            _inner[name] = made.run
+    return _inner.get(name, function)
 
 
 def _chosen(function: Loop, work: int) -> Loop:

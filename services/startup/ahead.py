@@ -40,7 +40,7 @@ from cratous.core.routing.bulk import (
     route_many,
 )
 from cratous.core.tasks.coverage_arrays import grid_squares, mark_seen
-from cratous.services.planning import coming
+from cratous.services.planning import pending_compilation
 from cratous.services.planning.assign_warm import simple_instance
 from cratous.services.planning.detours import expected
 from cratous.services.processes.leash import ENDS_WITH, end_with_parent
@@ -78,10 +78,12 @@ def begin(missions: Iterable[Mission]) -> None:
     if any(task.kind in AREAS for one in known for task in one.tasks):
         _begin(SQUARES, SQUARE_LOOPS)
     if any(len(one.tasks) >= MANY_TASKS for one in known):
-        _begin_planning(coming.ASSIGNMENT)
+        _begin_planning(pending_compilation.ASSIGNMENT)
     large = [one for one in known if len(one.tasks) >= MANY_ROUTES]
     if large:
-        _begin_planning(coming.AROUND if any(map(expected, large)) else coming.ROUTES)
+        _begin_planning(
+            pending_compilation.AROUND if any(map(expected, large)) else pending_compilation.ROUTES
+        )
 
 
 def _begin(name: str, loops: tuple[Callable[..., object], ...]) -> None:
@@ -95,7 +97,7 @@ def _begin(name: str, loops: tuple[Callable[..., object], ...]) -> None:
 
 def begin_all() -> None:
     """Start compiling what every larger plan needs, unless it is cached."""
-    for name in (coming.ROUTES, coming.ASSIGNMENT):
+    for name in (pending_compilation.ROUTES, pending_compilation.ASSIGNMENT):
         _begin_planning(name)
 
 
@@ -104,9 +106,9 @@ def _begin_planning(name: str) -> None:
     if is_kept(LOOPS[name]):
         return
     process = _start([__name__, name])
-    if name != coming.ASSIGNMENT:  # CPython finds the routes of most missions sooner
+    if name != pending_compilation.ASSIGNMENT:  # CPython finds the routes of most missions sooner
         _stand_back(process, BEHIND)
-    coming.expect(name, _waiter(process, WAIT_S))
+    pending_compilation.expect(name, _waiter(process, WAIT_S))
 
 
 def beside(module: list[str], stands_back: int) -> None:
@@ -209,17 +211,17 @@ def make_assignment() -> None:
 
 
 MAKERS = {
-    coming.ROUTES: make_routes,
-    coming.AROUND: make_around,
-    coming.ASSIGNMENT: make_assignment,
+    pending_compilation.ROUTES: make_routes,
+    pending_compilation.AROUND: make_around,
+    pending_compilation.ASSIGNMENT: make_assignment,
     SQUARES: make_squares,
     LEGS: make_legs,
     TABLES: make_tables,
 }
 LOOPS: dict[str, Callable[..., object]] = {
-    coming.ROUTES: direct_many,
-    coming.AROUND: route_many,
-    coming.ASSIGNMENT: anneal,
+    pending_compilation.ROUTES: direct_many,
+    pending_compilation.AROUND: route_many,
+    pending_compilation.ASSIGNMENT: anneal,
 }
 """The loop that is in the cache once its maker has succeeded."""
 
