@@ -10,6 +10,7 @@ import sys
 import threading
 from collections import Counter
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,6 @@ from cratous.core.assignment.tables import latest_tables
 from cratous.core.geofence.mission_leg_arrays import first_bad
 from cratous.core.kernel import qualified
 from cratous.core.ledger import PRODUCT, Keys
-from cratous.core.ledger.module_trees import Tree
 from cratous.core.readings import tiered
 from cratous.core.readings.machine.compiled import machine
 from cratous.core.readings.tiered import at_once
@@ -173,15 +173,15 @@ def test_in_an_empty_cache_another_process_reads_files_for_the_gate(
 
 
 def test_what_is_read_for_the_gate_is_what_the_gate_reads(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """All of it, so that each file is read by one of the two."""
-    read: list[str] = []
-    monkeypatch.setattr(Tree, "table", lambda _, name: read.append(name))
+    """All of it, the last first: each file is read by one of the two."""
+    tree, read = Keys(PRODUCT).tree, list[str]()
+    monkeypatch.setattr(tree, "table", read.append)
+    monkeypatch.setattr(ahead, "Keys", lambda _: SimpleNamespace(tree=tree))
     ahead.make_tables()
-    done = [*read]
-    assert done == [*reversed(Keys(PRODUCT).tree.every_module)]
-    assert {"cratous.core.ledger.tables", "cratous.spec.mission"} <= {*done}
+    assert read == [*reversed(tree.every_module)]
+    assert {"cratous.core.ledger.tables", "cratous.spec.mission"} <= {*read}
 
 
 def test_ways_across_a_zones_box_are_many_or_not() -> None:
