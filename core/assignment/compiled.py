@@ -1,31 +1,35 @@
 """Machine-code versions of the search loops (`core.readings.machine.compiled.machine`), for instances large enough to
-justify compilation.
+justify compilation, and where there is machine code already.
 
-CPython runs the same functions, with the same results. It runs small instances too, until it has spent more time in
-a function than loading its machine code takes; code that counts calls gets one entry for either (`entered_by`).
+CPython runs the same functions, with the same results.
 """
 
 from __future__ import annotations
 
-import contextlib
 import functools
-import sys
-import time
-from collections import defaultdict
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from cratous.core.readings.machine.compiled import is_kept, machine
+from cratous.core.readings.machine.compiled import machine
+from cratous.core.readings.tiered import swift
 
 SMALL_TASKS, SMALL_MOVES = 3, 120
 """Largest number of tasks, and of vehicles times options, of a small instance."""
 
 
-def machine_for(instance: Any, function: Callable[..., Any]) -> Callable[..., Any]:
-    """The function run by CPython for a small instance, else compiled; both give the same results."""
-    return _plainly(function) if is_small(instance) else machine(function)
+STEPS = 300
+"""Elementary steps of a loop that CPython does in about a tenth of a millisecond, the unit of `swift`."""
+
+
+def machine_for(instance: Any, function: Callable[..., Any], steps: int = 0) -> Callable[..., Any]:
+    """The function compiled, or for a small instance what `swift` chooses for so many steps; both give the same
+    results.
+    """
+    if not is_small(instance):
+        return machine(function)
+    return _wrapping(swift(function, 1 + steps // STEPS)) if steps else _plainly(function)
 
 
 def is_small(instance: Any) -> bool:
@@ -65,54 +69,15 @@ def machine_after(little: bool, instance: Any, function: Callable[..., Any]) -> 
     return _plainly(function) if little else machine_for(instance, function)
 
 
+def _wrapping(function: Callable[..., Any]) -> Callable[..., Any]:
+    def run(*given: Any) -> Any:
+        # numpy integers wrap around in hashes and random numbers, as compiled ones do
+        with np.errstate(over="ignore"):
+            return function(*given)
+
+    return run
+
+
+@functools.cache
 def _plainly(function: Callable[..., Any]) -> Callable[..., Any]:
-    run, enter = _sooner(function), _entered[-1]
-    if enter is not None:
-        run = enter(function, run)
-    return functools.partial(_timed, function, run)
-
-
-LOADED_S, SOON_S = 0.5, 0.05
-"""Time in CPython after which a function's machine code is used, if it is kept: what loading the compiler takes, and
-what loading the function takes where the compiler is loaded."""
-_took_s: defaultdict[Callable[..., Any], float] = defaultdict(float)
-_asked_s: dict[Callable[..., Any], float] = {}
-
-
-def _sooner(function: Callable[..., Any]) -> Callable[..., Any]:
-    """The function, or its kept machine code once CPython has spent much time in it."""
-    took_s = _took_s[function]
-    if took_s < (SOON_S if "numba" in sys.modules else LOADED_S) or took_s < _asked_s.get(
-        function, 0.0
-    ):
-        return function
-    if is_kept(function):
-        return machine(function)
-    _asked_s[function] = 2 * took_s  # a parallel process may compile it
-    return function
-
-
-def _timed(function: Callable[..., Any], run: Callable[..., Any], *given: Any) -> Any:
-    """The result of a call, with the time that it took added to that of the function."""
-    begun_s = time.thread_time()
-    # numpy integers wrap around in hashes and random numbers, as compiled ones do
-    with np.errstate(over="ignore"):
-        found = run(*given)
-    _took_s[function] += time.thread_time() - begun_s
-    return found
-
-
-Loop = Callable[..., Any]
-_entered: list[Callable[[Loop, Loop], Loop] | None] = [None]
-
-
-@contextlib.contextmanager
-def entered_by(enter: Callable[[Loop, Loop], Loop]) -> Iterator[None]:
-    """Context in which a function that CPython runs is what `enter` makes of it, as in `core.readings.tiered`: one
-    entry for the loop, with what it calls as its parts.
-    """
-    _entered.append(enter)
-    try:
-        yield
-    finally:
-        _entered.pop()
+    return functools.wraps(function)(_wrapping(function))

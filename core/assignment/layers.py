@@ -83,11 +83,12 @@ def look_ahead(instance: Instance) -> Ahead:
             kinds[key] = len(kinds)
             leader.append(v)
         kind_of[v] = kinds[key]
-    least_over = machine_for(i, nearest_ways)
+    legs = i.travel.size
+    least_over = machine_for(i, nearest_ways, legs)
     nearest, cheapest = least_over(reach, i.may), least_over(i.added, i.may)
     return Ahead(  # type: ignore[call-arg]  # numba's results have no types
-        *machine_for(i, ways_to_tasks)(reach, cheapest, i.duration, i.task, i.may, i.tasks),
-        *machine_for(i, ways_between_tasks)(nearest, cheapest, i.duration, i.task, i.tasks),
+        *machine_for(i, ways_to_tasks, 2 * legs)(reach, cheapest, i.duration, i.task, i.may, i.tasks),
+        *machine_for(i, ways_between_tasks, legs)(nearest, cheapest, i.duration, i.task, i.tasks),
         least, head, tail, able, kind_of, np.array(leader, np.int64),
     )  # fmt: skip
 
@@ -98,8 +99,9 @@ def shortest(instance: Instance, may: np.ndarray) -> np.ndarray:
     known = _FOUND.of(i.travel, i.duration, may) if is_small(i) else None
     if known is not None:
         return known
-    reach: np.ndarray = machine_for(i, shortest_ways)(i.travel, i.duration, may)
-    if not machine_for(i, ways_hold)(reach, i.travel, i.duration, may):
+    steps = i.travel.size * i.duration.size
+    reach: np.ndarray = machine_for(i, shortest_ways, steps)(i.travel, i.duration, may)
+    if not machine_for(i, ways_hold, steps)(reach, i.travel, i.duration, may):
         raise RuntimeError("a way with stops is shorter than the shortest way that was found")
     if is_small(i):
         _FOUND.put((i.travel, i.duration, may), reach)

@@ -44,7 +44,7 @@ class Walk:
     strings: tuple[str, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Border:
     """Where a walk ends: places hashed elsewhere, each with a text that represents it.
 
@@ -88,6 +88,7 @@ class _Walk:
         self.places: dict[Place, int] = {}
         self.todo: list[Place] = []
         self.classes: list[Place] = list(border.classes)
+        self.methods_of = list(_methods_beyond(tree, border))
         self.attributes = set(border.attributes)
         self.edge: set[Place] = set()
         self.asks: dict[Place, frozenset[str]] = {}
@@ -144,13 +145,14 @@ class _Walk:
         self.attributes.update(unit.attributes)
         if unit.kind == "class":
             self.classes.append(place)
+            self.methods_of.append((place, unit.methods))
 
     def methods(self) -> bool:
         """Add the methods that are named so far; True iff there was one."""
         found = False
-        for place in self.classes:
+        for place, methods in self.methods_of:
             every = EVERY in self.attributes or open_class(self.tree, place)
-            for name, number in self.tree.unit(place).methods:
+            for name, number in methods:
                 method = (place[0], number)
                 if not (every or name in self.attributes) or method in self.places:
                     continue
@@ -171,6 +173,24 @@ class _Walk:
             self.registry,
             tuple(self.strings),
         )
+
+
+@functools.lru_cache(maxsize=8)
+def _methods_beyond(
+    tree: Tree, border: Border
+) -> tuple[tuple[Place, tuple[tuple[str, int], ...]], ...]:
+    """The classes of a border with those of their methods that a walk up to it may add."""
+    return tuple(
+        (place, beyond)
+        for place in border.classes
+        if (
+            beyond := tuple(
+                (name, number)
+                for name, number in tree.unit(place).methods
+                if (place[0], number) not in border.places
+            )
+        )
+    )
 
 
 @functools.cache

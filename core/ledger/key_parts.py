@@ -28,6 +28,7 @@ READINGS = (
     "core.readings.exact.folds.folded",
     "core.readings.enclosed.enclosed",
     "core.readings.tiered.swift",
+    "core.readings.tiered.within",
     "core.readings.tiered.at_once",
     "core.ledger.require",
 )

@@ -4,6 +4,8 @@
 two ran (`tests/routing/test_routing.py`); only the time differs. Short jobs start without the compiler. Compiling
 takes seconds, so machine code that is cached, by an earlier run or by a parallel process, is used much sooner. Code
 that counts calls gets each loop together with what runs it (`entered_by`), so that counts are the same for both.
+
+A loop that CPython runs may have the loops that it calls run as machine code (`within`).
 """
 
 import contextlib
@@ -16,11 +18,14 @@ from cratous.core.kernel import qualified
 Loop = Callable[..., Any]
 SOON, LOADED, WORTH = 300, 3_000, 60_000
 """Amount of work after which the compiled loop is used: if it is cached and another one is in use already, if it is
-cached (loading the compiler takes half a second), and if it is not."""
+cached (loading the compiler takes half a second, which pays once all loops together have done so much), and if it is
+not."""
 _at_once: list[bool] = [False]
 _entered: list[Callable[[Loop, Loop], Loop] | None] = [None]
 _done: Counter[str] = Counter()
 _compiled: dict[str, Loop] = {}
+_inner: dict[str, Loop] = {}
+"""Machine code by itself, without the entry that is counted."""
 _coming: dict[str, Callable[[], None]] = {}
 
 
@@ -39,6 +44,19 @@ def swift(function: Loop, work: int = 1) -> Loop:
     """
     run, enter = _chosen(function, work), _entered[-1]
     return run if enter is None else enter(function, run)
+
+
+def within(function: Loop, work: int = 1) -> Loop:
+    """`swift` of a function that is called in a loop: part of that loop, so no entry of its own.
+
+    To the compiler `within(f, n)(...)` is `f(...)`.
+    """
+    name = qualified(function)
+    if name not in _inner:
+        made: Any = _chosen(function, work)
+        if made is not function:
+            _inner[name] = made.run
+    return _inner.get(name, function)
 
 
 def _chosen(function: Loop, work: int) -> Loop:
@@ -64,8 +82,9 @@ def _is_time(function: Loop, before: int, done: int) -> bool:
     if _at_once[-1] or done > WORTH:
         return True
     # checked periodically: a parallel process may have compiled it since
-    step = SOON if _compiled else LOADED
-    return (done - 1) // step > max(before - 1, 0) // step and _is_kept(function)
+    if (done - 1) // SOON == max(before - 1, 0) // SOON:
+        return False
+    return (bool(_compiled) or _done.total() > LOADED) and _is_kept(function)
 
 
 def _is_kept(function: Loop) -> bool:

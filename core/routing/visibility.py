@@ -34,8 +34,10 @@ from cratous.core.routing.dubins import RIGHT, pose_after
 from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.plan import Pose
 
-DIRECT_WORK, AROUND_WORK = 3, 10
-"""CPython's work for a direct route beside zones, and for one around them, in the units of `swift`."""
+DIRECT_WORK, AROUND_WORK = 1, 3
+"""CPython's work for a direct route beside zones, and for one around them, in the units of `swift`; without legs
+against zones, which count for themselves.
+"""
 BLOCK = 300
 """Number of routes searched per block: machine code compiled meanwhile by a parallel process is used from the next
 block on.

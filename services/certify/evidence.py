@@ -176,13 +176,12 @@ def counted() -> Iterator[Calls]:
         )
     try:
         ledger.load_all()  # functions registered later have no counting entry
-        from cratous.core.assignment import compiled, layers
+        from cratous.core.assignment import layers
 
         layers.forget()
         calls = Calls()
         with contextlib.ExitStack() as stack:
             stack.enter_context(tiered.entered_by(calls.looped))
-            stack.enter_context(compiled.entered_by(calls.looped))
             stack.callback(calls.close)
             for name, entry in REGISTRY.items():
                 if not isinstance(entry.function, Fold):

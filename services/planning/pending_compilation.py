@@ -12,7 +12,7 @@ MANY_WAYS = 300
 """Above this many routes, it is estimated whether many lead around zones; they are searched in blocks of this
 size.
 """
-WORTH_WAITING = {ROUTES: 12_000, AROUND: 4_000}
+WORTH_WAITING = {ROUTES: 40_000, AROUND: 15_000}
 """Below this many routes, CPython is about as fast as waiting for the machine code."""
 _coming: dict[str, Callable[[], None]] = {}
 

@@ -1,9 +1,10 @@
 """Parallel compilation for the first plan: separate processes compile while the gate runs.
 
-    python -m cratous.services.startup.ahead routes
+    python -m cratous.services.startup.ahead legs
 
 Nothing is decided here: each process compiles the kernels' generated source into the cache, as the planner
-itself would a little later. If one fails or is late, the planner compiles as usual.
+itself would a little later, or reads what files define, as the gate does. If one fails or is late, that is done
+as usual.
 """
 
 from __future__ import annotations
@@ -25,7 +26,9 @@ import cratous
 from cratous.core.assignment.annealing import anneal
 from cratous.core.assignment.anytime import greedy, improve
 from cratous.core.assignment.layers import look_ahead, tables
-from cratous.core.geofence.mission_leg_arrays import table
+from cratous.core.files.private_cache import private_cache
+from cratous.core.geofence.mission_leg_arrays import first_bad, table
+from cratous.core.ledger import PRODUCT, Keys
 from cratous.core.readings import tiered
 from cratous.core.readings.machine.compiled import is_kept, machine
 from cratous.core.routing.bulk import (
@@ -44,8 +47,16 @@ from cratous.services.processes.leash import ENDS_WITH, end_with_parent
 from cratous.spec.assignment.search import TIME
 from cratous.spec.mission import AREAS, Mission
 
+SOME_TASKS = 3
+"""With at least this many tasks, legs against zones are worth machine code of their own."""
 MANY_TASKS = 5
+"""With at least this many tasks, a mission has too large an assignment for CPython."""
+MANY_ROUTES = 30
 """With at least this many tasks, a mission has too many routes for CPython."""
+LEGS = "legs"
+"""Machine code of legs against zones, used by all routes."""
+TABLES = "tables"
+"""What the files define on which the proofs rest (`core.ledger.tables`)."""
 SQUARES = "squares"
 """Machine code of `SQUARE_LOOPS`, used by any mission with an area."""
 SQUARE_LOOPS = (grid_squares, mark_seen)
@@ -58,39 +69,46 @@ BEHIND = 10
 def begin(missions: Iterable[Mission]) -> None:
     """Start compiling what the plans of these missions need, if they are large and another core is available."""
     known = [*missions]
-    large = [one for one in known if len(one.tasks) >= MANY_TASKS]
     if _cores() == 1:
         return
+    if not (private_cache() / "tables").is_dir():
+        _start([__name__, TABLES])
+    if any(one.zones and len(one.tasks) >= SOME_TASKS for one in known):
+        _begin(LEGS, (first_bad,))
     if any(task.kind in AREAS for one in known for task in one.tasks):
-        _begin_squares()
+        _begin(SQUARES, SQUARE_LOOPS)
+    if any(len(one.tasks) >= MANY_TASKS for one in known):
+        _begin_planning(pending_compilation.ASSIGNMENT)
+    large = [one for one in known if len(one.tasks) >= MANY_ROUTES]
     if large:
-        begin_all(around=any(map(expected, large)))
+        _begin_planning(
+            pending_compilation.AROUND if any(map(expected, large)) else pending_compilation.ROUTES
+        )
 
 
-def _begin_squares() -> None:
-    """Start compiling what the squares of any area need."""
-    if all(is_kept(loop) for loop in SQUARE_LOOPS):
+def _begin(name: str, loops: tuple[Callable[..., object], ...]) -> None:
+    """Start compiling these loops, unless they are cached."""
+    if all(is_kept(loop) for loop in loops):
         return
-    ended = _waiter(_start([__name__, SQUARES]), WAIT_S)
-    for loop in SQUARE_LOOPS:
+    ended = _waiter(_start([__name__, name]), WAIT_S)
+    for loop in loops:
         tiered.expect(loop, ended)
 
 
-def begin_all(around: bool = False) -> None:
-    """Start compiling what every larger plan needs, unless it is cached. around: many routes are expected to
-    lead around zones.
-    """
-    for name in (
-        pending_compilation.AROUND if around else pending_compilation.ROUTES,
-        pending_compilation.ASSIGNMENT,
-    ):
-        if not is_kept(LOOPS[name]):
-            process = _start([__name__, name])
-            if (
-                name != pending_compilation.ASSIGNMENT
-            ):  # for most missions CPython finds the routes sooner
-                _stand_back(process, BEHIND)
-            pending_compilation.expect(name, _waiter(process, WAIT_S))
+def begin_all() -> None:
+    """Start compiling what every larger plan needs, unless it is cached."""
+    for name in (pending_compilation.ROUTES, pending_compilation.ASSIGNMENT):
+        _begin_planning(name)
+
+
+def _begin_planning(name: str) -> None:
+    """Start compiling what the planner waits for, unless it is cached."""
+    if is_kept(LOOPS[name]):
+        return
+    process = _start([__name__, name])
+    if name != pending_compilation.ASSIGNMENT:  # CPython finds the routes of most missions sooner
+        _stand_back(process, BEHIND)
+    pending_compilation.expect(name, _waiter(process, WAIT_S))
 
 
 def beside(module: list[str], stands_back: int) -> None:
@@ -162,6 +180,20 @@ def _no_routes() -> Routed:
     return Routed(whole, np.empty(0), whole, np.empty((1, LINKS_MOST + 2, 4)))
 
 
+def make_legs() -> None:
+    """Compile legs against zones, on a single point without zones."""
+    machine(first_bad)(np.zeros((1, 3)), table(()))
+
+
+def make_tables() -> None:
+    """Read what files define for the gate, the last files first: the gate, which begins with others, finds what has
+    been read.
+    """
+    tree = Keys(PRODUCT).tree
+    for name in reversed(tree.every_module):
+        tree.table(name)
+
+
 def make_squares() -> None:
     """Compile the squares of an area and their visibility in footprints, on empty arrays."""
     none = np.empty((0, 4))
@@ -183,6 +215,8 @@ MAKERS = {
     pending_compilation.AROUND: make_around,
     pending_compilation.ASSIGNMENT: make_assignment,
     SQUARES: make_squares,
+    LEGS: make_legs,
+    TABLES: make_tables,
 }
 LOOPS: dict[str, Callable[..., object]] = {
     pending_compilation.ROUTES: direct_many,

@@ -10,6 +10,7 @@ import sys
 import threading
 from collections import Counter
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -21,10 +22,10 @@ from cratous.core.assignment.anytime import greedy, improve
 from cratous.core.assignment.layers import look_ahead, tables
 from cratous.core.assignment.problem import START
 from cratous.core.assignment.tables import latest_tables
+from cratous.core.ledger import PRODUCT, Keys
 from cratous.core.readings import tiered
 from cratous.core.readings.machine.compiled import machine
 from cratous.core.readings.tiered import at_once
-from cratous.core.routing import visibility
 from cratous.core.routing.bulk import direct_many, route_many
 from cratous.core.routing.visibility import Roadmap, lengths_around, routes
 from cratous.core.tasks.coverage_arrays import mark_seen
@@ -80,13 +81,16 @@ def wall(east_m: float) -> Zone:
 
 
 @pytest.fixture
-def begun(monkeypatch: pytest.MonkeyPatch) -> list[Started]:
+def begun(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[Started]:
     ALL.clear()
     monkeypatch.setattr(subprocess, "Popen", Started)
     monkeypatch.setattr(ahead.atexit, "register", lambda *_: None)
     monkeypatch.setattr(ahead, "_cores", lambda: 2)
     monkeypatch.setattr(ahead, "is_kept", functools.cache(lambda _: False))
+    monkeypatch.setattr(ahead, "private_cache", lambda: tmp_path)
+    (tmp_path / "tables").mkdir()
     monkeypatch.setattr(pending_compilation, "_coming", {})
+    monkeypatch.setattr(tiered, "_coming", {})
     return ALL
 
 
@@ -105,7 +109,7 @@ def test_what_may_not_be_needed_stands_back(
 ) -> None:
     back: list[tuple[str, int]] = []
     monkeypatch.setattr(ahead, "_stand_back", lambda process, by: back.append((process.name, by)))
-    ahead.begin([mission(ahead.MANY_TASKS)])
+    ahead.begin([mission(ahead.MANY_ROUTES)])
     assert back == [(ROUTES, ahead.BEHIND)]
 
 
@@ -124,26 +128,56 @@ def test_on_one_core_who_answers_waits_before_and_who_plans_compiles(
 
 
 def test_who_needs_machine_code_waits_for_it_once(begun: list[Started]) -> None:
-    ahead.begin([mission(ahead.MANY_TASKS)])
-    assert [process.name for process in begun] == [ROUTES, ASSIGNMENT]
+    ahead.begin([mission(ahead.MANY_ROUTES)])
+    assert [process.name for process in begun] == [ASSIGNMENT, ROUTES]
     choices = tuple(Choice(t, 1, 1, (1,)) for t in (1, 2, 3, 4))
     rows = tuple(tuple(None if a == b else 1 for b in range(4)) for a in range(5))
     problem = AssignmentProblem("", (1,), (0,), choices, (rows,), "|(p1 p2 p3 p4)")
     for _ in range(2):
         assert solve(problem).cost is not None
     # that a process failed is no reason to wait again, nor not to plan
-    assert [process.waits for process in begun] == [0, 1]
+    assert [process.waits for process in begun] == [1, 0]
 
 
 def test_what_is_compiled_for_routes_goes_by_whether_many_lead_around_zones(
+    begun: list[Started], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(ahead, "MANY_ROUTES", ahead.MANY_TASKS)
+    few = ahead.MANY_ROUTES - 1
+    ahead.begin([mission(few, wall(-2000.0)), mission(ahead.MANY_ROUTES, wall(3000.0))])
+    assert [process.name for process in begun] == [ahead.LEGS, ASSIGNMENT, ROUTES]
+    begun.clear()
+    ahead.begin([mission(few), mission(ahead.MANY_ROUTES, wall(-2000.0))])
+    assert [process.name for process in begun] == [ahead.LEGS, ASSIGNMENT, AROUND]
+
+
+def test_legs_have_machine_code_of_their_own_where_there_are_zones_and_some_tasks(
     begun: list[Started],
 ) -> None:
-    few = ahead.MANY_TASKS - 1
-    ahead.begin([mission(few, wall(-2000.0)), mission(ahead.MANY_TASKS, wall(3000.0))])
-    assert [process.name for process in begun] == [ROUTES, ASSIGNMENT]
-    begun.clear()
-    ahead.begin([mission(few), mission(ahead.MANY_TASKS, wall(-2000.0))])
-    assert [process.name for process in begun] == [AROUND, ASSIGNMENT]
+    ahead.begin([mission(ahead.SOME_TASKS), mission(ahead.SOME_TASKS - 1, wall(3000.0))])
+    assert begun == []
+    ahead.begin([mission(ahead.SOME_TASKS, wall(3000.0))])
+    assert [process.name for process in begun] == [ahead.LEGS]
+
+
+def test_in_an_empty_cache_another_process_reads_files_for_the_gate(
+    begun: list[Started], tmp_path: Path
+) -> None:
+    (tmp_path / "tables").rmdir()
+    ahead.begin([mission(1)])
+    assert [process.name for process in begun] == [ahead.TABLES]
+
+
+def test_what_is_read_for_the_gate_is_what_the_gate_reads(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """All of it, the last first: each file is read by one of the two."""
+    tree, read = Keys(PRODUCT).tree, list[str]()
+    monkeypatch.setattr(tree, "table", read.append)
+    monkeypatch.setattr(ahead, "Keys", lambda _: SimpleNamespace(tree=tree))
+    ahead.make_tables()
+    assert read == [*reversed(tree.every_module)]
+    assert {"cratous.core.ledger.tables", "cratous.spec.mission"} <= {*read}
 
 
 def test_ways_across_a_zones_box_are_many_or_not() -> None:
@@ -250,7 +284,7 @@ def test_who_has_begun_plans_nothing_that_the_gate_refuses(
 
     def refused(**_: Any) -> None:
         names = [process.name for process in begun]
-        assert names == [ahead.SQUARES, ROUTES, ASSIGNMENT]
+        assert names == [ahead.LEGS, ahead.SQUARES, ASSIGNMENT]
         raise Refused("the code is not what was proved")
 
     monkeypatch.setattr(ahead, "MANY_TASKS", 1)
@@ -277,50 +311,6 @@ def test_such_a_process_leaves_machine_code_and_says_nothing(tmp_path: Path) -> 
     ]
     assert [run.stdout.strip() for run in runs] == [b"False", b"", b"True"]
     assert runs[1].stderr == b""
-
-
-def test_what_is_made_meanwhile_is_used_from_then_on(
-    begun: list[Started], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Nobody waits for it, and nothing is compiled twice."""
-    kept: list[bool] = [False]
-    monkeypatch.setattr(tiered, "_done", Counter())
-    monkeypatch.setattr(tiered, "_compiled", {})
-    monkeypatch.setattr(tiered, "_is_kept", lambda _: kept[0])
-    assert tiered.swift(direct_many, tiered.WORTH - 10_000) is direct_many
-    kept[0] = True
-    assert tiered.swift(direct_many, 1) is direct_many  # it is not looked for each time
-    assert tiered.swift(direct_many, tiered.SOON) is direct_many  # nor loaded for little
-    assert tiered.swift(direct_many, tiered.LOADED) is machine(direct_many)
-    assert tiered.swift(direct_many, 1) is machine(direct_many)
-    # the compiler is loaded now: another loop is used sooner
-    assert tiered.swift(route_many, tiered.SOON + 1) is machine(route_many)
-
-
-def test_routes_are_searched_in_blocks_and_each_asks_what_there_is(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    asked: list[int] = []
-
-    def swift(loop: Any, work: int) -> Any:
-        asked.append(work)
-        return loop
-
-    monkeypatch.setattr(visibility, "swift", swift)
-    n = 2 * visibility.BLOCK + 1
-    starts = np.zeros((n, 4))
-    ends = np.array([[4000.0 + k, 100.0 * (k % 7), 0.0, 0.0] for k in range(n)])
-    whole = routes(starts, ends, 50.0, Roadmap(()), 0.1, ways=True)
-    assert asked == [n, tiered.SOON, tiered.SOON]
-    each = [
-        routes(starts[k:][:1], ends[k:][:1], 50.0, Roadmap(()), 0.1, ways=True) for k in range(n)
-    ]
-    for part, parts in zip(whole, zip(*each, strict=True), strict=True):
-        assert (
-            part[:, :2].tobytes() == np.concatenate(parts)[:, :2].tobytes()
-            if part.ndim > 1
-            else (part.tobytes() == np.concatenate(parts).tobytes())
-        )
 
 
 def test_what_compiles_beside_has_no_key_of_the_bridge(

@@ -20,7 +20,7 @@ from typing import Any, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from cratous.core.kernel import Fold, entry_of
+from cratous.core.kernel import Fold, entry_of, qualified
 from cratous.core.kernel.sources import text_of
 from cratous.spec.errors import BadInput
 
@@ -92,6 +92,8 @@ class SourceText:
         own = f"{function.__module__}.{function.__qualname__}"
         renamed: dict[str, str] = {}
         for used in sorted(_globals(code)):
+            if _runs_part(function.__globals__.get(used)):
+                continue  # what runs a part of a loop is the compiler's here
             if used in function.__globals__:
                 renamed[used] = self._reference(function, used, own)
             elif not hasattr(builtins, used):
@@ -182,8 +184,11 @@ class _Renaming(ast.NodeTransformer):
 
     def visit_Call(self, node: ast.Call) -> ast.expr:
         """A call of our own code with number literals converted to the callee's types, so that it is compiled only
-        once.
+        once. `within(f, n)(...)` is `f(...)`.
         """
+        chosen = node.func.func if isinstance(node.func, ast.Call) else None
+        if isinstance(chosen, ast.Name) and _runs_part(self.function.__globals__.get(chosen.id)):
+            node.func = node.func.args[0]  # type: ignore[attr-defined]
         called = self.function.__globals__.get(getattr(node.func, "id", ""))
         local = getattr(node.func, "id", "") not in self.renamed
         kinds = {} if local or called is None else _parameters(called)
@@ -314,6 +319,11 @@ def _literal(value: Any) -> str:
     if isinstance(value, tuple):
         return f"({', '.join(map(_literal, value))}{',' if len(value) == 1 else ''})"
     return repr(value) if math.isfinite(value) else f"float({str(value)!r})"
+
+
+def _runs_part(value: Any) -> bool:
+    """Whether it is what chooses how a part of a loop runs (`core.readings.tiered.within`)."""
+    return inspect.isfunction(value) and qualified(value) == "cratous.core.readings.tiered.within"
 
 
 def _ours(value: Any, user: str) -> bool:
