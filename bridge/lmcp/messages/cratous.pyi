@@ -47,6 +47,19 @@ class TakeOff(LmcpEnum):
     Climbing = 2
     Up = 3
 
+class MergeStage(LmcpEnum):
+    Away = 0
+    Asking = 1
+    InSlot = 2
+    Holding = 3
+
+class DeclaredFailure(LmcpEnum):
+    NotDeclared = 0
+    Blocked = 1
+    Expiring = 2
+    Surprised = 3
+    Ended = 4
+
 class Verdict(LmcpEnum):
     Holds = 0
     Violated = 1
@@ -559,4 +572,59 @@ class UxasHeard(LmcpObject):
         Time: int = ...,
         Heard: bool = ...,
         Last: int = ...,
+    ) -> None: ...
+
+class MergeState(LmcpObject):
+    """cratous.MergeState: CRATOUS type 21."""
+
+    VehicleID: int
+    """int64, default 0."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    Stage: _cratous.MergeStage
+    """CRATOUS/MergeStage, default Away."""
+    Term: int
+    """int64, default 0."""
+    Leader: int
+    """int64, default 0."""
+    Request: int
+    """int64, default 0."""
+    Slot: int
+    """int64 [milliseconds], default 0."""
+    Reason: str
+    """string, default ''."""
+    def __init__(
+        self,
+        *,
+        VehicleID: int = ...,
+        Time: int = ...,
+        Stage: _cratous.MergeStage | str = ...,
+        Term: int = ...,
+        Leader: int = ...,
+        Request: int = ...,
+        Slot: int = ...,
+        Reason: str = ...,
+    ) -> None: ...
+
+class FailureState(LmcpObject):
+    """cratous.FailureState: CRATOUS type 22."""
+
+    VehicleID: int
+    """int64, default 0."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    Failure: _cratous.DeclaredFailure
+    """CRATOUS/DeclaredFailure, default NotDeclared."""
+    IntruderID: int
+    """int64, default 0."""
+    Reason: str
+    """string, default ''."""
+    def __init__(
+        self,
+        *,
+        VehicleID: int = ...,
+        Time: int = ...,
+        Failure: _cratous.DeclaredFailure | str = ...,
+        IntruderID: int = ...,
+        Reason: str = ...,
     ) -> None: ...
