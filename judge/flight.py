@@ -11,6 +11,7 @@ from cratous.judge import (
     alone,
     authority,
     compare,
+    failures,
     heartbeat,
     log,
     merging,
@@ -127,6 +128,7 @@ def judged(mission: Mission, found: log.Log) -> list[Row]:
     rows += authority.rows(mission, found, flown)
     rows += take_off.rows(mission, found, flown)
     rows += alone.rows(mission, found, flown)
+    rows += failures.rows(mission, found, flown)
     rows += heartbeat.rows(mission, found, _unsafe(safe))
     doubts = list(found.doubts)
     if found.end_ms is None:
