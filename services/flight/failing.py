@@ -10,14 +10,20 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from cratous.core.authority.link_loss import LOITER, OVER
+from cratous.core.authority.timeliness import lasted
 from cratous.services.flight.executive_state import Config, Out, State
 from cratous.services.flight.messages import Stop
 from cratous.services.icarous.messages import Fails, WithoutLink
 from cratous.services.mission.landing import on_failure_of
+from cratous.services.mission.leg_bounds import LONGEST_LOOKAHEADS
 from cratous.spec.mission import Change
 from cratous.spec.mission.changes import VEHICLE_FAILED
 from cratous.spec.mission.on_failure import Failed
 from cratous.spec.records import replace
+
+
+NOT_YET_MS = 2**53
+"""A vehicle that still flies what follows its failure is not done by any time of a flight [ms]."""
 
 
 def asks(state: State, failure: Failed) -> bool:
@@ -50,29 +56,36 @@ def declared(state: State, message: Fails) -> State:
     return replace(
         state,
         landed=(*state.landed, (vid, words)),
-        declared=(*state.declared, (vid, False)),
+        declared=(*state.declared, (vid, NOT_YET_MS)),
         to_come=(*state.to_come, news),
     )
 
 
 def flies(state: State, message: WithoutLink) -> State:
-    """What a vehicle flies by itself; a circle that is chosen, or one at the end, is the last that it flies."""
-    holds = message.mode == OVER or message.mode == message.chosen == LOITER
-    return settled(state, message.vehicle_id) if holds else state
+    """What a vehicle flies by itself. A circle that is chosen, or one at the end, is the last that it flies; one for want
+    of a permitted way counts as the last after five look-aheads.
+    """
+    until_ms = NOT_YET_MS
+    if message.mode == OVER or message.mode == message.chosen == LOITER:
+        until_ms = message.now_ms
+    elif message.mode == LOITER:
+        until_ms = message.now_ms + round(1000 * LONGEST_LOOKAHEADS * state.mission.daa.lookahead_s)
+    return settled(state, message.vehicle_id, until_ms)
 
 
-def settled(state: State, vehicle_id: int) -> State:
-    """A vehicle has flown what it flies after its failure."""
+def settled(state: State, vehicle_id: int, until_ms: int) -> State:
+    """A vehicle that has declared a failure has flown what follows once this time is over [ms]."""
     was = dict(state.declared)
     if vehicle_id not in was:
         return state
-    return replace(state, declared=tuple({**was, vehicle_id: True}.items()))
+    return replace(state, declared=tuple({**was, vehicle_id: until_ms}.items()))
 
 
 def busy(state: State) -> set[int]:
     """The vehicles that are stopped, or have declared a failure, and have not flown yet what follows."""
-    was = dict(state.declared)
-    return {vid for vid in (*state.stopping, *was) if not was.get(vid)}
+    until = dict(state.declared)
+    known = {*state.stopping, *until}
+    return {v for v in known if not lasted(until.get(v, NOT_YET_MS), state.now_ms, 1)}
 
 
 def at_the_end(config: Config, state: State) -> State:

@@ -137,7 +137,7 @@ def landed(state: State, message: Stands) -> State:
         (vid, f"it has landed {where}, and stands there since {now_ms / 1000:.2f} s"),
     )
     if vid in dict(state.declared):
-        return failing.settled(replace(state, landed=told), vid)
+        return failing.settled(replace(state, landed=told), vid, now_ms)
     news = Change(now_ms, VEHICLE_LANDED, vehicle=vid)
     return replace(state, landed=told, to_come=(*state.to_come, news))
 

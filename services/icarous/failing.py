@@ -54,7 +54,7 @@ class Beat(NamedTuple):
 
 class Failing(NamedTuple):
     """failure: as the kernel has it; without: no certificate was found for the last manoeuvre, since since_ms [ms];
-    surprises: of the hand, at the last certificate; last: the intruder for which it took over last, 0 for none;
+    surprises: of the hand, at the last certificate; had: there has been one since ICAROUS took the vehicle; last: the intruder for which it took over last, 0 for none;
     intruder_id, why: what the last certificate was refused for.
     """
 
@@ -62,6 +62,7 @@ class Failing(NamedTuple):
     without: bool = False
     since_ms: int = 0
     surprises: int = 0
+    had: bool = False
     last: int = 0
     intruder_id: int = 0
     why: str = ""
@@ -75,7 +76,8 @@ class Failing(NamedTuple):
 def watched(before: Failing, asked: Asked, beat: Beat, sensed: Sensed) -> Failing:
     """The state after a heartbeat."""
     hand, without, since_ms = sensed.hand, before.without, before.since_ms
-    surprised = hand.surprises != before.surprises
+    # without any certificate since the takeover, nothing has been permitted against what is known
+    surprised = not before.had or hand.surprises != before.surprises
     seen = Seen(beat.stopped, beat.flies, without, since_ms, surprised, hand.expiry_ms)
     reserve_ms = RESERVE_BEATS * beat.beat_ms
     failure = failure_step(before.failure, asked, seen, beat.mode, sensed.now_ms, reserve_ms)
@@ -97,9 +99,9 @@ def noted(before: Failing, sensed: Sensed, out: Sequence[FromInstance]) -> Faili
         if isinstance(one, Wish) and one.intruder_id:
             before = before._replace(last=one.intruder_id)
         if isinstance(one, Offers):
-            return before._replace(without=False, surprises=sensed.hand.surprises)
+            return before._replace(without=False, surprises=sensed.hand.surprises, had=True)
         if isinstance(one, Uncertified):
             since_ms = before.since_ms if before.without else sensed.now_ms
             why = before._replace(intruder_id=one.intruder_id, why=one.reason)
             return why._replace(without=True, since_ms=since_ms)
-    return before._replace(without=False, surprises=sensed.hand.surprises)
+    return before._replace(without=False, had=False)
