@@ -1,7 +1,7 @@
 """G4 after a declared failure: whether it could be declared, what was flown then, and who had the vehicle.
 
 A failure is declared once, and is one of those that the mission asks about. `blocked` needs a task
-that was given up before; `expiring` and `surprised` need a lack of certificates (`HandState`) of
+that was given up before; all but `ended` need that ICAROUS has the vehicle; `expiring` and `surprised` need a lack of certificates (`HandState`) of
 four heartbeats. From then on ICAROUS has the vehicle to the end, and flies what the mission chooses,
 or a circle. A landing is judged by the vehicle's position, as without the link.
 """
@@ -18,7 +18,7 @@ from cratous.judge.mission import Mission
 from cratous.judge.tracks import Track
 from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, seconds
 
-BLOCKED, ICAROUS = "Blocked", "ICAROUS"
+BLOCKED, ENDED, ICAROUS = "Blocked", "Ended", "ICAROUS"
 OF_HAND = ("Expiring", "Surprised")
 RESERVE = 4
 """Heartbeats without a certificate after which that is declared."""
@@ -67,6 +67,10 @@ def _declared(
         modes = [flies.mode for flies in log.alone.get(vehicle, []) if flies.time_ms < one.time_ms]
         if modes and modes[-1] in (FINAL, LANDED):
             yield one.time_ms, f"{one.failure} is declared after {modes[-1]}"
+        owners = [g.side for g in log.gates if (g.vehicle, g.kind) == (vehicle, "state")
+                  and g.time_ms < one.time_ms]  # fmt: skip
+        if (one.failure == ENDED) == (owners[-1:] == [ICAROUS]):
+            yield one.time_ms, f"{one.failure} is declared under {(owners or ['UxAS'])[-1]}"
         given_up = (p for p in log.progress if p.vehicle == vehicle and p.phase == "Failed")
         if one.failure == BLOCKED and not any(p.time_ms <= one.time_ms for p in given_up):
             yield one.time_ms, "blocked is declared, and no task of it was given up"

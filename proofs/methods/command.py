@@ -63,8 +63,8 @@ def any_failure(c: Claim) -> tuple[Failure, tuple[Any, ...]]:
     before = Failure(c.integer("failure"), c.integer("declared_ms"))
     asked = Asked(*(c.boolean(f"asks_{name}") for name in Asked._fields))
     since, expiry = c.integer("without_since"), c.integer("expiry")
-    facts = [c.boolean(name) for name in ("stopped", "flies", "without", "surprised")]
-    seen = Seen(*facts[:3], since, facts[3], expiry)
+    stopped, flies, without = (c.boolean(name) for name in ("stopped", "flies", "without"))
+    seen = Seen(stopped, flies, without, since, c.boolean("surprised"), expiry)
     mode, now, reserve = c.integer("mode_alone"), c.integer("now"), c.integer("reserve")
     c.premise(c.define(failure.is_kind, before.kind))
     c.premise(reserve >= 0)

@@ -84,8 +84,8 @@ def _asked(mission: Mission, original: bool) -> Iterator[tuple[str, bool, str, s
     yield "sensing", sensed, "ICAROUS is given what sensors see", "no sensing"
     lost = mission.link_loss is not None
     yield "link_loss", lost, "the mission says what is flown without the link", "no link_loss"
-    fails = on_failure_of(mission) is not None
-    yield "on_failure", fails, "the mission says what is flown after a failure", "no on_failure"
+    after = on_failure_of(mission) is not None
+    yield "on_failure", after, "the mission says what is flown after a failure", "no on_failure"
     merges = merging_of(mission) is not None
     yield "merging", merges, "vehicles merge at a fix", "no merging"
     waits = bool(grounded(mission))

@@ -110,8 +110,11 @@ def test_the_leader_is_lost_and_all_pass_one_after_the_other(
     example: Merged, tmp_path: Path
 ) -> None:
     assert_merged(example, tmp_path)
-    leaders = [b.Leader for b in example.told("MergeState") if b.VehicleID == 3 and b.Leader]
-    assert leaders[0] == 2  # its first record with a leader: vehicle 1 is silent by then
+    led = [(b.Time, b.Leader) for b in example.told("MergeState") if b.VehicleID == 3]
+    leaders = [leader for _, leader in led if leader]
+    assert list(dict.fromkeys(leaders)) == [1, 2]
+    # what it learns from a message is recorded at its next heartbeat, before vehicle 1 falls silent
+    assert led[1] == (4000, 1)
     assert {b.Leader for b in example.told("MergeState") if b.VehicleID == 1} >= {1, 2}
     # one takeover each, with the reason, and a handback beyond the fix
     for one in (1, 2, 3):
