@@ -21,7 +21,6 @@ from cratous.spec.mission.changes import VEHICLE_FAILED
 from cratous.spec.mission.on_failure import Failed
 from cratous.spec.records import replace
 
-
 NOT_YET_MS = 2**53
 """A vehicle that still flies what follows its failure is not done by any time of a flight [ms]."""
 

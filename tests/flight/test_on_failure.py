@@ -263,7 +263,7 @@ def test_what_makes_no_sense_is_refused(
 def test_it_is_not_flown_by_programs_or_encounters(root: Path) -> None:
     mission = load(root / "tests/missions/on_failure.yaml")
     with pytest.raises(BadInput, match="flown after a failure"):
-        told_of(mission)
+        told_of(replace(mission, changes=()))
     with pytest.raises(BadInput, match="changes"):
         ways_of(mission)
     with pytest.raises(BadInput, match="on_failure"):
