@@ -14,10 +14,12 @@ from itertools import product
 from typing import Any
 
 from cratous.core.authority.failure import Asked, Failure, Seen, failure_step, heard_by
-from cratous.core.authority.gate import ICAROUS, UXAS
+from cratous.core.authority.gate import ICAROUS, UXAS, Gate, gate_accepts
 from cratous.core.authority.link_loss import LAND, LOITER, RETURN, Loss, loss_step
+from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.landing import on_ground
 from cratous.core.kernel import qualified
+from cratous.services.assumptions.authority import reported
 from cratous.services.mission.landing import on_failure_of
 from cratous.services.monitor.landing import Down
 from cratous.services.monitor.link_loss import EITHER, NO_LOSS, LinkLossWatch
@@ -41,16 +43,17 @@ BOUND_MS = 2**40
 """No silence counts: only a declared failure does [ms]."""
 BLOCKED_NOTE = "blocked: "
 NO_FAILURE = Failure(NONE, 0)
+UNTOUCHED = Gate(UXAS, 0, False)
 
 
 @dataclass
 class Told(Flown):
-    """Also: failure: as declared; owner: of the gate; blocked: a task of it has been given up;
+    """Also: failure: as declared; gate: as last reported; blocked: a task of it has been given up;
     without_ms: since when no certificate was found [ms], None while one is.
     """
 
     failure: Failure = NO_FAILURE
-    owner: int = UXAS
+    gate: Gate = UNTOUCHED
     blocked: bool = False
     without_ms: int | None = None
     kinds: list[str] = field(default_factory=list)
@@ -88,8 +91,8 @@ class FailureWatch(LinkLossWatch):
         told = self._seen.get(body.VehicleID)
         if told is None:
             return
-        told.owner = ICAROUS if body.Owner.name == "ICAROUS" else UXAS
-        if told.failure.kind != NONE and told.owner == UXAS:
+        told.gate = reported(body)
+        if told.failure.kind != NONE and not _flies(told):
             told.wrong.append((body.Time, "UxAS got it back after a declared failure"))
 
     def declared(self, body: Any) -> None:
@@ -100,7 +103,7 @@ class FailureWatch(LinkLossWatch):
         told.checks += 1
         now_ms, kind, name = body.Time, int(body.Failure), body.Failure.name.lower()
         asked = Asked(*(one in self._after.of for one in Failed))
-        reserve_ms, flies = RESERVE_BEATS * self._beat_ms, told.owner == ICAROUS
+        reserve_ms, flies = RESERVE_BEATS * self._beat_ms, _flies(told)
         without, since_ms = told.without_ms is not None, told.without_ms or 0
         may = {
             failure_step(told.failure, asked, seen, told.loss.mode, now_ms, reserve_ms)
@@ -130,7 +133,7 @@ class FailureWatch(LinkLossWatch):
         }
         if mode not in may or mode == told.loss.mode or int(body.Chosen) != chosen:
             told.wrong.append((now_ms, f"{body.Mode.name} is not what follows then"))
-        if told.loss == NO_LOSS and now_ms != told.failure.since_ms:
+        if told.loss == NO_LOSS and lasted(told.failure.since_ms, now_ms, 1):
             told.wrong.append((now_ms, "it began later than the failure was declared"))
         told.loss = Loss(mode, now_ms)
         told.said.append(f"{body.Mode.name} from {now_ms / 1000:.2f} s")
@@ -146,7 +149,7 @@ class FailureWatch(LinkLossWatch):
                 continue
             if told.loss == NO_LOSS:
                 told.wrong.append((body.Time, "nothing was flown after the failure"))
-            if told.owner != ICAROUS:
+            if not _flies(told):
                 told.wrong.append((body.Time, "ICAROUS did not have it after the failure"))
 
     def _verdict(self, vehicle: int, told: Flown) -> Verdict:
@@ -167,3 +170,8 @@ class FailureWatch(LinkLossWatch):
             "G4", failure_item(vehicle), outcome, Kind.OBSERVED, note,
             time_ms=at_ms, vehicles=(vehicle,), checks=told.checks, kernels=kernels,
         )  # fmt: skip
+
+
+def _flies(told: Told) -> bool:
+    """Whether ICAROUS has the vehicle, by its gate."""
+    return gate_accepts(told.gate, ICAROUS, told.gate.epoch)
