@@ -22,10 +22,10 @@ from table import Rows, alone
 
 from cratous.services.requirements import c2po
 from cratous.services.requirements.evaluation import Evaluation
+from cratous.services.requirements.finished_trace import Columns, Whole
 from cratous.services.requirements.formula import Formula
 from cratous.services.requirements.outcome import Outcome
 from cratous.services.requirements.specification import Requirement
-from cratous.services.requirements.whole import Columns, Whole
 
 TRACE = Path(__file__).resolve().parents[2] / "shared/vectors/monitor/open-trace-100.csv.gz"
 HEAD = """INPUT

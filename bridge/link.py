@@ -15,7 +15,7 @@ import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from cratous.bridge.unread import unread_by_peer
+from cratous.bridge.unread_bytes import unread_by_peer
 from cratous.spec.errors import BadInput, CratousError
 
 _CHUNK = 65536

@@ -18,7 +18,7 @@ from collections import deque
 from contextlib import suppress
 
 from cratous.bridge.port import is_due
-from cratous.bridge.unread import unread_by_peer
+from cratous.bridge.unread_bytes import unread_by_peer
 
 RECORD = struct.Struct("!BIQI")
 """A record of the copy: kind, connection, CLOCK_MONOTONIC [ns], and the number of bytes that follow."""

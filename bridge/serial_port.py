@@ -12,8 +12,8 @@ import serial
 import zmq
 
 from cratous.bridge import sentinel
-from cratous.bridge.outgoing import Outgoing
 from cratous.bridge.port import Incoming, Limits, Report, Tally, is_due
+from cratous.bridge.send_queue import Outgoing
 from cratous.spec.errors import BadInput
 
 _RETRY_S = 1.0

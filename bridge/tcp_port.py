@@ -15,8 +15,8 @@ from typing import Any
 import zmq
 
 from cratous.bridge import sentinel
-from cratous.bridge.outgoing import Outgoing
 from cratous.bridge.port import Address, Incoming, Limits, Report, Tally, is_due
+from cratous.bridge.send_queue import Outgoing
 from cratous.spec.errors import BadInput
 
 _CHUNK = 65536

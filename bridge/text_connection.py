@@ -9,8 +9,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from cratous.bridge.link import MAX_PENDING, Link, LinkEvent
-from cratous.bridge.outgoing import Outgoing
 from cratous.bridge.port import is_due
+from cratous.bridge.send_queue import Outgoing
+from cratous.bridge.text_protocol.authenticated_lines import (
+    MOST_UNACKNOWLEDGED,
+    Seal,
+    SealedHandshake,
+)
 from cratous.bridge.text_protocol.dialects import Dialect
 from cratous.bridge.text_protocol.handshake import Handshake
 from cratous.bridge.text_protocol.layouts import Limits
@@ -22,7 +27,6 @@ from cratous.bridge.text_protocol.parser import (
     StreamParser,
     WireError,
 )
-from cratous.bridge.text_protocol.sealed import MOST_UNACKNOWLEDGED, Seal, SealedHandshake
 
 PROGRAM_LIMITS = Limits(10_000, 1000, 1000, 9999, 9999)
 """The largest counts that the two programs accept; a vehicle's memory is bounded by them."""

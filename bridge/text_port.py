@@ -16,6 +16,7 @@ import zmq
 from cratous.bridge.link import Link, LinkEvent, Listener, connect_later
 from cratous.bridge.port import Address, Report, Tally, is_due
 from cratous.bridge.text_connection import PROGRAM_LIMITS, Bounds, Connection, Opened
+from cratous.bridge.text_protocol.authenticated_lines import SealedClient, SealedServer
 from cratous.bridge.text_protocol.dialects import Dialect
 from cratous.bridge.text_protocol.format import encode
 from cratous.bridge.text_protocol.handshake import (
@@ -44,7 +45,6 @@ from cratous.bridge.text_protocol.messages import (
     WayOfAnother,
 )
 from cratous.bridge.text_protocol.parser import Record, WireError
-from cratous.bridge.text_protocol.sealed import SealedClient, SealedServer
 from cratous.spec.errors import BadInput
 
 OURS = (

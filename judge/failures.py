@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cratous.judge.alone import FINAL, LANDED, LINKED, follows, landing_faults, unseen
 from cratous.judge.declared import AfterFailure, Declared
 from cratous.judge.ground import down
 from cratous.judge.log import Alone, Log
+from cratous.judge.lost_link import FINAL, LANDED, LINKED, follows, landing_faults, unseen
 from cratous.judge.mission import Mission
 from cratous.judge.tracks import Track
 from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, seconds

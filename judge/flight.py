@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from cratous.judge import (
-    alone,
     authority,
     compare,
     failures,
     heartbeat,
     log,
+    lost_link,
     merging,
     mission_file,
     relations,
@@ -25,9 +25,9 @@ from cratous.judge import (
 from cratous.judge.answers import Answer, answers_to
 from cratous.judge.compare import DISAGREE, Difference
 from cratous.judge.mission import Mission, from_log
+from cratous.judge.task_presence import Flight
 from cratous.judge.tracks import tracks
 from cratous.judge.verdict import GUARANTEES, HOLDS, UNKNOWN, VIOLATED, Row, doubted, worst
-from cratous.judge.work import Flight
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ def judged(mission: Mission, found: log.Log) -> list[Row]:
     ]
     rows += authority.rows(mission, found, flown)
     rows += take_off.rows(mission, found, flown)
-    rows += alone.rows(mission, found, flown)
+    rows += lost_link.rows(mission, found, flown)
     rows += failures.rows(mission, found, flown)
     rows += heartbeat.rows(mission, found, _unsafe(safe))
     doubts = list(found.doubts)

@@ -12,9 +12,9 @@ from cratous.judge.earth import ACCURACY_M, to_local
 from cratous.judge.log import Look
 from cratous.judge.mission import Point, Task
 from cratous.judge.shares import forbidden_note
+from cratous.judge.task_presence import Flight, nearest_m
 from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED
 from cratous.judge.views import as_asked
-from cratous.judge.work import Flight, nearest_m
 
 SHARE = 0.99
 SPACING_M = 10.0

@@ -18,8 +18,8 @@ from cratous.judge.earth import ACCURACY_M
 from cratous.judge.mission import Mission, Point, Task
 from cratous.judge.relations import Deed, asked, best_way
 from cratous.judge.searches import searched
+from cratous.judge.task_presence import Flight, nearest_m
 from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, doubted, seconds
-from cratous.judge.work import Flight, nearest_m
 
 CAPTURE_M = 50.0
 GRAVITY = 9.80665

@@ -13,7 +13,7 @@ from cratous.judge.coverage import outlines
 from cratous.judge.log import State
 from cratous.judge.mission import Point, Task
 from cratous.judge.plane import winding
-from cratous.judge.work import Flight
+from cratous.judge.task_presence import Flight
 from cratous.judge.zones import Fence
 
 POINTS = 2_000

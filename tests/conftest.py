@@ -126,6 +126,6 @@ def opened() -> Iterator[list[Any]]:
 @pytest.fixture
 def straight_run_ins(monkeypatch: pytest.MonkeyPatch) -> None:
     """Vehicles come to a rendezvous by straight run-ins alone, as those that are elsewhere before."""
-    from cratous.services.following import meeting
+    from cratous.services.following import rendezvous_options
 
-    monkeypatch.setattr(meeting, "_direct", lambda *_: None)
+    monkeypatch.setattr(rendezvous_options, "_direct", lambda *_: None)

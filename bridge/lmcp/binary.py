@@ -13,9 +13,9 @@ from collections.abc import Iterator
 from typing import Any
 
 from cratous.bridge.bytesum import byte_sum
-from cratous.bridge.lmcp import careful, compiled, lazy_messages, model
-from cratous.bridge.lmcp.careful import MAX_DEPTH, MAX_ELEMENTS
+from cratous.bridge.lmcp import compiled, lazy_messages, model, reference_codec
 from cratous.bridge.lmcp.objects import LmcpObject
+from cratous.bridge.lmcp.reference_codec import MAX_DEPTH, MAX_ELEMENTS
 from cratous.spec.errors import BadInput
 
 __all__ = [
@@ -52,7 +52,7 @@ def pack(obj: LmcpObject) -> bytes:
         _writers[type(obj)](obj, parts.append, 0)
         body: bytes | bytearray = b"".join(parts)
     except compiled.GIVES_UP:
-        body = careful.pack(obj)
+        body = reference_codec.pack(obj)
     if len(body) > MAX_MESSAGE:
         raise _long("", len(body))
     message = _HEAD.pack(TAG, len(body)) + body
@@ -76,7 +76,7 @@ def unpack(data: bytes, where: str = "message") -> Any:
             return obj
     except compiled.GIVES_UP:
         pass
-    return careful.read(data, _AT, end, where)
+    return reference_codec.read(data, _AT, end, where)
 
 
 def lazy(data: bytes, where: str = "message") -> Any:
@@ -93,11 +93,11 @@ def lazy(data: bytes, where: str = "message") -> Any:
     cls = _lazy_classes.get(head)
     if cls is None:
         if len(data) < _AT + 15 + 4 or head[0] != 1:
-            return careful.read(data, _AT, len(data) - 4, where)  # raises the error
+            return reference_codec.read(data, _AT, len(data) - 4, where)  # raises the error
         try:
-            found = careful.class_of(*careful.OBJECT_HEAD.unpack(head)[1:])
+            found = reference_codec.class_of(*reference_codec.OBJECT_HEAD.unpack(head)[1:])
         except BadInput:
-            return careful.read(data, _AT, len(data) - 4, where)
+            return reference_codec.read(data, _AT, len(data) - 4, where)
         if not found.names:
             return unpack(data, where)
         cls = _lazy_classes[head] = lazy_messages.class_of(found, _fill)
@@ -115,7 +115,7 @@ def _fill(obj: Any, fill: Any, data: bytes, where: str) -> None:
             return
     except compiled.GIVES_UP:
         pass
-    read = careful.read(data, _AT, end, where)
+    read = reference_codec.read(data, _AT, end, where)
     for name in read.names:
         setattr(obj, name, getattr(read, name))
 
@@ -144,7 +144,7 @@ def received(data: bytes, where: str = "message") -> tuple[Any, bytes, list[str]
     except BadInput:
         _checked(data, where)
         unset: list[str] = []
-        obj = careful.read(data, _AT, len(data) - 4, where, unset)
+        obj = reference_codec.read(data, _AT, len(data) - 4, where, unset)
         if not unset:
             raise
         return obj, pack(obj), notes + unset

@@ -2,7 +2,7 @@
 
 A generated function takes adjacent fields of fixed size in one `struct` call, looks up enums, booleans and the
 classes of nested objects in dictionaries, and checks the type of every value that it writes. It diagnoses nothing
-itself: anything it does not accept raises, and the message goes through `lmcp.careful`, which reports the error (or
+itself: anything it does not accept raises, and the message goes through `lmcp.reference_codec`, which reports the error (or
 converts the value, as the constructor would). So both accept the same messages, which
 `tests/bridge/test_lmcp_compiled.py` checks.
 """
@@ -16,8 +16,14 @@ from collections.abc import Callable
 from typing import Any
 
 from cratous.bridge.lmcp import model
-from cratous.bridge.lmcp.careful import CODES, MAX_DEPTH, MAX_ELEMENTS, OBJECT_HEAD, class_of
 from cratous.bridge.lmcp.objects import LmcpObject, enums, types
+from cratous.bridge.lmcp.reference_codec import (
+    CODES,
+    MAX_DEPTH,
+    MAX_ELEMENTS,
+    OBJECT_HEAD,
+    class_of,
+)
 from cratous.spec.errors import BadInput
 
 Reads = Callable[[bytes, int, int], tuple[Any, int]]

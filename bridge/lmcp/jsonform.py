@@ -14,6 +14,7 @@ from functools import cache, partial
 from keyword import iskeyword
 from typing import Any
 
+from cratous.bridge.lmcp.fast_json import plain_object
 from cratous.bridge.lmcp.model import ANY, INTEGER_RANGES, when_removed
 from cratous.bridge.lmcp.objects import (
     LmcpEnum,
@@ -24,7 +25,6 @@ from cratous.bridge.lmcp.objects import (
     unknown_field,
     within,
 )
-from cratous.bridge.lmcp.plain_text import plain_object
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import json_of
 

@@ -22,7 +22,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from cratous.bridge.text_protocol.sealed import DAMAGED, FORGED, Nonce, crc_of, mac_of
+from cratous.bridge.text_protocol.authenticated_lines import DAMAGED, FORGED, Nonce, crc_of, mac_of
 from cratous.core.authority.replay_window import Window
 from cratous.core.authority.timeliness import lasted
 

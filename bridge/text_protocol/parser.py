@@ -19,6 +19,7 @@ from cratous.bridge.text_protocol.dialects import (
     has_comma_after_tag,
     has_label_after_tag,
 )
+from cratous.bridge.text_protocol.fast_lines import TAG_BYTES, message_of, plain_lines
 from cratous.bridge.text_protocol.format import LARGEST_NUMBER
 from cratous.bridge.text_protocol.layouts import (
     ORIGINAL_LIMITS,
@@ -32,7 +33,6 @@ from cratous.bridge.text_protocol.messages import (
     Direction,
     Message,
 )
-from cratous.bridge.text_protocol.plain_lines import TAG_BYTES, message_of, plain_lines
 
 MAX_LINE = 4096
 OTHER_DIALECT = "line of another dialect"

@@ -12,8 +12,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from cratous.services.uxas.published_messages import SERVES
 from cratous.services.uxas.registry import KINDS
-from cratous.services.uxas.serves import SERVES
 
 TESTS = Path(__file__).resolve().parents[2] / "tests"
 RECEIVED, KNOWN, SENT, ATTRIBUTE, UNUSED = (

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from cratous.services.argument.elements import Element, Kind
-from cratous.services.assumptions.said import measured
+from cratous.services.assumptions.observation_texts import measured
 from cratous.spec.errors import BadInput
 
 Data = dict[str, Any]

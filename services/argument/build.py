@@ -16,8 +16,8 @@ from cratous.services.argument.elements import (
     worst,
 )
 from cratous.services.argument.guarantees import Guarantees
-from cratous.services.argument.own import Own
 from cratous.services.argument.proved import Proofs
+from cratous.services.argument.user_requirements import Own
 from cratous.services.certify.trace import traced
 from cratous.spec.mission.guarantees import REQUIREMENTS, Outcome
 

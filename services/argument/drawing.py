@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator
 from xml.sax.saxutils import escape
 
 from cratous.services.argument.elements import Element, Kind, State
+from cratous.services.argument.escaping import plain_text
 from cratous.services.argument.figures import DIAMOND, SKEW, Figure, figure
 from cratous.services.argument.layers import GUTTER, Layout, laid_out
-from cratous.services.argument.plain_text import plain_text
 from cratous.services.argument.wrapping import LINE, SIZE, Line, width
 
 EDGE, HEAD = 24.0, 34.0

@@ -7,7 +7,7 @@ from functools import lru_cache
 from math import ceil, sqrt
 
 from cratous.services.argument.elements import Element, Kind
-from cratous.services.argument.plain_text import plain_text
+from cratous.services.argument.escaping import plain_text
 from cratous.services.argument.wrapping import LINE, Line, least_width, wrapped
 
 PAD, SKEW = 9.0, 16.0

@@ -11,7 +11,7 @@ from typing import Any
 import yaml
 
 from cratous.services.argument.elements import Element, State
-from cratous.services.argument.plain_text import plain_text
+from cratous.services.argument.escaping import plain_text
 from cratous.spec.files.schema_check import Check, fits
 
 SCHEMA_NAME = "argument.schema.json"

@@ -15,7 +15,7 @@ from cratous.core.avoidance.prediction import Piece, after
 from cratous.core.permit.tubes import disc_within
 from cratous.services.assumptions.link import NO_INSTANCE
 from cratous.services.assumptions.motion import Positions, Seen, is_within, off_by, room_of
-from cratous.services.assumptions.observed import Message, Record, gone_ms
+from cratous.services.assumptions.observations import Message, Record, gone_ms
 from cratous.spec.mission import Mission
 
 

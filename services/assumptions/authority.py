@@ -6,7 +6,7 @@ from typing import Any
 
 from cratous.core.authority.gate import ICAROUS, UXAS, Gate, epoch_given, gate_accepts
 from cratous.core.authority.timeliness import in_time
-from cratous.services.assumptions.observed import Message, Record
+from cratous.services.assumptions.observations import Message, Record
 from cratous.spec.mission import Mission
 
 UNTOUCHED = Gate(UXAS, 0, False)

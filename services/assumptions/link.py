@@ -5,7 +5,7 @@ from __future__ import annotations
 from cratous.core.authority.gate import ICAROUS, Gate, epoch_given
 from cratous.core.authority.timeliness import in_time
 from cratous.services.assumptions.authority import UNTOUCHED, reported, sender_of
-from cratous.services.assumptions.observed import ANY_LATER, EVERY, Message, Record
+from cratous.services.assumptions.observations import ANY_LATER, EVERY, Message, Record
 from cratous.spec.mission import Mission
 
 OWN_TIME = ("Heartbeat", "GateState", "TruthState", "CommandDropped", "BridgeStatus")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cratous.core.authority.timeliness import in_time
 from cratous.services.assumptions.authority import icarous_has
-from cratous.services.assumptions.observed import ANY_LATER, EVERY, Message, Record, gone_ms
+from cratous.services.assumptions.observations import ANY_LATER, EVERY, Message, Record, gone_ms
 from cratous.spec.mission import Mission
 
 SETTLED = ("Complete", "Failed")

@@ -24,7 +24,7 @@ from cratous.services.assumptions.authority import (
     sender_of,
 )
 from cratous.services.assumptions.link import NO_INSTANCE
-from cratous.services.assumptions.observed import ANY_LATER, Message, Record
+from cratous.services.assumptions.observations import ANY_LATER, Message, Record
 from cratous.spec.mission import Daa, Mission, Position, Velocity
 
 GRAVITY_M_S2 = 9.80665

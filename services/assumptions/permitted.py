@@ -22,8 +22,8 @@ from cratous.core.readings.exact import exact
 from cratous.core.well_clear import cylinder_violation
 from cratous.services.assumptions.authority import UNTOUCHED, has_it, reported
 from cratous.services.assumptions.link import NO_INSTANCE
-from cratous.services.assumptions.observed import ANY_LATER, Message, Record, Watch
-from cratous.services.mission.known_zones import zones_of
+from cratous.services.assumptions.observations import ANY_LATER, Message, Record, Watch
+from cratous.services.mission.zone_times import zones_of
 from cratous.services.mission.zones import exact_leg_ok
 from cratous.spec.mission import FaultySimulation, Mission, Position
 

@@ -13,7 +13,7 @@ from cratous.core.authority.timeliness import lasted
 from cratous.core.permit.tubes import disc_within
 from cratous.services.assumptions.link import NO_INSTANCE
 from cratous.services.assumptions.motion import Room, is_within
-from cratous.services.assumptions.observed import Message, Record
+from cratous.services.assumptions.observations import Message, Record
 from cratous.spec.mission import Mission, Position
 from cratous.spec.mission.sensing import EXACT_STATES
 

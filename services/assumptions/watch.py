@@ -6,8 +6,6 @@ from typing import Any
 
 from cratous.services.assumptions.ahead import AheadWatch
 from cratous.services.assumptions.authority import CommandWatch, SteeringWatch
-from cratous.services.assumptions.given_up import GivenUpWatch
-from cratous.services.assumptions.heard import HeardWatch, WayBackWatch
 from cratous.services.assumptions.link import (
     ChangeWatch,
     ClockWatch,
@@ -17,16 +15,18 @@ from cratous.services.assumptions.link import (
 from cratous.services.assumptions.listing import LISTING, Assumption
 from cratous.services.assumptions.mission_end import AwayWatch, EndWatch, SettledWatch
 from cratous.services.assumptions.motion import IntruderWatch, Positions, TrackingWatch
-from cratous.services.assumptions.near_legs import NearLegsWatch
-from cratous.services.assumptions.observed import (
+from cratous.services.assumptions.observations import (
     Message,
     Observed,
     Record,
     Watch,
 )
+from cratous.services.assumptions.path_deviation import NearLegsWatch
 from cratous.services.assumptions.permitted import PermittedWatch
 from cratous.services.assumptions.sensed import SensedWatch
-from cratous.services.assumptions.served import ServedWatch
+from cratous.services.assumptions.service_assumptions import ServedWatch
+from cratous.services.assumptions.takeover_ends import HeardWatch, WayBackWatch
+from cratous.services.assumptions.takeover_limit import GivenUpWatch
 from cratous.spec.mission import Mission
 
 

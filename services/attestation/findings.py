@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from cratous.services.certify.own_views import own_findings
+from cratous.services.certify.requirement_views import own_findings
 from cratous.spec.mission.guarantees import Outcome
 
 Data = dict[str, Any]

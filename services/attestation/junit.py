@@ -13,7 +13,7 @@ from typing import Any
 from xml.sax.saxutils import quoteattr
 
 from cratous.services.attestation.findings import Data, Subject, doubt, unshown
-from cratous.services.certify.own_views import own_constraints
+from cratous.services.certify.requirement_views import own_constraints
 from cratous.spec.files.printable import printable
 from cratous.spec.mission.guarantees import Outcome
 

@@ -15,7 +15,7 @@ from typing import Any
 from urllib.parse import quote
 
 from cratous.services.attestation.findings import Data, Subject, doubt, unshown
-from cratous.services.certify.own_views import digests, own_constraints, own_requirements
+from cratous.services.certify.requirement_views import digests, own_constraints, own_requirements
 from cratous.spec.files.printable import printable
 from cratous.spec.mission.guarantees import Outcome
 

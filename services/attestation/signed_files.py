@@ -31,7 +31,7 @@ from cratous.services.results.ownership import digest_of
 NEEDED = (REPORT_NAME, HTML_NAME, MAP_NAME, LOG_NAME, MANIFEST_NAME)
 """Files of the results that every statement covers."""
 MADE_AGAIN: dict[str, Callable[[Subject], str]] = {JUNIT_NAME: junit, CSV_NAME: table}
-"""Views determined by report and statement alone; the argument needs the ledger (`argued`)."""
+"""Views determined by report and statement alone; the argument needs the ledger (`argument_check`)."""
 
 
 class Place(NamedTuple):

@@ -6,7 +6,7 @@ import csv
 import io
 
 from cratous.services.attestation.findings import Subject, unshown
-from cratous.services.certify.own_views import own_constraints
+from cratous.services.certify.requirement_views import own_constraints
 from cratous.spec.files.printable import cell
 
 COLUMNS = (

@@ -16,21 +16,21 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from cratous.services.attestation.argued import argued
-from cratous.services.attestation.assumed import assumption_faults, assumptions_not_judged
-from cratous.services.attestation.blamed import blame_faults
+from cratous.services.attestation.argument_check import argued
+from cratous.services.attestation.assumptions_check import assumption_faults, assumptions_not_judged
+from cratous.services.attestation.blame_check import blame_faults
 from cratous.services.attestation.dsse import ENVELOPE_BYTES, opened
 from cratous.services.attestation.findings import Data, Subject
-from cratous.services.attestation.judged import held
+from cratous.services.attestation.log_check import not_recorded, recorded_faults
 from cratous.services.attestation.names import STATEMENT_NAME
-from cratous.services.attestation.own_judged import own_faults, own_not_judged
-from cratous.services.attestation.pages_again import Again, View, pages_again, sarif_faults
 from cratous.services.attestation.planned import plan_faults, plan_not_judged
-from cratous.services.attestation.recorded import not_recorded, recorded_faults
+from cratous.services.attestation.rebuilt_pages import Again, View, pages_again, sarif_faults
+from cratous.services.attestation.requirements_check import own_faults, own_not_judged
 from cratous.services.attestation.signed_files import Place, file_faults, not_judged, view_faults
 from cratous.services.attestation.statement import PREDICATE_TYPE, RESULTS, STATEMENT_TYPE
 from cratous.services.attestation.statement import VIEWS as MADE
 from cratous.services.attestation.summary import summary_faults
+from cratous.services.attestation.verdicts_check import held
 from cratous.services.certify.report_input import read_report
 from cratous.services.results.names import LOG_NAME
 from cratous.spec.errors import BadInput

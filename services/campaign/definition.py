@@ -12,12 +12,12 @@ from typing import Any
 
 from cratous.services.campaign.encounters import REQUIREMENTS as HELD
 from cratous.services.campaign.generators import CASES, CHANGES, PARAMETERS
-from cratous.services.campaign.recorded import ENDINGS, mission_of_states
+from cratous.services.campaign.recorded_encounter import ENDINGS, mission_of_states
 from cratous.services.loading import load
 from cratous.services.loading.document import Document, parse_document, read_document
 from cratous.services.loading.problems import refuse
 from cratous.services.loading.schema import schema_problems
-from cratous.services.requirements.own_files import OwnFile, own_file, refuse_clashes
+from cratous.services.requirements.requirement_files import OwnFile, own_file, refuse_clashes
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import MISSION_BYTES
 from cratous.spec.files.text_file import text_of

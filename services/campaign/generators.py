@@ -17,7 +17,7 @@ from typing import Any
 
 from cratous.core.kernel import Vec2
 from cratous.core.permit.tubes import disc_within
-from cratous.services.campaign.changing import changing_mission
+from cratous.services.campaign.changed_missions import changing_mission
 from cratous.spec.errors import BadInput
 
 Ranges = dict[str, tuple[float, float]]

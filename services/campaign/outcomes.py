@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from cratous.services.campaign.runs import Run
-from cratous.services.requirements.own_files import TAKEN
+from cratous.services.requirements.requirement_files import TAKEN
 from cratous.spec.mission.guarantees import Outcome, worst
 
 DISAGREE, MISFIT, LOST = "disagreement", "misfit", "lost"

@@ -6,7 +6,7 @@ import atexit
 import threading
 from typing import Any
 
-from cratous.services.campaign.flier import Flier
+from cratous.services.campaign.flight_worker import Flier
 
 _own = threading.local()
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from cratous.core.authority.blame import broke_first, stood_at
 from cratous.services.assumptions.listing import State
-from cratous.services.certify.own_blame import Told
+from cratous.services.certify.requirement_blame import Told
 from cratous.services.certify.verdicts import broken_of
 from cratous.spec.mission.guarantees import Outcome
 

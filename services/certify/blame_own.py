@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from cratous.services.certify.blame import Commands, told_of
-from cratous.services.certify.own_blame import blame_rows_of
 from cratous.services.certify.rejudge import watch
+from cratous.services.certify.requirement_blame import blame_rows_of
 from cratous.services.logs.log import read_meta
 from cratous.services.requirements.outcome import Outcome
 from cratous.services.requirements.specification import Specification

@@ -6,12 +6,12 @@ from typing import Any
 
 from cratous.core import ledger
 from cratous.services.certify.evidence import is_data
-from cratous.services.certify.own_again import files_in
 from cratous.services.certify.proofs import inventory
 from cratous.services.certify.report import PROOFS_KEPT, Flown, environment
+from cratous.services.certify.requirements_judged_again import files_in
 from cratous.services.certify.running_code import running_code
 from cratous.services.logs.records import fingerprint
-from cratous.services.requirements.own_files import other_libraries
+from cratous.services.requirements.requirement_files import other_libraries
 from cratous.services.results.names import FORMER, OWN
 from cratous.spec.errors import BadInput
 

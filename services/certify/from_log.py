@@ -11,14 +11,14 @@ from typing import Any, NamedTuple
 from cratous.core.files.whole_file import write_atomically
 from cratous.services.assumptions.listing import State
 from cratous.services.certify.flight_record import flown_of
-from cratous.services.certify.own_again import named, shown, together
 from cratous.services.certify.rejudge import not_as_flown, subject, watched_and_told
 from cratous.services.certify.report import Judged, build_report, report_text, write_report
+from cratous.services.certify.requirements_judged_again import named, shown, together
 from cratous.services.certify.verdicts import constraint_rows, plan_rows
 from cratous.services.logs.log import read_meta
 from cratous.services.logs.source import DOUBTS, NO_END, doubts
 from cratous.services.mission.wind import known_at
-from cratous.services.requirements.own_files import OwnFile
+from cratous.services.requirements.requirement_files import OwnFile
 from cratous.services.results.names import LOG_NAME, OWN, REPORT_NAME
 from cratous.spec.errors import BadInput
 from cratous.spec.mission.guarantees import Outcome

@@ -7,18 +7,18 @@ from importlib.resources import files
 from typing import Any
 
 from cratous.core.kernel.names import short
-from cratous.services.assumptions.said import measured
+from cratous.services.assumptions.observation_texts import measured
 from cratous.services.certify import templates
-from cratous.services.certify.alerted import level_name, none_said
-from cratous.services.certify.blame_said import sentence
+from cratous.services.certify.alerts import level_name, none_said
+from cratous.services.certify.blame_texts import sentence
 from cratous.services.certify.charts import altitude_view, separation_view
 from cratous.services.certify.command import flown_in_processes
 from cratous.services.certify.gantt import gantt, plan_bars, plan_rows, tree
-from cratous.services.certify.own_said import margin as own_margin
-from cratous.services.certify.own_said import sentence as own_blamed
-from cratous.services.certify.own_views import own_requirements
 from cratous.services.certify.picture import map_view, time_view
 from cratous.services.certify.proofs import statuses
+from cratous.services.certify.requirement_texts import margin as own_margin
+from cratous.services.certify.requirement_texts import sentence as own_blamed
+from cratous.services.certify.requirement_views import own_requirements
 from cratous.services.certify.trace import chains
 from cratous.spec.algebra import parse
 from cratous.spec.mission.plan import cost_text, percent

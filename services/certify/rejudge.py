@@ -12,7 +12,6 @@ from cratous.services.certify.blame import Commands, told_of
 from cratous.services.certify.command import with_original_clients
 from cratous.services.certify.differences import differences
 from cratous.services.certify.flight_record import flown_of
-from cratous.services.certify.own_again import files_in, together, with_own
 from cratous.services.certify.report import (
     Judged,
     Telling,
@@ -24,6 +23,7 @@ from cratous.services.certify.report import (
 )
 from cratous.services.certify.report_input import read_report
 from cratous.services.certify.report_schema import departures
+from cratous.services.certify.requirements_judged_again import files_in, together, with_own
 from cratous.services.certify.result_files import Files
 from cratous.services.certify.verdicts import (
     broken_of,
@@ -34,7 +34,7 @@ from cratous.services.logs.log import Heard, read_heard, read_log, read_meta
 from cratous.services.logs.records import from_data
 from cratous.services.logs.sqlite_log import SqliteLog
 from cratous.services.mission.wind import known_at
-from cratous.services.requirements.own_files import OwnFile
+from cratous.services.requirements.requirement_files import OwnFile
 from cratous.services.results.names import (
     ASSUMPTIONS,
     BLAME,

@@ -38,7 +38,7 @@ from cratous.spec.mission.guarantees import Outcome, exit_code, worst
 from cratous.spec.mission.plan import Plan
 
 if TYPE_CHECKING:
-    from cratous.services.requirements.own_files import OwnFile
+    from cratous.services.requirements.requirement_files import OwnFile
 
 PROOFS_KEPT = ("line", "problems", "seal", "solver")
 
@@ -201,7 +201,7 @@ def build_report(
 def _own(flown: Flown, judged: Judged, log: Path) -> dict[str, Any]:
     """User requirements evaluated over the log; empty if there are none."""
     from cratous.services.certify.blame import told_of
-    from cratous.services.certify.own import own_section
+    from cratous.services.certify.user_requirements import own_section
     from cratous.services.requirements.lint import lint
 
     if not flown.own:

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from cratous.services.certify.alerted import TOPIC, AlertReader
+from cratous.services.certify.alerts import TOPIC, AlertReader
 from cratous.services.logs.entry import Entry
 from cratous.services.logs.log import Row
 from cratous.spec.errors import BadInput

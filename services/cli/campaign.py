@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 import click
 
 from cratous.services.cli.job import silent as untold
-from cratous.services.cli.own_requirements import own_files, own_option
 from cratous.services.cli.progress import passing, waiting
 from cratous.services.cli.show import say, table
+from cratous.services.cli.user_requirements import own_files, own_option
 from cratous.spec.errors import BadInput, CratousError
 from cratous.spec.files.extras import told
 

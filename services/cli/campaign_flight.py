@@ -67,7 +67,7 @@ def standing(allow_unproved: bool) -> Any:
 
 def _flown(file: Path, task: dict[str, Any], out: Path) -> dict[str, Any]:
     from cratous.services.loading import load
-    from cratous.services.requirements.own_files import files_of
+    from cratous.services.requirements.requirement_files import files_of
 
     mission = load(file, task["seed"])
     proofs = standing(task["allow_unproved"])
@@ -99,7 +99,7 @@ def _result(
     mission: Any, report: dict[str, Any], folder: Path, task: dict[str, Any]
 ) -> dict[str, Any]:
     from cratous.services.certify.charts import separation_view
-    from cratous.services.certify.own_views import own_constraints
+    from cratous.services.certify.requirement_views import own_constraints
 
     view = separation_view(report)
     return {

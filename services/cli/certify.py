@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from cratous.services.cli.certify_views import Asked, checked, verified, view_options, write
-from cratous.services.cli.own_requirements import own_files, own_lines, own_option
+from cratous.services.cli.user_requirements import own_files, own_lines, own_option
 
 SHOWN = 20
 

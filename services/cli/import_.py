@@ -15,7 +15,7 @@ from cratous.spec.errors import BadInput
 def _origin(_context: Any, _option: Any, text: str | None) -> tuple[float, float] | None:
     if text is None:
         return None
-    from cratous.services.importing.parts import latitude, longitude
+    from cratous.services.importing.imported_content import latitude, longitude
 
     lat, comma, lon = text.partition(",")
     if not comma:
@@ -69,8 +69,8 @@ def import_(files: tuple[Path, ...], out: Path | None, **said: Any) -> int:
     from cratous.services.cli.progress import waiting
     from cratous.services.importing.composing import Asked, composed
     from cratous.services.importing.gathering import gathered
+    from cratous.services.importing.imported_content import Reading
     from cratous.services.importing.mission_text import checked, mission_text
-    from cratous.services.importing.parts import Reading
     from cratous.services.loading.uxas_parts import safe_name
 
     with waiting("reading the files"):

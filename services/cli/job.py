@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from cratous.services.certify.report import Flown
     from cratous.services.logs.log import LogWriter
     from cratous.services.monitor import Monitor
-    from cratous.services.requirements.own_files import OwnFile
+    from cratous.services.requirements.requirement_files import OwnFile
 
 Tell = Callable[[str], None]
 
@@ -279,9 +279,9 @@ def watching(
 
     says_beats, on_board: as for `Monitor`.
     """
-    from cratous.services.assumptions.said import sentence as assumed
+    from cratous.services.assumptions.observation_texts import sentence as assumed
     from cratous.services.certify.blame import blame_rows
-    from cratous.services.certify.blame_said import sentence as blamed
+    from cratous.services.certify.blame_texts import sentence as blamed
     from cratous.services.certify.verdicts import constraint_rows
     from cratous.services.monitor import Monitor
 

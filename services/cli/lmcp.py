@@ -13,7 +13,7 @@ import click
 
 from cratous.bridge import envelope
 from cratous.bridge.lmcp import describe as words
-from cratous.bridge.lmcp import differences, enums, forms, mdm, model, stubs, types
+from cratous.bridge.lmcp import differences, enums, mdm, model, stored_forms, stubs, types
 from cratous.bridge.lmcp import schema as schemas
 from cratous.core.files.whole_file import write_atomically
 from cratous.services.cli.show import say
@@ -55,12 +55,12 @@ def _bytes(file: str) -> bytes:
 
 def _form(command: Any) -> Any:
     return click.option(
-        "--from", "form", type=click.Choice(("auto", *forms.FORMS)), default="auto",
+        "--from", "form", type=click.Choice(("auto", *stored_forms.FORMS)), default="auto",
         show_default=True, help="Form of the input.",
     )(command)  # fmt: skip
 
 
-def _all(found: Iterator[forms.Found]) -> Iterator[forms.Found]:
+def _all(found: Iterator[stored_forms.Found]) -> Iterator[stored_forms.Found]:
     """The messages as they are read; an error in the rest of the input becomes an item instead of an exception."""
     while True:
         try:
@@ -68,7 +68,7 @@ def _all(found: Iterator[forms.Found]) -> Iterator[forms.Found]:
         except StopIteration:
             return
         except BadInput as err:
-            yield forms.Found(err.where, None, err)
+            yield stored_forms.Found(err.where, None, err)
             return
 
 
@@ -89,7 +89,7 @@ def decode(file: tuple[str, ...], form: str, to: str, around: bool) -> int:
     """
     good, wrong = 0, 0
     for name in file:
-        for found in _all(forms.read(_bytes(name), name, form)):
+        for found in _all(stored_forms.read(_bytes(name), name, form)):
             if found.error is not None:
                 wrong += 1
                 click.echo(f"cratous: {found.error}", err=True)
@@ -107,10 +107,10 @@ def decode(file: tuple[str, ...], form: str, to: str, around: bool) -> int:
     return 2 if wrong or not good else 0
 
 
-def _text(found: forms.Found, to: str, around: bool) -> str:
+def _text(found: stored_forms.Found, to: str, around: bool) -> str:
     message = found.envelope if around else None
     if to == "json":
-        text = forms.write(found.object, "json").decode().rstrip("\n")
+        text = stored_forms.write(found.object, "json").decode().rstrip("\n")
         if message is None:
             return text
         head = {"address": message.address}
@@ -119,7 +119,7 @@ def _text(found: forms.Found, to: str, around: bool) -> str:
     body = (
         words.pretty(found.object)
         if to == "text"
-        else forms.write(found.object, "xml").decode().rstrip("\n")
+        else stored_forms.write(found.object, "xml").decode().rstrip("\n")
     )
     if message is None:
         return body
@@ -131,7 +131,7 @@ def _text(found: forms.Found, to: str, around: bool) -> str:
 @click.argument("file", nargs=-1, required=True)
 @_form
 @click.option(
-    "--to", type=click.Choice(forms.OUTPUTS), default="binary", show_default=True,
+    "--to", type=click.Choice(stored_forms.OUTPUTS), default="binary", show_default=True,
     help="Form of the output.",
 )  # fmt: skip
 @click.option("-o", "--output", metavar="FILE", help="Where to write; standard output otherwise.")
@@ -149,10 +149,10 @@ def encode(
     )
     written = []
     for name in file:
-        for found in forms.read(_bytes(name), name, form):
+        for found in stored_forms.read(_bytes(name), name, form):
             if found.error is not None:
                 raise found.error
-            written.append(forms.write(found.object, to, around))
+            written.append(stored_forms.write(found.object, to, around))
     if not written:
         raise BadInput("no message", where=" ".join(file))
     data = b"".join(written)
@@ -266,7 +266,9 @@ def diff(first: str, second: str, as_json: bool) -> int:
     if one is not None and two is not None:
         found = list(differences.of_series(one, two))
     else:
-        sides = [[_right(f) for f in forms.read(_bytes(name), name)] for name in (first, second)]
+        sides = [
+            [_right(f) for f in stored_forms.read(_bytes(name), name)] for name in (first, second)
+        ]
         found = []
         for i in range(max(map(len, sides))):
             one_side, other = (side[i] if i < len(side) else None for side in sides)
@@ -282,7 +284,7 @@ def diff(first: str, second: str, as_json: bool) -> int:
     return int(bool(found))
 
 
-def _right(found: forms.Found) -> Any:
+def _right(found: stored_forms.Found) -> Any:
     if found.error is not None:
         raise found.error
     return found.object

@@ -120,10 +120,10 @@ def monitor(
 
         return monitor_model.model(log, as_json, allow_unproved)
     from cratous.core import ledger
-    from cratous.services.assumptions.said import GROUNDLESS
-    from cratous.services.assumptions.said import lines as assumption_lines
+    from cratous.services.assumptions.observation_texts import GROUNDLESS
+    from cratous.services.assumptions.observation_texts import lines as assumption_lines
     from cratous.services.certify.blame import blame_rows
-    from cratous.services.certify.blame_said import lines as blame_lines
+    from cratous.services.certify.blame_texts import lines as blame_lines
     from cratous.services.certify.evidence import counted
     from cratous.services.certify.proofs import inventory, summary
     from cratous.services.certify.rejudge import watch

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from cratous.services.logs.store import LogStore
     from cratous.services.requirements.attached import Attached
     from cratous.services.requirements.outcome import Outcome
-    from cratous.services.requirements.tapped import Tapped
+    from cratous.services.requirements.tapped_bridge import Tapped
 
 WAIT_S = 60.0
 """Maximum wait for a server at the address [s]."""
@@ -58,7 +58,7 @@ def attach(
     from cratous.services.requirements.lint import lint
     from cratous.services.requirements.metrics import text_of
     from cratous.services.requirements.sampling import NOT_WHOLE, SAYS
-    from cratous.services.requirements.tapped import refuse_untold
+    from cratous.services.requirements.tapped_bridge import refuse_untold
     from cratous.services.requirements.traces import rows_of_messages, wanted_of
     from cratous.services.requirements.watch import Watch
 
@@ -166,7 +166,7 @@ def _tap(address: str, live: Live) -> Open:
 
     def opened(report: Report, find: Find) -> tuple[Attached | Tapped, float]:
         from cratous.bridge.tap import Tap
-        from cratous.services.requirements.tapped import Tapped
+        from cratous.services.requirements.tapped_bridge import Tapped
 
         tap = Tap(listens, leads_to)
         here = f"tap: clients connect to {tap.bound[0]}:{tap.bound[1]}"

@@ -98,7 +98,7 @@ def result(found: Judged) -> dict[str, Any]:
 
 def told(found: Judged) -> Iterator[str]:
     """The same as lines of text."""
-    from cratous.services.certify.own_said import lines
+    from cratous.services.certify.requirement_texts import lines
 
     for remark in found.remarks:
         yield f"lint: {remark.text}"

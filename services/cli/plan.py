@@ -223,7 +223,7 @@ def reasons_of(mission: Any, made: Any, task: int) -> tuple[Any, ...]:
     """For each vehicle the plan's cost if it did the task."""
     from cratous.services.mission.availability import absent
     from cratous.services.mission.wind import known_at
-    from cratous.services.planning.why import why
+    from cratous.services.planning.vehicle_alternatives import why
 
     return why(known_at(mission, 0), made, task, absent(mission, 0))
 

@@ -15,9 +15,9 @@ from cratous.services.cli.campaign import seed_range
 from cratous.services.cli.job import InProcesses, Settings, folder_name, run_mission
 from cratous.services.cli.job import silent as untold
 from cratous.services.cli.numbers import Number
-from cratous.services.cli.own_requirements import own_data, own_files, own_lines, own_option
 from cratous.services.cli.progress import waiting
 from cratous.services.cli.show import requirement_table, say, shown_path
+from cratous.services.cli.user_requirements import own_data, own_files, own_lines, own_option
 
 Tell = Callable[[str], None]
 
@@ -217,8 +217,8 @@ def summary(report: dict[str, Any], folder: Path | None) -> dict[str, Any]:
 
 
 def _show(report: dict[str, Any], folder: Path) -> None:
-    from cratous.services.assumptions.said import GROUNDLESS, sentence
-    from cratous.services.certify.blame_said import lines
+    from cratous.services.assumptions.observation_texts import GROUNDLESS, sentence
+    from cratous.services.certify.blame_texts import lines
     from cratous.services.certify.verdicts import without_ground
 
     flight = report["flight"]

@@ -13,8 +13,8 @@ import click
 
 if TYPE_CHECKING:
     from cratous.services.ground_station.access import Access
+    from cratous.services.ground_station.page_data import Recorded
     from cratous.services.ground_station.server import GroundStation
-    from cratous.services.ground_station.shown import Recorded
     from cratous.services.ground_station.tiles import Tiles
 
     Listening = tuple[int, Access]
@@ -105,7 +105,7 @@ def serve(
     Exit codes: 0 asked to end (Ctrl-C, SIGTERM), 2 bad input.
     """
     from cratous.services.ground_station.access import access_of
-    from cratous.services.ground_station.beneath import Beneath
+    from cratous.services.ground_station.background import Beneath
     from cratous.services.ground_station.overlays import overlays_of
     from cratous.spec.files.printable import printable
 
@@ -170,8 +170,8 @@ def _failed(error: Exception) -> None:
 
 
 def _replayed(path: Path) -> Recorded:
+    from cratous.services.ground_station.page_data import Recorded
     from cratous.services.ground_station.recording import recording
-    from cratous.services.ground_station.shown import Recorded
 
     return Recorded(lambda: recording(path), _failed)
 
@@ -179,8 +179,8 @@ def _replayed(path: Path) -> Recorded:
 def _editing(
     mission: Path, listening: Listening, allow_unproved: bool, stack: ExitStack
 ) -> GroundStation:
+    from cratous.services.ground_station.page_data import ReadAnew
     from cratous.services.ground_station.server import PAGE_OF_EDITOR, Commands, GroundStation
-    from cratous.services.ground_station.shown import ReadAnew
     from cratous.services.mission_editor.editor import LONGEST, Editor
 
     editor = stack.enter_context(closing(Editor(mission, PLANNER, allow_unproved)))
@@ -195,8 +195,8 @@ def _flying(
     mission: Path, listening: Listening, flight: dict[str, Any], stack: ExitStack
 ) -> GroundStation:
     from cratous.services.ground_station.live_session import Direct, LiveSession
+    from cratous.services.ground_station.page_data import LiveRecorded
     from cratous.services.ground_station.server import GroundStation
-    from cratous.services.ground_station.shown import LiveRecorded
     from cratous.services.mission_editor.operator_commands import DIRECT, commanded, directed
     from cratous.spec.files.limits import MISSION_BYTES
     from cratous.spec.files.text_file import text_of
@@ -225,8 +225,8 @@ def _flying(
 def _watching(address: str, listening: Listening, stack: ExitStack) -> GroundStation:
     from cratous.bridge.port import address as read_address
     from cratous.services.ground_station.attached_session import AttachedSession
+    from cratous.services.ground_station.page_data import ReadAnew
     from cratous.services.ground_station.server import GroundStation
-    from cratous.services.ground_station.shown import ReadAnew
 
     text = address if "://" in address else f"tcp://{address}"
     where = read_address(text, ("tcp",), item="--attach")
@@ -238,8 +238,8 @@ def _replaying(
     run: Path, other: Path | None, listening: Listening, stack: ExitStack
 ) -> GroundStation:
     from cratous.services.ground_station.comparison import check_comparable, comparison
+    from cratous.services.ground_station.page_data import Recorded
     from cratous.services.ground_station.server import PAGE_OF_TWO, GroundStation
-    from cratous.services.ground_station.shown import Recorded
     from cratous.services.logs.source import open_log
 
     open_log(run).close()  # an invalid log is reported before the server starts

@@ -144,7 +144,7 @@ def _spare(config: Any, without: tuple[str, ...], contexts: Any) -> Iterator[boo
     """Background work before the first request, so that it takes no longer than the second."""
     if not _plans(config, without):
         return None
-    from cratous.services.startup.spare import pieces
+    from cratous.services.startup.idle_work import pieces
 
     return pieces(contexts)
 

@@ -32,7 +32,7 @@ def explain(file: Path, raw: bool) -> int:
     Exit codes: 0 all lines are right, 2 something is wrong, or nothing is there.
     """
     from cratous.bridge.text_protocol.captures import read
-    from cratous.bridge.text_protocol.explained import told
+    from cratous.bridge.text_protocol.explanation import told
     from cratous.spec.files.limits import MESSAGES_BYTES
     from cratous.spec.files.printable import printable
     from cratous.spec.files.text_file import bytes_of

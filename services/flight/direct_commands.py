@@ -15,7 +15,7 @@ from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.dynamics import on_its_ground
 from cratous.services.flight.executive_outputs import command
 from cratous.services.flight.executive_state import Config, Out, State
-from cratous.services.flight.hold_ways import into, pose_of
+from cratous.services.flight.hold_paths import into, pose_of
 from cratous.services.flight.interruption import EXECUTIVE, flown_back
 from cratous.services.flight.messages import Say
 from cratous.services.flight.notices import mission_change

@@ -42,7 +42,7 @@ from cratous.services.mission.ground import floor_of
 from cratous.services.mission.landing import on_failure_of
 from cratous.services.mission.merging import merging_of
 from cratous.services.mission.take_off import grounded
-from cratous.services.planning.flyers import MOMENT_MS, straight
+from cratous.services.planning.performance_classes import MOMENT_MS, straight
 from cratous.services.sensing import surveillance
 from cratous.services.sensing.filter import Flown
 from cratous.services.sensing.surveillance import Carrier, Surveillance

@@ -22,8 +22,8 @@ from cratous.services.flight import (
     executive_outputs,
     failing,
     interruption,
-    left_out,
     legs,
+    omitted_tasks,
     task_transitions,
 )
 from cratous.services.flight.dynamics import stands_at_start
@@ -261,9 +261,9 @@ class Executive:
             {**dict(state.left_out), **dict(state.failed)},
         )
         chains = {chain.vehicle.id: chain for chain in state.chains}
-        waited, told = left_out.no_longer_awaited(dict(state.left_out), chains, now_ms)
+        waited, told = omitted_tasks.no_longer_awaited(dict(state.left_out), chains, now_ms)
         state = replace(state, left_out=tuple({**dict(state.left_out), **waited}.items()))
-        tasks, said = left_out.unfinished(changes.left(state), settled, chains, now_ms, why)
+        tasks, said = omitted_tasks.unfinished(changes.left(state), settled, chains, now_ms, why)
         for task in tasks:
             state = state.has_failed(task, why)
         out += [Say(one, task_transitions.NAME) for one in (*told, *said)]

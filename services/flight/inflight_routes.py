@@ -22,7 +22,7 @@ from cratous.services.flight.rejoining import Router
 from cratous.services.flight.remaining_path import join_in_transit, last_lap, leaving_m
 from cratous.services.mission.escapes import escapes
 from cratous.services.mission.zones import distance_m
-from cratous.services.planning.leaving import WayOut, entered, way_out
+from cratous.services.planning.zone_exits import WayOut, entered, way_out
 from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.plan import PlanItem, Pose
 from cratous.spec.records import replace

@@ -8,7 +8,7 @@ from cratous.services.flight import failing
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.executive_outputs import command, route
 from cratous.services.flight.executive_state import Config, Out, State
-from cratous.services.flight.hold_ways import held_again
+from cratous.services.flight.hold_paths import held_again
 from cratous.services.flight.legs import take_off_of
 from cratous.services.flight.messages import (
     Because,

@@ -12,8 +12,8 @@ from cratous.services.flight.dynamics import (
     limits_of,
     planned_state,
 )
+from cratous.services.flight.lost_link import after_failure, lost_link
 from cratous.services.flight.vehicle import UNTOUCHED
-from cratous.services.flight.without_link import after_failure, lost_link
 from cratous.services.icarous.course_permits import refused
 from cratous.services.icarous.landing import (
     LONGEST_MS,
@@ -22,7 +22,7 @@ from cratous.services.icarous.landing import (
     sinks_too_slowly,
 )
 from cratous.services.icarous.link_loss import NO_WAY
-from cratous.services.icarous.lost import LostLink
+from cratous.services.icarous.lost_link import LostLink
 from cratous.services.icarous.messages import Sensed
 from cratous.services.loading.polygons import hard_zones
 from cratous.services.mission.ground import floor_of

@@ -21,13 +21,13 @@ from cratous.core.authority.gate import ICAROUS
 from cratous.services.bus import Bus
 from cratous.services.flight import executive_state, link_end, link_peers
 from cratous.services.flight.arrivals import arrivals
-from cratous.services.flight.asked_plan import planned
 from cratous.services.flight.commands import gated, velocity_command
 from cratous.services.flight.dynamics import AirState, planned_state, traffic_state
 from cratous.services.flight.executive import Executive
 from cratous.services.flight.executive_state import Config
 from cratous.services.flight.holding import Ground
 from cratous.services.flight.link_end import UxasEnd
+from cratous.services.flight.lost_link import after_failure, lost_link
 from cratous.services.flight.merging import DirectTalk, merge_fix
 from cratous.services.flight.messages import (
     AskPlan,
@@ -66,10 +66,10 @@ from cratous.services.flight.messages import (
     Wished,
 )
 from cratous.services.flight.notices import guidance, of_instance, truth
+from cratous.services.flight.plan_reply import planned
 from cratous.services.flight.result import FlightResult
 from cratous.services.flight.take_off import take_off
 from cratous.services.flight.vehicle import VehicleNode
-from cratous.services.flight.without_link import after_failure, lost_link
 from cratous.services.icarous import state as icarous
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import (

@@ -9,7 +9,7 @@ from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.routing.dubins import cut, dubins
 from cratous.core.routing.visibility import Roadmap, route
 from cratous.services.flight.dynamics import AirState
-from cratous.services.planning.leaving import entered, way_out
+from cratous.services.planning.zone_exits import entered, way_out
 from cratous.services.planning.zones import roadmaps
 from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.plan import Pose

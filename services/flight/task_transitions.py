@@ -18,9 +18,9 @@ from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.commands import task_progress
 from cratous.services.flight.dynamics import turn_radius_m
 from cratous.services.flight.executive_state import Config, Out, State
-from cratous.services.flight.left_out import awaited, leave_out, nothing_of
 from cratous.services.flight.messages import Say
 from cratous.services.flight.notices import mission_change
+from cratous.services.flight.omitted_tasks import awaited, leave_out, nothing_of
 from cratous.services.flight.remaining_path import last_lap
 from cratous.services.flight.task_states import life
 from cratous.services.flight.timing import closed_by

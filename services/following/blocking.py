@@ -14,8 +14,8 @@ from cratous.core.routing.visibility import name_of
 from cratous.services.loading.ground import drives
 from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.ground import ROADS
-from cratous.services.planning.flyers import flyer_of
 from cratous.services.planning.options import Dropped, Option
+from cratous.services.planning.performance_classes import flyer_of
 from cratous.spec.mission import Position, Task, Vehicle
 from cratous.spec.mission.plan import Pose
 

@@ -19,16 +19,7 @@ from cratous.core.kernel import Vec2
 from cratous.core.routing.visibility import name_of
 from cratous.core.tasks.stations import in_ring, outruns
 from cratous.services.bus import Envelope
-from cratous.services.following.asked import (
-    DURATION,
-    DURATION_MOST_MS,
-    STANDOFF_MOST_M,
-    milliseconds,
-    within,
-)
 from cratous.services.following.blocking import Told, options_of
-from cratous.services.following.offering import choice
-from cratous.services.following.part import Part, command_id
 from cratous.services.following.service import (
     SELECTED,
     SILENT_MS,
@@ -37,6 +28,15 @@ from cratous.services.following.service import (
     Step,
     kept_at,
 )
+from cratous.services.following.task_options import choice
+from cratous.services.following.task_parameters import (
+    DURATION,
+    DURATION_MOST_MS,
+    STANDOFF_MOST_M,
+    milliseconds,
+    within,
+)
+from cratous.services.following.vehicle_part import Part, command_id
 from cratous.services.pipeline.contexts import Context, Contexts
 from cratous.services.pipeline.ground import ROADS
 from cratous.services.pipeline.implementation import ROUNDED_MS
@@ -46,8 +46,8 @@ from cratous.services.pipeline.tasks import (
     ROUTES_KNOWN,
     State,
 )
-from cratous.services.planning.flyers import MOMENT_MS
 from cratous.services.planning.options import Dropped, Option
+from cratous.services.planning.performance_classes import MOMENT_MS
 from cratous.spec.errors import BadInput, NoPlan
 
 EGRESS = "uxas.messages.route.EgressRouteResponse"

@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 from cratous.core.kernel import Vec2
-from cratous.services.pipeline.places import RequestPlaces
+from cratous.services.pipeline.coordinates import RequestPlaces
 from cratous.spec.errors import BadInput
 
 STALE_MS = 5_000

@@ -11,11 +11,11 @@ from typing import Any, NamedTuple
 from cratous.core.kernel import Vec2
 from cratous.core.tasks.rendezvous import beyond
 from cratous.core.tasks.stations import in_ring
-from cratous.services.following.meeting import is_direct, waiting_circle, waits_as
-from cratous.services.following.part import Part
+from cratous.services.following.rendezvous_options import is_direct, waiting_circle, waits_as
 from cratous.services.following.service import Following
 from cratous.services.following.speeds import Limits, lap_s, over_ground
-from cratous.services.planning.flyers import Flyer
+from cratous.services.following.vehicle_part import Part
+from cratous.services.planning.performance_classes import Flyer
 
 NEAR_GATE = 1.5
 """A waiting circle is left within this many of its radii from the gate."""

@@ -26,8 +26,18 @@ from cratous.core.tasks.rendezvous import (
 )
 from cratous.core.tasks.stations import in_ring
 from cratous.services.bus import Envelope
-from cratous.services.following import part as parts_of
-from cratous.services.following.meeting import (
+from cratous.services.following import vehicle_part as parts_of
+from cratous.services.following.progress import (
+    Progress,
+    Way,
+    at_gate,
+    course_of,
+    heard,
+    place_of,
+    turn_left,
+    way_left,
+)
+from cratous.services.following.rendezvous_options import (
     WAIT,
     Met,
     at_speed,
@@ -41,17 +51,6 @@ from cratous.services.following.meeting import (
     waits_as,
     ways_of,
 )
-from cratous.services.following.part import Part
-from cratous.services.following.progress import (
-    Progress,
-    Way,
-    at_gate,
-    course_of,
-    heard,
-    place_of,
-    turn_left,
-    way_left,
-)
 from cratous.services.following.service import (
     SELECTED,
     SILENT_MS,
@@ -61,6 +60,7 @@ from cratous.services.following.service import (
 )
 from cratous.services.following.speeds import Limits, limits_of, wind_of
 from cratous.services.following.stations import EARLY, FLY, LATE
+from cratous.services.following.vehicle_part import Part
 from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import (

@@ -18,8 +18,10 @@ from cratous.core.authority.timeliness import in_time
 from cratous.core.kernel import Vec2
 from cratous.core.tasks.stations import Kept, kept_step
 from cratous.services.bus import Envelope
-from cratous.services.following import part as parts_of
-from cratous.services.following.asked import (
+from cratous.services.following import vehicle_part as parts_of
+from cratous.services.following.motion import STALE_MS, Motion, motion_of
+from cratous.services.following.task_options import offered, options_of
+from cratous.services.following.task_parameters import (
     TOLD_MOST,
     Asked,
     Tower,
@@ -29,9 +31,7 @@ from cratous.services.following.asked import (
     unused_of,
     within,
 )
-from cratous.services.following.motion import STALE_MS, Motion, motion_of
-from cratous.services.following.offering import offered, options_of
-from cratous.services.following.part import Part
+from cratous.services.following.vehicle_part import Part
 from cratous.services.pipeline.contexts import UNIQUE, Context, Contexts
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import (

@@ -6,7 +6,7 @@ import math
 from typing import Any, NamedTuple
 
 from cratous.core.kernel import Vec2
-from cratous.services.planning.flyers import Flyer
+from cratous.services.planning.performance_classes import Flyer
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Vehicle
 

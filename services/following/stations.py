@@ -14,12 +14,12 @@ from typing import Any, NamedTuple
 from cratous.core.kernel import Vec2
 from cratous.core.tasks.rendezvous import pace
 from cratous.core.tasks.stations import beside, in_ring
-from cratous.services.following.asked import Asked, Tower
 from cratous.services.following.motion import Motion
-from cratous.services.loading.places import Places
+from cratous.services.following.task_parameters import Asked, Tower
+from cratous.services.loading.coordinates import Places
 from cratous.services.mission.sensor import sees
-from cratous.services.planning.flyers import Flyer, camera_for
-from cratous.services.planning.point_ways import tilted
+from cratous.services.planning.performance_classes import Flyer, camera_for
+from cratous.services.planning.point_paths import tilted
 from cratous.spec.mission import Camera
 
 RING_M = 150.0

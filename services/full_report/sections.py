@@ -4,27 +4,32 @@ from __future__ import annotations
 
 from cratous.services.attestation.findings import Subject
 from cratous.services.certify.trace import traced
-from cratous.services.full_report import account, front, observed, subject
+from cratous.services.full_report import (
+    assurance_sections,
+    first_pages,
+    planning_sections,
+    runtime_sections,
+)
 from cratous.services.full_report.document import Document
 
 
 def document(about: Subject, full: bool) -> Document:
     """The pages of a confirmed report. full: all sections after the first page, otherwise only the flight."""
     report = about.report
-    first = (front.verdict_page(report), front.flight_page(report))
+    first = (first_pages.verdict_page(report), first_pages.flight_page(report))
     chains = traced(report) if full else {}
     rest = (
         (
-            *subject.sections(report, chains),
-            observed.trajectory(report, chains),
-            observed.runtime(report),
-            account.proofs(report, chains["names"]),
-            observed.assumptions(report),
-            account.coverage(about, chains),
-            account.discrepancies(about),
-            account.tools(report),
-            account.argued(about),
-            account.reproduction(report),
+            *planning_sections.sections(report, chains),
+            runtime_sections.trajectory(report, chains),
+            runtime_sections.runtime(report),
+            assurance_sections.proofs(report, chains["names"]),
+            runtime_sections.assumptions(report),
+            assurance_sections.coverage(about, chains),
+            assurance_sections.discrepancies(about),
+            assurance_sections.tools(report),
+            assurance_sections.argued(about),
+            assurance_sections.reproduction(report),
         )
         if full
         else ()

@@ -15,7 +15,7 @@ from typing import Any
 from cratous.bridge.port import Address
 from cratous.core.authority.timeliness import in_time, lasted
 from cratous.services.ground_station.bands import Bands
-from cratous.services.ground_station.bounded import Bounded
+from cratous.services.ground_station.bounded_rows import Bounded
 from cratous.services.ground_station.live_session import NotObeyed
 from cratous.services.ground_station.positions import Positions
 from cratous.services.ground_station.recording import is_told, told_text

@@ -17,9 +17,9 @@ from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.services.certify.verdicts import constraint_rows, plan_rows, requirement_rows
+from cratous.services.ground_station.deferred_signals import held_back
 from cratous.services.ground_station.direct_orders import DirectOrders
-from cratous.services.ground_station.flown import FlownRecording
-from cratous.services.ground_station.held_signals import held_back
+from cratous.services.ground_station.flight_display import FlownRecording
 from cratous.services.ground_station.pace import RATES, Pace
 from cratous.services.ground_station.verdicts import shown
 from cratous.services.logs.entry import Entry

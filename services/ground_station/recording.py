@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from cratous.services.ground_station.bands import Bands
-from cratous.services.ground_station.flown import STATE, FlownRecording
+from cratous.services.ground_station.flight_display import STATE, FlownRecording
 from cratous.services.ground_station.positions import Positions
 from cratous.services.ground_station.shapes import Shapes
 from cratous.services.ground_station.verdicts import verdicts_of

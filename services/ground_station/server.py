@@ -28,10 +28,10 @@ from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
 from cratous.services.ground_station.access import Access
-from cratous.services.ground_station.beneath import Beneath
+from cratous.services.ground_station.background import Beneath
 from cratous.services.ground_station.guard import Guard
 from cratous.services.ground_station.live_session import NotObeyed
-from cratous.services.ground_station.shown import Recording
+from cratous.services.ground_station.page_data import Recording
 from cratous.services.web.answers import body_of, in_thread, json_answer
 from cratous.services.web.server import WebServer
 from cratous.spec.errors import BadInput

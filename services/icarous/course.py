@@ -8,8 +8,8 @@ from typing import NamedTuple
 from cratous.core.avoidance.manoeuvre import Motion, Pace
 from cratous.core.avoidance.resolution import Choice
 from cratous.core.routing.polylines import Track
-from cratous.services.icarous.ending import TURN_MARGIN
 from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.route_end import TURN_MARGIN
 from cratous.spec.mission import Position
 from cratous.spec.mission.link_loss import LandingSite
 from cratous.spec.mission.plan import Hold, Pose

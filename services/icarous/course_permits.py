@@ -21,9 +21,9 @@ from cratous.core.kernel import Vec2
 from cratous.core.permit.remainder import hold_at, hold_permits, zones_permit
 from cratous.core.routing.polylines import circle_points
 from cratous.services.icarous.course import Course
-from cratous.services.icarous.ending import TRACKING_S
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.permits import way_is_clear
+from cratous.services.icarous.route_end import TRACKING_S
 from cratous.spec.mission import Daa, Position, Zone
 
 ORIGIN = Vec2(0.0, 0.0)

@@ -13,9 +13,9 @@ from cratous.core.avoidance.manoeuvre import Ability, Motion
 from cratous.core.avoidance.prediction import buffered
 from cratous.core.avoidance.resolution import Scene, turn_back_s
 from cratous.core.routing.dubins import turn_radius_m
-from cratous.services.icarous.ending import TRACKING_S, TURN_MARGIN, WIDEST, horizon_s
 from cratous.services.icarous.foresight import PASSED_S, REACHED_S
 from cratous.services.icarous.proposal import STEPS
+from cratous.services.icarous.route_end import TRACKING_S, TURN_MARGIN, WIDEST, horizon_s
 from cratous.services.icarous.traffic_monitor import PERSIST_MS, nearest
 from cratous.spec.mission import Mission, Vehicle, WellClear
 

@@ -8,7 +8,6 @@ from cratous.core.avoidance.manoeuvre import velocity_of, way_along
 from cratous.core.avoidance.prediction import Piece, buffered
 from cratous.core.avoidance.resolution import Scene, first_zone_s
 from cratous.core.avoidance.way_ahead import near_line, there_within
-from cratous.services.icarous.ending import TURN_MARGIN, Ahead, horizon_s, with_hold
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.pace import at_pace, pace_of
 from cratous.services.icarous.permits import keeps_volume, way_is_clear
@@ -17,6 +16,7 @@ from cratous.services.icarous.return_to_path import (
     way_on,
     ways_back,
 )
+from cratous.services.icarous.route_end import TURN_MARGIN, Ahead, horizon_s, with_hold
 from cratous.services.icarous.state import Config, State
 from cratous.spec.mission import Daa, Position
 

@@ -30,8 +30,7 @@ from cratous.core.authority.timeliness import in_time
 from cratous.core.avoidance.manoeuvre import velocity_of
 from cratous.core.avoidance.resolution import Choice
 from cratous.core.merging.stages import merging_lets_go, merging_takes
-from cratous.services.icarous import asking, link_loss, merging, messages, permits, take_off
-from cratous.services.icarous.ending import TURN_MARGIN
+from cratous.services.icarous import link_loss, merging, messages, permits, route_requests, take_off
 from cratous.services.icarous.failing import noted
 from cratous.services.icarous.foresight import (
     looked_s,
@@ -44,10 +43,11 @@ from cratous.services.icarous.foresight import (
 from cratous.services.icarous.geofence_monitor import zone_ahead_s
 from cratous.services.icarous.inbox import beaten, hear
 from cratous.services.icarous.offers import Refused, certified
-from cratous.services.icarous.others import to_their_ends, with_ways
+from cratous.services.icarous.other_vehicles import to_their_ends, with_ways
 from cratous.services.icarous.pace import change_ms, pace_of
 from cratous.services.icarous.proposal import describe, manoeuvre
 from cratous.services.icarous.return_to_path import PERSIST_MS, RELAPSE_MS, onto
+from cratous.services.icarous.route_end import TURN_MARGIN
 from cratous.services.icarous.state import IDLE, Config, State
 from cratous.services.icarous.traffic_monitor import (
     courses,
@@ -97,7 +97,7 @@ class Instance:
             case messages.Line(now_ms, line):
                 config = self.config
                 told = hear(state.told, line, config.projection, now_ms, config.original)
-                asked = asking.heard(state.asking, line, config.projection)
+                asked = route_requests.heard(state.asking, line, config.projection)
                 if told is state.told and asked is state.asking:
                     return state, ()
                 # a waypoint index is meaningless for another route
@@ -309,7 +309,7 @@ class Instance:
         now_ms, motion, before = sensed.now_ms, sensed.motion, state.asking
         if free or not (before.allowed and state.told.waypoints):
             return replace(state, asking=before._replace(proposal=())), None, []
-        points, found = points_back(state, sensed), asking.waited(before, now_ms)
+        points, found = points_back(state, sensed), route_requests.waited(before, now_ms)
         number = None
         if found.proposal:
             radius_m = TURN_MARGIN * motion.speed_m_s / sensed.ability.turn_rate_rad_s
@@ -321,7 +321,7 @@ class Instance:
             state.told.speed_m_s or motion.speed_m_s,
             Pose(*motion.position, motion.heading_rad),
         )
-        found, line = asking.asks(
+        found, line = route_requests.asks(
             found, now_ms, start, speed_m_s, points[0], self.config.projection
         )
         vid, out = self.config.vehicle_id, list[messages.FromInstance]()

@@ -16,7 +16,7 @@ from cratous.core.avoidance.manoeuvre import Ability
 from cratous.core.routing.dubins import polyline_length_m
 from cratous.core.routing.polylines import Track, circle_points
 from cratous.services.icarous.course import Course, courses, radius_m
-from cratous.services.icarous.lost import LostLink
+from cratous.services.icarous.lost_link import LostLink
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.return_to_path import bearing_rad
 from cratous.services.mission.landing import BRAKING_M_S2

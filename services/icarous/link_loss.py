@@ -35,7 +35,7 @@ from cratous.services.icarous.course import Course
 from cratous.services.icarous.course_permits import TAKEN, refused
 from cratous.services.icarous.foresight import ON_PATH_M, scene_of
 from cratous.services.icarous.landing import approaches, in_order
-from cratous.services.icarous.lost import LostLink, NoLink
+from cratous.services.icarous.lost_link import LostLink, NoLink
 from cratous.services.icarous.messages import Fails, Sensed, WithoutLink
 from cratous.services.icarous.proposal import AGAIN_MS, manoeuvre
 from cratous.services.icarous.return_to_path import bearing_rad, flat, onto, rejoin

@@ -18,8 +18,8 @@ from cratous.core.avoidance.resolution import Choice, Scene, first_zone_s, turn_
 from cratous.core.permit.hand import Offer
 from cratous.core.permit.remainder import zones_permit
 from cratous.services.icarous.certificate import Certificate, Track
-from cratous.services.icarous.ending import TRACKING_S, TURN_MARGIN
 from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.route_end import TRACKING_S, TURN_MARGIN
 from cratous.spec.mission import Daa
 from cratous.spec.mission.plan import Hold
 

@@ -24,9 +24,9 @@ from cratous.core.permit.encounter import (
 )
 from cratous.core.permit.remainder import way_permits
 from cratous.services.icarous.deviation import keeps_to
-from cratous.services.icarous.ending import Ahead
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.pace import pace_of
+from cratous.services.icarous.route_end import Ahead
 from cratous.services.icarous.state import Config, Met, State
 from cratous.services.icarous.traffic_monitor import Threat
 from cratous.spec.mission import Daa

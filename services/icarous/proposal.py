@@ -27,10 +27,10 @@ from cratous.core.avoidance.resolution import (
     resolve,
     turn_back_s,
 )
-from cratous.services.icarous.ending import cylinder
 from cratous.services.icarous.foresight import scene_of, way_back_is_free
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.return_to_path import PERSIST_MS, bearing_rad, goal_index
+from cratous.services.icarous.route_end import cylinder
 from cratous.services.icarous.state import Config, Search, State
 from cratous.spec.daa.parameters import NMAC_HALF_HEIGHT_M, NMAC_RADIUS_M
 from cratous.spec.mission import Position, WellClear

@@ -11,15 +11,15 @@ from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.prediction import Intruder
 from cratous.core.avoidance.resolution import Choice
 from cratous.core.permit.encounter import Encounter
-from cratous.services.icarous.asking import Asking
 from cratous.services.icarous.band_history import Bands
 from cratous.services.icarous.course import Course
-from cratous.services.icarous.ending import Beside
 from cratous.services.icarous.failing import Failing
 from cratous.services.icarous.inbox import Told
-from cratous.services.icarous.lost import LostLink, NoLink, OnFailure
+from cratous.services.icarous.lost_link import LostLink, NoLink, OnFailure
 from cratous.services.icarous.merge_state import Fix, Merging
-from cratous.services.icarous.others import Ways
+from cratous.services.icarous.other_vehicles import Ways
+from cratous.services.icarous.route_end import Beside
+from cratous.services.icarous.route_requests import Asking
 from cratous.services.icarous.traffic_monitor import Threat, Tracks
 from cratous.services.mission.frames import Projection
 from cratous.services.mission.take_off import TakeOff

@@ -16,7 +16,7 @@ from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import Ability, smallest_turn
 from cratous.core.avoidance.prediction import Intruder
 from cratous.core.avoidance.way_ahead import turns
-from cratous.services.icarous.ending import Ahead
+from cratous.services.icarous.route_end import Ahead
 from cratous.spec.mission import WellClear
 
 PERSIST_MS = 2000

@@ -23,8 +23,8 @@ from cratous.core.authority.timeliness import in_time
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.messages import Down
 from cratous.services.flight.rejoining import Router
-from cratous.services.icarous.asking import MOST_POINTS
 from cratous.services.icarous.return_to_path import bearing_rad
+from cratous.services.icarous.route_requests import MOST_POINTS
 from cratous.services.icarous_communication.state import (
     Note,
     Out,

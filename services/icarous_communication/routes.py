@@ -23,7 +23,7 @@ from cratous.bridge.text_protocol import (
 )
 from cratous.services.bus import Envelope
 from cratous.services.flight.messages import Down, Say
-from cratous.services.icarous_communication.doors import Dialects
+from cratous.services.icarous_communication.listeners import Dialects
 from cratous.services.icarous_communication.state import Note, Out, Refuse
 from cratous.services.mission.frames import compass
 from cratous.services.pipeline import planner

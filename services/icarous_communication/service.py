@@ -25,13 +25,13 @@ from cratous.bridge.text_protocol import (
     Skipped,
     WireError,
 )
-from cratous.bridge.text_protocol.sealed import FORGED
+from cratous.bridge.text_protocol.authenticated_lines import FORGED
 from cratous.services.bus import Bus, Envelope, Wake
 from cratous.services.flight.messages import Down, Lost, Say
 from cratous.services.icarous_communication import modes
+from cratous.services.icarous_communication.connection_assignment import Refusal, Seats
 from cratous.services.icarous_communication.proposals import Proposals
 from cratous.services.icarous_communication.routes import GROUP, REQUEST, RouteLine, Routes
-from cratous.services.icarous_communication.seats import Refusal, Seats
 from cratous.services.icarous_communication.settings import Settings
 from cratous.services.icarous_communication.state import led_back
 from cratous.services.icarous_communication.step import (

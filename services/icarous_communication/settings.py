@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from cratous.bridge.port import Address, address
 from cratous.bridge.text_protocol.dialects import Dialect
 from cratous.bridge.text_protocol.keys import Keys, keys_of
-from cratous.services.icarous_communication.doors import FORMS, Dialects, Door, form_of
+from cratous.services.icarous_communication.listeners import FORMS, Dialects, Door, form_of
 from cratous.services.loading.uxas_settings import Attr, Entry, choice, flag, number, whole
 from cratous.spec.errors import BadInput
 

@@ -28,8 +28,8 @@ from cratous.services.flight.dynamics import AirState, turn_radius_m
 from cratous.services.flight.link_lines import fence, onward
 from cratous.services.flight.link_peers import to_others
 from cratous.services.flight.messages import Down, Say
-from cratous.services.icarous.ending import TURN_MARGIN
-from cratous.services.icarous_communication.doors import Dialects
+from cratous.services.icarous.route_end import TURN_MARGIN
+from cratous.services.icarous_communication.listeners import Dialects
 from cratous.services.icarous_communication.plans import Away, Plan, position_of
 from cratous.services.mission.frames import Projection
 from cratous.services.uxas.daidalus.zones import surroundings

@@ -36,7 +36,7 @@ from cratous.services.flight.messages import (
     ZonesKnown,
 )
 from cratous.services.icarous_communication import modes
-from cratous.services.icarous_communication.doors import Dialects
+from cratous.services.icarous_communication.listeners import Dialects
 from cratous.services.icarous_communication.plans import (
     Away,
     Plan,

@@ -34,7 +34,7 @@ from cratous.bridge.text_protocol import (
     WireError,
 )
 from cratous.core.authority.timeliness import lasted
-from cratous.services.icarous.others import LINK_LOST_MS
+from cratous.services.icarous.other_vehicles import LINK_LOST_MS
 from cratous.services.icarous_program.autopilot import Autopilot, Reported
 from cratous.services.icarous_program.direct import DirectLink
 from cratous.services.icarous_program.epochs import EpochFile

@@ -24,7 +24,7 @@ from cratous.core.routing.bulk import FOUND
 from cratous.core.routing.visibility import Roadmap, route, routes, why_not
 from cratous.core.routing.wind import holds_in_wind
 from cratous.services.flight.dynamics import Limits, turn_radius_m
-from cratous.services.icarous.ending import TURN_MARGIN
+from cratous.services.icarous.route_end import TURN_MARGIN
 from cratous.services.mission.frames import Projection
 from cratous.services.planning.spacing import TOLERANCE, spaced
 from cratous.services.planning.zones import roadmaps

@@ -33,10 +33,10 @@ from cratous.core.avoidance.manoeuvre import PIECE_S
 from cratous.services.flight.dynamics import Limits
 from cratous.services.flight.link_lines import MOST_TOLD
 from cratous.services.icarous import state as icarous
-from cratous.services.icarous.asking import Asking
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Foresees, Line, Sensed, Up, Wish
-from cratous.services.icarous_program.onward import onward, steering
+from cratous.services.icarous.route_requests import Asking
+from cratous.services.icarous_program.goal_reports import onward, steering
 from cratous.services.icarous_program.recovery import (
     ASK_AGAIN_MS,
     Part,

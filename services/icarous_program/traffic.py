@@ -17,7 +17,7 @@ from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import Ability, Motion
 from cratous.core.avoidance.prediction import EXACT, Intruder, Spread
 from cratous.services.flight.dynamics import Limits, ability_at
-from cratous.services.icarous.others import LINK_LOST_MS
+from cratous.services.icarous.other_vehicles import LINK_LOST_MS
 from cratous.services.mission.frames import Projection
 from cratous.spec.mission import Position, Velocity
 

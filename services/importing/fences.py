@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from cratous.bridge.lmcp.xml_text import parse
-from cratous.services.importing.parts import Fence, Parts, latitude, longitude, number
+from cratous.services.importing.imported_content import Fence, Parts, latitude, longitude, number
 from cratous.services.loading.document import Document
 from cratous.spec.errors import BadInput
 

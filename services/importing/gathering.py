@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from cratous.services.importing.imported_content import Parts, Reading
 from cratous.services.importing.kinds import KNOWN, NoKind, read_part
-from cratous.services.importing.parts import Parts, Reading
 from cratous.spec.errors import BadInput
 
 MOST = 200

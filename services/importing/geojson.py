@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from cratous.services.importing import parts
+from cratous.services.importing import imported_content
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import at_most, json_of
 
@@ -24,7 +24,7 @@ MOST = 2000
 """Maximum number of positions of a shape, and of shapes in a file."""
 
 
-def kind_of(told: object, how: parts.Reading, where: str, item: str) -> bool:
+def kind_of(told: object, how: imported_content.Reading, where: str, item: str) -> bool:
     """Whether an area is a keep-out zone, from its kind, or from the user's option for areas
     without one. Raises BadInput.
     """
@@ -55,7 +55,7 @@ def _word(told: object) -> str:
     return str(told or "").lower().replace("_", "").replace("-", "").replace(" ", "")
 
 
-def read_geojson(text: str, file: str, how: parts.Reading) -> parts.Parts:
+def read_geojson(text: str, file: str, how: imported_content.Reading) -> imported_content.Parts:
     """The zones and routes in a text. Raises BadInput with the feature."""
     data = json_of(text, file)
     kind = data.get("type") if isinstance(data, dict) else None
@@ -66,7 +66,11 @@ def read_geojson(text: str, file: str, how: parts.Reading) -> parts.Parts:
             got=str(kind)[:40],
         )  # fmt: skip
     at_most(len(features), MOST, "too many features", file, "of them")
-    ways, fences, left = list[parts.Way](), list[parts.Fence](), dict[str, int]()
+    ways, fences, left = (
+        list[imported_content.Way](),
+        list[imported_content.Fence](),
+        dict[str, int](),
+    )
     for k, feature in enumerate(features):
         item = f"features[{k}]"
         form, coordinates, said = _parts(feature, file, item)
@@ -81,7 +85,7 @@ def read_geojson(text: str, file: str, how: parts.Reading) -> parts.Parts:
             what = f"{told or 'no kind'} ({form})"
             left[what] = left.get(what, 0) + 1
     notes = tuple(f"{file}: not taken over: {count} x {what}" for what, count in left.items())
-    return parts.Parts(ways=tuple(ways), fences=tuple(fences), notes=notes)
+    return imported_content.Parts(ways=tuple(ways), fences=tuple(fences), notes=notes)
 
 
 def _is_zone(told: object) -> bool:
@@ -124,8 +128,12 @@ def _places(coordinates: Any, place: tuple[str, str]) -> list[list[Any]]:
 
 
 def _fence(
-    coordinates: Any, said: dict[str, Any], name: str, place: tuple[str, str], how: parts.Reading
-) -> parts.Fence:
+    coordinates: Any,
+    said: dict[str, Any],
+    name: str,
+    place: tuple[str, str],
+    how: imported_content.Reading,
+) -> imported_content.Fence:
     file, item = place
     keep_out = kind_of(said.get("kind", said.get("type")), how, file, item)
     if not isinstance(coordinates, list) or len(coordinates) != 1:
@@ -134,20 +142,25 @@ def _fence(
     if len(ring) < 4 or ring[0] != ring[-1]:
         raise open_ring(file, item)
     corners = tuple(
-        (parts.latitude(p[1], file, item), parts.longitude(p[0], file, item)) for p in ring[:-1]
+        (imported_content.latitude(p[1], file, item), imported_content.longitude(p[0], file, item))
+        for p in ring[:-1]
     )
     floor, ceiling = (
         None
         if said.get(key) is None
-        else parts.number(said[key], file, f"{item}: {key}", -1000, 100_000)
+        else imported_content.number(said[key], file, f"{item}: {key}", -1000, 100_000)
         for key in ("floor_msl_m", "ceiling_msl_m")
     )
-    return parts.Fence(name, keep_out, corners, floor, ceiling, False, file)
+    return imported_content.Fence(name, keep_out, corners, floor, ceiling, False, file)
 
 
 def _way(
-    coordinates: Any, said: dict[str, Any], name: str, place: tuple[str, str], how: parts.Reading
-) -> parts.Way:
+    coordinates: Any,
+    said: dict[str, Any],
+    name: str,
+    place: tuple[str, str],
+    how: imported_content.Reading,
+) -> imported_content.Way:
     file, item = place
     row = _places(coordinates, place)
     if len(row) < 2:
@@ -167,8 +180,17 @@ def _way(
                 "a way without altitudes", where=file, item=item,
                 expected="a third number in each place, altitude_msl_m, or --altitude M",
             )  # fmt: skip
-        lat, lon = parts.latitude(spot[1], file, item), parts.longitude(spot[0], file, item)
-        places.append(parts.Place(lat, lon, parts.altitude(alt, file, item), False))
+        lat, lon = (
+            imported_content.latitude(spot[1], file, item),
+            imported_content.longitude(spot[0], file, item),
+        )
+        places.append(
+            imported_content.Place(lat, lon, imported_content.altitude(alt, file, item), False)
+        )
     speed = said.get("speed_m_s")
-    speed = None if speed is None else parts.number(speed, file, f"{item}: speed_m_s", 0.01, 350)
-    return parts.Way(name, tuple(places), speed, file)
+    speed = (
+        None
+        if speed is None
+        else imported_content.number(speed, file, f"{item}: speed_m_s", 0.01, 350)
+    )
+    return imported_content.Way(name, tuple(places), speed, file)

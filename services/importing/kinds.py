@@ -7,8 +7,8 @@ from pathlib import Path
 from cratous.bridge.lmcp.xml_text import parse
 from cratous.services.importing import fences, traffic
 from cratous.services.importing.geojson import read_geojson
+from cratous.services.importing.imported_content import Parts, Reading
 from cratous.services.importing.kml import read_kml
-from cratous.services.importing.parts import Parts, Reading
 from cratous.services.importing.qgc import HEAD, read_qgc
 from cratous.services.importing.tables import read_daa, read_eutl
 from cratous.services.loading.document import parse_document

@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import Any
 
 from cratous.bridge.lmcp.xml_text import parse
-from cratous.services.importing import parts
+from cratous.services.importing import imported_content
 from cratous.services.importing.geojson import MOST, WAYS, kind_of, no_ring, no_zone, open_ring
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import at_most
@@ -20,7 +20,7 @@ from cratous.spec.files.limits import at_most
 ABSOLUTE, RELATIVE = "absolute", "relativeToGround"
 
 
-def read_kml(text: bytes, file: str, how: parts.Reading) -> parts.Parts:
+def read_kml(text: bytes, file: str, how: imported_content.Reading) -> imported_content.Parts:
     """The zones and routes of all placemarks. Raises BadInput with line and name."""
     root = parse(text, file)
     if _tag(root) != "kml":
@@ -29,7 +29,11 @@ def read_kml(text: bytes, file: str, how: parts.Reading) -> parts.Parts:
         )
     marks = [element for element in root.iter() if _tag(element) == "Placemark"]
     at_most(len(marks), MOST, "too many placemarks", file, "of them")
-    ways, fences, left = list[parts.Way](), list[parts.Fence](), dict[str, int]()
+    ways, fences, left = (
+        list[imported_content.Way](),
+        list[imported_content.Fence](),
+        dict[str, int](),
+    )
     for mark in marks:
         where = f"{file}:{mark.sourceline}"
         said = _said(mark)
@@ -46,7 +50,7 @@ def read_kml(text: bytes, file: str, how: parts.Reading) -> parts.Parts:
             what = f"{told or 'no kind'} ({kind or 'another geometry'})"
             left[what] = left.get(what, 0) + 1
     notes = tuple(f"{file}: not taken over: {count} x {what}" for what, count in left.items())
-    return parts.Parts(ways=tuple(ways), fences=tuple(fences), notes=notes)
+    return imported_content.Parts(ways=tuple(ways), fences=tuple(fences), notes=notes)
 
 
 def _tag(element: Any) -> str:
@@ -78,26 +82,33 @@ def _rows(element: Any, where: str, item: str) -> list[list[str]]:
 
 
 def _fence(
-    form: Any, said: dict[str, str], name: str, where: str, how: parts.Reading
-) -> parts.Fence:
+    form: Any, said: dict[str, str], name: str, where: str, how: imported_content.Reading
+) -> imported_content.Fence:
     keep_out = kind_of(said.get("kind"), how, where, name)
     rings = [element for element in form.iter() if _tag(element) == "LinearRing"]
     if len(rings) != 1:
         raise no_ring(len(rings), where, name)
     corners = [
-        (parts.latitude(r[1], where, name), parts.longitude(r[0], where, name))
+        (
+            imported_content.latitude(r[1], where, name),
+            imported_content.longitude(r[0], where, name),
+        )
         for r in _rows(rings[0], where, name)
     ]
     if len(corners) < 4 or corners[0] != corners[-1]:
         raise open_ring(where, name)
     floor, ceiling = (
-        parts.number(said[key], where, f"{name}: {key}", -1000, 100_000) if key in said else None
+        imported_content.number(said[key], where, f"{name}: {key}", -1000, 100_000)
+        if key in said
+        else None
         for key in ("floor_msl_m", "ceiling_msl_m")
     )
-    return parts.Fence(name, keep_out, tuple(corners[:-1]), floor, ceiling, False, where)
+    return imported_content.Fence(name, keep_out, tuple(corners[:-1]), floor, ceiling, False, where)
 
 
-def _way(form: Any, said: dict[str, str], name: str, where: str, how: parts.Reading) -> parts.Way:
+def _way(
+    form: Any, said: dict[str, str], name: str, where: str, how: imported_content.Reading
+) -> imported_content.Way:
     mode = _text(form, "altitudeMode")
     places = []
     for row in _rows(form, where, name):
@@ -109,12 +120,21 @@ def _way(form: Any, said: dict[str, str], name: str, where: str, how: parts.Read
                 expected=f"altitudes and the mode {ABSOLUTE} or {RELATIVE}, or --altitude M",
                 got=mode or "clampToGround",
             )  # fmt: skip
-        lat, lon = parts.latitude(row[1], where, name), parts.longitude(row[0], where, name)
+        lat, lon = (
+            imported_content.latitude(row[1], where, name),
+            imported_content.longitude(row[0], where, name),
+        )
         places.append(
-            parts.Place(lat, lon, parts.altitude(alt, where, name), own and mode == RELATIVE)
+            imported_content.Place(
+                lat, lon, imported_content.altitude(alt, where, name), own and mode == RELATIVE
+            )
         )
     if len(places) < 2:
         raise BadInput("a way that leads nowhere", where=where, item=name, expected="two places")
     told = said.get("speed_m_s")
-    speed = None if told is None else parts.number(told, where, f"{name}: speed_m_s", 0.01, 350)
-    return parts.Way(name, tuple(places), speed, where)
+    speed = (
+        None
+        if told is None
+        else imported_content.number(told, where, f"{name}: speed_m_s", 0.01, 350)
+    )
+    return imported_content.Way(name, tuple(places), speed, where)

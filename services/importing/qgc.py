@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from cratous.services.importing.parts import (
+from cratous.services.importing.imported_content import (
     Parts,
     Place,
     Way,

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from cratous.services.importing import parts
+from cratous.services.importing import imported_content
 from cratous.services.mission.frames import Projection
 from cratous.spec.daa.encounter_files import Row, parse
 from cratous.spec.daa.parameters import UNITS
@@ -37,10 +37,10 @@ class _Point(NamedTuple):
     where: str
     id: str
     time_s: float
-    place: parts.Place
+    place: imported_content.Place
 
 
-def read_eutl(text: str, file: str, how: parts.Reading) -> parts.Parts:
+def read_eutl(text: str, file: str, how: imported_content.Reading) -> imported_content.Parts:
     """The routes of all plans in a file, in order of first occurrence. Raises BadInput with line and column."""
     points, curved = list[_Point](), False
     for point, turns in _points(text, file, how):
@@ -56,7 +56,7 @@ def read_eutl(text: str, file: str, how: parts.Reading) -> parts.Parts:
             )
         places = tuple(point.place for point in mine)
         spent_s = mine[-1].time_s - mine[0].time_s
-        ways.append(parts.Way(name, places, _length_m(places) / spent_s, mine[0].where))
+        ways.append(imported_content.Way(name, places, _length_m(places) / spent_s, mine[0].where))
     if not ways:
         raise BadInput("the file has no points", where=file, expected="a header, units and rows")
     notes = [f"{file}: all legs are flown at the mean speed of the plan, its times are not kept"]
@@ -64,7 +64,7 @@ def read_eutl(text: str, file: str, how: parts.Reading) -> parts.Parts:
         notes.append(
             f"{file}: turns are the vehicle's own, those of the plan's points are not flown"
         )
-    return parts.Parts(ways=tuple(ways), notes=tuple(notes))
+    return imported_content.Parts(ways=tuple(ways), notes=tuple(notes))
 
 
 def _in_order(points: Sequence[_Point]) -> None:
@@ -77,7 +77,7 @@ def _in_order(points: Sequence[_Point]) -> None:
             )  # fmt: skip
 
 
-def _points(text: str, file: str, how: parts.Reading) -> Iterator[tuple[_Point, bool]]:
+def _points(text: str, file: str, how: imported_content.Reading) -> Iterator[tuple[_Point, bool]]:
     names: list[str] | None = None
     units, first = dict[str, str](USUAL), True
     for count, raw in enumerate(io.StringIO(text, newline=None), 1):
@@ -141,39 +141,48 @@ def _units(row: dict[str, str], where: str) -> dict[str, str]:
     return found
 
 
-def _point(row: dict[str, str], units: dict[str, str], where: str, how: parts.Reading) -> _Point:
+def _point(
+    row: dict[str, str], units: dict[str, str], where: str, how: imported_content.Reading
+) -> _Point:
     def amount(name: str) -> float:
-        return parts.number(row[name], where, name, -1e10, 1e10) * UNITS[units[name]][1]
+        return imported_content.number(row[name], where, name, -1e10, 1e10) * UNITS[units[name]][1]
 
-    alt_m = parts.altitude(amount("alt"), where)
+    alt_m = imported_content.altitude(amount("alt"), where)
     if "lat" in row:
         lat, lon = math.degrees(amount("lat")), math.degrees(amount("lon"))
-        place = parts.Place(parts.latitude(lat, where), parts.longitude(lon, where), alt_m, False)
+        place = imported_content.Place(
+            imported_content.latitude(lat, where),
+            imported_content.longitude(lon, where),
+            alt_m,
+            False,
+        )
     else:
         place = _from_metres(amount("y"), amount("x"), alt_m, where, how)
     return _Point(where, row["id"], amount("time"), place)
 
 
 def _from_metres(
-    north_m: float, east_m: float, alt_m: float, where: str, how: parts.Reading
-) -> parts.Place:
+    north_m: float, east_m: float, alt_m: float, where: str, how: imported_content.Reading
+) -> imported_content.Place:
     if how.origin is None:
         raise BadInput(
             "places in metres from nowhere", where=where, expected="--origin LATITUDE,LONGITUDE",
             got="sx and sy",
         )  # fmt: skip
     plane = Projection(Frame(*how.origin))
-    parts.number(math.hypot(north_m, east_m), where, "distance from the origin", 0, 100_000)
-    return parts.Place(*plane.to_geodetic(north_m, east_m), alt_m, False)
+    imported_content.number(
+        math.hypot(north_m, east_m), where, "distance from the origin", 0, 100_000
+    )
+    return imported_content.Place(*plane.to_geodetic(north_m, east_m), alt_m, False)
 
 
-def _length_m(places: Sequence[parts.Place]) -> float:
+def _length_m(places: Sequence[imported_content.Place]) -> float:
     plane = Projection(Frame(places[0].latitude_deg, places[0].longitude_deg))
     flat = [plane.to_local(place.latitude_deg, place.longitude_deg) for place in places]
     return sum(math.dist(a, b) for a, b in pairwise(flat))
 
 
-def read_daa(text: str, file: str, how: parts.Reading) -> parts.Parts:
+def read_daa(text: str, file: str, how: imported_content.Reading) -> imported_content.Parts:
     """The ownship's route from its first position to its last, and all other aircraft from their
     first positions.
     """
@@ -190,7 +199,7 @@ def read_daa(text: str, file: str, how: parts.Reading) -> parts.Parts:
             "a plan that leads nowhere", where=file, expected="two states of the ownship"
         )
     speed = _length_m(places) / (end.time_s - own.time_s)
-    way = parts.Way(found.ownship, places, speed, f"{file}:{own.line}")
+    way = imported_content.Way(found.ownship, places, speed, f"{file}:{own.line}")
     others = tuple(
         _intruder(k, row, file, how, row.time_s - own.time_s)
         for k, row in enumerate((row for name, row in first.items() if name != found.ownship), 1)
@@ -199,21 +208,28 @@ def read_daa(text: str, file: str, how: parts.Reading) -> parts.Parts:
         f"{file}: the ownship flies straight from its first place to its last, the others straight on"
     ]
     notes += [f"{file}: left out: {what}" for what in found.left_out]
-    return parts.Parts(ways=(way,), intruders=others, notes=tuple(notes))
+    return imported_content.Parts(ways=(way,), intruders=others, notes=tuple(notes))
 
 
-def _of_row(row: Row, file: str, how: parts.Reading) -> parts.Place:
+def _of_row(row: Row, file: str, how: imported_content.Reading) -> imported_content.Place:
     where, v = f"{file}:{row.line}", row.values
-    alt_m = parts.altitude(v["alt"], where)
+    alt_m = imported_content.altitude(v["alt"], where)
     if row.geodetic:
         lat, lon = math.degrees(v["lat"]), math.degrees(v["lon"])
-        return parts.Place(parts.latitude(lat, where), parts.longitude(lon, where), alt_m, False)
+        return imported_content.Place(
+            imported_content.latitude(lat, where),
+            imported_content.longitude(lon, where),
+            alt_m,
+            False,
+        )
     return _from_metres(v["y"], v["x"], alt_m, where, how)
 
 
-def _intruder(k: int, row: Row, file: str, how: parts.Reading, appears_s: float) -> parts.Intruder:
+def _intruder(
+    k: int, row: Row, file: str, how: imported_content.Reading, appears_s: float
+) -> imported_content.Intruder:
     place, v = _of_row(row, file, how), row.values
     moves = (v["vy"], v["vx"], -v["vs"])
-    return parts.Intruder(
+    return imported_content.Intruder(
         k, place, 0.0, 0.0, place.alt_m, moves, max(0.0, appears_s), f"{file}:{row.line}"
     )

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from math import cos, radians, sin
 from typing import Any
 
-from cratous.services.importing.parts import Intruder, Parts, altitude, number
+from cratous.services.importing.imported_content import Intruder, Parts, altitude, number
 from cratous.services.loading.document import Document
 from cratous.spec.errors import BadInput
 

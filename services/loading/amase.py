@@ -13,7 +13,7 @@ from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.services.loading import uxas_parts as parts
-from cratous.services.loading.places import Places
+from cratous.services.loading.coordinates import Places
 from cratous.services.loading.request_kinds import is_request
 from cratous.services.loading.uxas import mission_of
 from cratous.services.loading.uxas_cfg import Configuration, Sent

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from math import isfinite, radians
 
-from cratous.services.loading.places import Places
+from cratous.services.loading.coordinates import Places
 from cratous.services.loading.uxas_cfg import Sent
 from cratous.services.loading.uxas_parts import heading, no_vehicle, point, vehicle
 from cratous.spec.errors import BadInput

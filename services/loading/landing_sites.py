@@ -10,8 +10,8 @@ from cratous.core.avoidance.landing import on_ground, roll_fits
 from cratous.core.geofence.planar import keep_in_leg_ok
 from cratous.core.permit.remainder import zones_permit
 from cratous.services.loading.checks import Finding, as_errors
+from cratous.services.loading.coordinates import Places
 from cratous.services.loading.document import Document
-from cratous.services.loading.places import Places
 from cratous.services.mission.landing import BRAKING_M_S2, TOUCHES_OFF_BEATS, sites_of
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission, Position

@@ -16,9 +16,9 @@ from cratous.services.loading import uxas_parts as parts
 from cratous.services.loading.assignment_attributes import Settings, plans_live, settings_of
 from cratous.services.loading.checks import too_many_instances
 from cratous.services.loading.conditions import kept
+from cratous.services.loading.coordinates import Places
 from cratous.services.loading.document import item_key
 from cratous.services.loading.ground import CONFIGURATION, STATE, vehicle_of
-from cratous.services.loading.places import Places
 from cratous.services.loading.polygons import one_region
 from cratous.services.loading.request_kinds import WRAPPED, is_request
 from cratous.services.loading.start_distances import close_starts

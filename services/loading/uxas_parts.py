@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from math import hypot, isfinite, radians
 from typing import Any
 
-from cratous.services.loading.places import Places, msl
+from cratous.services.loading.coordinates import Places, msl
 from cratous.services.loading.polygons import circle, rectangle
 from cratous.services.loading.uxas_cfg import Sent
 from cratous.spec.errors import BadInput

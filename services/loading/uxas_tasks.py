@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from math import isfinite, radians
 from typing import Any
 
-from cratous.services.loading.places import Places
+from cratous.services.loading.coordinates import Places
 from cratous.services.loading.uxas_cfg import Sent
 from cratous.services.loading.uxas_parts import AHEAD, corners_of, looks_ahead, point
 from cratous.spec.errors import BadInput

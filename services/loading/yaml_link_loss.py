@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from cratous.core.authority.timeliness import lasted
 from cratous.core.geofence.planar import keep_in_leg_ok
 from cratous.services.loading.checks import Where, start_is_allowed
+from cratous.services.loading.coordinates import Places
 from cratous.services.loading.document import Document, item_name
 from cratous.services.loading.landing_sites import landing_sites, site_problems
-from cratous.services.loading.places import Places
 from cratous.services.loading.problems import refuse
 from cratous.services.mission.ground import floor_of
 from cratous.services.mission.landing import on_failure_of

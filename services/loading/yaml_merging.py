@@ -11,8 +11,8 @@ from cratous.core.kernel import Vec2
 from cratous.core.routing.dubins import turn_radius_m
 from cratous.core.tasks.rendezvous import spares_a_lap
 from cratous.services.loading.checks import Finding, as_errors
+from cratous.services.loading.coordinates import Places
 from cratous.services.loading.document import Document
-from cratous.services.loading.places import Places
 from cratous.services.loading.problems import refuse
 from cratous.services.mission.merging import merging_of
 from cratous.spec.errors import BadInput
@@ -109,7 +109,7 @@ def merging_problems(mission: Mission) -> Iterator[Finding]:
 
 def _no_room(merging: Merging, vehicle: Vehicle, mission: Mission, item: str) -> Iterator[Finding]:
     # loaded only if vehicles merge
-    from cratous.services.icarous.ending import TURN_MARGIN
+    from cratous.services.icarous.route_end import TURN_MARGIN
 
     slow, fast = vehicle.min_speed_m_s, vehicle.max_speed_m_s
     radius_m = TURN_MARGIN * turn_radius_m(vehicle.speed_m_s, vehicle.max_bank_rad)

@@ -20,10 +20,10 @@ from cratous.services.loading.checks import (
     too_many_instances,
     zone_end_problems,
 )
+from cratous.services.loading.coordinates import Places
 from cratous.services.loading.document import Document, item_key, read_document
 from cratous.services.loading.fitness import warnings_of
 from cratous.services.loading.landing_sites import ground_problems
-from cratous.services.loading.places import Places
 from cratous.services.loading.polygons import padded
 from cratous.services.loading.problems import refuse
 from cratous.services.loading.schema import schema_problems

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from cratous.services.loading.coordinates import Places
 from cratous.services.loading.document import Document, item_name
 from cratous.services.loading.landing_sites import landing_sites
-from cratous.services.loading.places import Places
 from cratous.services.loading.problems import refuse
 from cratous.spec.errors import BadInput
 from cratous.spec.mission.on_failure import AfterFailure, Failed, OnFailure

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from math import radians
 from typing import Any
 
-from cratous.services.loading.places import Places
+from cratous.services.loading.coordinates import Places
 from cratous.services.loading.polygons import circle, rectangle
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import SEARCHES, Loiter, Pattern, Position, Task, TaskKind, View

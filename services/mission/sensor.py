@@ -17,7 +17,7 @@ from cratous.core.geofence.planar import edges_of, locate
 from cratous.core.kernel import Vec2
 from cratous.core.readings.tiered import swift
 from cratous.core.tasks.footprints import nearest_on_line, points_in_quads
-from cratous.services.mission.asked_views import FLATTEST_RAD, near_asked
+from cratous.services.mission.required_views import FLATTEST_RAD, near_asked
 from cratous.spec.mission import Camera, Position, Task, View
 
 if TYPE_CHECKING:

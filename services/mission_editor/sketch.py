@@ -7,9 +7,9 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from cratous.services.ground_station.flown import FlownRecording
+from cratous.services.ground_station.flight_display import FlownRecording
+from cratous.services.loading.coordinates import Places
 from cratous.services.loading.document import Document, Key, parse_document
-from cratous.services.loading.places import Places
 from cratous.services.loading.problems import BadMission
 from cratous.services.loading.yaml_mission import drawn, loaded
 from cratous.services.mission_editor.text_edits import DEGREES, HEADING, PLACE, RADIUS

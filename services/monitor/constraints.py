@@ -12,8 +12,8 @@ from cratous.core.authority.timeliness import in_time
 from cratous.core.kernel import qualified
 from cratous.core.schedule.choice import as_asked
 from cratous.core.schedule.rows import eligible, runs_forward
-from cratous.services.mission.known_zones import Bound, zones_of
 from cratous.services.mission.wind import in_wind, wind_at
+from cratous.services.mission.zone_times import Bound, zones_of
 from cratous.services.mission.zones import deciding, distance_m, exact_leg_ok, margin_m
 from cratous.services.monitor.avoidable import Appeared, avoidable
 from cratous.services.monitor.observation import Ending, Presence

@@ -4,7 +4,7 @@ A point of a line (sampled at most 10 m apart) or the one point of a point searc
 lies in a reported footprint or on its edge, by the kernel `locate`. An area is divided into
 squares; one is seen when it lies entirely in one footprint, by the kernel `square_within`, and
 squares not seen count in full against the search: the fraction given is a lower bound.
-`monitor.looks` states which footprints count for a task.
+`monitor.counted_footprints` states which footprints count for a task.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from cratous.core.tasks.coverage import (
 from cratous.core.tasks.coverage_arrays import mark_seen
 from cratous.core.tasks.coverage_steps import enough_seen
 from cratous.services.mission.frames import Projection
-from cratous.services.monitor.looks import Look, counts, looks_of
+from cratous.services.monitor.counted_footprints import Look, counts, looks_of
 from cratous.spec.mission import AREAS, SEARCHES, Mission, Task
 
 SAMPLE_M = 10.0

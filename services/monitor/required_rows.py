@@ -10,10 +10,10 @@ from collections.abc import Collection, Iterable, Iterator, Set
 from itertools import combinations
 from typing import NamedTuple
 
-from cratous.services.mission.known_zones import zones_of
 from cratous.services.mission.landing import on_failure_of
 from cratous.services.mission.merging import merging_of
 from cratous.services.mission.take_off import grounded
+from cratous.services.mission.zone_times import zones_of
 from cratous.services.monitor.observation import Span, in_the_air
 from cratous.services.monitor.plan_check import WHOLE
 from cratous.services.monitor.relations import first_choices

@@ -18,10 +18,10 @@ from cratous.core.avoidance.resolution import KEEP_RAD, STEP_DEG
 from cratous.core.excuse import record
 from cratous.services.icarous import return_to_path, traffic_monitor
 from cratous.services.icarous.derived import derived
-from cratous.services.icarous.ending import TRACKING_S, TURN_MARGIN, WIDEST
 from cratous.services.icarous.foresight import ON_PATH_M, PASSED_S, REACHED_S
 from cratous.services.icarous.instance import LINK_LOST_MS
 from cratous.services.icarous.proposal import STEPS
+from cratous.services.icarous.route_end import TRACKING_S, TURN_MARGIN, WIDEST
 from cratous.services.icarous.traffic_monitor import TURNING_RAD_S
 from cratous.services.loading.document import read_document
 from cratous.services.loading.schema import mission_schema

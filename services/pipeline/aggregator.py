@@ -24,9 +24,9 @@ from cratous.core.contracts.checklists import (
 from cratous.services.bus import Envelope, Send
 from cratous.services.pipeline.compositions import composition, is_choice
 from cratous.services.pipeline.contexts import UNIQUE, Contexts
-from cratous.services.pipeline.endings import ENDINGS, newest, request_ended
 from cratous.services.pipeline.ground import is_ground
 from cratous.services.pipeline.planner import straight_costs
+from cratous.services.pipeline.request_end import ENDINGS, newest, request_ended
 from cratous.spec.errors import CratousError
 
 NAME = "RouteAggregatorService"

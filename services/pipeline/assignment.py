@@ -15,13 +15,13 @@ from cratous.core.assignment.problem import Assignment
 from cratous.services.bus import Envelope
 from cratous.services.pipeline.compositions import Pair
 from cratous.services.pipeline.contexts import UNIQUE, Contexts
-from cratous.services.pipeline.endings import ENDINGS, newest, request_ended
 from cratous.services.pipeline.offers import OPTIONS, Read, Told, read, travel_of
+from cratous.services.pipeline.request_end import ENDINGS, newest, request_ended
 from cratous.services.pipeline.status import status
 from cratous.services.planning import mission_assign, without_vehicles
 from cratous.services.planning.assign_problem import not_all_of
 from cratous.services.planning.inputs import Inputs
-from cratous.services.planning.left_out import NothingDone, assign_part
+from cratous.services.planning.omitted_tasks import NothingDone, assign_part
 from cratous.services.planning.options import Option
 from cratous.services.planning.partial import Parts
 from cratous.services.planning.remedies import remedies_of

@@ -13,7 +13,7 @@ from cratous.bridge import lmcp
 from cratous.core.contracts.building import Building, building_step
 from cratous.services.bus import Envelope
 from cratous.services.pipeline.contexts import UNIQUE, Contexts
-from cratous.services.pipeline.endings import ENDINGS, newest, request_ended
+from cratous.services.pipeline.request_end import ENDINGS, newest, request_ended
 from cratous.services.pipeline.status import status
 
 NAME = "PlanBuilderService"

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from cratous.services.bus import Envelope
-from cratous.services.pipeline.places import RequestPlaces
+from cratous.services.pipeline.coordinates import RequestPlaces
 from cratous.services.pipeline.source import Known, Source
 from cratous.services.pipeline.status import status
 from cratous.services.planning.inputs import Inputs

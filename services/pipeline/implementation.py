@@ -10,11 +10,11 @@ from cratous.bridge import lmcp
 from cratous.core.authority.timeliness import lasted
 from cratous.services.mission.sensor import zoomed
 from cratous.services.pipeline.contexts import Context
+from cratous.services.pipeline.coordinates import RequestPlaces
 from cratous.services.pipeline.outside import Outside
-from cratous.services.pipeline.places import RequestPlaces
 from cratous.services.pipeline.status import status
-from cratous.services.planning.flyers import camera_for
 from cratous.services.planning.options import Option
+from cratous.services.planning.performance_classes import camera_for
 from cratous.services.planning.stages import hold_of
 from cratous.services.planning.targets import Angles, flown_view
 from cratous.spec.errors import NoPlan

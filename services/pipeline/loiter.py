@@ -20,9 +20,9 @@ from cratous.bridge import lmcp
 from cratous.core.assignment.steps import chain_holds
 from cratous.services.bus import Envelope, Wake
 from cratous.services.pipeline.contexts import UNIQUE, Context, Contexts
-from cratous.services.pipeline.endings import ENDINGS, RESPONSE, newest, request_ended
 from cratous.services.pipeline.implementation import loiter_action
 from cratous.services.pipeline.offers import OPTIONS, Told, read, travel_of
+from cratous.services.pipeline.request_end import ENDINGS, RESPONSE, newest, request_ended
 from cratous.services.pipeline.status import status
 from cratous.services.planning.loiters import Given, Loiter, loiters_of, schedule
 from cratous.services.planning.partial import part_problem

@@ -10,7 +10,7 @@ from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
-from cratous.services.pipeline.places import RequestPlaces
+from cratous.services.pipeline.coordinates import RequestPlaces
 from cratous.services.planning.inputs import Inputs
 from cratous.spec.errors import BadInput
 

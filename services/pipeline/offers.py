@@ -15,10 +15,10 @@ from typing import Any, NamedTuple
 from cratous.core.assignment.problem import START, Branch
 from cratous.services.pipeline.compositions import Pair, Split, composition, is_choice, split
 from cratous.services.pipeline.contexts import Context
-from cratous.services.planning.flyers import flyer_of
 from cratous.services.planning.inputs import Inputs
 from cratous.services.planning.mission_assign import Travel
 from cratous.services.planning.options import Dropped, Option, hold_rooms
+from cratous.services.planning.performance_classes import flyer_of
 from cratous.services.planning.routes import Routes
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Zone

@@ -26,8 +26,8 @@ from cratous.services.pipeline.tasks import TaskService
 from cratous.services.pipeline.validator import LINE, AutomationRequestValidatorService
 from cratous.services.planning import stages, without_vehicles
 from cratous.services.planning.inputs import Inputs
-from cratous.services.planning.left_out import NothingDone
 from cratous.services.planning.mission_assign import parts_in, power_w
+from cratous.services.planning.omitted_tasks import NothingDone
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.mission import Mission
 from cratous.spec.mission.changes import with_choices

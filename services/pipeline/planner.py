@@ -15,10 +15,10 @@ from typing import Any
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope, Send, unicast
 from cratous.services.pipeline.contexts import Contexts, reasons_of
+from cratous.services.pipeline.coordinates import RequestPlaces, Way
 from cratous.services.pipeline.ground import ROADS, is_ground
-from cratous.services.pipeline.places import RequestPlaces, Way
-from cratous.services.planning.flyers import flyer_of
 from cratous.services.planning.options import flight_ms
+from cratous.services.planning.performance_classes import flyer_of
 from cratous.spec.errors import CratousError
 from cratous.spec.mission import Position
 

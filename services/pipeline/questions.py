@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.services.pipeline.contexts import Context
-from cratous.services.pipeline.places import RequestPlaces
-from cratous.services.planning.flyers import camera_for, flyer_of
+from cratous.services.pipeline.coordinates import RequestPlaces
 from cratous.services.planning.options import Option
+from cratous.services.planning.performance_classes import camera_for, flyer_of
 from cratous.spec.mission import SEARCHES, Task
 
 SENSORS = "uxas.messages.task.SensorFootprintResponse"

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from typing import Any, Protocol
 
 from cratous.services.bus import Envelope
+from cratous.services.pipeline.coordinates import RequestPlaces
 from cratous.services.pipeline.outside import Outside
-from cratous.services.pipeline.places import RequestPlaces
 from cratous.services.planning.inputs import Inputs
 
 

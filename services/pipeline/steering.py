@@ -10,12 +10,12 @@ import math
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
-from cratous.services.loading.places import Places
+from cratous.services.loading.coordinates import Places
 from cratous.services.mission.frames import Projection
 from cratous.services.pipeline.contexts import Context
-from cratous.services.pipeline.places import read_pose
-from cratous.services.planning.flyers import camera_for
+from cratous.services.pipeline.coordinates import read_pose
 from cratous.services.planning.options import Option
+from cratous.services.planning.performance_classes import camera_for
 from cratous.services.planning.targets import Angles, flown_view, target_from
 from cratous.spec.mission import AREAS, SEARCHES, Camera, Position, Task
 from cratous.spec.mission.plan import Pose

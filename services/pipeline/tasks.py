@@ -18,9 +18,9 @@ from cratous.core.contracts.tasks import task_step
 from cratous.services.bus import Envelope
 from cratous.services.pipeline import planner, questions, sensors
 from cratous.services.pipeline.contexts import UNIQUE, Context, Contexts
-from cratous.services.pipeline.endings import request_ended
 from cratous.services.pipeline.implementation import implemented, offer, way_asked
 from cratous.services.pipeline.questions import Asked
+from cratous.services.pipeline.request_end import request_ended
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.steering import Steering, last_look, look_command, steering_of
 from cratous.services.planning.options import Option

@@ -2,7 +2,7 @@
 
 Every request gets a ticket on arrival. When its turn comes it is validated against what is known
 (`validity`): a valid one is published as UniqueAutomationRequest; one that lacks only initialised tasks waits
-(except for kinds that no service handles: `unserved`); any other is answered with the reasons. One is in the
+(except for kinds that no service handles: `external_tasks`); any other is answered with the reasons. One is in the
 pipeline at a time; each is answered once, in order, by its response, by an error, or when its time limit is
 over.
 
@@ -25,10 +25,10 @@ from cratous.core.contracts.requests import Line, line_step
 from cratous.services.bus import Envelope, Wake
 from cratous.services.pipeline.answers import Asked, answer, asked_of, refusal
 from cratous.services.pipeline.contexts import Context, Contexts
-from cratous.services.pipeline.followed import FOLLOWED
+from cratous.services.pipeline.external_tasks import Unserved
+from cratous.services.pipeline.relative_tasks import FOLLOWED
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import TASKS
-from cratous.services.pipeline.unserved import Unserved
 from cratous.services.pipeline.validity import things_of, verdict
 
 NAME = "AutomationRequestValidatorService"

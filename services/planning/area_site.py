@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from cratous.core.tasks.coverage import outline, square_array, square_side_m
 from cratous.core.tasks.sweep import Piece, Swath, SwathOf, swath, unjoined_m
 from cratous.services.mission.sensor import footprints, looks_over
-from cratous.services.planning.flyers import Flyer
+from cratous.services.planning.performance_classes import Flyer
 from cratous.services.planning.smoothing import MARGIN
 from cratous.spec.mission import Camera, Task, View
 

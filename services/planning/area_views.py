@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 
 from cratous.core.tasks.sweep import Corner, strips_needed
 from cratous.services.mission.sensor import elevation_rad, sample_distance_m
-from cratous.services.planning.point_ways import STRAIGHT_DOWN_RAD
+from cratous.services.planning.point_paths import STRAIGHT_DOWN_RAD
 from cratous.spec.mission import AREAS, Camera, Pattern, Task, View
 
 TILTS_DEG = (-75.0, -60.0, -55.0, -50.0, -45.0, -40.0, -35.0, -30.0)

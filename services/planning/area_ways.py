@@ -45,8 +45,14 @@ from cratous.services.planning.area_site import (
     swaths_of,
 )
 from cratous.services.planning.area_views import best_view, open_view
-from cratous.services.planning.cut_ways import cut
-from cratous.services.planning.flyers import HEADING_STEP_DEG, Flyer, Way, flight_ms, no_way
+from cratous.services.planning.cut_paths import cut
+from cratous.services.planning.performance_classes import (
+    HEADING_STEP_DEG,
+    Flyer,
+    Way,
+    flight_ms,
+    no_way,
+)
 from cratous.services.planning.smoothing import MARGIN
 from cratous.services.planning.zones import roadmaps
 from cratous.spec.mission import Camera, Pattern, Position, Task, View, Zone

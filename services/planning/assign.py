@@ -31,7 +31,7 @@ from cratous.core.assignment.layers import DEALS_TASKS
 from cratous.core.assignment.optimality import shows_optimal
 from cratous.core.assignment.repair import repaired
 from cratous.core.assignment.settlement import Settler
-from cratous.services.planning import coming
+from cratous.services.planning import pending_compilation
 from cratous.services.planning.assign_problem import (
     Part,
     arrays,
@@ -154,7 +154,7 @@ def _searched(
     progress: Progress | None,
 ) -> tuple[_Run, list[Proof]]:  # fmt: skip
     if any(len(part.tasks) > SMALL_TASKS for part in branches):
-        coming.ready(coming.ASSIGNMENT)
+        pending_compilation.ready(pending_compilation.ASSIGNMENT)
     if limits.seconds is not None:
         warm()
     made = [arrays(problem, part) for part in branches]

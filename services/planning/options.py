@@ -19,11 +19,11 @@ from cratous.core.tasks.outside import area_outside, points_outside
 from cratous.services.loading.ground import drives
 from cratous.services.mission.sensor import sample_distance_m, sample_line, zoomed
 from cratous.services.planning.area_ways import area_parts, area_ways
-from cratous.services.planning.flyers import Flyer as Flyer
-from cratous.services.planning.flyers import Way, camera_for
-from cratous.services.planning.flyers import flight_ms as flight_ms
-from cratous.services.planning.flyers import flyer_of as flyer_of
-from cratous.services.planning.point_ways import (
+from cratous.services.planning.performance_classes import Flyer as Flyer
+from cratous.services.planning.performance_classes import Way, camera_for
+from cratous.services.planning.performance_classes import flight_ms as flight_ms
+from cratous.services.planning.performance_classes import flyer_of as flyer_of
+from cratous.services.planning.point_paths import (
     line_ways,
     loiter_ways,
     must_fly_ways,

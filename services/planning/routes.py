@@ -12,11 +12,11 @@ import numpy as np
 from cratous.core.assignment.problem import START
 from cratous.core.routing.bulk import FOUND
 from cratous.core.routing.visibility import Roadmap, Route, lengths_around, route, routes
-from cratous.services.planning import coming
+from cratous.services.planning import pending_compilation
 from cratous.services.planning.detours import many_detours
-from cratous.services.planning.leaving import WayOut, way_out
 from cratous.services.planning.options import Flyer, flight_ms, flyer_of
-from cratous.services.planning.vias import Flown, inner, joined
+from cratous.services.planning.via_points import Flown, inner, joined
+from cratous.services.planning.zone_exits import WayOut, way_out
 from cratous.services.planning.zones import roadmaps
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.mission.plan import Pose
@@ -151,10 +151,10 @@ class Routes:
             flat = [key for key in left if key[0].alt_m == key[2].alt_m]
             self._times.update((key, None) for key in left if key not in set(flat))
             left = flat
-        around = len(left) > coming.MANY_WAYS and self._lead_around(left)
-        kind = coming.AROUND if around else coming.ROUTES
-        if len(left) > coming.WORTH_WAITING[kind]:
-            coming.ready(kind)
+        around = len(left) > pending_compilation.MANY_WAYS and self._lead_around(left)
+        kind = pending_compilation.AROUND if around else pending_compilation.ROUTES
+        if len(left) > pending_compilation.WORTH_WAITING[kind]:
+            pending_compilation.ready(kind)
         for roadmap in self._roadmaps(flyer.radius_m):
             if not left:
                 return

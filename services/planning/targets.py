@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from cratous.services.mission.sensor import aim, look_on_line
 from cratous.services.planning.area_views import brought_view, open_view
-from cratous.services.planning.flyers import camera_for
-from cratous.services.planning.point_ways import tilted
+from cratous.services.planning.performance_classes import camera_for
+from cratous.services.planning.point_paths import tilted
 from cratous.spec.mission import AREAS, Camera, Position, Task, TaskKind, View
 
 

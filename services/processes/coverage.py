@@ -10,7 +10,7 @@ from typing import Any
 from cratous.services.exporting.differences import apart, spelt_out
 from cratous.services.exporting.messages import Told, messages_of
 from cratous.services.loading import uxas_parts
-from cratous.services.loading.places import Places
+from cratous.services.loading.coordinates import Places
 from cratous.services.loading.uxas_cfg import Sent
 from cratous.services.loading.uxas_tasks import Interests
 from cratous.services.loading.uxas_tasks import task as read_task

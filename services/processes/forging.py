@@ -6,7 +6,7 @@ import random
 import re
 from collections import deque
 
-from cratous.bridge.text_protocol.sealed import Seal
+from cratous.bridge.text_protocol.authenticated_lines import Seal
 
 KEPT = 256
 """Number of recorded packets kept for replay."""

@@ -28,7 +28,7 @@ from cratous.services.requirements.formula import (
     Reaches,
     parts,
 )
-from cratous.services.requirements.to_blame import Part, Parts
+from cratous.services.requirements.violating_parts import Part, Parts
 from cratous.spec.errors import BadInput
 
 Decided = list[tuple[int, int]]

@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import Any
 
 from cratous.services.requirements.arithmetic import sources
-from cratous.services.requirements.between import NoBound, between
+from cratous.services.requirements.between_samples import NoBound, between
 from cratous.services.requirements.formula import (
     FALSE,
     MAX_TIME,

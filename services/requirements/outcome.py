@@ -9,7 +9,7 @@ from cratous.services.requirements.evaluation import FALSE, TRUE
 from cratous.services.requirements.formula import Formula, Reaches, parts
 from cratous.services.requirements.sampling import Sample
 from cratous.services.requirements.specification import Requirement, Specification
-from cratous.services.requirements.to_blame import Part
+from cratous.services.requirements.violating_parts import Part
 
 SPARE = "so with too little to spare to exclude what lies between samples"
 TOLD_BY = "as told by an unauthenticated source"

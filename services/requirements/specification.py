@@ -42,7 +42,7 @@ class Requirement:
     """One requirement of a file. name: its own, else its number; formula: or why it is not read.
 
     title, severity, source: as stated by its author, empty if not; between: formula evaluated at
-    samples instead, so that the requirement holds between them too (`requirements.between`), if a
+    samples instead, so that the requirement holds between them too (`requirements.between_samples`), if a
     signal has a rate.
     """
 

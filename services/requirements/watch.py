@@ -10,17 +10,17 @@ from dataclasses import dataclass, replace
 from itertools import chain, islice
 from pathlib import Path
 
+from cratous.services.requirements.applicability import with_asked
 from cratous.services.requirements.arithmetic import Calculated, sources
-from cratous.services.requirements.asked import with_asked
 from cratous.services.requirements.csv_trace import samples
 from cratous.services.requirements.evaluation import FALSE, TRUE, Evaluation
+from cratous.services.requirements.finished_trace import MOST, Columns, Whole, is_worth
 from cratous.services.requirements.formula import horizon, signals
 from cratous.services.requirements.outcome import Outcome, margins_of
 from cratous.services.requirements.sampling import Finding, Row, Sample, Sampling
 from cratous.services.requirements.specification import NotRead, Specification
 from cratous.services.requirements.traces import doubts
 from cratous.services.requirements.traces import rows as timed_rows
-from cratous.services.requirements.whole import MOST, Columns, Whole, is_worth
 from cratous.spec.errors import BadInput
 
 
@@ -131,7 +131,7 @@ class Watch:
 
     def all(self, samples: Iterable[tuple[int, Sample]]) -> None:
         """Process all samples of a finished trace, none of which was processed yet: by columns
-        where that is faster (`whole`), with the same outcome.
+        where that is faster (`finished_trace`), with the same outcome.
         """
         whole = ((time, self._calculated.row(row)) for time, row in samples)
         taken, kept = iter(whole), Columns(self._names)

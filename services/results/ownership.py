@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from cratous.services.results.former import former_files
+from cratous.services.results.legacy_results import former_files
 from cratous.services.results.names import BESIDE_LOG, MANIFEST_NAME, NAMES
 
 MANIFEST_FORMAT = "cratous-results/1"

@@ -22,11 +22,11 @@ from cratous.services.bus import Envelope
 from cratous.services.loading.uxas_parts import is_place
 from cratous.services.mission.frames import compass
 from cratous.services.pipeline.contexts import Contexts, reasons_of
+from cratous.services.pipeline.coordinates import RequestPlaces
 from cratous.services.pipeline.ground import ROADS, is_ground
-from cratous.services.pipeline.places import RequestPlaces
 from cratous.services.pipeline.planner import answered, back, refused
 from cratous.services.pipeline.status import status
-from cratous.services.planning.flyers import flight_ms
+from cratous.services.planning.performance_classes import flight_ms
 from cratous.services.roads.files import RoadFiles
 from cratous.services.roads.network import (
     OFF_ROAD_MOST_M,

@@ -12,12 +12,12 @@ from cratous.core.avoidance.manoeuvre import Motion
 from cratous.core.avoidance.prediction import Intruder, Spread
 from cratous.services.icarous.messages import Sensed
 from cratous.services.mission.frames import place_and_velocity
-from cratous.services.sensing import carried
-from cratous.services.sensing.carried import Carried, Sensors
+from cratous.services.sensing import vehicle_sensors
 from cratous.services.sensing.filter import Cov, Estimate, Flown, deviations
-from cratous.services.sensing.own import Own
+from cratous.services.sensing.own_state import Own
 from cratous.services.sensing.sensors import Detection
 from cratous.services.sensing.tracks import Tracks, estimate, tracked
+from cratous.services.sensing.vehicle_sensors import Carried, Sensors
 from cratous.spec.mission import Mission, SensedDaa
 
 
@@ -66,14 +66,16 @@ def stepped(
 ) -> Surveillance:
     """The state after a simulation step: new measurements are in transit, and the own state has moved on."""
     sensors = Sensors(carrier.own_id, carrier.daa.sensing, carrier.seed, carrier.step_ms)
-    after = carried.stepped(sensors, Carried(before.under_way, before.own), now_ms, aircraft)
+    after = vehicle_sensors.stepped(
+        sensors, Carried(before.under_way, before.own), now_ms, aircraft
+    )
     return Surveillance(*after, before.tracks)
 
 
 def arrived(carrier: Carrier, before: Surveillance, now_ms: int) -> Surveillance:
     """Process the measurements that have arrived by the heartbeat at now_ms [ms]."""
     known = Carried(before.under_way, before.own)
-    after, others = carried.came(carrier.own_id, known, now_ms)
+    after, others = vehicle_sensors.came(carrier.own_id, known, now_ms)
     return Surveillance(*after, tracked(before.tracks, others, carrier.daa.sensing, now_ms))
 
 

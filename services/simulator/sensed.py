@@ -14,10 +14,10 @@ from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.services.mission.frames import Projection
-from cratous.services.sensing import carried
-from cratous.services.sensing.carried import Carried, Sensors
+from cratous.services.sensing import vehicle_sensors
 from cratous.services.sensing.filter import Flown
 from cratous.services.sensing.sensors import Detection
+from cratous.services.sensing.vehicle_sensors import Carried, Sensors
 from cratous.services.simulator.motion import Motion
 from cratous.services.simulator.perception import MOST_ID
 from cratous.spec.errors import BadInput
@@ -53,8 +53,8 @@ class Sensed:
         told: list[Any] = []
         for key, before in self._carried.items():
             sensors = Sensors(key, self.sensing, 0, step_ms)
-            after = carried.stepped(sensors, before, now_ms, flown)
-            self._carried[key], others = carried.came(key, after, now_ms)
+            after = vehicle_sensors.stepped(sensors, before, now_ms, flown)
+            self._carried[key], others = vehicle_sensors.came(key, after, now_ms)
             if 0 < key <= MOST_ID:
                 told += [self._perception(key, one) for one in others]
         return told

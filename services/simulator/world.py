@@ -32,7 +32,7 @@ from cratous.services.simulator.motion import Motion
 from cratous.services.simulator.paths import Paths, check_times, path_of, steers
 from cratous.services.simulator.perception import Body, perceptions
 from cratous.services.simulator.performance import Airframe, airframe_of
-from cratous.services.simulator.staying import fall_back, stay
+from cratous.services.simulator.self_commands import fall_back, stay
 from cratous.services.simulator.tracking import Tracks
 from cratous.spec.errors import BadInput
 

@@ -37,7 +37,7 @@ from cratous.core.routing.bulk import (
     route_many,
 )
 from cratous.core.tasks.coverage_arrays import grid_squares, mark_seen
-from cratous.services.planning import coming
+from cratous.services.planning import pending_compilation
 from cratous.services.planning.assign_warm import simple_instance
 from cratous.services.planning.detours import expected
 from cratous.services.processes.leash import ENDS_WITH, end_with_parent
@@ -80,12 +80,17 @@ def begin_all(around: bool = False) -> None:
     """Start compiling what every larger plan needs, unless it is cached. around: many routes are expected to
     lead around zones.
     """
-    for name in (coming.AROUND if around else coming.ROUTES, coming.ASSIGNMENT):
+    for name in (
+        pending_compilation.AROUND if around else pending_compilation.ROUTES,
+        pending_compilation.ASSIGNMENT,
+    ):
         if not is_kept(LOOPS[name]):
             process = _start([__name__, name])
-            if name != coming.ASSIGNMENT:  # for most missions CPython finds the routes sooner
+            if (
+                name != pending_compilation.ASSIGNMENT
+            ):  # for most missions CPython finds the routes sooner
                 _stand_back(process, BEHIND)
-            coming.expect(name, _waiter(process, WAIT_S))
+            pending_compilation.expect(name, _waiter(process, WAIT_S))
 
 
 def beside(module: list[str], stands_back: int) -> None:
@@ -174,15 +179,15 @@ def make_assignment() -> None:
 
 
 MAKERS = {
-    coming.ROUTES: make_routes,
-    coming.AROUND: make_around,
-    coming.ASSIGNMENT: make_assignment,
+    pending_compilation.ROUTES: make_routes,
+    pending_compilation.AROUND: make_around,
+    pending_compilation.ASSIGNMENT: make_assignment,
     SQUARES: make_squares,
 }
 LOOPS: dict[str, Callable[..., object]] = {
-    coming.ROUTES: direct_many,
-    coming.AROUND: route_many,
-    coming.ASSIGNMENT: anneal,
+    pending_compilation.ROUTES: direct_many,
+    pending_compilation.AROUND: route_many,
+    pending_compilation.ASSIGNMENT: anneal,
 }
 """The loop that is in the cache once its maker has succeeded."""
 

@@ -23,13 +23,13 @@ from cratous.core.kernel.sources import ROOT
 from cratous.core.readings.machine.compiled import compiled
 from cratous.core.readings.tiered import at_once
 from cratous.core.well_clear import horizontal_violation, violation, violation_within
-from cratous.services.planning import assign_warm, coming
-from cratous.services.requirements import whole
+from cratous.services.planning import assign_warm, pending_compilation
+from cratous.services.requirements import finished_trace
 from cratous.services.requirements.evaluation import TRUE
 from cratous.services.requirements.formula import Always, Bounded, Join, Not, Reaches
 from cratous.services.requirements.outcome import Outcome
 from cratous.services.requirements.specification import Requirement
-from cratous.services.startup import ahead, little_missions
+from cratous.services.startup import ahead, sample_missions
 from cratous.spec.daa.parameters import DCPA, Spread
 
 ENCOUNTER = """NAME sx sy sz trk gs vs time
@@ -54,7 +54,7 @@ def warm_kernels() -> None:
 def warm_planning() -> None:
     """Compile what planning a mission calls, and record that for `ensure_planning`."""
     with at_once():
-        little_missions.plan(little_missions.TASKS)
+        sample_missions.plan(sample_missions.TASKS)
     _mark().parent.mkdir(exist_ok=True, mode=0o700)
     _mark().touch()
 
@@ -86,13 +86,13 @@ def warm_daa() -> None:
 
 def warm_requirements() -> None:
     """Compile the evaluation of requirements over a whole trace, at two samples."""
-    columns = whole.Columns("x")
+    columns = finished_trace.Columns("x")
     for time in (0, 1):
         columns.add(time, {"x": 1.0})
     reaches = Reaches("x", 0.0)
     since = Bounded(reaches, Join(reaches, Not(reaches), True), 0, 1, True)
     formula = Bounded(since, Always(TRUE), 0, 1, False)
-    whole.Whole(columns).fill(Outcome(Requirement("", "", formula), 1), formula)
+    finished_trace.Whole(columns).fill(Outcome(Requirement("", "", formula), 1), formula)
 
 
 def warm_gate() -> None:
@@ -153,8 +153,8 @@ def ensure_planning(say: Callable[[str], None]) -> None:
         "the rest is compiled meanwhile (`cratous warm` does it ahead)"
     )
     ahead.begin_all()  # on a single core too: the service must not stall on compilation
-    for name in (coming.ROUTES, coming.ASSIGNMENT):
-        coming.ready(name)
+    for name in (pending_compilation.ROUTES, pending_compilation.ASSIGNMENT):
+        pending_compilation.ready(name)
     ahead.beside(["cratous", "warm", "--planning", "--quiet"], BESIDE)
 
 

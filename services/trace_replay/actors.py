@@ -36,9 +36,9 @@ from cratous.services.flight.messages import (
 from cratous.services.flight.vehicle import UNTOUCHED
 from cratous.services.icarous_program.epochs import EpochFile
 from cratous.services.pipeline.plan import make_plan
-from cratous.services.trace_replay import scene
-from cratous.services.trace_replay.never_sent import NeverSent
-from cratous.services.trace_replay.scene import INTRUDER, VEHICLE
+from cratous.services.trace_replay import replay_flight
+from cratous.services.trace_replay.impossible_delivery import NeverSent
+from cratous.services.trace_replay.replay_flight import INTRUDER, VEHICLE
 from cratous.spec.authority.cycle import AVOID
 from cratous.spec.system.trace import (
     COMMAND,
@@ -82,7 +82,7 @@ class Actors(Flight):
     bridge: _HoldingBridge
 
     def __init__(self) -> None:
-        mission = scene.mission()
+        mission = replay_flight.mission()
         bus = Bus(lmcp.full_names)
         self.sent: list[Held] = []
         self.reports = {UNTOUCHED}
@@ -124,7 +124,7 @@ class Actors(Flight):
 
     def _everyone(self) -> tuple[tuple[int, AirState], ...]:
         own = super()._everyone()
-        return (*own, (INTRUDER, scene.met(dict(own)[VEHICLE]))) if self.is_met else own
+        return (*own, (INTRUDER, replay_flight.met(dict(own)[VEHICLE]))) if self.is_met else own
 
     # what a trace lets happen ------------------------------------------------------------------
 
@@ -163,7 +163,7 @@ class Actors(Flight):
     def track(self, _event: Event) -> None:
         """A wind change becomes known: UxAS replans and has new tracks to fly."""
         executive = self.executive.config
-        known, change = scene.with_breeze(executive.mission, self.now_ms)
+        known, change = replay_flight.with_breeze(executive.mission, self.now_ms)
         self.executive = Executive(replace(executive, mission=known))
         self.executive_state = replace(self.executive_state, to_come=(change,))
         self._executive(Tick(self.now_ms, self._own()))

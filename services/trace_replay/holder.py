@@ -15,7 +15,7 @@ from cratous.core.authority.gate import ICAROUS, UXAS, gate_accepts
 from cratous.core.authority.timeliness import in_time
 from cratous.core.avoidance.prediction import Intruder, Piece
 from cratous.core.permit.hand import Offer
-from cratous.services.assumptions.observed import ANY_LATER
+from cratous.services.assumptions.observations import ANY_LATER
 from cratous.services.flight.commands import gated, velocity_command
 from cratous.services.flight.holding import Ground
 from cratous.services.flight.messages import (
@@ -31,9 +31,9 @@ from cratous.services.flight.vehicle import VehicleNode
 from cratous.services.icarous.certificate import Certificate, Track
 from cratous.services.icarous.messages import Offers, Wish
 from cratous.services.mission.frames import Projection
-from cratous.services.trace_replay import scene
-from cratous.services.trace_replay.never_sent import NeverSent
-from cratous.services.trace_replay.scene import INTRUDER, VEHICLE
+from cratous.services.trace_replay import replay_flight
+from cratous.services.trace_replay.impossible_delivery import NeverSent
+from cratous.services.trace_replay.replay_flight import INTRUDER, VEHICLE
 from cratous.spec.authority.cycle import OFFER as OFFERS_CONTROL
 from cratous.spec.authority.cycle import TAKE_OVER
 from cratous.spec.mission import Position
@@ -58,7 +58,7 @@ class Holder:
     """The vehicle, ICAROUS's offers in transit to it, and the traffic."""
 
     def __init__(self) -> None:
-        mission = scene.mission()
+        mission = replay_flight.mission()
         simulation = mission.simulation
         self._ground = Ground(mission.daa, simulation.heartbeat_ms)
         self._unit_ms = self._ground.reserve_ms // 2

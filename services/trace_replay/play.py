@@ -8,7 +8,7 @@ from typing import NamedTuple
 from cratous.services.trace_replay.actors import Actors
 from cratous.services.trace_replay.files import Trace
 from cratous.services.trace_replay.holder import Holder
-from cratous.services.trace_replay.never_sent import NeverSent
+from cratous.services.trace_replay.impossible_delivery import NeverSent
 from cratous.spec.system import hand_trace
 from cratous.spec.system.trace import NOTHING, Entry, Standing
 

@@ -29,7 +29,7 @@ from cratous.services.loading.uxas_settings import (
     values_of,
 )
 from cratous.services.pipeline import coordinator
-from cratous.services.pipeline.followed import (
+from cratous.services.pipeline.relative_tasks import (
     CORDON,
     FOLLOWED,
     RENDEZVOUS,

@@ -16,12 +16,12 @@ from cratous.core.routing.dubins import pose_after
 from cratous.core.routing.visibility import start_point
 from cratous.services.bus import Envelope
 from cratous.services.loading.conditions import wider
+from cratous.services.loading.coordinates import Places
 from cratous.services.loading.ground import drives
-from cratous.services.loading.places import Places
 from cratous.services.loading.uxas import mission_of, surroundings_of
 from cratous.services.loading.uxas_cfg import Configuration, Sent
+from cratous.services.pipeline.coordinates import RequestPlaces, read_pose
 from cratous.services.pipeline.outside import Outside
-from cratous.services.pipeline.places import RequestPlaces, read_pose
 from cratous.services.pipeline.tasks import TASKS
 from cratous.services.pipeline.world import MOST, World
 from cratous.services.planning import stages

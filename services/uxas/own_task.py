@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
-from cratous.services.following.asked import within
+from cratous.services.following.task_parameters import within
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import AUTHORITY, AWAY, HANDED_BACK, on_its_way
 from cratous.spec.errors import BadInput

@@ -18,8 +18,8 @@ from hypothesis import strategies as st
 from cratous.bridge.multicast_port import MOST_READ, MulticastPort
 from cratous.bridge.port import address
 from cratous.bridge.text_protocol import datagrams as dg
+from cratous.bridge.text_protocol.authenticated_lines import DAMAGED, FORGED
 from cratous.bridge.text_protocol.keys import direct_keys_of, without_keys
-from cratous.bridge.text_protocol.sealed import DAMAGED, FORGED
 from cratous.core.authority.replay_window import Window
 from cratous.spec.authority.replay_window import WIDTH
 from cratous.spec.errors import BadInput

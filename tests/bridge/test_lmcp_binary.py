@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cratous.bridge import lmcp
-from cratous.bridge.lmcp import careful
+from cratous.bridge.lmcp import reference_codec
 from cratous.spec.errors import BadInput
 
 VECTORS = Path(__file__).resolve().parents[3] / "shared" / "vectors" / "lmcp"
@@ -93,7 +93,7 @@ def test_limits_of_the_wire() -> None:
 def test_a_message_of_very_many_elements_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     regions = [lmcp.new("GraphEdge")] * 3
     raw = lmcp.binary.pack(lmcp.new("GraphRegion", EdgeList=regions))
-    for module in (careful, lmcp.binary):
+    for module in (reference_codec, lmcp.binary):
         monkeypatch.setattr(module, "MAX_ELEMENTS", 2)
     with pytest.raises(BadInput, match=r"GraphRegion\.EdgeList: too many elements"):
         lmcp.binary.unpack(raw)

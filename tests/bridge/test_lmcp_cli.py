@@ -12,7 +12,7 @@ import jsonschema
 import pytest
 
 from cratous.bridge import lmcp, sentinel
-from cratous.bridge.lmcp import binary, differences, forms, model
+from cratous.bridge.lmcp import binary, differences, model, stored_forms
 from cratous.services.cli import main
 from cratous.spec.errors import BadInput
 
@@ -22,32 +22,32 @@ STATE = lmcp.new(
 )
 
 
-@pytest.mark.parametrize("form", forms.OUTPUTS)
+@pytest.mark.parametrize("form", stored_forms.OUTPUTS)
 @pytest.mark.parametrize("packed", [False, True])
 def test_every_form_is_found_out_and_read_back(form: str, packed: bool) -> None:
-    data = forms.write(STATE, form)
+    data = stored_forms.write(STATE, form)
     if packed:
         data = gzip.compress(data, mtime=0)
-    (found,) = forms.read(data, "file")
+    (found,) = stored_forms.read(data, "file")
     assert found.error is None
     assert found.object == STATE
-    again = forms.write(found.object, form, found.envelope)
+    again = stored_forms.write(found.object, form, found.envelope)
     assert again == (gzip.decompress(data) if packed else data)
     if form not in ("xml",):
         other = gzip.compress(again * 2) if form != "envelope" else again
-        assert [f.object for f in forms.read(other)] == [STATE] * (1 + (form != "envelope"))
+        assert [f.object for f in stored_forms.read(other)] == [STATE] * (1 + (form != "envelope"))
 
 
 def test_what_is_wrong_does_not_hide_the_others() -> None:
-    good = forms.write(STATE, "frames")
+    good = stored_forms.write(STATE, "frames")
     bad = sentinel.frame(b"a.B$lmcp|a.B||1|2$LMCP....")
-    found = list(forms.read(good + b"x" * 20 + bad + good[:50] + good, "f"))
+    found = list(stored_forms.read(good + b"x" * 20 + bad + good[:50] + good, "f"))
     assert sum(f.object == STATE for f in found) == 2
     errors = [str(f.error) for f in found if f.error]
     assert any("f: frame 2" in e for e in errors)
     assert any(f"byte {len(good)}: bytes outside of a frame" in e for e in errors)
     lines = b'{"$type":"CMASI/Task"}\n{"$type":"CMASI/Tusk"}\n\nnonsense\n'
-    found = list(forms.read(lines, "f"))
+    found = list(stored_forms.read(lines, "f"))
     assert [f.error is None for f in found] == [True, False, False]
     assert [f.where for f in found] == ["f:1", "f:2", "f:4"]
 
@@ -58,12 +58,12 @@ def test_what_is_wrong_does_not_hide_the_others() -> None:
 )  # fmt: skip
 def test_what_is_of_no_form_is_refused(data: bytes) -> None:
     with pytest.raises(BadInput):
-        list(forms.read(data, "f"))
+        list(stored_forms.read(data, "f"))
 
 
 def test_decode_and_encode(tmp_path: Path, capsysbinary: pytest.CaptureFixture[bytes]) -> None:
     file = tmp_path / "in.json"
-    file.write_bytes(b"".join(forms.write(t, "json") for t in TASKS))
+    file.write_bytes(b"".join(stored_forms.write(t, "json") for t in TASKS))
     out = tmp_path / "out.bin"
     options = ["--entity", "100", "--service", "66", "--group", "g", "-o", str(out)]
     assert main(["lmcp", "encode", str(file), "--to", "frames", *options]) == 0
@@ -81,7 +81,7 @@ def test_decode_and_encode(tmp_path: Path, capsysbinary: pytest.CaptureFixture[b
     assert main(["lmcp", "decode", str(out), "--to", "xml", "--envelope"]) == 0
     assert b"<!-- uxas.messages.task.TaskInitialized lmcp|" in capsysbinary.readouterr().out
     assert main(["lmcp", "encode", str(out), "--to", "hex"]) == 0
-    assert capsysbinary.readouterr().out == b"".join(forms.write(t, "hex") for t in TASKS)
+    assert capsysbinary.readouterr().out == b"".join(stored_forms.write(t, "hex") for t in TASKS)
     out.write_bytes(out.read_bytes()[:-1])
     assert main(["lmcp", "decode", str(out)]) == 2
     result = capsysbinary.readouterr()
@@ -132,8 +132,8 @@ def test_describe(capsys: pytest.CaptureFixture[str]) -> None:
 def test_diff_of_messages_and_series(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     files = {
         "a.bin": binary.pack(STATE),
-        "b.json": forms.write(STATE.copy(ID=401, AssociatedTasks=[5]), "json"),
-        "c.xml": forms.write(STATE, "xml"),
+        "b.json": stored_forms.write(STATE.copy(ID=401, AssociatedTasks=[5]), "json"),
+        "c.xml": stored_forms.write(STATE, "xml"),
     }
     for name, data in files.items():
         (tmp_path / name).write_bytes(data)

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from cratous.bridge import lmcp
-from cratous.bridge.lmcp import binary, careful
+from cratous.bridge.lmcp import binary, reference_codec
 from cratous.spec.errors import BadInput
 
 
@@ -34,9 +34,9 @@ def test_every_type_is_written_and_read_as_the_careful_way(fuzz: ModuleType) -> 
         for _ in range(4):
             obj = fuzz.random_object(rng, name)
             raw = binary.pack(obj)
-            assert raw[8:-4] == bytes(careful.pack(obj)), name
+            assert raw[8:-4] == bytes(reference_codec.pack(obj)), name
             assert binary.unpack(raw) == obj, name
-            assert careful.read(raw, 8, len(raw) - 4, "message") == obj, name
+            assert reference_codec.read(raw, 8, len(raw) - 4, "message") == obj, name
             assert binary.lazy(raw) == obj, name
             assert obj == binary.lazy(raw), name
 

@@ -7,7 +7,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cratous.bridge import text_protocol as tp
-from cratous.bridge.overheard import NO_OPENING, REFUSED, Overheard, Said
+from cratous.bridge.passive_decoder import NO_OPENING, REFUSED, Overheard, Said
+from cratous.bridge.text_protocol.authenticated_lines import (
+    DAMAGED,
+    FORGED,
+    SealedClient,
+    SealedServer,
+)
 from cratous.bridge.text_protocol.dialects import Dialect
 from cratous.bridge.text_protocol.handshake import (
     ACCEPT,
@@ -17,7 +23,6 @@ from cratous.bridge.text_protocol.handshake import (
     Handshake,
     ServerHandshake,
 )
-from cratous.bridge.text_protocol.sealed import DAMAGED, FORGED, SealedClient, SealedServer
 
 KEY = b"k" * 32
 LINES = {

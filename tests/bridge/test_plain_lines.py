@@ -10,9 +10,9 @@ from fuzz_lines import WAYS, End, changed
 from wire_messages import ATTITUDE, OWN_POSITION, RESET, ROUTE_REQUEST, TRAFFIC
 
 from cratous.bridge import text_protocol as tp
+from cratous.bridge.text_protocol.authenticated_lines import Seal
 from cratous.bridge.text_protocol.dialects import Dialect
 from cratous.bridge.text_protocol.layouts import LAYOUTS, ORIGINAL_LIMITS, WIDE_LIMITS
-from cratous.bridge.text_protocol.sealed import Seal
 
 DOWN = tp.Direction.DOWN
 WRITTEN: list[tp.Message] = [

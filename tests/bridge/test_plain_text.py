@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cratous.bridge import lmcp
+from cratous.bridge.lmcp.fast_json import plain_object
 from cratous.bridge.lmcp.jsonform import from_dict, from_json, to_json
-from cratous.bridge.lmcp.plain_text import plain_object
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import json_of
 

@@ -20,9 +20,7 @@ from cratous.bridge.link import LinkEvent
 from cratous.bridge.port import Address
 from cratous.bridge.text_connection import DEAF, Bounds, Opened
 from cratous.bridge.text_port import Came, TextPort
-from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET
-from cratous.bridge.text_protocol.keys import Keys, key_of, keys_of
-from cratous.bridge.text_protocol.sealed import (
+from cratous.bridge.text_protocol.authenticated_lines import (
     DAMAGED,
     FORGED,
     MOST_UNACKNOWLEDGED,
@@ -33,6 +31,8 @@ from cratous.bridge.text_protocol.sealed import (
     SealedClient,
     SealedServer,
 )
+from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET
+from cratous.bridge.text_protocol.keys import Keys, key_of, keys_of
 from cratous.spec.errors import BadInput
 
 KEYS = Keys({1: b"a" * 32, 2: b"b" * 32})

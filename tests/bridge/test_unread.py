@@ -15,7 +15,7 @@ from cratous.bridge.port import address
 from cratous.bridge.text_connection import MOST_UNREAD, Bounds, Opened
 from cratous.bridge.text_port import TextPort
 from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET
-from cratous.bridge.unread import unread_by_peer
+from cratous.bridge.unread_bytes import unread_by_peer
 
 LETHAL = 65_535
 """A read of so many bytes ends the client."""

@@ -11,12 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cratous.bridge import text_protocol as tp
+from cratous.bridge.text_protocol.authenticated_lines import SealedClient, SealedServer
 from cratous.bridge.text_protocol.captures import Heard, read
 from cratous.bridge.text_protocol.datagrams import Datagrams
-from cratous.bridge.text_protocol.explained import sentence, told
+from cratous.bridge.text_protocol.explanation import sentence, told
 from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET, HELLO
 from cratous.bridge.text_protocol.layouts import LAYOUTS
-from cratous.bridge.text_protocol.sealed import SealedClient, SealedServer
 from cratous.services.cli import main
 from cratous.spec.errors import BadInput
 
@@ -108,7 +108,7 @@ def test_each_message_has_a_sentence_and_the_thesis_is_read_too() -> None:
         tp.NotKnown("X"),
     ]
     assert all(sentence(one) for one in said)
-    from cratous.bridge.text_protocol.explained import _SAYS
+    from cratous.bridge.text_protocol.explanation import _SAYS
 
     assert set(_SAYS) == kinds
     right, words = told(b"WAYPTtotal1,index1,lat51.433647,long-0.215516,alt100,speed100,")

@@ -17,7 +17,7 @@ from cratous.services.certify.report_input import FORMAT
 from cratous.services.cli import main
 from cratous.services.cli.campaign import _is_kept
 from cratous.services.cli.campaign_flight import fly_run
-from cratous.services.requirements.own_files import own_file
+from cratous.services.requirements.requirement_files import own_file
 from cratous.spec.errors import BadInput
 
 TEXT = """trace every 500 ms gap 600 ms

@@ -14,10 +14,10 @@ from certify_tools import ROOT, read
 from own_tools import EXPORT, TEXT
 
 from cratous.services.certify import flight_record, rejudge, report, result_files
-from cratous.services.certify import own as own_module
+from cratous.services.certify import user_requirements as own_module
 from cratous.services.cli import main
 from cratous.services.logs.sqlite_log import SqliteLog
-from cratous.services.requirements.own_files import own_file
+from cratous.services.requirements.requirement_files import own_file
 
 
 @pytest.fixture(scope="module")

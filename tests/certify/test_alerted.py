@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from cratous.services.certify.alerted import TOPIC, AlertReader, none_said
+from cratous.services.certify.alerts import TOPIC, AlertReader, none_said
 from cratous.spec.errors import BadInput
 
 

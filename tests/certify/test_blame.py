@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 from certify_tools import ROOT, edited, read
 
-from cratous.services.attestation.blamed import blame_faults, blame_of
+from cratous.services.attestation.blame_check import blame_faults, blame_of
 from cratous.services.certify.blame import blame_rows
-from cratous.services.certify.blame_said import lines, sentence
+from cratous.services.certify.blame_texts import lines, sentence
 from cratous.services.certify.rejudge import certify_again, watch
 from cratous.services.certify.report_schema import departures
 from cratous.services.cli import main

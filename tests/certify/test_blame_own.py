@@ -17,13 +17,13 @@ from hypothesis import strategies as st
 
 from cratous.core.requirements.verdict import both, either, negated
 from cratous.services.certify.blame_own import own_blame, own_rows
-from cratous.services.certify.own_said import lines
+from cratous.services.certify.requirement_texts import lines
 from cratous.services.cli import run as command
 from cratous.services.requirements import language
 from cratous.services.requirements.evaluation import FALSE, UNKNOWN, Evaluation
 from cratous.services.requirements.formula import Bounded, Formula, Join, Not, Reaches
+from cratous.services.requirements.formula_text import facts, said
 from cratous.services.requirements.outcome import Outcome
-from cratous.services.requirements.said import facts, said
 from cratous.services.requirements.specification import Specification
 from cratous.services.requirements.watch import Watch, watch
 

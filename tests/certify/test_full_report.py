@@ -14,7 +14,7 @@ from certify_tools import Run, edited, read
 
 from cratous.services.attestation.findings import Subject
 from cratous.services.certify.html import render
-from cratous.services.full_report import account
+from cratous.services.full_report import assurance_sections
 from cratous.services.full_report.document import Beside, Head, Picture, Table, Words
 from cratous.services.full_report.page import html
 from cratous.services.full_report.sections import document
@@ -206,7 +206,7 @@ def test_an_argument_that_cannot_be_made_is_said(
     def refuse() -> None:
         raise Refused("the ledger is damaged")
 
-    monkeypatch.setattr(account.ledger, "read", refuse)
+    monkeypatch.setattr(assurance_sections.ledger, "read", refuse)
     assert "Not made: the ledger is damaged" in sections(read(flown))["argument"]
 
 

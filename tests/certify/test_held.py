@@ -9,7 +9,7 @@ import pytest
 from cratous.judge import Judgement
 from cratous.judge.answers import Answer
 from cratous.judge.verdict import Row
-from cratous.services.attestation.judged import held
+from cratous.services.attestation.verdicts_check import held
 
 ITEM = {
     "G1": "eligibility: task 1 in flight", "G2": "well clear of 1 and 2", "G3": "task 1 served",

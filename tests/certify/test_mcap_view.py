@@ -14,7 +14,7 @@ pytest.importorskip("mcap", reason="the extra `wires` is not installed")
 
 from signing import sign_again, verify
 
-from cratous.services.attestation import pages_again as module
+from cratous.services.attestation import rebuilt_pages as module
 from cratous.services.attestation.names import WRITTEN_BY
 from cratous.services.logs.source import open_log
 

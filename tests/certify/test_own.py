@@ -22,7 +22,7 @@ from cratous.services.certify import rejudge
 from cratous.services.certify.report import Flown
 from cratous.services.cli import job
 from cratous.services.cli import run as command
-from cratous.services.requirements.own_files import files_of, own_file
+from cratous.services.requirements.requirement_files import files_of, own_file
 from cratous.services.results.ownership import manifest_text
 from cratous.spec.errors import BadInput
 

@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 from certify_tools import ROOT
 
-from cratous.services.attestation.own_judged import own_faults
-from cratous.services.certify.own_views import own_constraints
+from cratous.services.attestation.requirements_check import own_faults
+from cratous.services.certify.requirement_views import own_constraints
 from cratous.services.cli import main
 from cratous.services.cli.campaign_flight import _requirement
 from cratous.services.logs.log import read_meta

@@ -13,9 +13,9 @@ import pytest
 from certify_tools import ROOT, Run, read
 from own_tools import TEXT, Edit, changed
 
-from cratous.services.attestation.own_judged import own_faults
-from cratous.services.certify.own_again import outcomes_of
-from cratous.services.requirements.own_files import own_file
+from cratous.services.attestation.requirements_check import own_faults
+from cratous.services.certify.requirements_judged_again import outcomes_of
+from cratous.services.requirements.requirement_files import own_file
 from cratous.spec.mission.guarantees import exit_code, worst
 
 

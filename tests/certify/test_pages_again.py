@@ -16,10 +16,10 @@ pytest.importorskip("reportlab", reason="the extra `pdf` is not installed")
 
 from signing import edit_report, sign_again, verify
 
-from cratous.services.attestation import pages_again as module
+from cratous.services.attestation import rebuilt_pages as module
 from cratous.services.attestation.findings import Subject
 from cratous.services.attestation.names import FULL_NAME, FULL_PDF_NAME, PDF_NAME, SARIF_NAME
-from cratous.services.attestation.pages_again import pages_again, sarif_faults
+from cratous.services.attestation.rebuilt_pages import pages_again, sarif_faults
 from cratous.services.attestation.signed_files import Place
 from cratous.services.attestation.writing import Wanted, write_views
 from cratous.services.full_report.views import view

@@ -16,7 +16,7 @@ pytest.importorskip("cryptography", reason="the extra `sign` is not installed")
 from signing import retell, sign_whole, verify, verify_edited
 
 from cratous.services.assumptions.listing import LISTING
-from cratous.services.attestation.assumed import assumption_faults
+from cratous.services.attestation.assumptions_check import assumption_faults
 from cratous.services.attestation.planned import PART, WHOLE, is_settled, plan_faults
 from cratous.services.certify.rejudge import subject
 from cratous.services.certify.verdicts import plan_rows

@@ -24,7 +24,7 @@ from signing import (
     verify_edited,
 )
 
-from cratous.services.attestation import planned, recorded
+from cratous.services.attestation import log_check, planned
 from cratous.services.monitor import plan_check, required_rows
 from cratous.spec.mission.guarantees import REQUIREMENTS
 
@@ -245,7 +245,7 @@ def test_what_the_log_recorded_is_what_the_report_says(run: Run, home: Path, nam
 def test_problems_of_proofs_that_are_hidden_are_known_to_the_log(run: Run, home: Path) -> None:
     proofs = read(home / "run")["proofs"]
     hidden = {**proofs, "problems": [{"kernel": "a.b", "what": "its source is another"}]}
-    meta(home / "run", "proofs", {key: hidden[key] for key in recorded.PROOFS})
+    meta(home / "run", "proofs", {key: hidden[key] for key in log_check.PROOFS})
     sign_again(home, lambda data: None)
     code, _, err = verify(run, home)
     assert (code, "proofs.problems is not what the log recorded" in err) == (1, True), err

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from cratous.services.assumptions.said import GROUNDLESS
+from cratous.services.assumptions.observation_texts import GROUNDLESS
 from cratous.services.certify import rejudge
 from cratous.services.certify import report as report_module
 from cratous.services.certify.report import Flown, Judged, build_report

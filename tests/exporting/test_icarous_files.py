@@ -17,9 +17,9 @@ from cratous.services.importing.composing import Asked, composed
 from cratous.services.importing.fences import read_fence_xml
 from cratous.services.importing.gathering import gathered
 from cratous.services.importing.geojson import read_geojson
+from cratous.services.importing.imported_content import Reading
 from cratous.services.importing.kml import read_kml
 from cratous.services.importing.mission_text import mission_text
-from cratous.services.importing.parts import Reading
 from cratous.services.importing.qgc import read_qgc
 from cratous.services.loading.document import parse_document
 from cratous.services.loading.yaml_mission import loaded

@@ -17,7 +17,7 @@ from cratous.services.bus import Bus
 from cratous.services.cli.job import plan_and_check
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.dynamics import AirState
-from cratous.services.flight.hold_ways import Into, into
+from cratous.services.flight.hold_paths import Into, into
 from cratous.services.flight.inflight_routes import Ways
 from cratous.services.flight.loop import fly
 from cratous.services.loading import load

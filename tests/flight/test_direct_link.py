@@ -22,7 +22,7 @@ from cratous.core.authority.gate import ICAROUS
 from cratous.core.avoidance.manoeuvre import Ability, Motion, fly_to
 from cratous.core.avoidance.prediction import EXACT
 from cratous.services.flight.dynamics import Limits
-from cratous.services.icarous.others import LINK_LOST_MS
+from cratous.services.icarous.other_vehicles import LINK_LOST_MS
 from cratous.services.icarous.state import Config
 from cratous.services.icarous_program.direct import NO_STATE, DirectLink
 from cratous.services.icarous_program.program import Besides, Program

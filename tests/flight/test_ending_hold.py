@@ -20,8 +20,8 @@ from cratous.core.permit.remainder import hold_at, hold_permits, zones_permit
 from cratous.core.routing.polylines import Track
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.remaining_path import points_ahead
-from cratous.services.icarous.ending import TRACKING_S, WIDEST, Ahead, horizon_s, with_hold
 from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.route_end import TRACKING_S, WIDEST, Ahead, horizon_s, with_hold
 from cratous.services.loading import load
 from cratous.services.pipeline.plan import make_plan
 from cratous.spec.mission import (

@@ -13,7 +13,10 @@ from cratous.core.avoidance.manoeuvre import Motion
 from cratous.core.avoidance.prediction import Intruder
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.rejoining import Router
-from cratous.services.icarous.asking import (
+from cratous.services.icarous.instance import UXAS_WAY, Instance
+from cratous.services.icarous.messages import Foresees, FromInstance, Line, Sensed, Up, Wish
+from cratous.services.icarous.return_to_path import PERSIST_MS
+from cratous.services.icarous.route_requests import (
     ANSWER_MS,
     MOST_POINTS,
     NO_WAY,
@@ -21,9 +24,6 @@ from cratous.services.icarous.asking import (
     OVERDUE,
     PAUSE_MS,
 )
-from cratous.services.icarous.instance import UXAS_WAY, Instance
-from cratous.services.icarous.messages import Foresees, FromInstance, Line, Sensed, Up, Wish
-from cratous.services.icarous.return_to_path import PERSIST_MS
 from cratous.services.icarous.state import Config, State
 from cratous.spec.mission import Daa, Position, Zone, ZoneKind
 from cratous.spec.mission.plan import Pose

@@ -12,7 +12,7 @@ from cratous.bridge.lmcp.jsonform import to_data
 from cratous.core.authority.gate import UXAS, Gate
 from cratous.core.avoidance.prediction import Intruder, Spread
 from cratous.core.daa.session import Instant
-from cratous.services.certify.alerted import AlertReader
+from cratous.services.certify.alerts import AlertReader
 from cratous.services.flight.notices import guidance
 from cratous.services.icarous import proposal
 from cratous.services.icarous.band_history import Bands

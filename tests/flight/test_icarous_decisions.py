@@ -16,7 +16,6 @@ from cratous.core.avoidance.manoeuvre import along, fly_to, velocity_of
 from cratous.core.avoidance.prediction import Intruder, Piece, after, first_violation_s
 from cratous.core.avoidance.resolution import Scene, first_conflict_s, resolve
 from cratous.core.geofence.mission_legs import leg_ok
-from cratous.services.icarous.ending import Ahead
 from cratous.services.icarous.foresight import predicted, way_back_is_free
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.messages import Sensed
@@ -24,6 +23,7 @@ from cratous.services.icarous.permits import NONE
 from cratous.services.icarous.proposal import describe
 from cratous.services.icarous.return_to_path import PERSIST_MS as FREE_MS
 from cratous.services.icarous.return_to_path import goal_index
+from cratous.services.icarous.route_end import Ahead
 from cratous.services.icarous.state import Config, Met, State
 from cratous.services.icarous.traffic_monitor import (
     PERSIST_MS,

@@ -22,11 +22,11 @@ from cratous.core.authority.gate import ICAROUS, UXAS, Gate
 from cratous.core.avoidance.resolution import Choice
 from cratous.services.flight.dynamics import Limits
 from cratous.services.icarous import state as icarous
-from cratous.services.icarous.asking import Asking
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.route_requests import Asking
 from cratous.services.icarous.state import Config
-from cratous.services.icarous_program.onward import steering
+from cratous.services.icarous_program.goal_reports import steering
 from cratous.services.icarous_program.program import Program
 from cratous.services.icarous_program.step import Craft, IcarousEnd, Note, Refuse, State, Tell
 from cratous.spec.mission import Daa, Position

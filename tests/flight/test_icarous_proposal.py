@@ -14,13 +14,13 @@ from cratous.core.authority.gate import ICAROUS, Gate
 from cratous.core.avoidance.prediction import Intruder
 from cratous.core.avoidance.resolution import Choice, resolve
 from cratous.services.icarous import instance, proposal
-from cratous.services.icarous.asking import Asking
 from cratous.services.icarous.foresight import scene_of, way_back_is_free
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Sensed, Wish
 from cratous.services.icarous.permits import NONE
 from cratous.services.icarous.proposal import AGAIN_MS, STEPS, TURNS_DEG, WIDE_DEG, manoeuvre
+from cratous.services.icarous.route_requests import Asking
 from cratous.services.icarous.state import Config, Met, Search, State
 from cratous.services.logs.records import from_data, to_data
 from cratous.spec.authority.cycle import AVOID, OFFER

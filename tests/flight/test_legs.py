@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from mission_tools import must_fly
 
 from cratous.core.executive.steps import leg_given_up
-from cratous.services.campaign.changing import changing_mission
+from cratous.services.campaign.changed_missions import changing_mission
 from cratous.services.flight import legs
 from cratous.services.flight.chain import Leg
 from cratous.services.flight.dynamics import AirState

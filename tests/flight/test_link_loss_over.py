@@ -8,9 +8,9 @@ from icarous_tools import ABILITY, NORTH, PROJECTION, VOLUME
 
 from cratous.core.authority.gate import ICAROUS, Gate
 from cratous.core.authority.link_loss import OVER, RETURN, Loss
-from cratous.services.flight import without_link
+from cratous.services.flight import lost_link
 from cratous.services.icarous import link_loss
-from cratous.services.icarous.lost import LostLink, NoLink
+from cratous.services.icarous.lost_link import LostLink, NoLink
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.state import Config, State
 from cratous.spec.mission import Daa, Position
@@ -30,4 +30,4 @@ def test_what_is_over_looks_for_no_way() -> None:
 
 
 def test_the_ways_around_zones_of_missions_that_are_over_are_let_go() -> None:
-    assert without_link._router.cache_info().maxsize is not None
+    assert lost_link._router.cache_info().maxsize is not None

@@ -22,7 +22,7 @@ from cratous.core.avoidance.prediction import (
 )
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.messages import Sensed
-from cratous.services.icarous.others import to_their_ends, with_ways
+from cratous.services.icarous.other_vehicles import to_their_ends, with_ways
 from cratous.spec.mission import Daa, Position, Velocity
 
 PLACES = st.builds(

@@ -12,7 +12,7 @@ import yaml
 from cratous.bridge import lmcp
 from cratous.judge import judge
 from cratous.services.bus import Bus
-from cratous.services.campaign.changing import changing_mission
+from cratous.services.campaign.changed_missions import changing_mission
 from cratous.services.cli.job import Settings, plan_and_check, refuse_bad_plan, run_mission
 from cratous.services.flight.chain import Phase
 from cratous.services.flight.dynamics import AirState

@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from cratous.services.certify.timeline import Flight, _progress
-from cratous.services.flight.asked_plan import planned
 from cratous.services.flight.changes import unplanned
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.executive_state import Asked, Config, first_state
-from cratous.services.flight.left_out import leave_out, nothing_of
 from cratous.services.flight.messages import AskPlan, NotPlanned, Planned
+from cratous.services.flight.omitted_tasks import leave_out, nothing_of
+from cratous.services.flight.plan_reply import planned
 from cratous.services.loading import load
 from cratous.services.mission.availability import absent
 from cratous.services.mission.frames import Projection

@@ -25,7 +25,7 @@ from cratous.services.flight.messages import Begin, Say, SetOut, Suspend, TakeBa
 from cratous.services.flight.rejoining import Router
 from cratous.services.mission.frames import Projection
 from cratous.services.pipeline.plan import make_plan
-from cratous.services.planning.leaving import way_out
+from cratous.services.planning.zone_exits import way_out
 from cratous.spec.authority.link_end import SUSPEND, TAKE_BACK
 from cratous.spec.constraint_rows import NOT_BEFORE, Row
 from cratous.spec.executive import FAIL_TASK

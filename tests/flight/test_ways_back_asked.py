@@ -14,7 +14,7 @@ from cratous.services.bus import Bus
 from cratous.services.flight import interruption
 from cratous.services.flight.loop import fly
 from cratous.services.icarous import proposal
-from cratous.services.icarous.asking import OVERDUE
+from cratous.services.icarous.route_requests import OVERDUE
 from cratous.services.loading import load
 from cratous.services.pipeline.plan import make_plan
 from cratous.services.processes.files import Ports, write_configuration

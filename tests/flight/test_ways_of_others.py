@@ -22,11 +22,11 @@ from cratous.core.avoidance.manoeuvre import way_along
 from cratous.core.avoidance.prediction import Intruder, Piece, first_violation_s, later, meetings
 from cratous.core.permit.remainder import hold_at, hold_permits, way_permits
 from cratous.services.flight.link_lines import way_of_another
-from cratous.services.icarous.ending import cylinder
 from cratous.services.icarous.inbox import MOST_OTHERS, Told, hear
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Sensed
-from cratous.services.icarous.others import LINK_LOST_MS, with_ways
+from cratous.services.icarous.other_vehicles import LINK_LOST_MS, with_ways
+from cratous.services.icarous.route_end import cylinder
 from cratous.services.icarous.state import Config, State
 from cratous.spec.mission import Daa, Position, Velocity
 

@@ -21,7 +21,7 @@ from cratous.bridge.port import address
 from cratous.services.cli import main
 from cratous.services.ground_station import attached_session
 from cratous.services.ground_station.attached_session import AttachedSession
-from cratous.services.ground_station.bounded import Bounded
+from cratous.services.ground_station.bounded_rows import Bounded
 
 LIMIT_S = 30.0
 

@@ -10,7 +10,7 @@ import sys
 CHILD = """
 import os, signal, sys
 from cratous.services.cli.stopping import Stopped, stoppable
-from cratous.services.ground_station.held_signals import held_back
+from cratous.services.ground_station.deferred_signals import held_back
 os.register_at_fork(before=lambda: os.kill(os.getpid(), signal.SIGTERM))
 with stoppable():
     with held_back():

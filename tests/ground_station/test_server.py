@@ -21,9 +21,9 @@ from simulator_tools import mission, scenario, waypoint
 
 from cratous.services.cli import main
 from cratous.services.ground_station.access import Access
+from cratous.services.ground_station.page_data import ReadAnew
 from cratous.services.ground_station.recording import recording
 from cratous.services.ground_station.server import GroundStation
-from cratous.services.ground_station.shown import ReadAnew
 from cratous.services.ground_station.verdicts import NO_REPORT, OTHER_LOG
 from cratous.services.web.connection import MOST_SILENT
 from cratous.spec.errors import BadInput

@@ -12,7 +12,7 @@ import yaml
 from cratous.services.exporting.exported import GEOJSON, KML, exported
 from cratous.services.importing.composing import Asked, composed
 from cratous.services.importing.gathering import gathered
-from cratous.services.importing.parts import Intruder, Parts, Place, Reading, Way
+from cratous.services.importing.imported_content import Intruder, Parts, Place, Reading, Way
 from cratous.services.loading import load
 from cratous.services.parameters.parameter_file import parse
 from cratous.spec.errors import BadInput

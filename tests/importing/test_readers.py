@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from cratous.services.importing.imported_content import Parts, Place, Reading
 from cratous.services.importing.kinds import read_part
-from cratous.services.importing.parts import Parts, Place, Reading
 from cratous.spec.errors import BadInput
 
 NOTHING = Reading()

@@ -98,7 +98,7 @@ READ_MISSION = (
     "from cratous.services.loading.document import read_document\nread_document(Path(sys.argv[1]))"
 )
 READ_LMCP = (
-    "from cratous.bridge.lmcp import forms\n"
+    "from cratous.bridge.lmcp import stored_forms\n"
     "for found in forms.read(Path(sys.argv[1]).read_bytes()): pass"
 )
 READ_XML = "from cratous.bridge.lmcp import xml\nxml.read_file(sys.argv[1])"

@@ -17,8 +17,8 @@ from ground_station_tools import LIMIT_S, Served, ask
 
 from cratous.services.exporting.exported import ALL, exported
 from cratous.services.ground_station.access import Access
+from cratous.services.ground_station.page_data import ReadAnew
 from cratous.services.ground_station.server import Commands, GroundStation
-from cratous.services.ground_station.shown import ReadAnew
 from cratous.services.loading.document import parse_document
 from cratous.services.loading.yaml_mission import loaded
 from cratous.services.logs.records import from_data

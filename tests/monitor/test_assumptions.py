@@ -29,9 +29,9 @@ from tampering import (
     other,
 )
 
-from cratous.services.assumptions.heard import HEARD_MS, LEAST_MS
 from cratous.services.assumptions.listing import LISTING
-from cratous.services.assumptions.said import sentence
+from cratous.services.assumptions.observation_texts import sentence
+from cratous.services.assumptions.takeover_ends import HEARD_MS, LEAST_MS
 from cratous.services.assumptions.watch import AssumptionWatch
 from cratous.services.icarous.instance import LINK_LOST_MS
 from cratous.services.icarous.return_to_path import PERSIST_MS

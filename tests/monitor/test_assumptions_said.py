@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from cratous.services.assumptions.listing import LISTING
-from cratous.services.assumptions.said import lines
+from cratous.services.assumptions.observation_texts import lines
 from cratous.services.certify.rejudge import certify_again
 from cratous.services.cli import main
 

@@ -9,8 +9,8 @@ import pytest
 from flight_tools import meeting
 
 from cratous.bridge import lmcp
-from cratous.services.assumptions.given_up import GivenUpWatch
-from cratous.services.assumptions.observed import Message, Observed
+from cratous.services.assumptions.observations import Message, Observed
+from cratous.services.assumptions.takeover_limit import GivenUpWatch
 from cratous.services.mission.leg_bounds import LONGEST_LOOKAHEADS, MOST_TAKEOVERS
 from cratous.spec.mission import Change, Mission
 from cratous.spec.mission.changes import VEHICLE_HOLDS

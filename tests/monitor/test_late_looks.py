@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from cratous.bridge import lmcp
 from cratous.services.assumptions.link import DeliveryWatch, PeriodWatch
 from cratous.services.assumptions.listing import State
-from cratous.services.assumptions.observed import Message
+from cratous.services.assumptions.observations import Message
 from cratous.services.assumptions.watch import AssumptionWatch
 
 MISSION = meeting()

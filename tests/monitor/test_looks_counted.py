@@ -13,11 +13,11 @@ from task_tools import vehicle
 from cratous.bridge import lmcp
 from cratous.judge import searches, views
 from cratous.services.exporting.messages import configuration_of
-from cratous.services.mission import asked_views
-from cratous.services.mission.asked_views import middle
+from cratous.services.mission import required_views
 from cratous.services.mission.frames import Projection
+from cratous.services.mission.required_views import middle
+from cratous.services.monitor.counted_footprints import looks_of
 from cratous.services.monitor.coverage import CoverageWatch
-from cratous.services.monitor.looks import looks_of
 from cratous.services.simulator.motion import Motion
 from cratous.services.simulator.payload import gimbals_of, states
 from cratous.spec.mission import Camera, Frame, Mission, Position, Task, TaskKind, View
@@ -144,6 +144,6 @@ def test_the_middle_of_an_image_is_where_its_diagonals_cross(elevation_deg: floa
 
 
 def test_the_judge_counts_by_the_same_bounds() -> None:
-    assert math.degrees(asked_views.FLATTEST_RAD) == pytest.approx(views.FLATTEST_DEG)
-    assert math.degrees(asked_views.OFF_VIEW_RAD) == pytest.approx(views.OFF_VIEW_DEG)
-    assert asked_views.COARSER == searches.COARSER
+    assert math.degrees(required_views.FLATTEST_RAD) == pytest.approx(views.FLATTEST_DEG)
+    assert math.degrees(required_views.OFF_VIEW_RAD) == pytest.approx(views.OFF_VIEW_DEG)
+    assert required_views.COARSER == searches.COARSER

@@ -14,8 +14,8 @@ from tampering import Log, at, other
 
 from cratous.bridge import lmcp
 from cratous.services.assumptions.listing import State
-from cratous.services.assumptions.near_legs import NearLegsWatch
-from cratous.services.assumptions.observed import Message, Observed
+from cratous.services.assumptions.observations import Message, Observed
+from cratous.services.assumptions.path_deviation import NearLegsWatch
 from cratous.services.bus import Bus, Envelope
 from cratous.services.flight.loop import fly
 from cratous.services.pipeline.plan import make_plan

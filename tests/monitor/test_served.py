@@ -9,8 +9,8 @@ import pytest
 from flight_tools import meeting
 
 from cratous.bridge import lmcp
-from cratous.services.assumptions.observed import Message, Observed
-from cratous.services.assumptions.served import ServedWatch
+from cratous.services.assumptions.observations import Message, Observed
+from cratous.services.assumptions.service_assumptions import ServedWatch
 from cratous.services.mission.leg_bounds import LONGEST_LOOKAHEADS, MOST_TAKEOVERS
 from cratous.spec.mission import Change, Mission
 from cratous.spec.mission.changes import TASK_REMOVED, VEHICLE_HOLDS

@@ -28,14 +28,15 @@ from cratous.core.routing import visibility
 from cratous.core.routing.bulk import direct_many, route_many
 from cratous.core.routing.visibility import Roadmap, lengths_around, routes
 from cratous.core.tasks.coverage_arrays import mark_seen
-from cratous.services.planning import coming, stages
+from cratous.services.planning import pending_compilation, stages
 from cratous.services.planning import routes as planned
 from cratous.services.planning.assign import solve
 from cratous.services.planning.assign_warm import simple_instance
 from cratous.services.planning.detours import many_detours
 from cratous.services.planning.inputs import Inputs
+from cratous.services.planning.pending_compilation import AROUND, ASSIGNMENT, ROUTES
 from cratous.services.planning.zones import roadmaps
-from cratous.services.startup import ahead, little_missions, warm
+from cratous.services.startup import ahead, sample_missions, warm
 from cratous.spec.assignment.search import ORDER, AssignmentProblem, Choice
 from cratous.spec.errors import Refused
 from cratous.spec.mission import Mission, Zone, ZoneKind
@@ -68,7 +69,7 @@ ALL: list[Started] = []
 def mission(tasks: int, zone: Zone | None = None) -> Mission:
     """A vehicle south of so many points, which a zone may part from it."""
     points = [f"[{{north_m: 5000, east_m: {100 * k}, alt_m: 300}}]" for k in range(1, tasks + 1)]
-    made = little_missions.mission([f"kind: must_fly, points: {one}" for one in points], zone="")
+    made = sample_missions.mission([f"kind: must_fly, points: {one}" for one in points], zone="")
     return dataclasses.replace(made, zones=() if zone is None else (zone,))
 
 
@@ -85,7 +86,7 @@ def begun(monkeypatch: pytest.MonkeyPatch) -> list[Started]:
     monkeypatch.setattr(ahead.atexit, "register", lambda *_: None)
     monkeypatch.setattr(ahead, "_cores", lambda: 2)
     monkeypatch.setattr(ahead, "is_kept", functools.cache(lambda _: False))
-    monkeypatch.setattr(coming, "_coming", {})
+    monkeypatch.setattr(pending_compilation, "_coming", {})
     return ALL
 
 
@@ -105,7 +106,7 @@ def test_what_may_not_be_needed_stands_back(
     back: list[tuple[str, int]] = []
     monkeypatch.setattr(ahead, "_stand_back", lambda process, by: back.append((process.name, by)))
     ahead.begin([mission(ahead.MANY_TASKS)])
-    assert back == [(coming.ROUTES, ahead.BEHIND)]
+    assert back == [(ROUTES, ahead.BEHIND)]
 
 
 def test_on_one_core_who_answers_waits_before_and_who_plans_compiles(
@@ -124,7 +125,7 @@ def test_on_one_core_who_answers_waits_before_and_who_plans_compiles(
 
 def test_who_needs_machine_code_waits_for_it_once(begun: list[Started]) -> None:
     ahead.begin([mission(ahead.MANY_TASKS)])
-    assert [process.name for process in begun] == [coming.ROUTES, coming.ASSIGNMENT]
+    assert [process.name for process in begun] == [ROUTES, ASSIGNMENT]
     choices = tuple(Choice(t, 1, 1, (1,)) for t in (1, 2, 3, 4))
     rows = tuple(tuple(None if a == b else 1 for b in range(4)) for a in range(5))
     problem = AssignmentProblem("", (1,), (0,), choices, (rows,), "|(p1 p2 p3 p4)")
@@ -139,10 +140,10 @@ def test_what_is_compiled_for_routes_goes_by_whether_many_lead_around_zones(
 ) -> None:
     few = ahead.MANY_TASKS - 1
     ahead.begin([mission(few, wall(-2000.0)), mission(ahead.MANY_TASKS, wall(3000.0))])
-    assert [process.name for process in begun] == [coming.ROUTES, coming.ASSIGNMENT]
+    assert [process.name for process in begun] == [ROUTES, ASSIGNMENT]
     begun.clear()
     ahead.begin([mission(few), mission(ahead.MANY_TASKS, wall(-2000.0))])
-    assert [process.name for process in begun] == [coming.AROUND, coming.ASSIGNMENT]
+    assert [process.name for process in begun] == [AROUND, ASSIGNMENT]
 
 
 def test_ways_across_a_zones_box_are_many_or_not() -> None:
@@ -173,7 +174,7 @@ def test_many_that_lead_around_get_the_ways_that_direct_ones_and_the_rest_get() 
         assert one.tobytes() == other.tobytes()
 
 
-@pytest.mark.parametrize(("east_m", "name"), [(320.0, coming.AROUND), (3000.0, coming.ROUTES)])
+@pytest.mark.parametrize(("east_m", "name"), [(320.0, AROUND), (3000.0, ROUTES)])
 def test_who_searches_many_ways_waits_for_the_search_that_they_need(
     monkeypatch: pytest.MonkeyPatch, east_m: float, name: str
 ) -> None:
@@ -187,20 +188,20 @@ def test_who_searches_many_ways_waits_for_the_search_that_they_need(
             return _search(*given)
 
         monkeypatch.setattr(planned, search.__name__, looked)
-    monkeypatch.setattr(coming, "ready", waited.append)
+    monkeypatch.setattr(pending_compilation, "ready", waited.append)
     corners = ((4900.0, east_m), (4900.0, east_m + 60), (5100.0, east_m + 60), (5100.0, east_m))
     made = mission(6, Zone(1, ZoneKind.KEEP_OUT, corners, 0.0, 500.0))
     ours = Inputs(made, stages.start_poses(made))
     count = len(ours.options)
     pairs = [(before, to) for before in (START, *range(count)) for to in range(count)]
-    monkeypatch.setitem(coming.WORTH_WAITING, name, len(pairs))
+    monkeypatch.setitem(pending_compilation.WORTH_WAITING, name, len(pairs))
     Inputs(made, stages.start_poses(made)).routes.prepare(0, pairs)
     assert waited == []  # CPython has them sooner
-    monkeypatch.setitem(coming.WORTH_WAITING, name, coming.MANY_WAYS)
+    monkeypatch.setitem(pending_compilation.WORTH_WAITING, name, pending_compilation.MANY_WAYS)
     searched.clear()
     ours.routes.prepare(0, pairs)
     assert waited == [name]
-    assert set(searched) == {{coming.AROUND: "lengths_around", coming.ROUTES: "routes"}[name]}
+    assert set(searched) == {{AROUND: "lengths_around", ROUTES: "routes"}[name]}
 
 
 def test_a_process_that_nobody_waited_for_is_ended(begun: list[Started]) -> None:
@@ -220,7 +221,7 @@ def test_a_process_that_is_late_is_waited_for_no_longer_and_ended(
     monkeypatch.setattr(Started, "wait", late)
     ahead.begin_all()
     for name in ahead.MAKERS:
-        coming.ready(name)  # says nothing: who needs it compiles it
+        pending_compilation.ready(name)  # says nothing: who needs it compiles it
     for process in begun:
         ahead._end(process)  # type: ignore[arg-type]
     assert [process.ended for process in begun] == [True, True]
@@ -249,7 +250,7 @@ def test_who_has_begun_plans_nothing_that_the_gate_refuses(
 
     def refused(**_: Any) -> None:
         names = [process.name for process in begun]
-        assert names == [ahead.SQUARES, coming.ROUTES, coming.ASSIGNMENT]
+        assert names == [ahead.SQUARES, ROUTES, ASSIGNMENT]
         raise Refused("the code is not what was proved")
 
     monkeypatch.setattr(ahead, "MANY_TASKS", 1)
@@ -269,7 +270,7 @@ def test_such_a_process_leaves_machine_code_and_says_nothing(tmp_path: Path) -> 
         "from cratous.core.routing.bulk import direct_many; print(is_kept(direct_many))"
     )
     own = {**os.environ, "CRATOUS_CACHE": str(tmp_path / "cache")}
-    lines = [["-c", ask], ["-P", "-m", ahead.__name__, coming.ROUTES], ["-c", ask]]
+    lines = [["-c", ask], ["-P", "-m", ahead.__name__, ROUTES], ["-c", ask]]
     runs = [
         subprocess.run([sys.executable, *line], env=own, capture_output=True, check=True)
         for line in lines
@@ -382,8 +383,8 @@ def test_an_area_has_its_squares_compiled_ahead_and_who_needs_them_waits_once(
     monkeypatch.setattr(tiered, "_coming", {})
     monkeypatch.setattr(tiered, "_done", Counter())
     monkeypatch.setattr(tiered, "_compiled", {})
-    area = little_missions.mission(
-        [task for task in little_missions.TASKS if "area_search" in task], zone=""
+    area = sample_missions.mission(
+        [task for task in sample_missions.TASKS if "area_search" in task], zone=""
     )
     ahead.begin([area])
     assert [process.name for process in begun] == [ahead.SQUARES]

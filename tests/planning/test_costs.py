@@ -19,7 +19,7 @@ from cratous.services.loading import load
 from cratous.services.pipeline.plan import cost_of, make_plan
 from cratous.services.planning import stages
 from cratous.services.planning.inputs import Inputs
-from cratous.services.planning.why import why
+from cratous.services.planning.vehicle_alternatives import why
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.mission import Mission
 from cratous.spec.mission.plan import cost_text

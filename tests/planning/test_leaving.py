@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cratous.core.geofence.mission_legs import first_bad_leg
-from cratous.services.planning.leaving import ARC_STEP_RAD, OUT_M, way_out
+from cratous.services.planning.zone_exits import ARC_STEP_RAD, OUT_M, way_out
 from cratous.spec.mission import Zone, ZoneKind
 from cratous.spec.mission.plan import Pose
 

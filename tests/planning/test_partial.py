@@ -21,7 +21,7 @@ from cratous.services.planning import reasons
 from cratous.services.planning.assign import Limits, search
 from cratous.services.planning.assign_problem import parts
 from cratous.services.planning.partial import Parts, part_problem, restricted
-from cratous.services.planning.why import why
+from cratous.services.planning.vehicle_alternatives import why
 from cratous.spec.algebra.meaning import tasks
 from cratous.spec.algebra.partial import may_be_done, only
 from cratous.spec.assignment.search import AssignmentProblem, Choice, Solution

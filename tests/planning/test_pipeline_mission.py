@@ -18,8 +18,8 @@ from cratous.services import pipeline
 from cratous.services.bus import Bus
 from cratous.services.loading import load
 from cratous.services.pipeline.contexts import Contexts
+from cratous.services.pipeline.coordinates import RequestPlaces
 from cratous.services.pipeline.mission_source import MissionSource
-from cratous.services.pipeline.places import RequestPlaces
 from cratous.services.pipeline.plan import (
     MissionRequests,
     certificate_of,
@@ -29,7 +29,7 @@ from cratous.services.pipeline.plan import (
 )
 from cratous.services.planning.inputs import Inputs
 from cratous.services.planning.stages import start_poses
-from cratous.services.uxas.serves import SERVES
+from cratous.services.uxas.published_messages import SERVES
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.mission.plan import Pose
 

@@ -15,7 +15,7 @@ from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
 from cratous.services.pipeline import implementation as implementation_module
 from cratous.services.pipeline import planner
-from cratous.services.pipeline.unserved import OTHERS_MS
+from cratous.services.pipeline.external_tasks import OTHERS_MS
 from cratous.spec import algebra
 from cratous.spec.algebra import meaning as algebra_meaning
 

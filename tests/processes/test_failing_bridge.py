@@ -11,7 +11,13 @@ import pytest
 
 from cratous.bridge.faults import FailingWay
 from cratous.bridge.text_protocol import Direction, Hello, SetMode, SetVelocity, encode
-from cratous.bridge.text_protocol.sealed import FORGED, REPLAYED, Seal, SealedClient, SealedServer
+from cratous.bridge.text_protocol.authenticated_lines import (
+    FORGED,
+    REPLAYED,
+    Seal,
+    SealedClient,
+    SealedServer,
+)
 from cratous.services.processes.failing_bridge import FailingBridge
 from cratous.spec.mission.bridge_faults import BridgeFaults
 

@@ -15,8 +15,8 @@ from collections import Counter
 from typing import Any
 
 from cratous.bridge.text_protocol import Direction, Message, StreamParser
+from cratous.bridge.text_protocol.authenticated_lines import Seal
 from cratous.bridge.text_protocol.dialects import Dialect
-from cratous.bridge.text_protocol.sealed import Seal
 
 GOOD = b"""\
 POSTN,timegps1.010000,lat37.099997,long-76.424616,altabs300.000000,altrel300.000000,north-0.002177,east22.000000,\

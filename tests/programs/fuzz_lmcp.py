@@ -23,7 +23,7 @@ from typing import Any
 
 from cratous.bridge import envelope, lmcp
 from cratous.bridge.bytesum import byte_sum
-from cratous.bridge.lmcp import binary, careful, model
+from cratous.bridge.lmcp import binary, model, reference_codec
 from cratous.bridge.sentinel import HEAD, MAX_PAYLOAD, FrameStream, frame
 from cratous.spec.errors import BadInput
 
@@ -162,7 +162,7 @@ def agree(raw: bytes, found: Any) -> None:
         if other != text:
             raise AssertionError(f"{reader.__name__} disagrees: {raw.hex()} {other} {text}")
     if found is not None and not found.raw_message():
-        parts = careful.pack(found)
+        parts = reference_codec.pack(found)
         if bytes(parts) != binary.pack(found)[8:-4]:
             raise AssertionError(f"writers disagree: {raw.hex()}")
         if lmcp.to_json(lmcp.from_json(text)) != text:
@@ -174,7 +174,7 @@ def agree(raw: bytes, found: Any) -> None:
 
 def _carefully(raw: bytes) -> Any:
     binary._checked(raw, "message")
-    return careful.read(raw, 8, len(raw) - 4, "message")
+    return reference_codec.read(raw, 8, len(raw) - 4, "message")
 
 
 def _lazily(raw: bytes) -> Any:

@@ -11,7 +11,7 @@ from cratous.services.requirements import including
 from cratous.services.requirements.formula import same
 from cratous.services.requirements.including import libraries, library_text
 from cratous.services.requirements.language import read
-from cratous.services.requirements.own_files import files_of, other_libraries, own_file
+from cratous.services.requirements.requirement_files import files_of, other_libraries, own_file
 from cratous.services.requirements.specification import NotRead, Specification
 from cratous.services.requirements.watch import watch
 from cratous.spec.errors import BadInput

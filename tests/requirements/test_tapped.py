@@ -25,7 +25,7 @@ from cratous.bridge.text_protocol.dialects import Dialect
 from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET
 from cratous.bridge.text_protocol.keys import Keys
 from cratous.services.cli import main
-from cratous.services.requirements import tapped
+from cratous.services.requirements import tapped_bridge
 
 REQUIREMENTS = """trace every 100 ms gap 2 s begins with all
 signal altitude: m from AirVehicleState[ID=3].Location.Altitude hold 5 s
@@ -268,10 +268,12 @@ class Flood:
 def test_a_watch_ends_in_a_flood_and_what_came_before_is_left_out_by_name(
     came_ns: int | None, monkeypatch
 ) -> None:
-    monkeypatch.setattr(tapped, "REST_S", 0.2)
+    monkeypatch.setattr(tapped_bridge, "REST_S", 0.2)
     found: list[str] = []
     flood: Any = Flood(came_ns)
-    one = tapped.Tapped(flood, lambda _: None, lambda *_: None, lambda kind, _: found.append(kind))
+    one = tapped_bridge.Tapped(
+        flood, lambda _: None, lambda *_: None, lambda kind, _: found.append(kind)
+    )
     begun_s = time.monotonic()
     turns = iter([False, False, True])
     assert list(one.messages(10.0, lambda _: next(turns))) == []
@@ -310,7 +312,9 @@ class Behind:
 def test_what_the_relay_hands_over_late_is_looked_at_still() -> None:
     found: list[str] = []
     tap: Any = Behind()
-    one = tapped.Tapped(tap, lambda _: None, lambda *_: None, lambda kind, _: found.append(kind))
+    one = tapped_bridge.Tapped(
+        tap, lambda _: None, lambda *_: None, lambda kind, _: found.append(kind)
+    )
     assert list(one.messages(10.0, lambda _: True)) == []
     assert found == ["refused"]
 

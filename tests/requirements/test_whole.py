@@ -12,8 +12,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from cratous.core.readings.machine import compiled
+from cratous.services.requirements import finished_trace, watch
 from cratous.services.requirements import formula as form
-from cratous.services.requirements import watch, whole
 from cratous.services.requirements.evaluation import Evaluation
 from cratous.services.requirements.outcome import Outcome
 from cratous.services.requirements.specification import Requirement, Signal, Specification
@@ -65,10 +65,10 @@ def both_ways(formula: form.Formula, rows: list[tuple[int, Any, Any]]) -> tuple[
     one_by_one, at_once = Watch(spec), Watch(spec)
     for time, row in samples(rows):
         one_by_one.sample(time, row)
-    columns = whole.Columns("xy")
+    columns = finished_trace.Columns("xy")
     for time, row in samples(rows):
         columns.add(time, row)
-    whole.Whole(columns).fill(at_once.outcomes[0], formula)
+    finished_trace.Whole(columns).fill(at_once.outcomes[0], formula)
     at_once.count, at_once.last = len(rows), columns.last if rows else -1
     return one_by_one.result().outcomes[0], at_once.result().outcomes[0]
 
@@ -114,12 +114,12 @@ def test_each_sample_is_decided_when_it_is_one_by_one(
     evaluation, wanted = Evaluation(formula), {}
     for k, (time, row) in enumerate(samples(rows)):
         wanted |= {at: (verdict, k) for at, verdict in evaluation.sample(time, row)}
-    columns = whole.Columns("xy")
+    columns = finished_trace.Columns("xy")
     for time, row in samples(rows):
         columns.add(time, row)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(compiled, "machine", plainly)
-        verdict, known = whole.Whole(columns)._parts(formula)[id(formula)]
+        verdict, known = finished_trace.Whole(columns)._parts(formula)[id(formula)]
     assert wanted == {
         at: (int(v), int(k))
         for (at, _), v, k in zip(samples(rows), verdict, known, strict=True)
@@ -147,11 +147,11 @@ def test_machine_code_says_the_same_and_is_used_where_it_is_worth_it(
     (tmp_path / "t.csv").write_text("x,y\n" + "".join(lines))
     one_by_one = watch.watch(spec, tmp_path / "t.csv")
     filled: list[str] = []
-    real = whole.Whole.fill
+    real = finished_trace.Whole.fill
     monkeypatch.setattr(
-        whole.Whole, "fill", lambda *words: filled.append(words[1].name) or real(*words)
+        finished_trace.Whole, "fill", lambda *words: filled.append(words[1].name) or real(*words)
     )
-    monkeypatch.setattr(whole, "WORTH", 1000)
+    monkeypatch.setattr(finished_trace, "WORTH", 1000)
     at_once = watch.watch(spec, tmp_path / "t.csv")
     assert filled == ["A", "B"]
     assert at_once == one_by_one
@@ -165,7 +165,7 @@ def test_machine_code_says_the_same_and_is_used_where_it_is_worth_it(
 def test_times_that_do_not_rise_are_refused_at_once_as_one_by_one(
     later: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(whole, "WORTH", 0)
+    monkeypatch.setattr(finished_trace, "WORTH", 0)
     monkeypatch.setattr(compiled, "machine", plainly)
     spec = Specification(SIGNALS, (Requirement("A", "", form.Reaches("x", 1.0)),))
     row: dict[str, float | None] = {"x": 1.0}

@@ -13,7 +13,7 @@ from cratous.core.authority.gate import Gate
 from cratous.core.avoidance.manoeuvre import Ability, Motion
 from cratous.core.avoidance.prediction import Spread
 from cratous.services.icarous.messages import Sensed
-from cratous.services.sensing import own as own_state
+from cratous.services.sensing import own_state as own_state
 from cratous.services.sensing.filter import (
     Estimate,
     Flown,

@@ -12,7 +12,7 @@ import pytest
 from flight_tools import meeting, of_type
 
 from cratous.bridge import lmcp
-from cratous.services.assumptions.said import measured
+from cratous.services.assumptions.observation_texts import measured
 from cratous.services.assumptions.watch import AssumptionWatch
 from cratous.services.bus import Bus, Envelope
 from cratous.services.certify.limits import of_states

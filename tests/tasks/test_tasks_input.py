@@ -14,7 +14,7 @@ from task_tools import FIELD, vehicle
 from cratous.bridge import lmcp
 from cratous.core.tasks.coverage import area_m2, outline
 from cratous.services.loading import load
-from cratous.services.loading.places import Places
+from cratous.services.loading.coordinates import Places
 from cratous.services.loading.uxas_cfg import Sent
 from cratous.services.loading.uxas_tasks import Interests
 from cratous.services.loading.uxas_tasks import task as read_task

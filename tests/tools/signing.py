@@ -19,7 +19,7 @@ from cryptography.hazmat.primitives.serialization import (
     PublicFormat,
 )
 
-from cratous.services.attestation.blamed import blame_of
+from cratous.services.attestation.blame_check import blame_of
 from cratous.services.attestation.dsse import signed
 from cratous.services.attestation.findings import Subject
 from cratous.services.attestation.names import VIEWS

@@ -14,8 +14,8 @@ from rendezvous_tools import coming, sent_on, waiting
 from cratous.bridge import lmcp
 from cratous.core.kernel import Vec2
 from cratous.services.following import service
-from cratous.services.following.asked import ROUTE_MOST
 from cratous.services.following.motion import Motion
+from cratous.services.following.task_parameters import ROUTE_MOST
 
 
 def test_what_nobody_told_of_for_a_while_was_not_kept_to(tmp_path: Path) -> None:

@@ -12,8 +12,14 @@ from bridge_flight import way
 from icarous_rig import Rig, state
 
 from cratous.bridge import text_protocol as tp
+from cratous.bridge.text_protocol.authenticated_lines import (
+    DAMAGED,
+    FORGED,
+    REPLAYED,
+    Seal,
+    SealedClient,
+)
 from cratous.bridge.text_protocol.keys import new_keys
-from cratous.bridge.text_protocol.sealed import DAMAGED, FORGED, REPLAYED, Seal, SealedClient
 from cratous.spec.mission.guarantees import Outcome
 
 SERVICE = "IcarousCommunicationService"

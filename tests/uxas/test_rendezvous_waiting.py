@@ -13,7 +13,7 @@ from rendezvous_tools import PLACES, coming, sent_on, under_way, waiting
 from cratous.bridge import lmcp
 from cratous.core.kernel import Vec2
 from cratous.services.following.speeds import Limits, waiting_of
-from cratous.services.planning.flyers import Flyer
+from cratous.services.planning.performance_classes import Flyer
 
 pytestmark = pytest.mark.usefixtures("straight_run_ins")
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
+from cratous.services.uxas.published_messages import SERVES
 from cratous.services.uxas.registry import KINDS
-from cratous.services.uxas.serves import SERVES
 
 
 @pytest.fixture(scope="module")

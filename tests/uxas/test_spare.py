@@ -17,7 +17,7 @@ from cratous.bridge import lmcp
 from cratous.services.pipeline.contexts import Contexts
 from cratous.services.planning import inputs
 from cratous.services.planning import routes as planned
-from cratous.services.startup import spare
+from cratous.services.startup import idle_work
 from cratous.services.uxas import message_source
 from cratous.services.uxas.message_source import MessageSource
 from cratous.services.uxas.process import Process
@@ -91,11 +91,11 @@ def test_every_loop_that_planning_may_have_compiled_is_read_ahead() -> None:
     # of routes, `_search` hands the loop that it is called with to `swift`
     by = ("swift", "_search")
     names = {ast.unparse(n.args[0]) for n in calls if ast.unparse(n.func) in by} - {"loop"}
-    assert names == {loop.__name__ for loop in spare._LOOPS}
+    assert names == {loop.__name__ for loop in idle_work._LOOPS}
 
 
 def test_the_pieces_plan_what_planning_is_asked_for() -> None:
-    assert sum(1 for _ in spare.pieces()) == len(spare._LOOPS) + len(spare.TASKS) + 2
+    assert sum(1 for _ in idle_work.pieces()) == len(idle_work._LOOPS) + len(idle_work.TASKS) + 2
 
 
 PLANS = "TaskManager AutomationRequestValidator RoutePlannerVisibility RouteAggregator PlanBuilder"
@@ -147,9 +147,11 @@ def test_what_has_been_told_says_what_is_read(
     """Machine code takes more memory than all the rest: a point alone is planned without it."""
     ours, contexts = planning
     did: list[str] = []
-    monkeypatch.setattr(spare, "plan", lambda tasks, zone="z": did.append(f"{len(tasks)}{zone}"))
-    monkeypatch.setattr(spare, "_read", lambda: iter([did.append("read") is None] * 2))
-    pieces = spare.pieces(contexts)
+    monkeypatch.setattr(
+        idle_work, "plan", lambda tasks, zone="z": did.append(f"{len(tasks)}{zone}")
+    )
+    monkeypatch.setattr(idle_work, "_read", lambda: iter([did.append("read") is None] * 2))
+    pieces = idle_work.pieces(contexts)
     assert [next(pieces) for _ in range(3)] == [True, False, False]
     assert did == ["1"]
     tell(ours, must_fly(5))
@@ -165,10 +167,10 @@ def test_what_has_been_told_says_what_is_read(
 def test_where_nobody_tells_a_task_everything_is_read(
     planning: tuple[Process, Contexts], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(spare, "plan", lambda tasks, zone="z": None)
-    monkeypatch.setattr(spare, "_read", lambda: iter([True]))
-    monkeypatch.setattr(spare, "WITHOUT_TASKS_S", 0.0)
-    pieces = spare.pieces(planning[1])
+    monkeypatch.setattr(idle_work, "plan", lambda tasks, zone="z": None)
+    monkeypatch.setattr(idle_work, "_read", lambda: iter([True]))
+    monkeypatch.setattr(idle_work, "WITHOUT_TASKS_S", 0.0)
+    pieces = idle_work.pieces(planning[1])
     assert [next(pieces) for _ in range(3)] == [True, True, False]
 
 
@@ -182,8 +184,8 @@ def test_options_made_ahead_are_those_of_the_request_if_it_is_for_the_same(
     """Else they are made anew; either way the plan is the one that is made without them."""
     ours, contexts = planning
     tell(ours, line(6), must_fly(5))
-    monkeypatch.setattr(spare, "_read", lambda: iter(()))
-    pieces = spare.pieces(contexts)
+    monkeypatch.setattr(idle_work, "_read", lambda: iter(()))
+    pieces = idle_work.pieces(contexts)
     assert [*itertools.takewhile(bool, pieces)] == [
         True
     ] * 5  # a point, two tasks, ways of two vehicles
@@ -224,7 +226,7 @@ def test_what_was_made_stays_made_when_more_is_told_or_asked_for(
 ) -> None:
     """One task more is one task to make, and a request that comes before ways are found has not to make options."""
     ours, contexts = planning
-    monkeypatch.setattr(spare, "_read", lambda: iter(()))
+    monkeypatch.setattr(idle_work, "_read", lambda: iter(()))
     made: list[int] = []
     expand = inputs.expand
 
@@ -233,7 +235,7 @@ def test_what_was_made_stays_made_when_more_is_told_or_asked_for(
         return expand(mission, tasks, *more)
 
     tell(ours, line(6), must_fly(5))
-    pieces = spare.pieces(contexts)
+    pieces = idle_work.pieces(contexts)
     assert next(pieces)  # a point
     monkeypatch.setattr(inputs, "expand", counted)
     assert [*itertools.takewhile(bool, pieces)]

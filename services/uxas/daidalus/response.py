@@ -23,7 +23,7 @@ from cratous.core.avoidance.manoeuvre import Ability
 from cratous.core.contracts.responses import Response, loss_is_soon, response_step
 from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.services.bus import Envelope
-from cratous.services.uxas.daidalus.diverts import (
+from cratous.services.uxas.daidalus.manoeuvre_selection import (
     RESUME_REGIONS,
     Flight,
     Found,

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from cratous.core.geofence.mission_legs import first_bad_leg
-from cratous.services.loading.places import Places
+from cratous.services.loading.coordinates import Places
 from cratous.services.loading.polygons import padded, polygon_problem
 from cratous.services.loading.uxas_cfg import Sent
 from cratous.services.loading.uxas_parts import zone as zone_of
