@@ -8,7 +8,8 @@ its sender has control, or is UxAS under an offer; any other must be dropped.
 
 Without a link no handback is possible. A takeover open at the end is a violation; if the link had
 been declared down (BridgeStatus) and not declared alive again, it is unknown whether it would have
-ended. A takeover also ends when the vehicle has come to rest on a landing site.
+ended. A takeover also ends when the vehicle has come to rest on a landing site, and, in a mission
+that says what is flown then, with a declared failure (`FailureState`) of the vehicle.
 """
 
 from __future__ import annotations
@@ -147,6 +148,7 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
             silent_ms = _down_ms(log.bridges.get(vehicle, []), log.end_ms)
             rests = stands_at_start(mission, vehicle, flown.get(vehicle))
             rests = rests or (place is not None and place.good)
+            rests = rests or (mission.after_failure is not None and vehicle in log.declared)
             doubt = story.end(log.end_ms, silent_ms, rests)
         note = (
             f"{story.takeovers} takeovers, {story.handbacks} handbacks, {story.commands} commands, "

@@ -10,6 +10,7 @@ from typing import Any
 from cratous.judge import (
     authority,
     compare,
+    failures,
     heartbeat,
     log,
     lost_link,
@@ -127,6 +128,7 @@ def judged(mission: Mission, found: log.Log) -> list[Row]:
     rows += authority.rows(mission, found, flown)
     rows += take_off.rows(mission, found, flown)
     rows += lost_link.rows(mission, found, flown)
+    rows += failures.rows(mission, found, flown)
     rows += heartbeat.rows(mission, found, _unsafe(safe))
     doubts = list(found.doubts)
     if found.end_ms is None:

@@ -13,6 +13,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from cratous.judge.declared import Declared, read_declared, read_hand
 from cratous.judge.fields import Node
 from cratous.spec.errors import BadInput
 
@@ -22,7 +23,7 @@ NEW = (*OLD, "address", "sender_group", "entity_id", "service_id", "content_type
 KINDS = (
     "TruthState", "AirVehicleState", "TaskProgress", "MissionEnd", "GateState", "GatedCommand",
     "CommandDropped", "AuthorityChange", "Heartbeat", "BridgeStatus", "PlanAccepted", "LinkLossState",
-    "TakeOffState",
+    "TakeOffState", "FailureState", "HandState",
 )  # fmt: skip
 FLOWN = ("North", "East", "Altitude", "VelocityNorth", "VelocityEast", "VelocityDown")
 PHASES = ("Planned", "Transit", "Waiting", "Active", "Suspended", "Complete", "Failed")
@@ -123,6 +124,8 @@ class Log:
     beats: dict[tuple[int, str], list[Beat]] = field(default_factory=dict)
     bridges: dict[int, list[Bridge]] = field(default_factory=dict)
     alone: dict[int, list[Alone]] = field(default_factory=dict)
+    declared: dict[int, list[Declared]] = field(default_factory=dict)
+    hands: dict[int, list[tuple[int, str]]] = field(default_factory=dict)
     leaving: dict[int, list[Leaves]] = field(default_factory=dict)
     ends: list[tuple[int, str]] = field(default_factory=list)
     planned: frozenset[int] = frozenset()
@@ -377,6 +380,8 @@ _READERS = {
     "BridgeStatus": _bridge,
     "LinkLossState": _alone,
     "TakeOffState": _leaves,
+    "FailureState": read_declared,
+    "HandState": read_hand,
 }
 
 

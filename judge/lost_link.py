@@ -31,8 +31,9 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
         said, place = log.alone.get(vehicle, []), down(mission, vehicle, flown.get(vehicle))
         faults = [*_faults(mission, asked, said), *_missed(mission, asked, log, vehicle, said)]
         if log.end_ms is not None:
-            faults += _landing(mission, said, place, log.end_ms, flown.get(vehicle))
-        faults += _taken(mission, flown, vehicle, place)
+            faults += landing_faults(mission, flown, vehicle, said, log.end_ms)
+        else:
+            faults += _taken(mission, flown, vehicle, place)
         note = ", ".join(f"{one.mode} from {seconds(one.time_ms)}" for one in said)
         note = note or "it was never said to be without the link"
         note += f"; it {place.words()}" if place else ""
@@ -42,7 +43,7 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
         elif log.end_ms is None:
             note = f"the log stops before the mission ends; {note}"
             yield Row("G5", subject, item, UNKNOWN, note, None, len(said))
-        elif mission.sites and (doubt := _unseen(flown.get(vehicle))):
+        elif mission.sites and (doubt := unseen(flown.get(vehicle))):
             yield Row("G5", subject, item, UNKNOWN, f"{note}; {doubt}", None, len(said))
         elif asked.lines_fail:
             note += "; whether UxAS was heard over a bridge that was made to fail is not in the log"
@@ -51,12 +52,12 @@ def rows(mission: Mission, log: Log, flown: dict[int, Track]) -> Iterator[Row]:
             yield Row("G5", subject, item, HOLDS, note, None, len(said))
 
 
-def _unseen(track: Track | None) -> str:
+def unseen(track: Track | None) -> str:
     """Why the position of a vehicle is not known throughout; empty if it is."""
     return "no position of it was logged" if track is None else track.doubt
 
 
-def _after(mode: str, chosen: str) -> set[str]:
+def follows(mode: str, chosen: str) -> set[str]:
     """The modes that may follow a mode."""
     if mode in (FINAL, LANDED):
         return {LANDED} - {mode}
@@ -81,7 +82,7 @@ def _faults(mission: Mission, asked: WithoutLink, said: list[Alone]) -> Iterator
                 one.time_ms,
                 f"{one.chosen} is said to be chosen, the mission wants {asked.choice}",
             )
-        if one.mode not in _after(mode, asked.choice):
+        if one.mode not in follows(mode, asked.choice):
             yield one.time_ms, f"{one.mode} does not follow {mode}"
         heard = 0 <= silent_ms <= asked.after_ms
         if one.mode != LANDED and heard != (one.mode == LINKED):
@@ -122,11 +123,21 @@ def _taken(
             yield place.at_ms, f"it {place.words()}, where vehicle {other} was before it"
 
 
+def landing_faults(
+    mission: Mission, flown: dict[int, Track], vehicle: int, said: list[Alone], end_ms: int
+) -> Iterator[tuple[int, str]]:
+    """Faults of a vehicle's landing, and of its reports on it, by its position."""
+    track = flown.get(vehicle)
+    place = down(mission, vehicle, track)
+    yield from _landing(mission, said, place, end_ms, track)
+    yield from _taken(mission, flown, vehicle, place)
+
+
 def _landing(
     mission: Mission, said: list[Alone], place: Down | None, end_ms: int, track: Track | None
 ) -> Iterator[tuple[int, str]]:
     """Faults of reports on landing, compared with the vehicle's position; none where it was not logged."""
-    landed, seen = [one.time_ms for one in said if one.mode == LANDED], not _unseen(track)
+    landed, seen = [one.time_ms for one in said if one.mode == LANDED], not unseen(track)
     # where it was logged before touchdown, it was in the air
     times = [] if track is None else track.times
     flew = [t for t in times if landed and landed[0] <= t and (place is None or t < place.at_ms)]

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
+from cratous.judge.declared import AfterFailure, after_failure
 from cratous.judge.fields import Node
 from cratous.judge.plane import fault_of_ring
 from cratous.judge.sites import Fix, Site, fix_of, site_of
@@ -142,6 +143,7 @@ class Mission:
     terrain_m: float = 0.0
     sites: tuple[Site, ...] = ()
     without_link: WithoutLink | None = None
+    after_failure: AfterFailure | None = None
     fix: Fix | None = None
 
     @property
@@ -204,6 +206,8 @@ def from_log(data: Node) -> Mission:
         choice = loss["choice"].one_of(*CHOICES).capitalize()
         without_link = WithoutLink(choice, _not_negative(loss["after_ms"]), fails)
         sites = tuple(site_of(one) for one in loss.get("sites", []))
+    if failing := data["daa"].has("on_failure"):
+        sites = tuple(site_of(one) for one in data["daa"]["on_failure"]["sites"])
     mission = Mission(
         name=data["name"].text,
         latitude_deg=frame["latitude_deg"].real,
@@ -225,6 +229,7 @@ def from_log(data: Node) -> Mission:
         terrain_m=frame.get("terrain_m", 0.0).real,
         sites=sites,
         without_link=without_link,
+        after_failure=after_failure(data["daa"]["on_failure"]) if failing else None,
         fix=fix_of(data["daa"]["merging"]) if data["daa"].has("merging") else None,
     )
     check(mission, data)

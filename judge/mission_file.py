@@ -14,6 +14,7 @@ from typing import Any
 import yaml
 
 from cratous.judge import mission as m
+from cratous.judge.declared import after_failure
 from cratous.judge.earth import to_local
 from cratous.judge.fields import Node
 from cratous.judge.sites import Fix, Site
@@ -109,6 +110,7 @@ class _Reader:
             terrain_m=self.terrain_m,
             sites=tuple(self.site(one) for one in root.get("landing_sites", [])),
             without_link=without_link,
+            after_failure=after_failure(root["on_failure"]) if root.has("on_failure") else None,
             fix=self.fix(root["merging"]) if root.has("merging") else None,
         )
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 from cratous.core.authority.cycle import Cycle
+from cratous.core.authority.failure import Asked, Failure, Seen
 from cratous.core.authority.gate import Gate
 from cratous.core.authority.link_end import LinkEnd
 from cratous.core.authority.link_loss import Loss
 from cratous.core.authority.take_off import Departure
 from cratous.proofs.claim import Claim
-from cratous.spec.authority import link_loss, take_off
+from cratous.spec.authority import failure, link_loss, take_off
 
 
 def any_gate(c: Claim) -> Gate:
@@ -54,6 +55,20 @@ def any_loss(c: Claim) -> tuple[Loss, tuple[Any, ...]]:
     c.premise(c.define(link_loss.is_mode, loss.mode))
     c.premise(c.all_of(c.define(link_loss.may_be_chosen, chosen), bound >= 0))
     return loss, (chosen, heard, now, bound, c.boolean("permitted"), c.boolean("ended"))
+
+
+def any_failure(c: Claim) -> tuple[Failure, tuple[Any, ...]]:
+    """An arbitrary declared failure, or none, with arbitrary inputs of `failure_step` at a heartbeat: which failures are
+    asked about, what is seen, what the vehicle flies by itself, the time and the reserve."""
+    before = Failure(c.integer("failure"), c.integer("declared_ms"))
+    asked = Asked(*(c.boolean(f"asks_{name}") for name in Asked._fields))
+    since, expiry = c.integer("without_since"), c.integer("expiry")
+    stopped, flies, without = (c.boolean(name) for name in ("stopped", "flies", "without"))
+    seen = Seen(stopped, flies, without, since, c.boolean("surprised"), expiry)
+    mode, now, reserve = c.integer("mode_alone"), c.integer("now"), c.integer("reserve")
+    c.premise(c.define(failure.is_kind, before.kind))
+    c.premise(reserve >= 0)
+    return before, (asked, seen, mode, now, reserve)
 
 
 def any_departure(c: Claim) -> tuple[Departure, tuple[Any, ...]]:

@@ -15,6 +15,7 @@ from cratous.core.authority.timeliness import in_time
 from cratous.services.assumptions.authority import has_it, reported
 from cratous.services.assumptions.link import NO_INSTANCE
 from cratous.services.assumptions.observations import Message, Record, gone_ms
+from cratous.services.mission.landing import on_failure_of
 from cratous.spec.mission import Mission
 from cratous.spec.system.ending import MOST_PATIENCE
 
@@ -47,6 +48,7 @@ class HeardWatch:
 
     def __init__(self, mission: Mission, told: bool = True) -> None:
         self._instances = frozenset(mission.instances)
+        self._of_link = on_failure_of(mission) is None
         none = not_told(mission, told)
         waits = "no heartbeat of ICAROUS was seen"
         self._record = Record("s", HEARD_MS / 1000, (in_time,), none, waits=waits)
@@ -65,7 +67,7 @@ class HeardWatch:
             return
         elif kind == "UxasHeard":
             self._told(body.VehicleID, bool(body.Heard), body.Last, body.Time)
-        else:
+        elif self._of_link:  # after a declared failure UxAS may be heard, and is not obeyed
             self._told(body.VehicleID, body.Mode.name == LINKED, body.Heard, body.Time)
 
     def _told(self, number: int, heard: bool, last_ms: int, now_ms: int) -> None:
@@ -94,12 +96,12 @@ class Away(NamedTuple):
 class WayBackWatch:
     """Checks for each takeover whether control was offered, and if not by the end, for how long it was not."""
 
-    kinds = ("GateState", "UxasHeard", "LinkLossState")
+    kinds = ("GateState", "UxasHeard", "LinkLossState", "FailureState")
 
     def __init__(self, mission: Mission, told: bool = True) -> None:
         self._away: dict[int, Away] = {}
         self._instances = frozenset(mission.instances)
-        self._unheard: set[int] = set()
+        self._unheard, self._failed = set[int](), set[int]()
         self._gone_ms, self._coarse = gone_ms(mission), coarse(mission)
         # the path is first checked one heartbeat after the takeover, and control is offered at a
         # heartbeat
@@ -115,7 +117,12 @@ class WayBackWatch:
         if kind not in self.kinds or body.VehicleID not in self._instances:
             return
         number = body.VehicleID
-        if kind == "UxasHeard":
+        if kind == "FailureState":
+            self._failed.add(number)
+            self._over(number)
+        elif number in self._failed:
+            return  # it offers nothing any more, whether the path is clear or not
+        elif kind == "UxasHeard":
             self._hears(number, bool(body.Heard), now_ms)
         elif kind == "LinkLossState":
             self._hears(number, body.Mode.name == LINKED, now_ms)

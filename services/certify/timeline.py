@@ -260,6 +260,8 @@ def _event(flight: Flight, short: str, body: dict[str, Any]) -> None:
         _note(flight, time_ms, int(body["VehicleID"]), f"bridge {state} {body['Note']}".strip())
     elif short == "LinkLossState":
         _note(flight, time_ms, int(body["VehicleID"]), f"without the link: {body['Reason']}")
+    elif short == "FailureState":
+        _note(flight, time_ms, int(body["VehicleID"]), f"declared failure: {body['Reason']}")
     elif short == "TakeOffState":
         _note(flight, time_ms, int(body["VehicleID"]), f"take-off: {body['Reason']}")
     elif short == "MergeState":

@@ -93,10 +93,11 @@ def _read(file: Path, notes: dict[Path, tuple[str, ...]]) -> tuple[Path, list[Ba
         else:
             from cratous.services.loading import load
             from cratous.services.loading.fitness import warnings_of
+            from cratous.services.mission.landing import sites_of
             from cratous.services.mission.take_off import grounded
 
             mission = load(file)
-            if mission.link_loss is not None:
+            if sites_of(mission):
                 from cratous.services.flight.landing_reach import require_reachable
 
                 require_reachable(mission)

@@ -200,6 +200,7 @@ def craft_of(path: Path, vehicle_id: int, dialect: Dialect, digest: str | None =
     from cratous.services.loading import load
     from cratous.services.mission.frames import Projection
     from cratous.services.mission.ground import floor_of
+    from cratous.services.mission.landing import on_failure_of
     from cratous.services.mission.merging import merging_of
     from cratous.services.mission.take_off import grounded
 
@@ -219,6 +220,14 @@ def craft_of(path: Path, vehicle_id: int, dialect: Dialect, digest: str | None =
             item="link_loss",
             expected="no link_loss, or cratous run without --processes",
             got=mission.link_loss.choice.value,
+        )
+    if (after := on_failure_of(mission)) is not None:
+        raise BadInput(
+            "the mission says what is flown after a failure, which a program of its own does not fly",
+            where=str(path),
+            item="on_failure",
+            expected="no on_failure, or cratous run without --processes",
+            got=after.choice.value,
         )
     if (merging := merging_of(mission)) is not None:
         raise BadInput(

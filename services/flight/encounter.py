@@ -39,6 +39,7 @@ from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Steer, Up, Wish
 from cratous.services.mission.frames import Projection
 from cratous.services.mission.ground import floor_of
+from cratous.services.mission.landing import on_failure_of
 from cratous.services.mission.merging import merging_of
 from cratous.services.mission.take_off import grounded
 from cratous.services.planning.performance_classes import MOMENT_MS, straight
@@ -121,7 +122,7 @@ def fly_encounter(mission: Mission, *, daa: bool = True) -> Encounter:
 def ways_of(mission: Mission) -> dict[int, tuple[Position, ...]]:
     """The route of each vehicle: its start position and its must_fly points, in the order of the file.
 
-    BadInput for relations, changes in flight, bridge faults, `link_loss`, `merging`, starts on the ground, other
+    BadInput for relations, changes in flight, bridge faults, `link_loss`, `on_failure`, `merging`, starts on the ground, other
     kinds of task, tasks without exactly one eligible vehicle, vehicles without a task, and missions without a
     protected vehicle, in which there is nothing to judge.
     """
@@ -130,6 +131,7 @@ def ways_of(mission: Mission) -> dict[int, tuple[Position, ...]]:
         ("changes", mission.changes),
         ("simulation.bridge_faults", isinstance(mission.simulation, FaultySimulation)),
         ("link_loss", mission.link_loss is not None),
+        ("on_failure", on_failure_of(mission) is not None),
         ("merging", merging_of(mission) is not None),
         ("vehicles.start", bool(grounded(mission))),
     ):

@@ -20,6 +20,7 @@ from cratous.services.flight import (
     deadlines,
     direct_commands,
     executive_outputs,
+    failing,
     interruption,
     legs,
     omitted_tasks,
@@ -49,6 +50,7 @@ from cratous.services.flight.messages import (
     ZonesKnown,
 )
 from cratous.services.flight.notices import mission_end
+from cratous.services.icarous.messages import Fails, WithoutLink
 from cratous.spec.executive import (
     COMPLETE,
     DROP_LATE,
@@ -105,6 +107,10 @@ class Executive:
                 state = interruption.linked(self.config, state, message, out)
             case Stands():
                 state = interruption.landed(state, message)
+            case Fails():
+                state = failing.declared(state, message)
+            case WithoutLink():
+                state = failing.flies(state, message)
             case Report(now_ms):
                 state = self._report(state, now_ms, out)
             case Closing():
@@ -215,6 +221,7 @@ class Executive:
         )
         for vid in self.config.instances:
             state = executive_outputs.report(state, vid, out)
+        failing.repeated(state, out)
         return state
 
     def _close(self, state: State, message: Closing, out: Out) -> State:
@@ -231,12 +238,16 @@ class Executive:
             if chain.item is None and stands_at_start(chain.vehicle, state.air(chain.vehicle.id))
         }
         gates = [(vid, gate) for vid, gate in message.gates if vid not in stays]
-        away = [vid for vid, gate in gates if gate.owner != UXAS and vid not in down]
+        busy = failing.busy(state)
+        away = [v for v, gate in gates if v in busy or (gate.owner != UXAS and v not in down)]
         kinds = (*BRINGS_WORK, *(MAY_FREE_WORK if state.left_out else ()))
         expected = sum(c.kind in kinds for c in state.to_come)
         # not needed while some still fly; a search flown only in part counts as not served
         todo = len(changes.unserved(state)) if not flying else 0
         how = OUTCOMES[flight_outcome(flying, len(away), expected, todo, now_ms, limit_ms)]
+        if how == OUTCOMES[FAILED_FLIGHT]:
+            stopping, state = state.stopping, failing.at_the_end(self.config, state)
+            how = how if state.stopping == stopping else ""
         if not how:
             return state
         why = "not served when the mission ended"

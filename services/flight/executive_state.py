@@ -72,7 +72,8 @@ class State:
     starts, ends: actual times; failed: failed tasks with the reason; left_out: tasks that the present plan
     leaves out, with the reason; in_part: tasks of which only a planned part was flown; commands, replans,
     finished: counts; hurry: whether some deadline is tight; asked: the pending plan request; landed: vehicles
-    at rest on the ground, each with when and where in words.
+    at rest on the ground, or given up after a declared failure, each with when and where in words; stopping: vehicles
+    whose mission is stopped; declared: those that have declared a failure, and after when each has flown what follows [ms].
     """
 
     known: Mission
@@ -96,6 +97,8 @@ class State:
     hurry: bool = False
     asked: Asked | None = None
     landed: tuple[tuple[int, str], ...] = ()
+    stopping: tuple[int, ...] = ()
+    declared: tuple[tuple[int, int], ...] = ()
 
     def find(self, vehicle_id: int) -> Chain | None:
         """The chain of a vehicle; None if it has none yet."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from cratous.core.authority.link_end import suspended_after
 from cratous.core.executive.steps import way_act
+from cratous.services.flight import failing
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.executive_outputs import command, route
 from cratous.services.flight.executive_state import Config, Out, State
@@ -135,6 +136,8 @@ def landed(state: State, message: Stands) -> State:
         *state.landed,
         (vid, f"it has landed {where}, and stands there since {now_ms / 1000:.2f} s"),
     )
+    if vid in dict(state.declared):
+        return failing.settled(replace(state, landed=told), vid, now_ms)
     news = Change(now_ms, VEHICLE_LANDED, vehicle=vid)
     return replace(state, landed=told, to_come=(*state.to_come, news))
 

@@ -12,7 +12,7 @@ from cratous.services.flight.dynamics import (
     limits_of,
     planned_state,
 )
-from cratous.services.flight.lost_link import lost_link
+from cratous.services.flight.lost_link import after_failure, lost_link
 from cratous.services.flight.vehicle import UNTOUCHED
 from cratous.services.icarous.course_permits import refused
 from cratous.services.icarous.landing import (
@@ -34,13 +34,14 @@ SLOW = f"its last descent takes longer than {LONGEST_MS / 1000:g} s"
 
 
 def require_reachable(mission: Mission) -> None:
-    """BadInput where a vehicle that is to land without the link could not reach a landing site from its
+    """BadInput where a vehicle that is to land without the link, or after a failure, could not reach a landing site from its
     start, given the zones known then and no other traffic.
     """
     if not sites_of(mission):
         return
     for number in mission.instances:
-        plan = lost_link(mission, number)
+        after = after_failure(mission, number)
+        plan = lost_link(mission, number) if after is None else after.flies
         if plan is None:
             continue
         why = _why_not(mission, mission.vehicle(number), plan)

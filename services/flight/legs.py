@@ -9,6 +9,7 @@ where it is, so that it can be handed back wherever that is permitted.
 from __future__ import annotations
 
 from cratous.core.executive.steps import leg_given_up
+from cratous.services.flight import failing
 from cratous.services.flight.chain import Chain
 from cratous.services.flight.executive_outputs import route
 from cratous.services.flight.executive_state import Config, Out, State
@@ -18,6 +19,7 @@ from cratous.services.mission.leg_bounds import LONGEST_LOOKAHEADS, MOST_TAKEOVE
 from cratous.services.mission.merging import merging_ms
 from cratous.services.mission.take_off import take_off_ms
 from cratous.spec.mission import Vehicle
+from cratous.spec.mission.on_failure import Failed
 from cratous.spec.records import replace
 
 ANEW_MS = 10_000
@@ -31,6 +33,8 @@ def give_up(config: Config, state: State, out: Out) -> State:
         chain = state.find(vid)
         if chain is None or chain.unlinked or chain.holds or vid in dict(state.landed):
             continue
+        if vid in state.stopping:
+            continue
         under_ms = chain.leg.flown_ms(chain.suspended, state.now_ms)
         # a take-off does not count as time of avoidance
         under_ms -= take_off_of(state, chain.vehicle)
@@ -41,7 +45,9 @@ def give_up(config: Config, state: State, out: Out) -> State:
                 state = _circle_here(config, state, chain, out)
         elif leg_given_up(chain.leg.takeovers, MOST_TAKEOVERS, under_ms, longest_ms):
             state = fail(config, state, chain.item.task_id, _blocked(chain, under_ms), out)
-            if state.chain(vid).suspended:
+            if failing.asks(state, Failed.BLOCKED):
+                state = failing.stop(state, (vid,))
+            elif state.chain(vid).suspended:
                 state = route(state, vid, out)
     return state
 

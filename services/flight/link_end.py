@@ -28,6 +28,7 @@ from cratous.bridge.text_protocol import (
     SetMode,
     SetVelocity,
     StartMission,
+    StopMission,
     UxasPlans,
     Waypoint,
     WaypointReached,
@@ -58,6 +59,7 @@ from cratous.services.flight.messages import (
     RouteAsked,
     Say,
     Seen,
+    Stop,
     Suspend,
     TakeBack,
     ToLinkEnd,
@@ -207,6 +209,8 @@ class UxasEnd:
                 return self._seen(peer, message)
             case Left(_, position):
                 return peer, down_to(peer, [link_lines.reset_to(position, self.projection)])
+            case Stop():
+                return peer, down_to(peer, [StopMission()])
             case Heard(_, now_ms, line):
                 return _heard(peer, line, now_ms)
             case Proposed(_, number, way, speed):
@@ -289,7 +293,7 @@ class UxasEnd:
         return replace(state, peers=tuple(peers)), tuple(out)
 
 
-ToOne = Route | Flown | Seen | Left | Heard | Unreadable | Lost | GateIs | Proposed
+ToOne = Route | Flown | Seen | Left | Stop | Heard | Unreadable | Lost | GateIs | Proposed
 OfOne = tuple[Peer, tuple[FromLinkEnd, ...]]
 
 

@@ -27,7 +27,7 @@ from cratous.services.flight.executive import Executive
 from cratous.services.flight.executive_state import Config
 from cratous.services.flight.holding import Ground
 from cratous.services.flight.link_end import UxasEnd
-from cratous.services.flight.lost_link import lost_link
+from cratous.services.flight.lost_link import after_failure, lost_link
 from cratous.services.flight.merging import DirectTalk, merge_fix
 from cratous.services.flight.messages import (
     AskPlan,
@@ -73,6 +73,7 @@ from cratous.services.flight.vehicle import VehicleNode
 from cratous.services.icarous import state as icarous
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import (
+    Fails,
     Foresees,
     FromInstance,
     Guides,
@@ -171,6 +172,7 @@ class Flight:
                 lost_link=lost_link(mission, vid),
                 take_off=take_off(mission, vid),
                 merging=merge_fix(mission, vid),
+                on_failure=after_failure(mission, vid),
             )
             for vid in instances
         }
@@ -359,8 +361,11 @@ class Flight:
                     self._instance(vid, given._replace(hand=hand))
                 case Offers(vid) | Uncertified(vid):
                     self._vehicle(vid, Held(self.now_ms, answer))
-                case Foresees(vid) | WithoutLink(vid) | TakesOff(vid) | Hears(vid) | Merges(vid):
+                case Foresees(vid) | TakesOff(vid) | Hears(vid) | Merges(vid):
                     self._publish(of_instance(answer), f"icarous/{vid}")
+                case WithoutLink(vid) | Fails(vid):
+                    self._publish(of_instance(answer), f"icarous/{vid}")
+                    self._executive(answer)
                 case Tells():
                     self.direct.tell(answer)
                 case Guides(vid):

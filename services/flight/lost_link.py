@@ -1,16 +1,18 @@
-"""Lost-link parameters for a vehicle's ICAROUS."""
+"""What a vehicle's ICAROUS flies by itself: without the link, or after a declared failure."""
 
 from __future__ import annotations
 
 from functools import lru_cache
 
+from cratous.core.authority.failure import Asked
 from cratous.core.authority.link_loss import FINISH, LAND, LOITER, RETURN
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.rejoining import Router
-from cratous.services.icarous.lost_link import LostLink
-from cratous.services.mission.landing import sites_of
+from cratous.services.icarous.lost_link import LostLink, OnFailure
+from cratous.services.mission.landing import on_failure_of, sites_of
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.mission.link_loss import WithoutLink, words
+from cratous.spec.mission.on_failure import AfterFailure, Failed
 from cratous.spec.mission.plan import Pose
 
 CHOICES = {
@@ -19,6 +21,16 @@ CHOICES = {
     WithoutLink.RETURN: RETURN,
     WithoutLink.LAND: LAND,
 }
+
+
+MODES = {
+    AfterFailure.HOLD: LOITER,
+    AfterFailure.RETURN: RETURN,
+    AfterFailure.LAND: LAND,
+    AfterFailure.DITCH: LAND,
+}
+ALWAYS_MS = 2**40
+"""A silence that is never too long: only a declared failure ends the authority of UxAS [ms]."""
 
 
 def lost_link(mission: Mission, vehicle_id: int) -> LostLink | None:
@@ -33,6 +45,20 @@ def lost_link(mission: Mission, vehicle_id: int) -> LostLink | None:
     goal_of = goal if returns else None
     site = loss.name if sites else ""
     return LostLink(choice, loss.after_ms, said, _way, goal_of, site, sites)
+
+
+def after_failure(mission: Mission, vehicle_id: int) -> OnFailure | None:
+    """What the mission sets for one vehicle after a declared failure, None if it sets nothing."""
+    after = on_failure_of(mission)
+    if after is None:
+        return None
+    goal = mission.vehicle(vehicle_id).position if after.to is None else Position(*after.to)
+    goal_of = goal if after.choice is AfterFailure.RETURN else None
+    sites, site = after.sites, after.name if after.lands else ""
+    if after.choice is AfterFailure.DITCH:
+        sites = tuple(one for one in sites if one.ditch)
+    flies = LostLink(MODES[after.choice], ALWAYS_MS, after.words, _way, goal_of, site, sites)
+    return OnFailure(Asked(*(one in after.of for one in Failed)), flies)
 
 
 def _way(

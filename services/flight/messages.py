@@ -12,7 +12,7 @@ from cratous.bridge.text_protocol import Message
 from cratous.core.authority.gate import Gate
 from cratous.core.avoidance.prediction import Intruder
 from cratous.services.flight.dynamics import AirState, Limits
-from cratous.services.icarous.messages import Offers, Sensed, Uncertified, Wish
+from cratous.services.icarous.messages import Fails, Offers, Sensed, Uncertified, Wish, WithoutLink
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.mission.plan import Plan, Pose
 
@@ -70,6 +70,12 @@ class Left(NamedTuple):
 
     vehicle_id: int
     position: Position
+
+
+class Stop(NamedTuple):
+    """A vehicle's mission is over."""
+
+    vehicle_id: int
 
 
 class Beat(NamedTuple):
@@ -274,6 +280,7 @@ ToLinkEnd = (
     | Route
     | Flown
     | Left
+    | Stop
     | Beat
     | Seen
     | Heard
@@ -380,7 +387,9 @@ ToExecutive = (
     | NotHeard
     | HeardAgain
     | Stands
+    | Fails
+    | WithoutLink
 )
 FromExecutive = (
-    Proposed | Say | ZonesKnown | Route | Flown | Left | Look | LimitsAre | AskPlan | Over
+    Proposed | Say | ZonesKnown | Route | Flown | Left | Stop | Look | LimitsAre | AskPlan | Over
 )

@@ -11,6 +11,7 @@ from cratous.services.flight.commands import SENDERS
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.holding import Change
 from cratous.services.icarous.messages import (
+    Fails,
     Foresees,
     Guides,
     Hears,
@@ -157,13 +158,27 @@ def merge_state(said: Merges) -> Any:
     )
 
 
-def of_instance(said: Foresees | WithoutLink | TakesOff | Hears | Merges) -> Any:
+def failure_state(said: Fails) -> Any:
+    """A `FailureState`: the failure that a vehicle's ICAROUS declares, and the intruder concerned."""
+    return lmcp.new(
+        "FailureState",
+        VehicleID=said.vehicle_id,
+        Time=said.now_ms,
+        Failure=said.failure,
+        IntruderID=said.intruder_id,
+        Reason=said.reason,
+    )
+
+
+def of_instance(said: Foresees | WithoutLink | Fails | TakesOff | Hears | Merges) -> Any:
     """An instance's notice for the record, as a message."""
     match said:
         case Foresees():
             return conflict(said)
         case WithoutLink():
             return link_loss_state(said)
+        case Fails():
+            return failure_state(said)
         case TakesOff():
             return take_off_state(said)
         case Hears():

@@ -19,6 +19,7 @@ from cratous.spec.mission.asked import term_of
 from cratous.spec.mission.changes import (
     TASK_ADDED,
     TASK_REMOVED,
+    VEHICLE_FAILED,
     VEHICLE_JOINS,
     VEHICLE_LANDED,
     VEHICLE_LOST,
@@ -33,6 +34,7 @@ BRANCHES_MAX = 64
 KINDS = {
     VEHICLE_LOST: executive.LOST,
     VEHICLE_LANDED: executive.LOST,
+    VEHICLE_FAILED: executive.LOST,
     VEHICLE_JOINS: executive.JOINS,
     TASK_ADDED: executive.ADDED,
     TASK_REMOVED: executive.REMOVED,

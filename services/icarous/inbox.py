@@ -55,6 +55,11 @@ class Told:
         """The inbox without messages about other vehicles."""
         return replace(self, others=(), of_others=(), steered=())
 
+    @property
+    def stopped(self) -> bool:
+        """Whether UxAS has said that the mission of this plan is over."""
+        return bool(self.waypoints) and not self.started
+
     def way_of(self, vehicle_id: int) -> tuple[Position, ...]:
         """Another vehicle's route under UxAS; () if unknown."""
         return dict(self.others).get(vehicle_id, ())

@@ -31,6 +31,7 @@ from cratous.core.avoidance.manoeuvre import velocity_of
 from cratous.core.avoidance.resolution import Choice
 from cratous.core.merging.stages import merging_lets_go, merging_takes
 from cratous.services.icarous import link_loss, merging, messages, permits, route_requests, take_off
+from cratous.services.icarous.failing import noted
 from cratous.services.icarous.foresight import (
     looked_s,
     points_back,
@@ -67,6 +68,7 @@ REASONS = {
     WITHDRAW: "offer withdrawn: the way back is no longer free",
 }
 NO_LINK = "link: UxAS is not heard"
+FAILED = "failure: declared"
 TAKES_OFF = "take-off: it is on the ground"
 UXAS_WAY = "the way back that UxAS's planner has found is free"
 
@@ -144,6 +146,8 @@ class Instance:
         else:
             state, out = self._fly(state, sensed, in_turn)
         beat = Heartbeat(sequence=state.beats, time_s=sensed.now_ms / 1000)
+        if self.config.on_failure is not None:
+            state = replace(state, failing=noted(state.failing, sensed, out))
         state, hears = self._hears(state, sensed.now_ms)
         return state, (*up, *lost, *merges, *hears, *out, messages.Up(self.config.vehicle_id, beat))
 
@@ -163,9 +167,10 @@ class Instance:
         """How far ahead the routes of others are needed at a heartbeat [s]: the look-ahead, or without limit
         where permits or courses are checked against them.
         """
-        daa, plan = self.config.daa, self.config.lost_link
+        daa, plan = self.config.daa, self.config.alone
         linked = plan is None or in_time(state.told.heard_ms, now_ms, plan.after_ms)
         linked = linked and state.no_link.loss.mode == LINKED
+        linked = linked and (self.config.on_failure is None or not state.told.stopped)
         if not watches or state.met or not linked or take_off.departs(self.config, state):
             return math.inf
         return looked_s(daa) + 1.0
@@ -189,7 +194,8 @@ class Instance:
         sensed = sensed._replace(intruders=to_their_ends(state.ways, sensed.intruders))
         if conflict is None or state.no_link.loss.mode != LINKED:
             linked = state.no_link.loss.mode == LINKED
-            why = merging.reason(state.merging) if linked else NO_LINK
+            why = FAILED if state.failing.declared else NO_LINK
+            why = merging.reason(state.merging) if linked else why
             state, out = self._by_itself(state, sensed, in_turn, cycled, why)
             return state, (*said, *out)
         vid, first_s = self.config.vehicle_id, conflict.first_s

@@ -1,10 +1,11 @@
-"""Autonomous behaviour while UxAS is not heard: what the mission chooses if permitted, otherwise a circle.
+"""Autonomous behaviour without the link, or after a declared failure: what the mission chooses if permitted, else a circle.
 
 The kernel `loss_step` decides at each heartbeat which mode is flown, since when, and until when. The chosen
 behaviour and the circle are courses (`services.icarous.course`), permitted from the present position; if not
 even a circle is permitted, the manoeuvre of least deviation is flown, as in any takeover. A route that was
 not permitted is searched for again after AGAIN_MS. A landing is flown to the gate of its final descent like
-any route, and from there to the ground.
+any route, and from there to the ground. After a declared failure (`services.icarous.failing`) UxAS counts as
+never heard again.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from cratous.core.authority.failure import heard_by, loss_declared
 from cratous.core.authority.link_loss import (
     FINAL,
     FINISH,
@@ -28,15 +30,17 @@ from cratous.core.avoidance.resolution import Choice
 from cratous.core.avoidance.way_ahead import near_line
 from cratous.core.routing.polylines import Track
 from cratous.services.icarous import course as courses
+from cratous.services.icarous import failing
 from cratous.services.icarous.course import Course
 from cratous.services.icarous.course_permits import TAKEN, refused
 from cratous.services.icarous.foresight import ON_PATH_M, scene_of
 from cratous.services.icarous.landing import approaches, in_order
 from cratous.services.icarous.lost_link import LostLink, NoLink
-from cratous.services.icarous.messages import Sensed, WithoutLink
+from cratous.services.icarous.messages import Fails, Sensed, WithoutLink
 from cratous.services.icarous.proposal import AGAIN_MS, manoeuvre
 from cratous.services.icarous.return_to_path import bearing_rad, flat, onto, rejoin
 from cratous.services.icarous.state import IDLE, Config, State
+from cratous.spec.authority.cycle import MONITOR
 from cratous.spec.authority.link_loss import BEGIN, COMMIT, END, FALL_BACK, NOTHING, REJOIN, TOUCH
 from cratous.spec.mission import Position
 from cratous.spec.mission.plan import Pose
@@ -58,12 +62,14 @@ class Tried(NamedTuple):
 
 def heartbeat(
     config: Config, state: State, sensed: Sensed
-) -> tuple[State, tuple[WithoutLink, ...]]:
+) -> tuple[State, tuple[Fails | WithoutLink, ...]]:
     """The state with the mode and course for this heartbeat, and what to report."""
-    plan, now_ms, before = config.lost_link, sensed.now_ms, state.no_link
+    plan, now_ms = config.alone, sensed.now_ms
     if plan is None:
         return state, ()
-    heard_ms, tried = state.told.heard_ms, Tried(None)
+    state, said = _declared(config, state, sensed)
+    before, tried = state.no_link, Tried(None)
+    heard_ms = heard_by(state.failing.failure, state.told.heard_ms)
     linked = in_time(heard_ms, now_ms, plan.after_ms)
     course = before.course
     if course is not None:
@@ -92,17 +98,36 @@ def heartbeat(
     tried_ms = now_ms if due else before.tried_ms
     after = replace(state, no_link=NoLink(stepped.loss, course, tried_ms))
     if stepped.act == NOTHING:
-        return after, ()
+        return after, said
     if stepped.act == REJOIN:
         after = replace(after, held=None, search=IDLE)
-    vid, why = config.vehicle_id, _words(stepped.act, plan, tried, course, now_ms - heard_ms)
+    heard_ms = state.told.heard_ms
+    silent = f"nothing was heard of UxAS for {(now_ms - heard_ms) / 1000:g} s"
+    if state.failing.declared:
+        silent = "after a declared failure"
+    vid, why = config.vehicle_id, _words(stepped.act, plan, tried, course, silent)
     if sensed.on_ground and stepped.act != REJOIN:
-        why = f"nothing was heard of UxAS for {(now_ms - heard_ms) / 1000:g} s: {STAYS}"
-    return after, (WithoutLink(vid, now_ms, mode, chosen, heard_ms, why),)
+        why = f"{silent}: {STAYS}"
+    return after, (*said, WithoutLink(vid, now_ms, mode, chosen, heard_ms, why))
 
 
-def _words(act: int, plan: LostLink, tried: Tried, course: Course | None, silent_ms: int) -> str:
-    silent = f"nothing was heard of UxAS for {silent_ms / 1000:g} s"
+def _declared(config: Config, state: State, sensed: Sensed) -> tuple[State, tuple[Fails, ...]]:
+    """The state with a failure that is declared now, and what was flown by itself until then left."""
+    if config.on_failure is None:
+        return state, ()
+    before, loss = state.failing, state.no_link.loss
+    flies = state.cycle.mode != MONITOR
+    asked, beat_ms = config.on_failure.asked, config.heartbeat_ms
+    seen = failing.Beat(loss.mode, flies, state.told.stopped, beat_ms)
+    now = failing.watched(before, asked, seen, sensed)
+    loss = loss_declared(before.failure, now.failure, loss)
+    state = replace(state, failing=now, no_link=state.no_link._replace(loss=loss))
+    if now.declared == before.declared:
+        return state, ()
+    return state, (failing.told(now, config.vehicle_id),)
+
+
+def _words(act: int, plan: LostLink, tried: Tried, course: Course | None, silent: str) -> str:
     site = course.site.name if course is not None and course.site is not None else ""
     if act == TOUCH:
         return f"landed at {site}"
@@ -124,7 +149,7 @@ def flown(
     """The manoeuvre to fly without the link: along the course, or by avoidance if no course is permitted; on
     the ground none.
     """
-    course, goal = state.no_link.course, config.lost_link.goal if config.lost_link else None
+    course, goal = state.no_link.course, config.alone.goal if config.alone else None
     if state.no_link.loss.mode == LANDED:
         stands = Choice("heading", sensed.motion.heading_rad, 0.0, 0.0, 0.0, True, None)
         return replace(state, held=None, search=IDLE), stands

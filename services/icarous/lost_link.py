@@ -1,10 +1,11 @@
-"""Lost-link parameters of an instance, and its state while UxAS is not heard."""
+"""What an instance flies by itself: its parameters, and its state while UxAS is not heard or no longer obeyed."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import NamedTuple
 
+from cratous.core.authority.failure import Asked
 from cratous.core.authority.link_loss import LINKED, Loss
 from cratous.services.icarous.course import Course
 from cratous.spec.mission import Position, Zone
@@ -30,6 +31,13 @@ class LostLink(NamedTuple):
     goal: Position | None = None
     site: str = ""
     sites: tuple[LandingSite, ...] = ()
+
+
+class OnFailure(NamedTuple):
+    """asked: the failures that count; flies: what is flown after one, whatever is heard of UxAS."""
+
+    asked: Asked
+    flies: LostLink
 
 
 class NoLink(NamedTuple):

@@ -36,7 +36,7 @@ class Merging(NamedTuple):
 
     stage: numbered as in `core.merging.stages`; merger: this member's state of the agreement on slots; way: the
     vehicle's route, None if none was announced; course: the course being flown, None if none is permitted or UxAS
-    flies; slot: at the fix [ms], None for none.
+    flies; slot: at the fix [ms], None for none; told: stage, term, leader, request and slot as recorded last.
     """
 
     stage: int = AWAY
@@ -44,3 +44,4 @@ class Merging(NamedTuple):
     way: Followed | None = None
     course: Course | None = None
     slot: int | None = None
+    told: tuple[int, int, int, int, int] = (AWAY, 0, 0, 0, -1)

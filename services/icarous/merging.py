@@ -93,15 +93,16 @@ def heartbeat(
     course = _flown(config, going, sensed, stage, course, arrival)
     flies = _flies(course, sensed, config.daa.lookahead_s)
     merger, said = talk.beat(fix.talks, merger, flies, now_ms)
-    after = Merging(stage, merger, way, course, slot)
+    told = _told(fix, stage, merger, slot)
+    after = Merging(stage, merger, way, course, slot, told)
     state = replace(state, merging=after)
     if stage not in (IN_SLOT, HOLDING) and before.stage in (IN_SLOT, HOLDING):
         state = replace(state, held=None, search=IDLE)
     tells = Tells(config.vehicle_id, said)
-    told = _told(fix, before, after)
-    if told == _told(fix, before, before):
+    # compared with what was recorded last: a message may have told of a leader since then
+    if told == before.told:
         return state, (tells,)
-    return state, (Merges(config.vehicle_id, now_ms, stage, *told[1:], reason(after)), tells)
+    return state, (Merges(config.vehicle_id, now_ms, *told, reason(after)), tells)
 
 
 def with_members(config: Config, state: State, now_ms: int) -> Told:
@@ -154,12 +155,10 @@ def flown(
     return manoeuvre(config, state, sensed, in_turn, False)
 
 
-def _told(fix: Fix, before: Merging, after: Merging) -> tuple[int, int, int, int, int]:
+def _told(fix: Fix, stage: int, merger: Merger, slot: int | None) -> tuple[int, int, int, int, int]:
     """Stage, term, leader, request and slot (-1: none), for the record."""
-    merger = after.merger
     leader = talk.leader_of(merger, fix.talks.me)
-    slot = -1 if after.slot is None else after.slot
-    return after.stage, merger.seat.latest, leader, merger.wish.request, slot
+    return stage, merger.seat.latest, leader, merger.wish.request, -1 if slot is None else slot
 
 
 def _followed(

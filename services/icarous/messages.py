@@ -103,6 +103,18 @@ class WithoutLink(NamedTuple):
     reason: str
 
 
+class Fails(NamedTuple):
+    """To the record and to UxAS: a declared failure, as a code of `core.authority.failure`, and the intruder concerned,
+    0 for none.
+    """
+
+    vehicle_id: int
+    now_ms: int
+    failure: int
+    intruder_id: int
+    reason: str
+
+
 class TakesOff(NamedTuple):
     """To the record. mode: the vehicle's take-off mode, as a code of `core.authority.take_off`; heard_ms:
     when UxAS was last heard.
@@ -194,6 +206,7 @@ FromInstance = (
     | Hears
     | Guides
     | WithoutLink
+    | Fails
     | TakesOff
     | Merges
     | Tells

@@ -13,8 +13,9 @@ from cratous.core.avoidance.resolution import Choice
 from cratous.core.permit.encounter import Encounter
 from cratous.services.icarous.band_history import Bands
 from cratous.services.icarous.course import Course
+from cratous.services.icarous.failing import Failing
 from cratous.services.icarous.inbox import Told
-from cratous.services.icarous.lost_link import LostLink, NoLink
+from cratous.services.icarous.lost_link import LostLink, NoLink, OnFailure
 from cratous.services.icarous.merge_state import Fix, Merging
 from cratous.services.icarous.other_vehicles import Ways
 from cratous.services.icarous.route_end import Beside
@@ -35,7 +36,8 @@ class Config(NamedTuple):
     original: the UxAS end is the original's, whose WAYPT lines carry a running count; certifies: each command
     comes with a certificate for the gate; records: alerts and bands are recorded; lost_link: behaviour while
     UxAS is not heard, None if the mission sets none; take_off: its take-off, None if it starts in the air;
-    merging: the fix at which it merges, None for none.
+    merging: the fix at which it merges, None for none; on_failure: what is flown after a declared failure, None
+    if the mission sets nothing.
     """
 
     vehicle_id: int
@@ -48,6 +50,12 @@ class Config(NamedTuple):
     lost_link: LostLink | None = None
     take_off: TakeOff | None = None
     merging: Fix | None = None
+    on_failure: OnFailure | None = None
+
+    @property
+    def alone(self) -> LostLink | None:
+        """What the vehicle flies by itself, without the link or after a declared failure; None for neither."""
+        return self.lost_link if self.on_failure is None else self.on_failure.flies
 
 
 class Rising(NamedTuple):
@@ -106,7 +114,7 @@ class State:
     routes of other own vehicles; asking: requests for a way back; bands: last alerts and bands; no_link:
     state without the link; pace_ms: until when UxAS may be accelerating after a handback [ms]; unheard: UxAS
     was not heard at the last heartbeat; rising: state of the take-off; beside: last zone check for the final
-    hold; merging: state of the merge.
+    hold; merging: state of the merge; failing: a declared failure, and what led to it.
     """
 
     cycle: Cycle = START
@@ -127,6 +135,7 @@ class State:
     rising: Rising = field(default_factory=Rising)
     beside: Beside | None = None
     merging: Merging = field(default_factory=Merging)
+    failing: Failing = field(default_factory=Failing)
 
     def paces(self, now_ms: int) -> bool:
         """Whether UxAS may still be accelerating the vehicle to the announced speed after a handback."""

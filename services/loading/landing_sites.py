@@ -15,7 +15,8 @@ from cratous.services.loading.document import Document
 from cratous.services.mission.landing import BRAKING_M_S2, TOUCHES_OFF_BEATS, sites_of
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission, Position
-from cratous.spec.mission.link_loss import LandingSite, WithoutLink
+from cratous.spec.mission.link_loss import LandingSite
+from cratous.spec.mission.on_failure import AfterFailure
 
 SECTION = "landing_sites"
 
@@ -32,15 +33,18 @@ def landing_sites(document: Document, places: Places) -> tuple[LandingSite, ...]
 
 def site_problems(document: Document, sites: tuple[LandingSite, ...]) -> Iterator[BadInput]:
     """Problems with landing sites: unused ones, duplicate names, and landings that name an unknown site."""
-    loss = document.data.get("link_loss", {})
-    lands, names = loss.get("choice") == WithoutLink.LAND.value, [site.name for site in sites]
-    told = ", ".join(names) or "none"
+    section = "on_failure" if "on_failure" in document.data else "link_loss"
+    loss, names = document.data.get(section, {}), [site.name for site in sites]
+    ditches = loss.get("choice") == AfterFailure.DITCH.value
+    lands = ditches or loss.get("choice") == AfterFailure.LAND.value
+    asked = [site.name for site in sites if site.ditch] if ditches else names
+    told = ", ".join(asked) or "none"
     if sites and not lands:
         yield BadInput(
             "no vehicle lands at these sites",
             where=document.where((SECTION,)),
             item=SECTION,
-            expected="link_loss with choice land beside them",
+            expected="link_loss or on_failure with choice land beside them",
             got=loss.get("choice", "none"),
         )
     for k, name in enumerate(names):
@@ -56,16 +60,18 @@ def site_problems(document: Document, sites: tuple[LandingSite, ...]) -> Iterato
     if site is not None and not lands:
         yield BadInput(
             "no vehicle lands at this site",
-            where=document.where(("link_loss", "site")),
-            item="link_loss.site",
+            where=document.where((section, "site")),
+            item=f"{section}.site",
             expected="choice land",
             got=loss["choice"],
         )
-    if lands and (not sites or site not in (None, *names)):
+    if lands and (not asked or site not in (None, *asked)):
+        key = "site" if site else "choice"
+        what = "landing site" + (" to ditch at" if ditches else "")
         yield BadInput(
-            "there is no such landing site" if site else "there is no landing site",
-            where=document.where(("link_loss", "site" if site else "choice")),
-            item="link_loss.site" if site else "link_loss.choice",
+            f"there is no such {what}" if site else f"there is no {what}",
+            where=document.where((section, key)),
+            item=f"{section}.{key}",
             expected=f"one of landing_sites: {told}",
             got=site or "none",
         )

@@ -13,8 +13,9 @@ from cratous.services.loading.document import Document, item_name
 from cratous.services.loading.landing_sites import landing_sites, site_problems
 from cratous.services.loading.problems import refuse
 from cratous.services.mission.ground import floor_of
+from cratous.services.mission.landing import on_failure_of
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import LandingLoss, LinkLoss, Mission, Simulation
+from cratous.spec.mission import LandingLoss, LinkLoss, Mission, Position, Simulation
 from cratous.spec.mission.link_loss import WithoutLink
 from cratous.spec.mission.link_loss import words as choice_words
 
@@ -55,10 +56,13 @@ def words(loss: LinkLoss) -> str:
 
 def place_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
     """Faults of the place to return to: a zone present at the start, or the ground, prevents loitering there."""
-    to = None if mission.link_loss is None else mission.link_loss.to
+    to, section = None if mission.link_loss is None else mission.link_loss.to, "link_loss"
+    after = on_failure_of(mission)
+    if after is not None and after.to is not None:
+        to, section = Position(*after.to), "on_failure"
     if to is None:
         return
-    item = "link_loss.to.position"
+    item = f"{section}.to.position"
 
     def bad(what: str, expected: str, got: str) -> BadInput:
         return BadInput(what, where=where(item), item=item, expected=expected, got=got)

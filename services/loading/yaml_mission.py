@@ -35,8 +35,11 @@ from cratous.services.loading.yaml_guidance import guidance_problems, guided
 from cratous.services.loading.yaml_link_loss import place_problems, yaml_link_loss
 from cratous.services.loading.yaml_link_loss import words as link_loss_words
 from cratous.services.loading.yaml_merging import merging_problems, yaml_merging
+from cratous.services.loading.yaml_on_failure import words as on_failure_words
+from cratous.services.loading.yaml_on_failure import yaml_on_failure
 from cratous.services.loading.yaml_sensing import yaml_sensing
 from cratous.services.loading.yaml_task import yaml_task
+from cratous.services.mission.landing import on_failure_of
 from cratous.services.mission.merging import merging_of
 from cratous.services.mission.take_off import grounded
 from cratous.spec.errors import BadInput
@@ -44,6 +47,7 @@ from cratous.spec.mission import (
     Camera,
     Change,
     Daa,
+    FailureDaa,
     FaultySimulation,
     Frame,
     GroundedVehicle,
@@ -76,6 +80,7 @@ from cratous.spec.mission.changes import (
 )
 from cratous.spec.mission.merging import Merging
 from cratous.spec.mission.merging import words as merging_words
+from cratous.spec.mission.on_failure import OnFailure
 from cratous.spec.mission.sensing import Sensing
 from cratous.spec.mission.sensing import words as sensing_words
 
@@ -152,6 +157,8 @@ def finish(mission: Mission, where: Any) -> Mission:
         notes.append(link_loss_words(mission.link_loss))
     if (merging := merging_of(mission)) is not None:
         notes.append(merging_words(merging))
+    if (after := on_failure_of(mission)) is not None:
+        notes.append(on_failure_words(after))
     if grounded(mission):
         notes.append(take_off_words(mission))
     mission = replace(mission, zones=zones, changes=known)
@@ -185,6 +192,7 @@ def _mission(document: Document, seed: int) -> Mission:
     instances, simulation = _instances(document, vehicles), _simulation(document)
     sensing = yaml_sensing(document, simulation, len(instances))
     link_loss = yaml_link_loss(document, places, simulation, len(instances))
+    on_failure = yaml_on_failure(document, places, len(instances))
     merging = yaml_merging(document, places)
     kind = LivePlanningMission if live else Mission
     return kind(
@@ -195,7 +203,7 @@ def _mission(document: Document, seed: int) -> Mission:
         tasks=tuple(
             yaml_task(entry, places, document.where, k) for k, entry in enumerate(data["tasks"])
         ),
-        daa=_daa(data.get("daa", {}), sensing, link_loss, merging),
+        daa=_daa(data.get("daa", {}), sensing, link_loss, merging or on_failure),
         zones=tuple(_zone(entry, places) for entry in data.get("zones", [])),
         traffic=tuple(_traffic(entry, places) for entry in data.get("traffic", [])),
         relations=data.get("relations", "").strip(),
@@ -316,7 +324,7 @@ def _daa(
     data: dict[str, Any],
     sensing: Sensing | None,
     link_loss: LinkLoss | None,
-    merging: Merging | None,
+    more: Merging | OnFailure | None,
 ) -> Daa:
     volume = {name: float(value) for name, value in data.get("well_clear", {}).items()}
     kept: dict[str, Any] = {"close_starts": bool(data.get("close_starts", False))}
@@ -325,8 +333,10 @@ def _daa(
     first = Resolution(data.get("resolution", Resolution.HEADING))
     if link_loss is not None:
         return LinkLossDaa(volume_kept, **kept, resolution=first, link_loss=link_loss)
-    if merging is not None:
-        return MergingDaa(volume_kept, **kept, resolution=first, merging=merging)
+    if isinstance(more, Merging):
+        return MergingDaa(volume_kept, **kept, resolution=first, merging=more)
+    if more is not None:
+        return FailureDaa(volume_kept, **kept, resolution=first, on_failure=more)
     if first is Resolution.HEADING:  # the default: keeps the established name
         return (
             Daa(volume_kept, **kept)

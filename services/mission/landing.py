@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from cratous.core.avoidance.landing import on_ground
-from cratous.spec.mission import LandingLoss, Mission, Position
+from cratous.spec.mission import FailureDaa, LandingLoss, Mission, Position
 from cratous.spec.mission.link_loss import LandingSite
+from cratous.spec.mission.on_failure import OnFailure
 
 BRAKING_M_S2 = 2.0
 """Deceleration of a vehicle on the ground [m/s2]."""
@@ -18,8 +19,15 @@ TOUCHES_OFF_BEATS = 1.0
 """Largest deviation of the touchdown point, in heartbeats of flight."""
 
 
+def on_failure_of(mission: Mission) -> OnFailure | None:
+    """What a mission specifies to be flown after a declared failure; None if nothing."""
+    return mission.daa.on_failure if isinstance(mission.daa, FailureDaa) else None
+
+
 def sites_of(mission: Mission) -> tuple[LandingSite, ...]:
     """The landing sites of a mission."""
+    if (after := on_failure_of(mission)) is not None:
+        return after.sites
     loss = mission.link_loss
     return loss.sites if isinstance(loss, LandingLoss) else ()
 

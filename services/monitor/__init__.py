@@ -16,6 +16,7 @@ from cratous.services.monitor.authority import AuthorityWatch
 from cratous.services.monitor.bridge import BridgeWatch
 from cratous.services.monitor.completion import CompletionWatch
 from cratous.services.monitor.constraints import ConstraintWatch
+from cratous.services.monitor.failure import FailureWatch
 from cratous.services.monitor.hand import HandWatch
 from cratous.services.monitor.landing import LandingWatch
 from cratous.services.monitor.link_loss import LinkLossWatch
@@ -63,6 +64,7 @@ class Monitor:
         self.bridge = BridgeWatch(mission, says_beats)
         self.hand = HandWatch.of(mission)
         self.link_loss = LinkLossWatch(mission, self.landing.down, self.presence)
+        self.failure = FailureWatch(mission, self.landing.down, self.presence)
         self.take_off = TakeOffWatch(mission, self.presence)
         self.merging = MergeWatch(mission, self.presence)
         self._assumed = AssumptionWatch(mission, on_board)
@@ -86,13 +88,16 @@ class Monitor:
         elif short == "TaskProgress":
             self.constraints.progress(body)
             self.completion.progress(body)
+            self.failure.progress(body)
         elif short in ("GateState", "GatedCommand", "CommandDropped", "ModeRefused"):
             self.authority.message(short, body, envelope.time_ms)
             if short == "GateState":
                 self.take_off.gate(body)
+                self.failure.gate(body)
                 self.hand.gate(body, envelope.time_ms)
         elif short == "HandState":
             self.hand.hand(body, envelope.time_ms)
+            self.failure.hand(body)
         elif short == "Heartbeat":
             self.bridge.heartbeat(body)
         elif short == "BridgeStatus":
@@ -101,6 +106,10 @@ class Monitor:
             self.link_loss.status(body)
         elif short == "LinkLossState":
             self.link_loss.state(body)
+            self.failure.state(body)
+        elif short == "FailureState":
+            self.failure.declared(body)
+            self.authority.declared(body)
         elif short == "TakeOffState":
             self.take_off.state(body)
         elif short == "MissionEnd":
@@ -111,6 +120,7 @@ class Monitor:
             self.authority.end(body, self.landing.at_rest(self._all_seen))
             self.bridge.end(body)
             self.link_loss.end(body)
+            self.failure.end(body)
             self.take_off.end(body)
             self.hand.end(body.Time)
         if self._tell is not None:
@@ -167,6 +177,7 @@ class Monitor:
             *self.take_off.verdicts(),
             *self.bridge.verdicts(),
             *self.link_loss.verdicts(),
+            *self.failure.verdicts(),
         ]
         there = {v.item for v in found if v.requirement == "G1"}
         return found + missing(promised(seen, there), ((v.requirement, v.item) for v in found))

@@ -7,7 +7,8 @@ reports must be what `gate_after`, `gate_takeover` or `gate_offer` makes of the 
 A takeover still open at the end of the mission is a violation. If the link to the vehicle was
 reported down and still is (BridgeStatus), that is a declared failure; the messages do not show
 whether it is the reason for the missing handback, so the verdict is unknown. A takeover also ends
-when the vehicle comes to rest on a landing site of the mission.
+when the vehicle comes to rest on a landing site of the mission, and where the mission says what is
+flown then, with a failure that its ICAROUS declares (FailureState).
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from typing import Any
 
 from cratous.core.authority import gate as gates
 from cratous.core.kernel import qualified
+from cratous.services.mission.landing import on_failure_of
 from cratous.services.monitor.landing import Down
 from cratous.services.monitor.required_rows import authority_item
 from cratous.spec.mission import Mission
@@ -36,7 +38,7 @@ class Command:
 
     due: what must be reported next; forged: dropped commands with epochs that were never issued;
     refused: modes that were impossible; down: since when and why the link is down as last reported,
-    empty while it is up; landed: where the last takeover ended on the ground; unended: takeover
+    empty while it is up; failed: the failure that was declared, empty if none; landed: where the last takeover ended on the ground; unended: takeover
     left open at the end with the link down, empty if none; had: (time [ms], commander), from time 0
     on.
     """
@@ -52,6 +54,7 @@ class Command:
     forged: int = 0
     refused: int = 0
     down: str = ""
+    failed: str = ""
     unended: str = ""
     landed: str = ""
     had: list[tuple[int, str]] = field(default_factory=lambda: [(0, NAMES[gates.UXAS])])
@@ -64,6 +67,7 @@ class AuthorityWatch:
 
     def __init__(self, mission: Mission) -> None:
         self.vehicles = {v.id: Command() for v in mission.vehicles if v.protected}
+        self._may_fail = frozenset(mission.instances if on_failure_of(mission) else ())
         self._ended = False
 
     def message(self, short: str, body: Any, time_ms: int) -> None:
@@ -97,6 +101,12 @@ class AuthorityWatch:
             seen.down = ""
         elif not seen.down:
             seen.down = f"down since {body.Time / 1000:.2f} s ({body.Note})"
+
+    def declared(self, body: Any) -> None:
+        """Process a FailureState: a declared failure, which ends a takeover."""
+        seen = self.vehicles.get(body.VehicleID)
+        if seen is not None and body.VehicleID in self._may_fail:
+            seen.failed = f"ended by a declared failure at {body.Time / 1000:.2f} s"
 
     def _command(self, seen: Command, body: Any) -> None:
         sender = gates.ICAROUS if body.Sender.name == "ICAROUS" else gates.UXAS
@@ -151,6 +161,8 @@ class AuthorityWatch:
             place = down.get(number)
             if seen.open_ms is not None and place is not None and place.good:
                 seen.landed = place.words()
+            elif seen.open_ms is not None and seen.failed:
+                seen.landed = seen.failed
             elif seen.open_ms is not None:
                 text = f"the takeover of {seen.open_ms / 1000:.2f} s was never handed back"
                 if seen.down:

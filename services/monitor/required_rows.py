@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterable, Iterator, Set
 from itertools import combinations
 from typing import NamedTuple
 
+from cratous.services.mission.landing import on_failure_of
 from cratous.services.mission.merging import merging_of
 from cratous.services.mission.take_off import grounded
 from cratous.services.mission.zone_times import zones_of
@@ -106,6 +107,11 @@ def alone_without_link_item(vehicle: int) -> str:
     return f"what vehicle {vehicle} flies without the link"
 
 
+def failure_item(vehicle: int) -> str:
+    """Name of the G4 row on what a vehicle does after a declared failure."""
+    return f"what vehicle {vehicle} does after a failure"
+
+
 def beat_item(vehicle: int, way: str) -> str:
     """Name of the row on the heartbeats of a vehicle in one direction, `Down` or `Up`."""
     return f"heartbeat {WAYS[way]} the ICAROUS instance of {vehicle}"
@@ -168,6 +174,8 @@ def promised(seen: Watched, present: Collection[str] = ()) -> Iterator[Row]:
         yield from (Row("G5", beat_item(vehicle, way), (vehicle,)) for way in WAYS)
     taking_off = [one.id for one in grounded(mission) if one.id in mission.instances]
     yield from (Row("G4", take_off_item(vehicle), (vehicle,)) for vehicle in taking_off)
+    if on_failure_of(mission) is not None:
+        yield from (Row("G4", failure_item(vehicle), (vehicle,)) for vehicle in mission.instances)
     if mission.link_loss is not None:
         for vehicle in mission.instances:
             yield Row("G5", alone_without_link_item(vehicle), (vehicle,))

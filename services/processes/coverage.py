@@ -14,6 +14,7 @@ from cratous.services.loading.coordinates import Places
 from cratous.services.loading.uxas_cfg import Sent
 from cratous.services.loading.uxas_tasks import Interests
 from cratous.services.loading.uxas_tasks import task as read_task
+from cratous.services.mission.landing import on_failure_of
 from cratous.services.mission.merging import merging_of
 from cratous.services.mission.take_off import grounded
 from cratous.spec.errors import BadInput
@@ -83,6 +84,8 @@ def _asked(mission: Mission, original: bool) -> Iterator[tuple[str, bool, str, s
     yield "sensing", sensed, "ICAROUS is given what sensors see", "no sensing"
     lost = mission.link_loss is not None
     yield "link_loss", lost, "the mission says what is flown without the link", "no link_loss"
+    after = on_failure_of(mission) is not None
+    yield "on_failure", after, "the mission says what is flown after a failure", "no on_failure"
     merges = merging_of(mission) is not None
     yield "merging", merges, "vehicles merge at a fix", "no merging"
     waits = bool(grounded(mission))

@@ -16,6 +16,7 @@ from cratous.spec.mission.camera import Camera as Camera
 from cratous.spec.mission.guidance import Guidance
 from cratous.spec.mission.link_loss import LandingSite, WithoutLink
 from cratous.spec.mission.merging import Merging
+from cratous.spec.mission.on_failure import OnFailure
 from cratous.spec.mission.sensing import Sensing
 from cratous.spec.mission.simulation import FaultySimulation as FaultySimulation
 from cratous.spec.mission.simulation import Simulation as Simulation
@@ -312,6 +313,13 @@ class MergingDaa(OrderedDaa):
     """Detect and avoid of a mission in which vehicles merge at a fix."""
 
     merging: Merging = field(default_factory=Merging)
+
+
+@dataclass(frozen=True)
+class FailureDaa(OrderedDaa):
+    """Detect and avoid in a mission that specifies what is flown after a declared failure."""
+
+    on_failure: OnFailure = field(default_factory=OnFailure)
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,8 @@ ZONE, ZONE_ENDS = "zone", "zone_ends"
 WIND = "wind"
 VEHICLE_HOLDS, VEHICLE_RESUMES = DIRECT = "vehicle_holds", "vehicle_resumes"
 """Commands to one vehicle; the known mission and its plan stay unchanged."""
-VEHICLE_LANDED = "vehicle_landed"
-"""Not in mission files: a consequence of the flight itself."""
+VEHICLE_LANDED, VEHICLE_FAILED = "vehicle_landed", "vehicle_failed"
+"""Not in mission files: consequences of the flight itself."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +68,7 @@ def words(change: Change) -> str:
         VEHICLE_LOST: f"vehicle {change.vehicle} is lost",
         VEHICLE_JOINS: f"vehicle {change.vehicle} joins",
         VEHICLE_LANDED: f"vehicle {change.vehicle} has landed",
+        VEHICLE_FAILED: f"vehicle {change.vehicle} has declared a failure",
         TASK_ADDED: f"task {change.task} is requested",
         TASK_REMOVED: f"task {change.task} is removed",
     }[change.kind]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from itertools import combinations
+from itertools import combinations, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -110,8 +110,11 @@ def test_the_leader_is_lost_and_all_pass_one_after_the_other(
     example: Merged, tmp_path: Path
 ) -> None:
     assert_merged(example, tmp_path)
-    leaders = [b.Leader for b in example.told("MergeState") if b.VehicleID == 3 and b.Leader]
-    assert leaders[0] == 2  # its first record with a leader: vehicle 1 is silent by then
+    led = [(b.Time, b.Leader) for b in example.told("MergeState") if b.VehicleID == 3]
+    leaders = [leader for _, leader in led if leader]
+    assert list(dict.fromkeys(leaders)) == [1, 2]
+    # what it learns from a message is recorded at its next heartbeat, before vehicle 1 falls silent
+    assert led[1] == (4000, 1)
     assert {b.Leader for b in example.told("MergeState") if b.VehicleID == 1} >= {1, 2}
     # one takeover each, with the reason, and a handback beyond the fix
     for one in (1, 2, 3):
@@ -120,6 +123,37 @@ def test_the_leader_is_lost_and_all_pass_one_after_the_other(
         assert taken.Reason.startswith("merging: it is flown to be at the fix at")
         assert back.Time >= example.passed(one)
     assert example.stages(1) == ["Away", "Asking", "InSlot", "Away"]
+
+
+@pytest.mark.parametrize("count", [4, 6])
+def test_many_pass_though_the_leader_is_lost_for_good(
+    root: Path, tmp_path: Path, count: int
+) -> None:
+    """Vehicle 1 leads until all that request a slot have one, and is then never heard again."""
+    silent = [{"vehicle": 1, "from_s": 40}]
+    flight = flown(mission_file(root, tmp_path, count, faults={"silent": silent}))
+    assert_merged(flight, tmp_path)
+    passed = sorted(flight.passed(k + 1) for k in range(count))
+    assert {after - before for before, after in pairwise(passed)} == {22_000}
+    for one in range(2, count + 1):
+        led = [b.Leader for b in flight.told("MergeState") if b.VehicleID == one and b.Leader]
+        assert list(dict.fromkeys(led)) == [1, 2]
+
+
+def test_a_leader_that_is_lost_before_it_has_a_slot_holds_outside(
+    root: Path, tmp_path: Path
+) -> None:
+    """It is never heard again: the others pass, it circles until its task is given up, and is in nobody's way."""
+    silent = [{"vehicle": 1, "from_s": 20}]
+    flight = flown(mission_file(root, tmp_path, 3, faults={"silent": silent}))
+    assert list(flight.result.failed) == [1]
+    assert flight.result.failed[1].startswith("blocked: ")
+    assert flight.stages(1) == ["Away", "Asking", "Holding", "Away"]
+    assert set(flight.rows().values()) == {Outcome.HOLDS}
+    judged = flight.judged(tmp_path)
+    assert {judged[item] for item in flight.rows()} == {"holds"}
+    assert flight.verdicts()["G2"].outcome is Outcome.HOLDS
+    assert abs(flight.passed(3) - flight.passed(2)) == 22_000
 
 
 def test_too_near_in_time_is_seen_by_both(example: Merged, tmp_path: Path) -> None:

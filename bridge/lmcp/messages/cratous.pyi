@@ -53,6 +53,13 @@ class MergeStage(LmcpEnum):
     InSlot = 2
     Holding = 3
 
+class DeclaredFailure(LmcpEnum):
+    NotDeclared = 0
+    Blocked = 1
+    Expiring = 2
+    Surprised = 3
+    Ended = 4
+
 class Verdict(LmcpEnum):
     Holds = 0
     Violated = 1
@@ -596,5 +603,28 @@ class MergeState(LmcpObject):
         Leader: int = ...,
         Request: int = ...,
         Slot: int = ...,
+        Reason: str = ...,
+    ) -> None: ...
+
+class FailureState(LmcpObject):
+    """cratous.FailureState: CRATOUS type 22."""
+
+    VehicleID: int
+    """int64, default 0."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    Failure: _cratous.DeclaredFailure
+    """CRATOUS/DeclaredFailure, default NotDeclared."""
+    IntruderID: int
+    """int64, default 0."""
+    Reason: str
+    """string, default ''."""
+    def __init__(
+        self,
+        *,
+        VehicleID: int = ...,
+        Time: int = ...,
+        Failure: _cratous.DeclaredFailure | str = ...,
+        IntruderID: int = ...,
         Reason: str = ...,
     ) -> None: ...
