@@ -14,7 +14,8 @@ from dataclasses import dataclass
 
 from cratous.core.authority.gate import UXAS
 from cratous.core.authority.link_end import track_is_told
-from cratous.core.executive.steps import answered, flight_outcome, rejoined
+from cratous.core.authority.timeliness import lasted
+from cratous.core.executive.steps import answered, ends_in_safe_state, flight_outcome, rejoined
 from cratous.services.flight import (
     changes,
     deadlines,
@@ -64,6 +65,10 @@ from cratous.spec.mission.changes import DIRECT, TASK_ADDED, VEHICLE_JOINS, WIND
 from cratous.spec.records import replace
 
 OUTCOMES = {GOES_ON: "", COMPLETE: "complete", FAILED_FLIGHT: "failed", LIMIT: "limit"}
+SAFE_STATE = "safe state"
+"""Outcome of a flight that ends with every vehicle that UxAS does not have in the declared safe state."""
+SAFE_STATE_MS = 120_000
+"""How long a vehicle circles without the link before the flight ends, if no other has anything left to fly [ms]."""
 BRINGS_WORK = (TASK_ADDED, VEHICLE_JOINS)
 """Kinds of change for which the end of the mission waits."""
 MAY_FREE_WORK = (WIND, ZONE_ENDS)
@@ -218,11 +223,14 @@ class Executive:
         return state
 
     def _close(self, state: State, message: Closing, out: Out) -> State:
-        """Whether and how the flight has ended, as the kernel `flight_outcome` decides.
+        """Whether and how the flight has ended, as the kernels `flight_outcome` and `ends_in_safe_state` decide.
 
         At the end every task that is asked for gets a final status.
         """
         now_ms, limit_ms = message.now_ms, self.config.mission.simulation.limit_ms
+        since = dict(state.circling)
+        since = {vid: since.get(vid, now_ms) for vid in message.circling}
+        state = replace(state, circling=tuple(since.items()))
         flying = sum(chain.item is not None for chain in state.chains)
         down = dict(state.landed)
         stays = {
@@ -237,11 +245,19 @@ class Executive:
         # not needed while some still fly; a search flown only in part counts as not served
         todo = len(changes.unserved(state)) if not flying else 0
         how = OUTCOMES[flight_outcome(flying, len(away), expected, todo, now_ms, limit_ms)]
+        safe = [v for v in away if v in since and lasted(since[v], now_ms, SAFE_STATE_MS)]
+        working = sum(c.item is not None for c in state.chains if c.vehicle.id not in safe)
+        if not how and ends_in_safe_state(working, len(away), len(safe), expected):
+            how = SAFE_STATE
         if not how:
             return state
         why = "not served when the mission ended"
         if how == OUTCOMES[LIMIT]:
             why = f"not served when the flight ended at its limit of {limit_ms / 1000:g} s"
+        elif how == SAFE_STATE:
+            why = "not served when the flight ended in the declared safe state"
+        for vid in safe:
+            why += f"; vehicle {vid} circles without the link since {since[vid] / 1000:.2f} s"
         for vid in away:
             why += f"; vehicle {vid} was still under ICAROUS"
         settled = (

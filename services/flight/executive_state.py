@@ -72,7 +72,8 @@ class State:
     starts, ends: actual times; failed: failed tasks with the reason; left_out: tasks that the present plan
     leaves out, with the reason; in_part: tasks of which only a planned part was flown; commands, replans,
     finished: counts; hurry: whether some deadline is tight; asked: the pending plan request; landed: vehicles
-    at rest on the ground, each with when and where in words.
+    at rest on the ground, each with when and where in words; circling: since when vehicles fly a permitted
+    circle because UxAS is not heard.
     """
 
     known: Mission
@@ -96,6 +97,7 @@ class State:
     hurry: bool = False
     asked: Asked | None = None
     landed: tuple[tuple[int, str], ...] = ()
+    circling: Times = ()
 
     def find(self, vehicle_id: int) -> Chain | None:
         """The chain of a vehicle; None if it has none yet."""
