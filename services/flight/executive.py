@@ -50,6 +50,7 @@ from cratous.services.flight.messages import (
     ZonesKnown,
 )
 from cratous.services.flight.notices import mission_end
+from cratous.spec.authority.link_end import SUSPEND
 from cratous.spec.executive import (
     COMPLETE,
     DROP_LATE,
@@ -65,6 +66,8 @@ from cratous.spec.mission.changes import DIRECT, TASK_ADDED, VEHICLE_JOINS, WIND
 from cratous.spec.records import replace
 
 OUTCOMES = {GOES_ON: "", COMPLETE: "complete", FAILED_FLIGHT: "failed", LIMIT: "limit"}
+BELIEVED_MS = 10_000
+"""A vehicle that has reported for this long that ICAROUS has it is suspended, though ICAROUS did not say so [ms]."""
 SAFE_STATE = "safe state"
 """Outcome of a flight that ends with every vehicle that UxAS does not have in the declared safe state."""
 SAFE_STATE_MS = 120_000
@@ -230,7 +233,14 @@ class Executive:
         now_ms, limit_ms = message.now_ms, self.config.mission.simulation.limit_ms
         since = dict(state.circling)
         since = {vid: since.get(vid, now_ms) for vid in message.circling}
-        state = replace(state, circling=tuple(since.items()))
+        under = dict(state.under_icarous)
+        under = {vid: under.get(vid, now_ms) for vid, gate in message.gates if gate.owner != UXAS}
+        state = replace(state, circling=tuple(since.items()), under_icarous=tuple(under.items()))
+        for vid, from_ms in under.items():
+            chain = state.find(vid)
+            untold = chain is not None and not chain.suspended
+            if untold and lasted(from_ms, now_ms, BELIEVED_MS):
+                state = interruption.suspend(state, Suspend(vid, now_ms, SUSPEND), out)
         flying = sum(chain.item is not None for chain in state.chains)
         down = dict(state.landed)
         stays = {

@@ -73,7 +73,7 @@ class State:
     leaves out, with the reason; in_part: tasks of which only a planned part was flown; commands, replans,
     finished: counts; hurry: whether some deadline is tight; asked: the pending plan request; landed: vehicles
     at rest on the ground, each with when and where in words; circling: since when vehicles fly a permitted
-    circle because UxAS is not heard.
+    circle because UxAS is not heard; under_icarous: since when vehicles report that ICAROUS has them.
     """
 
     known: Mission
@@ -98,6 +98,7 @@ class State:
     asked: Asked | None = None
     landed: tuple[tuple[int, str], ...] = ()
     circling: Times = ()
+    under_icarous: Times = ()
 
     def find(self, vehicle_id: int) -> Chain | None:
         """The chain of a vehicle; None if it has none yet."""

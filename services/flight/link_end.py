@@ -3,8 +3,7 @@
 Down: zones, waypoints and START_MISSION at the start and whenever the route changes; at each heartbeat WPRCH,
 POSTN, ATTUD and one OBJCT per other aircraft. Up: SETMOD (with the epoch of ICAROUS's gate, at each heartbeat
 while ICAROUS flies), SETVEL, HBEAT. A SETMOD is accepted only if it agrees with the vehicle's own report of
-its gate; one of an epoch that was never issued is refused and reported. Where the vehicle reports its gate by
-itself, that report stands for a SETMOD that did not arrive. On a takeover the executive suspends
+its gate; one of an epoch that was never issued is refused and reported. On a takeover the executive suspends
 the vehicle, and RESET_SFT tells ICAROUS the resume point; on an offer the executive takes the vehicle back in
 the new epoch. The other instances are told how each vehicle flies: its route under UxAS (OTHER), its velocity
 under ICAROUS (OVELO). The kernels of `core.authority.link_end` decide which mode is accepted and which
@@ -33,7 +32,6 @@ from cratous.bridge.text_protocol import (
     Waypoint,
     WaypointReached,
 )
-from cratous.core.authority.gate import ICAROUS, gate_accepts
 from cratous.core.authority.link_end import link_mode, link_sign
 from cratous.core.routing.polylines import Track
 from cratous.services.flight import link_lines
@@ -98,14 +96,12 @@ Step = tuple[State, tuple[FromLinkEnd, ...]]
 @dataclass(frozen=True)
 class UxasEnd:
     """The service and its fixed configuration. live: ICAROUS may request routes back; alone: a vehicle acts
-    autonomously without the link, so its chain is suspended meanwhile; reports: vehicles report their gates by
-    another way than this link.
+    autonomously without the link, so its chain is suspended meanwhile.
     """
 
     projection: Projection
     live: bool = False
     alone: bool = False
-    reports: bool = False
 
     def handle(self, state: State, message: ToLinkEnd) -> Step:
         """One step: the state that results, and the messages to send, in order."""
@@ -143,15 +139,11 @@ class UxasEnd:
         return state, out
 
     def _watch(self, state: State, now_ms: int, of: frozenset[int] | None) -> Step:
-        """Report the instances that have become silent, and act on gates whose SETMOD did not arrive."""
+        """Report the instances that have become silent."""
         out: list[FromLinkEnd] = []
         for peer in (one for one in state.peers if of is None or one.vehicle_id in of):
             note = f"silent since {peer.heard_ms} ms"
-            after, said = _sign(peer, PASSED, now_ms, note)
-            if self.reports and not self.alone:
-                after, more = _as_reported(after, now_ms)
-                said = (*said, *more)
-            state, said = self._stepped(state, peer, (after, said))
+            state, said = self._stepped(state, peer, _sign(peer, PASSED, now_ms, note))
             out += said
         return state, tuple(out)
 
@@ -340,34 +332,17 @@ def _mode(peer: Peer, line: SetMode, now_ms: int) -> OfOne:
     if (linked.act, linked.end) == (NOTHING, peer.end) and not peer.end.active:
         return peer, ()
     peer, out = _alive(peer, now_ms)
-    after, more = _moved(
-        replace(peer, end=linked.end._replace(alive=peer.end.alive)), linked.act, epoch, now_ms
-    )
-    if more:
-        return after, (*out, *more)
+    after = replace(peer, end=linked.end._replace(alive=peer.end.alive))
+    if linked.act == SUSPEND:
+        after = replace(after, flies=())
+        return after, (*out, Suspend(vid, now_ms, linked.act))
+    if linked.act == TAKE_BACK:
+        after = replace(after, steered=None)
+        return after, (*out, TakeBack(vid, now_ms, linked.act, epoch))
     if linked.act == OVERTAKEN:
         note = f"a mode of epoch {epoch} is overtaken by one of epoch {peer.gate.epoch}"
         return after, (*out, _status(after, after.end.alive, now_ms, note))
     return after, out
-
-
-def _moved(peer: Peer, act: int, epoch: int, now_ms: int) -> OfOne:
-    """What follows from a mode that was accepted: the executive suspends the vehicle, or takes it back."""
-    if act == SUSPEND:
-        return replace(peer, flies=()), (Suspend(peer.vehicle_id, now_ms, act),)
-    if act == TAKE_BACK:
-        return replace(peer, steered=None), (TakeBack(peer.vehicle_id, now_ms, act, epoch),)
-    return peer, ()
-
-
-def _as_reported(peer: Peer, now_ms: int) -> OfOne:
-    """The mode that the vehicle's own report of its gate implies, if its SETMOD did not arrive; no sign of life."""
-    gate = peer.gate
-    active = gate_accepts(gate, ICAROUS, gate.epoch) and not gate.offered
-    linked = link_mode(peer.end, gate, active, gate.epoch)
-    if linked.act not in (SUSPEND, TAKE_BACK):
-        return peer, ()
-    return _moved(replace(peer, end=linked.end), linked.act, gate.epoch, now_ms)
 
 
 def _alive(peer: Peer, now_ms: int) -> OfOne:

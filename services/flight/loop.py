@@ -155,7 +155,7 @@ class Flight:
         live = isinstance(mission, LivePlanningMission)
         alone = mission.link_loss is not None
         self.link, self.link_state = (
-            UxasEnd(projection, live, alone, reports=True),
+            UxasEnd(projection, live, alone),
             link_peers.State(),
         )
         self.vehicles = {
