@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import itertools
 import json
 import math
 from pathlib import Path
@@ -286,3 +287,15 @@ def away_m_to(place: Any, wanted: dict[str, float]) -> float:
         (place.Latitude - wanted["Latitude"]) * 111_200,
         (place.Longitude - wanted["Longitude"]) * 78_200,
     )
+
+
+def test_states_come_each_half_second_and_as_late_as_amases_in_compatibility() -> None:
+    """A heartbeat of ICAROUS comes with each, so at 0.54 s every decision over several of them came late."""
+
+    def intervals(compatible: bool, until_s: int) -> set[int]:
+        world = World((), until_s, compatible=compatible)
+        told = [one.ScenarioTime for _ in range(100 * until_s) for one in world.tick()]
+        return {after - before for before, after in itertools.pairwise(told)}
+
+    assert intervals(False, 600) == {500}
+    assert 540 in intervals(True, 60)
