@@ -44,7 +44,7 @@ TICK_S = 0.01
 STEP_S = 1 / 30
 TELL_S = 0.5
 HAIR = 1e-6
-"""The clock is a sum of ticks, so it may be this part of an interval early."""
+"""The clock is a sum of ticks, so it may be this part of an interval early; AMASE is then a tick late."""
 GROUND_M = 0.0
 """Without terrain the ground is at mean sea level [m], as in AMASE without elevation data."""
 MOST_VEHICLES = 1000
@@ -127,8 +127,9 @@ class World:
         self.time_s += TICK_S
         told: list[Any] = []
         due = TICK_S / STEP_S + self._part
-        self._part = due - int(due)
-        if not int(due):
+        steps = int(due if self.compatible else due + HAIR)
+        self._part = due - steps
+        if not steps:
             return told
         if self._sensed is not None:
             told += self._sense(self._sensed)
