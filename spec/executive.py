@@ -137,6 +137,14 @@ def outcome(flying: int, away: int, expected: int, left: int, now: int, limit: i
     return LIMIT
 
 
+def is_safe_end(working: int, away: int, safe: int, expected: int, ends: bool) -> bool:
+    """A flight ends in the declared safe state exactly if some vehicle is in it, none is away elsewhere, and nothing
+    is left to do for the others, nor expected.
+    """
+    idle = all_over(working, away - safe, expected) and not away < safe
+    return ends == (idle and safe >= 1)
+
+
 def is_given_up(takeovers: int, most: int, under: int, longest: int, given_up: bool) -> bool:
     """A leg is given up exactly if ICAROUS has taken the vehicle over more than `most` times on it, or has flown it
     for more than `longest` in total.

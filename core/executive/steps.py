@@ -134,6 +134,16 @@ def flight_outcome(flying: int, away: int, expected: int, left: int, now: int, l
     return 0
 
 
+@kernel(implements="executive.is_safe_end")
+def ends_in_safe_state(working: int, away: int, safe: int, expected: int) -> bool:
+    """True iff a flight that is not over ends in the declared safe state.
+
+    working: vehicles with items left that are not in it; away: vehicles that UxAS does not command; safe: those of them
+    that are in it; expected: changes to come that bring work.
+    """
+    return working == 0 and safe > 0 and safe == away and expected == 0
+
+
 @kernel(implements="executive.is_given_up")
 def leg_given_up(takeovers: int, most: int, under: int, longest: int) -> bool:
     """True iff a leg is given up: ICAROUS has taken over too often on it, or flown for too long.

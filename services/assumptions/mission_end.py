@@ -51,7 +51,7 @@ class AwayWatch:
         self._lost_ms = gone_ms(mission)
         self._moves: dict[int, bool] = {}
         unseen = "" if mission.instances else "no vehicle has an ICAROUS instance"
-        waits = "the flight did not end before its limit, so nobody had to be counted"
+        waits = "the flight ended neither complete nor failed, so nobody had to be counted"
         self._record = Record("vehicles", 0, unseen=unseen, waits=waits)
 
     def message(self, message: Message) -> None:

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 
 from cratous.core.authority.gate import UXAS
 from cratous.core.authority.link_end import track_is_told
-from cratous.core.executive.steps import answered, flight_outcome, rejoined
+from cratous.core.authority.timeliness import lasted
+from cratous.core.executive.steps import answered, ends_in_safe_state, flight_outcome, rejoined
 from cratous.services.flight import (
     changes,
     deadlines,
@@ -51,6 +52,7 @@ from cratous.services.flight.messages import (
 )
 from cratous.services.flight.notices import mission_end
 from cratous.services.icarous.messages import Fails, WithoutLink
+from cratous.spec.authority.link_end import SUSPEND
 from cratous.spec.executive import (
     COMPLETE,
     DROP_LATE,
@@ -66,6 +68,12 @@ from cratous.spec.mission.changes import DIRECT, TASK_ADDED, VEHICLE_JOINS, WIND
 from cratous.spec.records import replace
 
 OUTCOMES = {GOES_ON: "", COMPLETE: "complete", FAILED_FLIGHT: "failed", LIMIT: "limit"}
+BELIEVED_MS = 10_000
+"""A vehicle that has reported for this long that ICAROUS has it is suspended, though ICAROUS did not say so [ms]."""
+SAFE_STATE = "safe state"
+"""Outcome of a flight that ends with every vehicle that UxAS does not have in the declared safe state."""
+SAFE_STATE_MS = 120_000
+"""How long a vehicle circles without the link before the flight ends, if no other has anything left to fly [ms]."""
 BRINGS_WORK = (TASK_ADDED, VEHICLE_JOINS)
 """Kinds of change for which the end of the mission waits."""
 MAY_FREE_WORK = (WIND, ZONE_ENDS)
@@ -225,11 +233,25 @@ class Executive:
         return state
 
     def _close(self, state: State, message: Closing, out: Out) -> State:
-        """Whether and how the flight has ended, as the kernel `flight_outcome` decides.
+        """Whether and how the flight has ended, as the kernels `flight_outcome` and `ends_in_safe_state` decide.
 
         At the end every task that is asked for gets a final status.
         """
         now_ms, limit_ms = message.now_ms, self.config.mission.simulation.limit_ms
+        since = dict(state.circling)
+        since = {
+            vid: since.get(vid, now_ms)
+            for vid in message.circling
+            if vid not in dict(state.declared)
+        }
+        under = dict(state.under_icarous)
+        under = {vid: under.get(vid, now_ms) for vid, gate in message.gates if gate.owner != UXAS}
+        state = replace(state, circling=tuple(since.items()), under_icarous=tuple(under.items()))
+        for vid, from_ms in under.items():
+            chain = state.find(vid)
+            untold = chain is not None and not chain.suspended
+            if untold and lasted(from_ms, now_ms, BELIEVED_MS):
+                state = interruption.suspend(state, Suspend(vid, now_ms, SUSPEND), out)
         flying = sum(chain.item is not None for chain in state.chains)
         down = dict(state.landed)
         stays = {
@@ -248,11 +270,19 @@ class Executive:
         if how == OUTCOMES[FAILED_FLIGHT]:
             stopping, state = state.stopping, failing.at_the_end(self.config, state)
             how = how if state.stopping == stopping else ""
+        safe = [v for v in away if v in since and lasted(since[v], now_ms, SAFE_STATE_MS)]
+        working = sum(c.item is not None for c in state.chains if c.vehicle.id not in safe)
+        if not how and ends_in_safe_state(working, len(away), len(safe), expected):
+            how = SAFE_STATE
         if not how:
             return state
         why = "not served when the mission ended"
         if how == OUTCOMES[LIMIT]:
             why = f"not served when the flight ended at its limit of {limit_ms / 1000:g} s"
+        elif how == SAFE_STATE:
+            why = "not served when the flight ended in the declared safe state"
+        for vid in safe:
+            why += f"; vehicle {vid} circles without the link since {since[vid] / 1000:.2f} s"
         for vid in away:
             why += f"; vehicle {vid} was still under ICAROUS"
         settled = (

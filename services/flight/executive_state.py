@@ -73,7 +73,9 @@ class State:
     leaves out, with the reason; in_part: tasks of which only a planned part was flown; commands, replans,
     finished: counts; hurry: whether some deadline is tight; asked: the pending plan request; landed: vehicles
     at rest on the ground, or given up after a declared failure, each with when and where in words; stopping: vehicles
-    whose mission is stopped; declared: those that have declared a failure, and after when each has flown what follows [ms].
+    whose mission is stopped; declared: those that have declared a failure, and after when each has flown what follows [ms];
+    circling: since when vehicles fly a permitted circle because UxAS is not heard; under_icarous: since when vehicles
+    report that ICAROUS has them.
     """
 
     known: Mission
@@ -99,6 +101,8 @@ class State:
     landed: tuple[tuple[int, str], ...] = ()
     stopping: tuple[int, ...] = ()
     declared: tuple[tuple[int, int], ...] = ()
+    circling: Times = ()
+    under_icarous: Times = ()
 
     def find(self, vehicle_id: int) -> Chain | None:
         """The chain of a vehicle; None if it has none yet."""

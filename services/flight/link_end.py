@@ -231,11 +231,13 @@ class UxasEnd:
             peer = Peer(vid, now_ms)
             if old is not None:
                 end = old.end._replace(alive=True)
-                peer = replace(old, heard_ms=now_ms, end=end, open=True, again=())
+                peer = replace(old, heard_ms=now_ms, end=end, open=True, again=(), outdated=False)
                 state = state.with_peer(peer)
             else:
                 state = replace(state, peers=(*state.peers, peer))
             told: list[Message] = [UxasPlans()] if self.live else []
+            if old is not None and old.outdated:
+                told.append(ForgetFences())
             told += [*self._fences(state.zones, 0), *link_lines.onward(peer.way, peer.reached)]
             out += down_to(peer, told + of_others(state, vid, self.projection))
             out.append(_status(peer, True, now_ms, "connected again" if old else "connected"))
@@ -252,7 +254,8 @@ class UxasEnd:
             if not zones:  # the route is kept
                 anew = [ForgetFences()]
             out += down_to(peer, fences if more else anew)
-            state = state.with_peer(replace(peer, again=()))
+            outdated = peer.outdated or not (more or peer.open)
+            state = state.with_peer(replace(peer, again=(), outdated=outdated))
         return replace(state, zones=zones), tuple(out)
 
     def _fences(self, zones: tuple[Zone, ...], known: int) -> list[Message]:

@@ -155,7 +155,10 @@ class Flight:
         self.executive_state = executive_state.first_state(mission, plan)
         live = isinstance(mission, LivePlanningMission)
         alone = mission.link_loss is not None
-        self.link, self.link_state = UxasEnd(projection, live, alone), link_peers.State()
+        self.link, self.link_state = (
+            UxasEnd(projection, live, alone),
+            link_peers.State(),
+        )
         self.vehicles = {
             v.id: VehicleNode(v, projection, dt_s, floor, ground, sites, mission.frame.terrain_m)
             for v in sorted(mission.vehicles, key=lambda v: v.id)
@@ -202,7 +205,7 @@ class Flight:
                 state = self.executive_state
                 self.executive_state = replace(state, to_come=(*state.to_come, *now))
             self._step()
-            self._executive(Closing(self.now_ms, self._gates()))
+            self._executive(Closing(self.now_ms, self._gates(), self._circling()))
             self.bus.run()
             if progress is not None and (self.outcome or self.now_ms % 10_000 == 0):
                 progress(self.now_ms, self.outcome or "flying")
@@ -287,6 +290,10 @@ class Flight:
 
     def _gates(self) -> tuple[tuple[int, Any], ...]:
         return tuple((vid, state.gate) for vid, state in self.vehicle_states.items())
+
+    def _circling(self) -> tuple[int, ...]:
+        """The vehicles that fly a permitted circle because UxAS is not heard."""
+        return tuple(vid for vid, state in self.icarous_states.items() if state.no_link.circles)
 
     # messages to the actors, and what they answer ---------------------------------------------
 

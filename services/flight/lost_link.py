@@ -10,11 +10,16 @@ from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.rejoining import Router
 from cratous.services.icarous.lost_link import LostLink, OnFailure
 from cratous.services.mission.landing import on_failure_of, sites_of
+from cratous.services.mission.merging import merging_of
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.mission.link_loss import WithoutLink, words
 from cratous.spec.mission.on_failure import AfterFailure, Failed
 from cratous.spec.mission.plan import Pose
 
+IN_HAND_AFTER_MS = 30_000
+"""Silence of UxAS after which a vehicle in ICAROUS's hand finishes its way and circles, if the mission sets nothing
+[ms].
+"""
 CHOICES = {
     WithoutLink.FINISH: FINISH,
     WithoutLink.LOITER: LOITER,
@@ -34,10 +39,17 @@ ALWAYS_MS = 2**40
 
 
 def lost_link(mission: Mission, vehicle_id: int) -> LostLink | None:
-    """The lost-link behaviour that the mission sets for one vehicle, None if it sets none."""
+    """The lost-link behaviour for one vehicle: that of the mission, else the one of a vehicle in ICAROUS's hand.
+
+    None where the mission sets none and has sensors or a merge fix: courses are not permitted against sensed tracks,
+    nor in the turns of a merge.
+    """
     loss = mission.link_loss
     if loss is None:
-        return None
+        if mission.sensing is not None or merging_of(mission) is not None:
+            return None
+        said = words(WithoutLink.FINISH, "")
+        return LostLink(FINISH, IN_HAND_AFTER_MS, said, _way, in_hand=True)
     goal = loss.to or mission.vehicle(vehicle_id).position
     returns = loss.choice is WithoutLink.RETURN
     choice = CHOICES[loss.choice]

@@ -176,10 +176,13 @@ class Report(NamedTuple):
 
 
 class Closing(NamedTuple):
-    """A step is over: check whether the flight has ended. gates: by vehicle id."""
+    """A step is over: check whether the flight has ended. gates: by vehicle id; circling: vehicles that fly a
+    permitted circle because UxAS is not heard.
+    """
 
     now_ms: int
     gates: tuple[tuple[int, Gate], ...]
+    circling: tuple[int, ...] = ()
 
 
 class Suspend(NamedTuple):

@@ -107,11 +107,11 @@ def settle(config: Config, state: State, out: Out) -> State:
     """Handle all ends of tracks passed up to now, the earliest first."""
     passed, tracks = dict[int, int | None](), dict[int, int]()
     new = sorted(c.vehicle.id for c in state.chains)
-    down = dict(state.landed)
+    # a vehicle on the ground passes no more ends, nor does one whose takeover UxAS was not told
+    others = {*dict(state.landed), *dict(state.under_icarous)}
     while True:
         for vid in new:
-            # a vehicle on the ground passes no more ends
-            if not state.chain(vid).suspended and vid not in down:
+            if not state.chain(vid).suspended and vid not in others:
                 state, passed[vid] = _measure(config, state, vid)
                 tracks[vid] = state.chain(vid).version
         due = [(at, vid) for vid, at in passed.items() if at is not None]

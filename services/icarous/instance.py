@@ -152,12 +152,13 @@ class Instance:
         return state, (*up, *lost, *merges, *hears, *out, messages.Up(self.config.vehicle_id, beat))
 
     def _hears(self, state: State, now_ms: int) -> tuple[State, tuple[messages.Hears, ...]]:
-        """A change of whether UxAS is heard, for the record; not reported here if the instance has a
-        lost-link behaviour, which reports it itself.
+        """A change of whether UxAS is heard, for the record; not reported here if the mission sets a lost-link
+        behaviour, which reports it itself.
         """
         last_ms = state.told.heard_ms
         heard = in_time(last_ms, now_ms, LINK_LOST_MS)
-        says_so = self.config.lost_link is not None
+        plan = self.config.lost_link
+        says_so = plan is not None and not plan.in_hand
         if says_so or not self.config.records or heard != state.unheard:
             return state, ()
         told = messages.Hears(self.config.vehicle_id, now_ms, heard, last_ms)
@@ -169,6 +170,7 @@ class Instance:
         """
         daa, plan = self.config.daa, self.config.alone
         linked = plan is None or in_time(state.told.heard_ms, now_ms, plan.after_ms)
+        linked = linked or (plan is not None and plan.in_hand)
         linked = linked and state.no_link.loss.mode == LINKED
         linked = linked and (self.config.on_failure is None or not state.told.stopped)
         if not watches or state.met or not linked or take_off.departs(self.config, state):

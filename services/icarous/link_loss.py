@@ -1,15 +1,17 @@
 """Autonomous behaviour without the link, or after a declared failure: what the mission chooses if permitted, else a circle.
 
 The kernel `loss_step` decides at each heartbeat which mode is flown, since when, and until when. The chosen
-behaviour and the circle are courses (`services.icarous.course`), permitted from the present position; if not
-even a circle is permitted, the manoeuvre of least deviation is flown, as in any takeover. A route that was
+behaviour and the circle are courses (`services.icarous.course`), permitted from the present position. If no
+circle here is permitted, one farther from the nearest aircraft is flown to; if none is, the manoeuvre of least
+deviation is flown, as in any takeover. A route that was
 not permitted is searched for again after AGAIN_MS. A landing is flown to the gate of its final descent like
-any route, and from there to the ground. After a declared failure (`services.icarous.failing`) UxAS counts as
-never heard again.
+any route, and from there to the ground. A procedure that is flown only in hand counts UxAS as heard whenever
+UxAS has the vehicle. After a declared failure (`services.icarous.failing`) UxAS counts as never heard again.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -32,7 +34,7 @@ from cratous.core.routing.polylines import Track
 from cratous.services.icarous import course as courses
 from cratous.services.icarous import failing
 from cratous.services.icarous.course import Course
-from cratous.services.icarous.course_permits import TAKEN, refused
+from cratous.services.icarous.course_permits import TAKEN, refused, refused_soon
 from cratous.services.icarous.foresight import ON_PATH_M, scene_of
 from cratous.services.icarous.landing import approaches, in_order
 from cratous.services.icarous.lost_link import LostLink, NoLink
@@ -46,9 +48,13 @@ from cratous.spec.mission import Position
 from cratous.spec.mission.plan import Pose
 from cratous.spec.records import replace
 
-WAITS = "; a circle is flown until it is"
+WAITS = "; a circle is flown until it is, where one is permitted"
 NO_WAY = "no way there was found"
 STAYS = "it does not leave the ground"
+ASIDE_PARTS = (1.0, 0.5, 0.25)
+"""Distances of a circle elsewhere, in parts of what both aircraft fly in the look-ahead."""
+ASIDE_TURNS_RAD = tuple(math.radians(deg) for deg in (0, 45, -45, 90, -90))
+"""Its directions, from straight away from the nearest aircraft."""
 ENDED = (OVER, FINAL, LANDED)
 """Modes in which no other course is searched for."""
 
@@ -69,12 +75,14 @@ def heartbeat(
         return state, ()
     state, said = _declared(config, state, sensed)
     before, tried = state.no_link, Tried(None)
-    heard_ms = heard_by(state.failing.failure, state.told.heard_ms)
-    linked = in_time(heard_ms, now_ms, plan.after_ms)
+    linked_ms = heard_by(state.failing.failure, state.told.heard_ms)
+    if plan.in_hand:
+        linked_ms = max(linked_ms, now_ms if _out_of_hand(state) else before.linked_ms)
+    linked = in_time(linked_ms, now_ms, plan.after_ms)
     course = before.course
     if course is not None:
         course = course.flown(sensed.motion, _beat_s(config))
-    chosen, mode, due = plan.choice, before.loss.mode, False
+    chosen, mode, due, aside_ms = plan.choice, before.loss.mode, False, before.aside_ms
     if not linked and mode not in ENDED and chosen != LOITER and not sensed.on_ground:
         due = mode in (LINKED, chosen) or lasted(before.tried_ms, now_ms, AGAIN_MS)
         going = course if mode == chosen else None
@@ -82,7 +90,7 @@ def heartbeat(
     ended = mode == chosen and course is not None and course.flown_to_its_end
     ended = sensed.landed if mode == FINAL else ended
     stepped = loss_step(
-        before.loss, chosen, heard_ms, now_ms, plan.after_ms, tried.course is not None, ended
+        before.loss, chosen, linked_ms, now_ms, plan.after_ms, tried.course is not None, ended
     )
     mode = stepped.loss.mode
     if stepped.act == REJOIN or sensed.on_ground:
@@ -95,8 +103,10 @@ def heartbeat(
         course = tried.course
     elif mode != LINKED:
         course = _circle(config, state, sensed, None if stepped.act == FALL_BACK else course)
+        if course is None and lasted(aside_ms, now_ms, AGAIN_MS):
+            course, aside_ms = _circle_aside(config, state, sensed, plan), now_ms
     tried_ms = now_ms if due else before.tried_ms
-    after = replace(state, no_link=NoLink(stepped.loss, course, tried_ms))
+    after = replace(state, no_link=NoLink(stepped.loss, course, tried_ms, linked_ms, aside_ms))
     if stepped.act == NOTHING:
         return after, said
     if stepped.act == REJOIN:
@@ -125,6 +135,11 @@ def _declared(config: Config, state: State, sensed: Sensed) -> tuple[State, tupl
     if now.declared == before.declared:
         return state, ()
     return state, (failing.told(now, config.vehicle_id),)
+
+
+def _out_of_hand(state: State) -> bool:
+    """Whether UxAS has the vehicle."""
+    return state.cycle.mode == MONITOR
 
 
 def _words(act: int, plan: LostLink, tried: Tried, course: Course | None, silent: str) -> str:
@@ -243,6 +258,35 @@ def _circle(config: Config, state: State, sensed: Sensed, going: Course | None) 
     here, wide_m = Pose(*motion.position, motion.heading_rad), courses.radius_m(sensed)
     found = [going] if going is not None else []
     for course in (*found, *courses.courses(here, motion, wide_m, None)):
-        if not refused(course, sensed, scene, config.daa, _beat_s(config)):
+        if not refused_soon(course, sensed, scene, config.daa, _beat_s(config)):
             return course
+    return None
+
+
+def _circle_aside(config: Config, state: State, sensed: Sensed, plan: LostLink) -> Course | None:
+    """A circle as far from the nearest aircraft as both fly in the look-ahead, or in a part of it, with a way there
+    that is permitted within the look-ahead; None if there is none.
+    """
+    motion, scene = sensed.motion, scene_of(config, state, sensed)
+    here, wide_m = motion.position, courses.radius_m(sensed)
+    near = min(sensed.intruders, key=lambda o: math.dist(o.position, here), default=None)
+    away_rad, speed_m_s = motion.heading_rad, motion.speed_m_s
+    if near is not None:
+        away_rad = bearing_rad(near.position, here)
+        speed_m_s += math.hypot(near.velocity.north_m_s, near.velocity.east_m_s)
+    start = Pose(*here, motion.heading_rad)
+    slope = sensed.ability.max_climb_m_s / motion.speed_m_s
+    for part in ASIDE_PARTS:
+        far_m = part * speed_m_s * scene.lookahead_s
+        for turn_rad in ASIDE_TURNS_RAD:
+            heading = away_rad + turn_rad
+            north_m, east_m = far_m * math.cos(heading), far_m * math.sin(heading)
+            end = Pose(here.north_m + north_m, here.east_m + east_m, here.alt_m, heading)
+            points = plan.find(start, end, wide_m, slope, state.told.zones)
+            if not points:
+                continue
+            track = Track(points, motion.heading_rad)
+            for course in courses.courses(end, motion, wide_m, track):
+                if not refused_soon(course, sensed, scene, config.daa, _beat_s(config)):
+                    return course
     return None

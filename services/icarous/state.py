@@ -35,7 +35,7 @@ class Config(NamedTuple):
 
     original: the UxAS end is the original's, whose WAYPT lines carry a running count; certifies: each command
     comes with a certificate for the gate; records: alerts and bands are recorded; lost_link: behaviour while
-    UxAS is not heard, None if the mission sets none; take_off: its take-off, None if it starts in the air;
+    UxAS is not heard, None for none; take_off: its take-off, None if it starts in the air;
     merging: the fix at which it merges, None for none; on_failure: what is flown after a declared failure, None
     if the mission sets nothing.
     """

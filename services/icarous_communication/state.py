@@ -268,6 +268,8 @@ def placed(
         peer = state.link.peer(vid)
         assert peer is not None
         lines = (HardReset(), *onward(peer.way, peer.reached))
+    elif lines[:1] == (ForgetFences(),):  # all else follows
+        lines = (HardReset(), *lines[1:])
     elif lines == MISSION_OVER:
         zones = enumerate(state.link.zones, 1)
         fences = (line for number, zone in zones for line in fence(zone, number, state.plane))

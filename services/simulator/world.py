@@ -43,6 +43,8 @@ if TYPE_CHECKING:
 TICK_S = 0.01
 STEP_S = 1 / 30
 TELL_S = 0.5
+HAIR = 1e-6
+"""The clock is a sum of ticks, so it may be this part of an interval early; AMASE is then a tick late."""
 GROUND_M = 0.0
 """Without terrain the ground is at mean sea level [m], as in AMASE without elevation data."""
 MOST_VEHICLES = 1000
@@ -97,8 +99,8 @@ class World:
 
     @property
     def time_ms(self) -> int:
-        """Scenario time in messages [ms]."""
-        return int(self.time_s * 1000)
+        """Scenario time in messages [ms]. AMASE cuts off what its sum of ticks lacks to the full millisecond."""
+        return int(self.time_s * 1000) if self.compatible else round(self.time_s * 1000)
 
     @property
     def over(self) -> bool:
@@ -125,12 +127,13 @@ class World:
         self.time_s += TICK_S
         told: list[Any] = []
         due = TICK_S / STEP_S + self._part
-        self._part = due - int(due)
-        if not int(due):
+        steps = int(due if self.compatible else due + HAIR)
+        self._part = due - steps
+        if not steps:
             return told
         if self._sensed is not None:
             told += self._sense(self._sensed)
-        if self.time_s - self._told_s > TELL_S:
+        if self._tells():
             self._told_s = self.time_s
             told += [self.status("Running"), *self.states(), *self._perceive()]
         told += self._happen()
@@ -138,6 +141,12 @@ class World:
             self._keep_to_times()
         self._move()
         return told
+
+    def _tells(self) -> bool:
+        """Whether states are sent now: at multiples of TELL_S. AMASE counts from the last ones, each a step late."""
+        if self.compatible:
+            return self.time_s - self._told_s > TELL_S
+        return int(self.time_s / TELL_S + HAIR) > int(self._told_s / TELL_S + HAIR)
 
     def _move(self) -> None:
         wind, ground_m = self.wind_m_s, GROUND_M

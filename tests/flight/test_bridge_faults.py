@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,11 @@ from cratous.bridge.faults import MOST_WAITING, FaultyBridge
 from cratous.judge import judge
 from cratous.services.bus import Bus
 from cratous.services.cli.job import Settings, run_mission
+from cratous.services.flight import executive
+from cratous.services.flight.dynamics import turn_radius_m
+from cratous.services.flight.executive import SAFE_STATE, SAFE_STATE_MS
 from cratous.services.flight.loop import fly
+from cratous.services.flight.lost_link import IN_HAND_AFTER_MS
 from cratous.services.loading import load
 from cratous.services.pipeline.plan import make_plan
 from cratous.services.system_model.replay import replay
@@ -38,6 +43,7 @@ FAULTS = {
     "stops_reading": BridgeFaults(10, stops_reading_ms=10_000),
     "reads_again": BridgeFaults(11, stops_reading_ms=10_000, reads_again_ms=40_000),
 }
+TOLD = ("MissionEnd", "LinkLossState", "AuthorityChange", "TruthState", "TaskProgress")
 
 
 def flown(faults: BridgeFaults | None) -> tuple[Mission, list[Any]]:
@@ -148,6 +154,80 @@ def test_a_flight_that_never_hears_uxas_again_is_safe_and_its_takeover_unknown(
     found = judge(tmp_path)
     assert found.of("G4") == "unknown"
     assert [one.line() for one in found.differences if one.guarantee == "G4"] == []
+
+
+@pytest.mark.parametrize(
+    ("faults", "known"),
+    [
+        (BridgeFaults(3, loss=1.0), False),
+        (BridgeFaults(12, cut_ms=5000), True),
+        (BridgeFaults(15, stops_reading_ms=5000), True),
+    ],
+)
+def test_a_flight_that_never_hears_uxas_again_ends_in_the_declared_safe_state(
+    faults: BridgeFaults, known: bool, tmp_path: Path
+) -> None:
+    """It flew straight on for ever, its task was called complete, and it ended at the limit."""
+    simulation = FaultySimulation(limit_ms=900_000, bridge_faults=faults)
+    mission = replace(meeting(), simulation=simulation)
+    bus, log = Bus(lmcp.full_names), list[Any]()
+    bus.tap(log.append)
+    result = fly(mission, make_plan(mission), bus)
+    assert result.outcome == SAFE_STATE
+    bodies = {name: [o.body for o in log if o.topic.endswith(name)] for name in TOLD}
+    assert bodies["MissionEnd"][0].Outcome == SAFE_STATE
+    modes = [(one.Time, one.Mode.name) for one in bodies["LinkLossState"]]
+    assert [name for _, name in modes] == (["Finish", "Over"] if known else ["Loiter"])
+    taken_ms = bodies["AuthorityChange"][0].Time
+    assert modes[0][0] == taken_ms + IN_HAND_AFTER_MS + mission.simulation.heartbeat_ms
+    assert result.end_ms == modes[-1][0] + SAFE_STATE_MS
+    places = [
+        (one.North, one.East)
+        for one in bodies["TruthState"]
+        if one.VehicleID == 1 and one.Time >= modes[-1][0]
+    ]
+    radius_m = 1.1 * turn_radius_m(22.0, math.radians(30.0))
+    middle = [sum(axis) / len(places) for axis in zip(*places, strict=True)]
+    assert max(math.dist(place, middle) for place in places) < 2 * radius_m
+    assert [one.Phase.name for one in bodies["TaskProgress"]][-1] == "Failed"
+    assert not [one for one in bodies["TaskProgress"] if one.Phase.name == "Complete"]
+    assert list(result.failed) == [1]
+    assert replay(mission, True, log).finding is None
+
+
+def test_vehicles_that_are_close_circle_apart_without_the_link(tmp_path: Path) -> None:
+    """No circle beside another vehicle is permitted, so one flies aside first; they went round each other for ever."""
+    data = yaml.safe_load(
+        (Path(__file__).parents[2] / "examples/crossing/mission.yaml").read_text()
+    )
+    faults = {"seed": 1, "cut_s": 60}
+    data |= {"link_loss": {"choice": "loiter", "after_s": 5}}
+    data |= {"simulation": {"limit_s": 900, "bridge_faults": faults}}
+    path = tmp_path / "mission.yaml"
+    path.write_text(yaml.safe_dump({name: data[name] for name in data if name != "expect"}))
+    report = run_mission(load(path), tmp_path, Settings(allow_unproved=True))
+    assert report["flight"]["outcome"] == SAFE_STATE
+    assert report["exit_code"] == 1
+    assert "mission ended 'safe state'" in str(report["constraints"])
+    verdicts = {row["requirement"]: row["verdict"] for row in report["requirements"]}
+    assert (verdicts["G1"], verdicts["G2"], verdicts["G3"]) == ("holds", "holds", "violated")
+    assert judge(tmp_path).of("G3") == "violated"
+
+
+def test_the_kernel_decides_that_a_flight_ends_in_the_safe_state(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked = list[tuple[int, ...]]()
+
+    def no(*counts: int) -> bool:
+        asked.append(counts)
+        return False
+
+    monkeypatch.setattr(executive, "ends_in_safe_state", no)
+    simulation = FaultySimulation(limit_ms=260_000, bridge_faults=BridgeFaults(3, loss=1.0))
+    mission = replace(meeting(), simulation=simulation)
+    assert fly(mission, make_plan(mission), Bus(lmcp.full_names)).outcome == "limit"
+    assert {(1, 0, 0, 0), (1, 1, 0, 0), (0, 1, 1, 0)} == set(asked)
 
 
 def test_the_same_seed_gives_the_same_flight() -> None:

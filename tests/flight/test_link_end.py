@@ -23,6 +23,7 @@ from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.link_end import UxasEnd
 from cratous.services.flight.link_peers import State
 from cratous.services.flight.loop import FlightResult, fly
+from cratous.services.icarous import inbox
 from cratous.services.logs.records import from_data, to_data
 from cratous.services.mission.frames import Projection
 from cratous.services.monitor import Monitor
@@ -367,3 +368,24 @@ def test_that_a_vehicle_is_steered_is_over_for_the_others_as_its_icarous_is_not_
     again = END.handle(state, messages.Connected(9500, (2,)))[1]
     lines = [x for m in again if isinstance(m, messages.Down) for x in m.lines]
     assert not [x for x in lines if isinstance(x, tp.VelocityOfAnother | tp.WayOfAnother)]
+
+
+def test_a_zone_that_was_removed_while_an_instance_was_away_is_forgotten_as_it_comes_back() -> None:
+    """It kept the zone for ever; one that stayed is told again, and who was not away is told no more than before."""
+    stays = replace(ZONE, id=5)
+    zones, left = messages.ZonesKnown((ZONE, stays)), messages.ZonesKnown((stays,))
+    cut = messages.Lost(1, 900, LinkEvent("closed", ""))
+    there = tuple(messages.Connected(at_ms, (1,)) for at_ms in (0, 2000))
+    state, out = after(zones, there[0], cut, left, there[1])
+    told = inbox.Told()
+    for line in _lines(after(zones, there[0])[1]) + _lines(out):
+        told = inbox.hear(told, line, END.projection, 0)
+    assert [zone.vertices[1] for zone in told.zones] == [pytest.approx((0.0, 90.0), abs=1e-3)]
+    assert len(told.zones) == 1
+    again = _lines(after(cut, there[1], state=state)[1])
+    usual = _lines(after(zones, there[0], cut, there[1])[1])
+    assert tp.ForgetFences() not in (*again, *usual)
+
+
+def _lines(out: list[Any]) -> list[Any]:
+    return [line for m in out if isinstance(m, messages.Down) for line in m.lines]

@@ -26,6 +26,8 @@ from cratous.spec.mission.guarantees import Outcome, Verdict
 
 ROW = "what vehicle 1 flies without the link"
 MEADOW = (300.0, 900.0)
+LAP_RADIUS_M = 1.1 * 22**2 / (9.80665 * math.tan(math.radians(30)))
+"""Of a circle at the vehicle's speed [m]."""
 AHEAD = {"id": 9, "position": {"north_m": 400, "east_m": 3200, "alt_m": 265}, "velocity": {"north_m_s": 0, "east_m_s": -30}}  # fmt: skip
 
 
@@ -109,7 +111,7 @@ def test_what_is_not_permitted_waits_in_a_circle(root: Path, tmp_path: Path) -> 
 
 
 def test_a_circle_keeps_the_thresholds_of_time(root: Path, tmp_path: Path) -> None:
-    """The disc of the circle is clear of who passes; a lap of it would still head for them, so another way is flown."""
+    """The disc of the circle is clear of who passes; a lap of it would still head for them, so it flies aside first."""
     passing = {"id": 10, "position": {"north_m": 2715.8, "east_m": 1439.4, "alt_m": 290.7}, "velocity": {"north_m_s": -15.41, "east_m_s": -12.34}}  # fmt: skip
     shorter = {"limit_s": 125, "bridge_faults": {"cut_s": 45}}
     found = flown(mission_file(
@@ -117,7 +119,14 @@ def test_a_circle_keeps_the_thresholds_of_time(root: Path, tmp_path: Path) -> No
     ))  # fmt: skip
     assert [name for _, name in found.modes()] == ["Loiter"]
     assert found.verdicts()["G2"].outcome is Outcome.HOLDS
-    assert any("heading" in body.Resolution for body in found.told("Conflict"))
+    begin = found.modes()[0][0]
+    places = [
+        (b.North, b.East) for b in found.told("TruthState") if b.VehicleID == 1 and b.Time >= begin
+    ]
+    lap_ms = 2 * math.pi * LAP_RADIUS_M / 22 * 1000
+    assert lap_ms < 30_000
+    first = places[: 30_000 // 100]
+    assert max(math.dist(places[0], place) for place in first) > 3 * LAP_RADIUS_M
 
 
 def test_a_short_break_is_no_loss(root: Path, tmp_path: Path) -> None:

@@ -157,7 +157,7 @@ def test_a_gimbal_tracks_what_moves_and_what_is_lost_is_circled() -> None:
     last = cars[max(cars)]
     assert last.Longitude > -119.991, "it has driven"
     (said,) = world.warnings()
-    assert "vehicle 1 has lost entity 2 at 61.8 s" in said
+    assert "vehicle 1 has lost entity 2 at 62.5 s" in said
     assert said.endswith("it stays about the place")
     for state in of(told, "AirVehicleState", 180_000):
         assert state.Mode.name == "Loiter"

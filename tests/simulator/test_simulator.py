@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import itertools
 import json
 import math
 from pathlib import Path
@@ -286,3 +287,15 @@ def away_m_to(place: Any, wanted: dict[str, float]) -> float:
         (place.Latitude - wanted["Latitude"]) * 111_200,
         (place.Longitude - wanted["Longitude"]) * 78_200,
     )
+
+
+def test_states_come_each_half_second_and_as_late_as_amases_in_compatibility() -> None:
+    """A heartbeat of ICAROUS comes with each, so at 0.54 s every decision over several of them came late."""
+
+    def times(compatible: bool, until_s: int) -> list[int]:
+        world = World((), until_s, compatible=compatible)
+        return [one.ScenarioTime for _ in range(100 * until_s) for one in world.tick()]
+
+    assert times(False, 600) == list(range(500, 600_001, 500))
+    late = times(True, 60)
+    assert 540 in {after - before for before, after in itertools.pairwise(late)}
