@@ -46,7 +46,7 @@ def what_ended(code: int | None, seconds: float = math.inf) -> str:
     """
     user = of_the_user()
     killed = code in (-signal.SIGXCPU, -signal.SIGKILL)
-    if killed and user < math.inf and user <= math.ceil(seconds + GRACE_S):
+    if killed and user < math.inf and user < seconds + GRACE_S + 1:
         return (
             f"ended by the limit of CPU time that cratous was started with (ulimit -t {user:.0f})"
         )

@@ -178,6 +178,8 @@ def test_a_limit_of_ones_own_is_named_and_not_taken_for_the_provers() -> None:
     said = _limited(partial(cpu_limit.what_ended, code, 300.0), 20)
     assert "ulimit -t 20" in said
     assert "the prover's own" not in said
+    # of a question that has no limit of its own
+    assert "ulimit -t 20" in _limited(partial(cpu_limit.what_ended, code), 20)
     # killed, and nothing limits CPU time: by whom is not known
     assert cpu_limit.what_ended(code, 300.0) == (
         "its process ended before it answered (exit code -9)"
