@@ -1,5 +1,6 @@
 """In any order of any number of vehicles whose slots all fit, any two slots are apart by the separation time, the one that
-comes later in the order later, and each lies in its vehicle's window."""
+comes later in the order later, and each lies in its vehicle's window. In every order, also one in which some vehicle
+has no slot, the last slot is at no negative time, and the fix is not free before it."""
 
 from typing import Any
 
@@ -36,11 +37,15 @@ def claim(c: Claim) -> None:
             c.when(now_b, good, good_b),
         )
 
+    def last_is_kept(held: Line) -> Any:
+        return c.all_of(held.time >= 0, held.time <= held.free)
+
     def invariant(all_of: list[Any]) -> Any:
         held, (time_a, time_b, seen_a, seen_b, good_a, good_b) = all_of
         return c.all_of(
             held.free >= 0,
             held.free <= 2 * MOST,
+            last_is_kept(held),
             c.implies(seen_b, seen_a),
             c.implies(c.all_of(held.fits, seen_a), held.free >= time_a + separation),
             c.implies(c.all_of(held.fits, seen_b), time_b >= time_a + separation),
@@ -52,7 +57,7 @@ def claim(c: Claim) -> None:
         held, (time_a, time_b, _, seen_b, good_a, good_b) = results
         clear = c.define(slots.apart, time_a, time_b, separation)
         whole = c.all_of(clear, time_b >= time_a, good_a, good_b)
-        return c.implies(c.all_of(held.fits, seen_b), whole)
+        return c.all_of(c.implies(c.all_of(held.fits, seen_b), whole), last_is_kept(held))
 
     along_items(
         c,
