@@ -1,6 +1,7 @@
 """In any order of any number of vehicles: where some assignment gives each a time in its window, a separation after the one
 before it, the kernel finds that all fit, and gives nobody a later time than that assignment does. So where it
-finds that they do not fit, there is no assignment in that order."""
+finds that they do not fit, there is no assignment in that order, and a vehicle without a slot leaves the last slot
+and the time from which the fix is free as they were."""
 
 from typing import Any
 
@@ -24,6 +25,8 @@ def claim(c: Claim) -> None:
     one = c.use(slot_step, any_line, *window, separation)
     meant = c.define(slots.is_next_slot, t, any_line, *window, separation, one)
     c.show(meant, "one slot is its definition")
+    kept = c.all_of(one.free == any_line.free, one.time == any_line.time)
+    c.show(c.implies(c.negation(one.fits), kept), "a vehicle without a slot takes nothing")
 
     def after(all_of: list[Any]) -> Any:
         before, (theirs, so, none_later) = all_of
