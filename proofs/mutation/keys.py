@@ -19,7 +19,9 @@ from typing import Any
 from cratous.core.kernel import REGISTRY
 from cratous.core.kernel.sources import constants, digest
 from cratous.core.ledger import keys as ledger_keys
+from cratous.core.ledger.definition_hash import Border, Walk, walk
 from cratous.core.ledger.key_parts import solver_version
+from cratous.core.ledger.lookup_exceptions import EXCUSED
 from cratous.core.ledger.package_home import PRODUCT, Home
 from cratous.proofs.engine.theorem_files import theorem_files
 
@@ -32,6 +34,18 @@ JUDGES = (
     "proofs.mutation.premises.judge_premises",
 )
 """The functions that produce verdicts, and with them all they depend on, including the prover."""
+
+REGISTERED = "each function and theorem that is judged is a part of the target's key by itself"
+COMPILED = "it looks into the function that is judged, and the target's key follows the names in it"
+LOOKED_UP: dict[str, tuple[tuple[str, ...], str]] = {
+    "proofs.mutation.judgement.judge_target": (("load_all",), REGISTERED),
+    "proofs.mutation.premises.judge_premises": (("load_all",), REGISTERED),
+    "proofs.mutation.statements.targets": (("REGISTRY",), REGISTERED),
+    "proofs.mutation.operators._function": (("exec", "modules"), COMPILED),
+    "proofs.mutation.operators._Types": (("__globals__",), COMPILED),
+    "proofs.mutation.keys.Store.get": (("read_text",), "what lies there is found by its key"),
+}
+"""Dynamic look-ups of the judging code that its key need not follow, as in `core.ledger.lookup_exceptions`."""
 
 
 class Keys:
@@ -47,7 +61,22 @@ class Keys:
     @functools.cached_property
     def judging(self) -> str:
         """The key of the code that produces verdicts, and of the solver."""
-        return digest([self._keys.deciding(JUDGES).digest, solver_version()])
+        own, prover, readings = self.judges, self._keys.prover, self._keys.readings
+        return digest([own.digest, prover.digest, readings.digest, solver_version()])
+
+    @functools.cached_property
+    def judges(self) -> Walk:
+        """The walk over the code that produces verdicts, up to the prover and the readings."""
+        prover, readings = self._keys.prover, self._keys.readings
+        border = Border(
+            frozenset((*prover.places, *readings.places)),
+            lambda p: f"prover {prover.places.get(p)} readings {readings.places.get(p)}",
+            prover.attributes | readings.attributes,
+            (*prover.classes, *readings.classes),
+        )
+        own = {f"cratous.{name}": frozenset(words) for name, (words, _) in LOOKED_UP.items()}
+        roots = [place for name in JUDGES for place in self._keys.places(f"cratous.{name}")]
+        return walk(self._keys.tree, roots, border, excused={**EXCUSED, **own})
 
     def target(self, key: str, target: Any) -> str:
         """The key of a function or fold; key: its qualified name."""
