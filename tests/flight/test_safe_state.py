@@ -9,14 +9,19 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+import yaml
 from flight_tools import meeting
 from ground_tools import Flown, flown_of
 
 from cratous.bridge import lmcp
+from cratous.judge import failures
 from cratous.judge import safe_state as judge_safe_state
 from cratous.services.flight import executive
+from cratous.services.flight.lost_link import IN_HAND_AFTER_MS
 from cratous.services.icarous.route_end import TURN_MARGIN
-from cratous.services.monitor import safe_state
+from cratous.services.loading import load
+from cratous.services.monitor import failure, safe_state
+from cratous.services.system_model.replay import replay
 from cratous.spec.mission import FaultySimulation, Zone, ZoneKind
 from cratous.spec.mission.bridge_faults import BridgeFaults
 
@@ -124,8 +129,61 @@ def test_a_zone_that_the_circle_breaks(
     assert flight.judged(tmp_path)[ROW] == expected
 
 
+@pytest.fixture(scope="module")
+def unfailing(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Flown:
+    data = yaml.safe_load((root / "examples/crossing/mission.yaml").read_text())
+    del data["expect"]
+    data |= {"on_failure": {"choice": "hold"}}
+    data |= {"simulation": {"limit_s": 900, "bridge_faults": {"seed": 1, "cut_s": 25}}}
+    path = tmp_path_factory.mktemp("unfailing") / "mission.yaml"
+    path.write_text(yaml.safe_dump(data))
+    return flown_of(load(path))
+
+
+def test_without_the_link_vehicles_circle_also_where_the_mission_says_what_follows_a_failure(
+    unfailing: Flown, tmp_path: Path
+) -> None:
+    """Nothing was flown by them without the link, and the flight ended at its limit."""
+    assert unfailing.result.outcome == safe_state.SAFE_STATE
+    assert not unfailing.told("FailureState")
+    assert {one.Mode.name for one in unfailing.told("LinkLossState")} == {"Finish", "Over"}
+    verdicts, judged = unfailing.verdicts(), unfailing.judged(tmp_path)
+    for vehicle in (1, 2):
+        for item in (
+            f"circle of vehicle {vehicle} at the end",
+            f"what vehicle {vehicle} does after a failure",
+        ):
+            assert (verdicts[item].outcome.value, judged[item]) == ("holds", "holds"), item
+    assert replay(unfailing.mission, True, unfailing.log).finding is None
+
+
+def too_soon(name: str, body: dict[str, Any], end_ms: int) -> dict[str, Any]:
+    """UxAS was heard just before."""
+    return {**body, "Heard": body["Time"] - 500} if name == "LinkLossState" else body
+
+
+def other_choice(name: str, body: dict[str, Any], end_ms: int) -> dict[str, Any]:
+    return {**body, "Chosen": "Loiter"} if name == "LinkLossState" else body
+
+
+def out_of_order(name: str, body: dict[str, Any], end_ms: int) -> dict[str, Any] | None:
+    """The first mode is that of an end."""
+    left_out = name == "LinkLossState" and str(getattr(body["Mode"], "name", "")) == "Finish"
+    return None if left_out else body
+
+
+@pytest.mark.parametrize("change", [too_soon, other_choice, out_of_order])
+def test_what_is_flown_without_the_link_has_a_reason_before_a_failure(
+    unfailing: Flown, change: Bodies, tmp_path: Path
+) -> None:
+    log, item = changed(unfailing, change), "what vehicle 1 does after a failure"
+    assert unfailing.verdicts(log)[item].outcome.value == "violated"
+    assert unfailing.judged(tmp_path, log)[item] == "violated"
+
+
 def test_what_is_compared_is_what_is_flown() -> None:
     assert executive.SAFE_STATE == safe_state.SAFE_STATE == judge_safe_state.SAFE_STATE
     assert executive.SAFE_STATE_MS == safe_state.STAYS_MS == judge_safe_state.LAST_MS
     assert TURN_MARGIN == safe_state.WIDER == judge_safe_state.WIDER
+    assert IN_HAND_AFTER_MS == failure.SILENT_MS == failures.SILENT_MS
     assert safe_state.MARGIN_M == judge_safe_state.MARGIN_M
