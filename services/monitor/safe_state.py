@@ -43,6 +43,8 @@ MARGIN_M = 20.0
 """How far a vehicle may be outside of it [m]."""
 DIRECTIONS_RAD = tuple(k * math.pi / 8 for k in range(8))
 """Directions in which the extent of a flown path is measured."""
+DECIDE: tuple[Any, ...] = (lasted, edge_against)
+KERNELS = tuple(qualified(kernel) for kernel in DECIDE)
 
 
 @dataclass
@@ -115,7 +117,8 @@ class SafeStateWatch:
         if not text:
             doubt = self._presence.unseen(number, (end_ms - STAYS_MS, end_ms), Ending(end_ms, True))
             far_m = _farthest_m(flown)
-            inside = all(comes_near(s, s, _middle(flown), reach_m) for s in flown)
+            middle = _middle(flown) if flown else None
+            inside = all(comes_near(s, s, middle, reach_m) for s in flown)
             outcome = Outcome.HOLDS if inside and not doubt else Outcome.UNKNOWN
             margin = reach_m - far_m if outcome is Outcome.HOLDS else None
             text = doubt or f"in the last {STAYS_MS / 1000:g} s within {far_m:.1f} m of one place"
@@ -125,7 +128,7 @@ class SafeStateWatch:
             "G5", circle_item(number), outcome, Kind.OBSERVED, note,
             time_ms=end_ms if outcome is Outcome.VIOLATED else None, vehicles=(number,),
             margin=margin, unit="" if margin is None else "m", checks=len(flown),
-            kernels=tuple(map(qualified, (lasted, edge_against))),
+            kernels=KERNELS,
         )  # fmt: skip
 
     def _not_said(self, seen: Seen, end_ms: int) -> str:
@@ -176,8 +179,10 @@ def _middle(flown: Sequence[Sample]) -> Any:
 
 
 def _farthest_m(flown: Sequence[Sample]) -> float:
-    middle = _middle(flown) if flown else None
-    return max((math.dist(s.position[:2], middle[:2]) for s in flown), default=0.0)
+    if not flown:
+        return 0.0
+    middle = _middle(flown)[:2]
+    return max(math.dist(s.position[:2], middle) for s in flown)
 
 
 def _ends(flown: Sequence[Sample], direction_rad: float) -> tuple[Sample, Sample]:
