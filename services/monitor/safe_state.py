@@ -30,7 +30,7 @@ from cratous.services.monitor.landing import Down
 from cratous.services.monitor.observation import Ending, Presence
 from cratous.services.monitor.required_rows import circle_item
 from cratous.services.monitor.samples import Sample
-from cratous.spec.mission import Mission, Vehicle
+from cratous.spec.mission import Mission, Position, Vehicle
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 
 SAFE_STATE = "safe state"
@@ -117,7 +117,7 @@ class SafeStateWatch:
         if not text:
             doubt = self._presence.unseen(number, (end_ms - STAYS_MS, end_ms), Ending(end_ms, True))
             far_m = _farthest_m(flown)
-            middle = _middle(flown) if flown else None
+            middle = _middle(flown)
             inside = all(comes_near(s, s, middle, reach_m) for s in flown)
             outcome = Outcome.HOLDS if inside and not doubt else Outcome.UNKNOWN
             margin = reach_m - far_m if outcome is Outcome.HOLDS else None
@@ -171,18 +171,18 @@ def _reach_m(vehicle: Vehicle, flown: Sequence[Sample]) -> float:
     return WIDER * turn_radius_m(fast_m_s, vehicle.max_bank_rad) + MARGIN_M
 
 
-def _middle(flown: Sequence[Sample]) -> Any:
-    """The middle of the extents of a path."""
+def _middle(flown: Sequence[Sample]) -> Position:
+    """The middle of the extents of a path; the origin for none."""
+    if not flown:
+        return Position(0.0, 0.0, 0.0)
     axes = [[s.position[k] for s in flown] for k in range(2)]
     north, east = ((min(axis) + max(axis)) / 2 for axis in axes)
     return flown[0].position._replace(north_m=north, east_m=east)
 
 
 def _farthest_m(flown: Sequence[Sample]) -> float:
-    if not flown:
-        return 0.0
     middle = _middle(flown)[:2]
-    return max(math.dist(s.position[:2], middle) for s in flown)
+    return max((math.dist(s.position[:2], middle) for s in flown), default=0.0)
 
 
 def _ends(flown: Sequence[Sample], direction_rad: float) -> tuple[Sample, Sample]:
