@@ -107,12 +107,14 @@ class SafeStateWatch:
             return []
         rest = {number for number, down in self._down.items() if down.good or down.began}
         away = {n: s for n, s in self._seen.items() if s.icarous and not s.failed and n not in rest}
-        return [self._verdict(n, s, self._end_ms) for n, s in (away or self._seen).items()]
+        nobody = "" if away else "the flight ended in the safe state, and ICAROUS had no vehicle"
+        those = away or self._seen
+        return [self._verdict(n, s, self._end_ms, nobody) for n, s in those.items()]
 
-    def _verdict(self, number: int, seen: Seen, end_ms: int) -> Verdict:
+    def _verdict(self, number: int, seen: Seen, end_ms: int, nobody: str) -> Verdict:
         flown = [s for s in seen.flown if lasted(end_ms - STAYS_MS, s.time_ms, 0)]
         reach_m = _reach_m(self._mission.vehicle(number), flown)
-        text = self._not_said(seen, end_ms) or self._fault(flown, reach_m)
+        text = nobody or _not_said(seen, end_ms) or self._fault(flown, reach_m)
         since_ms, outcome, margin = seen.circles_ms, Outcome.VIOLATED, None
         if not text:
             doubt = self._presence.unseen(number, (end_ms - STAYS_MS, end_ms), Ending(end_ms, True))
@@ -131,14 +133,6 @@ class SafeStateWatch:
             kernels=KERNELS,
         )  # fmt: skip
 
-    def _not_said(self, seen: Seen, end_ms: int) -> str:
-        """Why a vehicle was not said to be in the safe state; empty if it was."""
-        if not seen.icarous:
-            return "the flight ended in the safe state, and ICAROUS had no vehicle"
-        if seen.circles_ms is None or not lasted(seen.circles_ms, end_ms, STAYS_MS):
-            return f"it was not said to circle for {STAYS_MS / 1000:g} s when the flight ended"
-        return ""
-
     def _fault(self, flown: Sequence[Sample], reach_m: float) -> str:
         """Why a path is in no circle of this radius, or breaks a zone; empty if nothing shows that."""
         for one, two in (_ends(flown, rad) for rad in DIRECTIONS_RAD if flown):
@@ -156,6 +150,13 @@ class SafeStateWatch:
                 if bound.binds(before.time_ms) and not exact_leg_ok(*leg, bound.zone):
                     return f"it broke zone {bound.zone.id} at {before.time_ms / 1000:.2f} s"
         return ""
+
+
+def _not_said(seen: Seen, end_ms: int) -> str:
+    """Why a vehicle was not said to be in the safe state; empty if it was."""
+    if seen.circles_ms is None or not lasted(seen.circles_ms, end_ms, STAYS_MS):
+        return f"it was not said to circle for {STAYS_MS / 1000:g} s when the flight ended"
+    return ""
 
 
 def _reach_m(vehicle: Vehicle, flown: Sequence[Sample]) -> float:

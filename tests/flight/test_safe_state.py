@@ -181,6 +181,22 @@ def test_what_is_flown_without_the_link_has_a_reason_before_a_failure(
     assert unfailing.judged(tmp_path, log)[item] == "violated"
 
 
+def test_forged_failures_are_no_way_out_of_the_row(unfailing: Flown, tmp_path: Path) -> None:
+    end_ms = unfailing.result.end_ms
+    forged = [
+        SimpleNamespace(
+            topic="cratous.FailureState",
+            time_ms=end_ms,
+            body=lmcp.new("FailureState", VehicleID=k, Time=end_ms, Failure="Ended"),
+        )
+        for k in (1, 2)
+    ]
+    log = [*unfailing.log[:-1], *forged, unfailing.log[-1]]
+    verdicts, judged = unfailing.verdicts(log), unfailing.judged(tmp_path, log)
+    for item in (ROW, ROW.replace("1", "2"), "what vehicle 1 does after a failure"):
+        assert (verdicts[item].outcome.value, judged[item]) == ("violated", "violated"), item
+
+
 def test_what_is_compared_is_what_is_flown() -> None:
     assert executive.SAFE_STATE == safe_state.SAFE_STATE == judge_safe_state.SAFE_STATE
     assert executive.SAFE_STATE_MS == safe_state.STAYS_MS == judge_safe_state.LAST_MS
