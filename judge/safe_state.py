@@ -87,8 +87,9 @@ def _doubt(track: Track | None, end_ms: int) -> str:
 def _reach_m(mission: Mission, vehicle: int, states: list[State]) -> float:
     one = mission.vehicles[vehicle]
     flown = max((math.hypot(s.north_m_s, s.east_m_s) for s in states), default=0.0)
-    speed = min(flown, one.fastest_m_s)
-    return WIDER * speed * speed / (GRAVITY_M_S2 * math.tan(one.bank_rad)) + MARGIN_M
+    speed, steep = min(flown, one.fastest_m_s), math.tan(one.bank_rad)
+    # what cannot bank flies no circle
+    return MARGIN_M + (WIDER * speed * speed / (GRAVITY_M_S2 * steep) if steep > 0 else 0.0)
 
 
 def _apart(states: list[State], reach_m: float) -> str:

@@ -169,6 +169,8 @@ def _reach_m(vehicle: Vehicle, flown: Sequence[Sample]) -> float:
         default=0.0,
     )
     fast_m_s = min(fast_m_s, vehicle.max_speed_m_s)
+    if math.tan(vehicle.max_bank_rad) <= 0:
+        return MARGIN_M  # what cannot bank flies no circle
     return WIDER * turn_radius_m(fast_m_s, vehicle.max_bank_rad) + MARGIN_M
 
 

@@ -20,7 +20,8 @@ from cratous.services.flight import executive
 from cratous.services.flight.lost_link import IN_HAND_AFTER_MS
 from cratous.services.icarous.route_end import TURN_MARGIN
 from cratous.services.loading import load
-from cratous.services.monitor import failure, safe_state
+from cratous.services.monitor import Monitor, failure, safe_state
+from cratous.services.pipeline.plan import make_plan
 from cratous.services.system_model.replay import replay
 from cratous.spec.mission import FaultySimulation, Zone, ZoneKind
 from cratous.spec.mission.bridge_faults import BridgeFaults
@@ -127,6 +128,18 @@ def test_a_zone_that_the_circle_breaks(
     flight = circles._replace(mission=replace(circles.mission, zones=(zone,)))
     assert flight.verdicts()[ROW].outcome.value == expected
     assert flight.judged(tmp_path)[ROW] == expected
+
+
+def test_what_cannot_bank_flies_no_circle(circles: Flown, tmp_path: Path) -> None:
+    """A log can say that: it was an internal error."""
+    flat = tuple(replace(one, max_bank_rad=0.0) for one in circles.mission.vehicles)
+    plan = make_plan(circles.mission)
+    mission = replace(circles.mission, vehicles=flat)
+    monitor = Monitor(mission, plan)
+    for one in circles.log:
+        monitor.tap(one)
+    assert [v.outcome.value for v in monitor.verdicts() if v.item == ROW] == ["violated"]
+    assert circles._replace(mission=mission).judged(tmp_path)[ROW] == "violated"
 
 
 @pytest.fixture(scope="module")
