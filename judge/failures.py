@@ -1,8 +1,8 @@
 """G4 after a declared failure: whether it could be declared, what was flown then, and who had the vehicle.
 
-A failure is declared once, and is one of those that the mission asks about. `blocked` needs a task
-that was given up before; all but `ended` need that ICAROUS has the vehicle; `expiring` and `surprised` need a lack of certificates (`HandState`) of
-four heartbeats. From then on ICAROUS has the vehicle to the end, and flies what the mission chooses,
+A failure is declared once, and is one of those that the mission asks about. `blocked` needs a task that was given up
+before; all but `ended` need that ICAROUS has the vehicle; `expiring` and `surprised` need a lack of certificates
+(`HandState`) of four heartbeats. From then on ICAROUS has the vehicle to the end, and flies what the mission chooses,
 or a circle. A landing is judged by the vehicle's position, as without the link.
 """
 

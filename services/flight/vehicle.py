@@ -208,7 +208,7 @@ class VehicleNode:
         if sender == ICAROUS:
             velocity = wanted.velocity if isinstance(wanted, Fly) else None
             kept = holding.steered(after.held, velocity, message.now_ms, self.ground)
-        elif after.gate.owner != before.owner:
+        elif after.gate != before:  # a handback
             kept = holding.left(after.held, message.now_ms, self.ground, HANDED_BACK)
         else:
             return after, said

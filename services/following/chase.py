@@ -54,7 +54,8 @@ def chase(
     """
     flyer, fast = usual.flyer, vehicle.max_speed_m_s
     moves = motion.velocity != (0.0, 0.0) and outruns(motion.velocity, fast)
-    if asked.kind not in CHASED or not moves or fast < FASTER * flyer.speed_m_s:
+    faster = outruns(Vec2(FASTER * flyer.speed_m_s, 0.0), fast)
+    if asked.kind not in CHASED or not moves or not faster:
         return None
     begin = context.inputs.starts[vehicle.id]._replace(alt_m=flyer.alt_m)
     gate = pose_after(begin, 0, LEAD_S * flyer.speed_m_s, 1.0)

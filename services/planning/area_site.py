@@ -8,7 +8,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+from cratous.core.kernel import Vec2
 from cratous.core.tasks.coverage import area_m2, outline, square_array, square_side_m
+from cratous.core.tasks.stations import in_ring
 from cratous.core.tasks.sweep import LANES_MOST, Piece, Swath, SwathOf, swath, unjoined_m
 from cratous.services.mission.sensor import footprints, looks_over, zoomed
 from cratous.services.planning.area_views import open_view
@@ -90,7 +92,7 @@ def lane_lengths(site: Site, heading_rad: float, lead_m: float) -> Callable[[Swa
     chord_m = area_m2(site.vertices) / extent_m
 
     def length_m(seen: Swath) -> float:
-        if not seen.width_m * LANES_MOST >= extent_m:
+        if not in_ring(Vec2(extent_m, 0.0), Vec2(0.0, 0.0), 0.0, seen.width_m * LANES_MOST):
             return math.inf
         settled_m = max(chord_m + seen.near_m - seen.far_m + 1.2 * lead_m, lead_m)
         return math.ceil(extent_m / seen.width_m) * (settled_m + math.pi * site.flyer.radius_m)

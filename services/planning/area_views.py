@@ -10,6 +10,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from cratous.core.kernel import Vec2
+from cratous.core.tasks.stations import in_ring
 from cratous.core.tasks.sweep import Swath
 from cratous.services.mission.sensor import sample_distance_m, zoomed
 from cratous.services.planning.point_paths import STRAIGHT_DOWN_RAD
@@ -98,4 +100,5 @@ def _sharp(task: Task, camera: Camera, height_m: float, tilt_rad: float) -> bool
     """Whether the camera, zoomed in as for a tilt, meets the task's ground sample distance."""
     view = View(0.0, tilt_rad, True)
     near = zoomed(camera, task, height_m, view)
-    return sample_distance_m(near, view, height_m) <= task.gsd_m * (1 + 1e-9)
+    gsd_m = sample_distance_m(near, view, height_m)
+    return in_ring(Vec2(gsd_m, 0.0), Vec2(0.0, 0.0), 0.0, task.gsd_m * (1 + 1e-9))

@@ -133,9 +133,8 @@ class VehicleModel:
         self.gate = after = gate_after(before, sender, body.Epoch)
         if not accepted:
             self.due.append(("CommandDropped", body.Sender.name, body.Epoch, before.epoch))
-        if after.owner != before.owner:
+        if after != before:  # a handback
             self.hand.leaves(now_ms)
-        if after != before:
             self.due.append(("GateState", NAMES[after.owner], after.epoch, int(after.offered)))
         self.due += _changes(before, after)
 
