@@ -120,7 +120,7 @@ def tilt_label(site: Site, view: View | None) -> str:
         return ""
     text = f", {round(-math.degrees(view.elevation_rad))} deg down"
     camera = camera_with(site, view)
-    if site.task.gsd_m <= 0 or not camera.pixels:
+    if not (max(site.task.gsd_m, 0.0) and camera.pixels):
         return text
     along_m = sample_distance_m(camera, view, site.height_m) / math.sin(-view.elevation_rad)
     return f"{text}, {along_m:.2g} m a pixel along the view"
