@@ -41,6 +41,7 @@ ITEMS = (
     ("G4", rf"take-off of vehicle {NUMBER}", "take-off"),
     ("G4", rf"what vehicle {NUMBER} does after a failure", "failed"),
     ("G5", rf"what vehicle {NUMBER} flies without the link", "alone"),
+    ("G5", rf"circle of vehicle {NUMBER} at the end", "circle"),
     ("G5", rf"heartbeat to the ICAROUS instance of {NUMBER}", "to"),
     ("G5", rf"heartbeat from the ICAROUS instance of {NUMBER}", "from"),
 )

@@ -1,8 +1,8 @@
 """G4 after a declared failure: whether it could be declared, what was flown then, and who had the vehicle.
 
-A failure is declared once, and is one of those that the mission asks about. `blocked` needs a task
-that was given up before; all but `ended` need that ICAROUS has the vehicle; `expiring` and `surprised` need a lack of certificates (`HandState`) of
-four heartbeats. From then on ICAROUS has the vehicle to the end, and flies what the mission chooses,
+A failure is declared once, and is one of those that the mission asks about. `blocked` needs a task that was given up
+before; all but `ended` need that ICAROUS has the vehicle; `expiring` and `surprised` need a lack of certificates
+(`HandState`) of four heartbeats. From then on ICAROUS has the vehicle to the end, and flies what the mission chooses,
 or a circle. A landing is judged by the vehicle's position, as without the link.
 """
 
@@ -20,6 +20,8 @@ from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, seconds
 
 BLOCKED, ENDED, ICAROUS = "Blocked", "Ended", "ICAROUS"
 OF_HAND = ("Expiring", "Surprised")
+FINISH, SILENT_MS = "Finish", 30_000
+"""What a vehicle that ICAROUS has flies after that silence of UxAS [ms], before any failure."""
 RESERVE = 4
 """Heartbeats without a certificate after which that is declared."""
 
@@ -97,17 +99,32 @@ def _flown(
 ) -> Iterator[tuple[int, str]]:
     """Reports of what is flown that are impossible, or missing."""
     at_ms, mode = (declared[0].time_ms if declared else None), LINKED
+    begun = False
     for one in said:
         if at_ms is None or one.time_ms < at_ms:
-            yield one.time_ms, f"{one.mode} is flown, and no failure had been declared"
+            yield from _without_link(one, mode)
+            mode = one.mode
+            continue
+        # a failure begins what is flown anew
+        mode, begun = (mode if begun else LINKED), True
         if one.chosen != asked.choice:
             what = f"{one.chosen} is said to be chosen, the mission wants {asked.choice}"
             yield one.time_ms, what
         if one.mode not in follows(mode, asked.choice) or one.mode == LINKED:
             yield one.time_ms, f"{one.mode} does not follow {mode}"
         mode = one.mode
-    if at_ms is not None and (not said or said[0].time_ms != at_ms):
+    after = [one for one in said if at_ms is not None and one.time_ms >= at_ms]
+    if at_ms is not None and (not after or after[0].time_ms != at_ms):
         yield at_ms, "nothing was flown from when the failure was declared"
+
+
+def _without_link(one: Alone, mode: str) -> Iterator[tuple[int, str]]:
+    """Faults of what is flown before any failure: the known way, then a circle, without the link."""
+    silent_ms = one.time_ms - one.heard_ms
+    if one.chosen != FINISH or one.mode not in follows(mode, FINISH):
+        yield one.time_ms, f"{one.mode} is flown, and no failure had been declared"
+    elif one.mode != LINKED and silent_ms <= SILENT_MS:
+        yield one.time_ms, f"{one.mode} after a silence of {silent_ms} ms"
 
 
 def _kept(log: Log, vehicle: int, declared: list[Declared]) -> Iterator[tuple[int, str]]:

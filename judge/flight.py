@@ -17,6 +17,7 @@ from cratous.judge import (
     merging,
     mission_file,
     relations,
+    safe_state,
     separation,
     service,
     take_off,
@@ -129,6 +130,7 @@ def judged(mission: Mission, found: log.Log) -> list[Row]:
     rows += take_off.rows(mission, found, flown)
     rows += lost_link.rows(mission, found, flown)
     rows += failures.rows(mission, found, flown)
+    rows += safe_state.rows(mission, found, flown)
     rows += heartbeat.rows(mission, found, _unsafe(safe))
     doubts = list(found.doubts)
     if found.end_ms is None:

@@ -45,6 +45,7 @@ class Vehicle:
     cameras: tuple[Camera, ...] = ()
     ground_m: float | None = None
     """Ground height at its start [m MSL]; None if it starts in the air."""
+    fastest_m_s: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -342,6 +343,7 @@ def _vehicle(data: Node) -> Vehicle:
         data["max_bank_rad"].real,
         cameras,
         data["ground_m"].real if data.has("ground_m") else None,
+        data.get("max_speed_m_s", data["speed_m_s"].real).real,
     )
 
 

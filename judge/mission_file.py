@@ -161,7 +161,9 @@ class _Reader:
         ground = (
             self.ground(data["position"]) if data.get("start", "air").text == "ground" else None
         )
-        return m.Vehicle(data["id"].whole, protected, data["speed_m_s"].real, bank, cameras, ground)
+        speed = data["speed_m_s"].real
+        fastest = data.get("max_speed_m_s", speed).real
+        return m.Vehicle(data["id"].whole, protected, speed, bank, cameras, ground, fastest)
 
     def ground(self, data: Node) -> float:
         """Ground height at a place: of the first site there, otherwise the terrain."""

@@ -36,8 +36,10 @@ from cratous.spec.mission.plan import Pose
 
 DIRECT_WORK, AROUND_WORK = 1, 3
 """CPython's work for a direct route beside zones, and for one around them, in the units of `swift`; without legs
-against zones, which count for themselves.
+against zones, and without lines of sight between via points (`_sight_work`).
 """
+SIGHTS = 400
+"""As many pairs of via points, times edges of zones, are one unit: about one pair in seven is looked at."""
 BLOCK = 300
 """Number of routes searched per block: machine code compiled meanwhile by a parallel process is used from the next
 block on.
@@ -134,7 +136,15 @@ def _around(
     for alt in np.unique(altitudes):
         rings = Rings(*roadmap.ring_arrays, roadmap.seen(float(alt)))
         here = which[altitudes == alt]
-        _search(route_many, AROUND_WORK, (starts, ends), (turning, zones, rings), found, here)
+        work = AROUND_WORK + _sight_work(rings, zones)
+        _search(route_many, work, (starts, ends), (turning, zones, rings), found, here)
+
+
+def _sight_work(rings: Rings, zones: tuple[np.ndarray, ...]) -> int:
+    """CPython's work for the lines of sight that a route around zones tries along one ring, as `swift` counts it."""
+    points = max(rings.sizes, default=0)
+    unseen = 1 - np.count_nonzero(rings.seen) / max(rings.seen.size, 1)
+    return int(unseen * points**2 * len(zones[-1]) / SIGHTS)
 
 
 def _search(

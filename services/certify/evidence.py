@@ -73,14 +73,15 @@ class Calls:
     def looped(self, function: Callable[..., Any], run: Callable[..., Any]) -> Callable[..., Any]:
         """A loop that counts one entry, whichever way it runs."""
         ran = run.run if isinstance(run, Reading) else run
-        plain = self._plain(function) if ran is function else None
+        if ran is function:
+            ran = self._plain(function)
 
         def loop(*given: Any) -> Any:
             self._add(function, LOOP)
-            if plain is None:
+            if ran is not function:  # nothing in it counts
                 return ran(*given)
             with self._apart(function):
-                return plain(*given)
+                return ran(*given)
 
         return loop
 
@@ -93,7 +94,10 @@ class Calls:
 
     @contextlib.contextmanager
     def _apart(self, function: Callable[..., Any]) -> Iterator[None]:
-        """While active, entries into a loop and into its parts are not counted; one loop at a time."""
+        """While active, entries into a loop and into its parts are not counted, in no thread; one loop at a time.
+
+        For a loop that has no copy without counting entries.
+        """
         name = qualified(function)
         if name not in self._parts:
             self._parts[name] = sorted(entered(function).keys() & self._known)

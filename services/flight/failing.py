@@ -23,6 +23,8 @@ from cratous.spec.records import replace
 
 NOT_YET_MS = 2**53
 """A vehicle that still flies what follows its failure is not done by any time of a flight [ms]."""
+UNANSWERED_MS = 60_000
+"""How long a vehicle whose mission is stopped is waited for that does not answer [ms]."""
 
 
 def asks(state: State, failure: Failed) -> bool:
@@ -34,7 +36,10 @@ def asks(state: State, failure: Failed) -> bool:
 def stop(state: State, vehicle_ids: Iterable[int]) -> State:
     """Stop the missions of vehicles with an instance."""
     gone = {*state.stopping, *dict(state.landed)}
-    return replace(state, stopping=(*state.stopping, *(v for v in vehicle_ids if v not in gone)))
+    new = tuple(v for v in vehicle_ids if v not in gone)
+    if not new:
+        return state
+    return replace(state, stopping=(*state.stopping, *new), stopped_ms=state.now_ms)
 
 
 def repeated(state: State, out: Out) -> None:
@@ -81,9 +86,13 @@ def settled(state: State, vehicle_id: int, until_ms: int) -> State:
 
 
 def busy(state: State) -> set[int]:
-    """The vehicles that are stopped, or have declared a failure, and have not flown yet what follows."""
+    """The vehicles that are stopped, or have declared a failure, and have not flown yet what follows.
+
+    One that has not declared it for UNANSWERED_MS cannot be reached, and is not waited for.
+    """
     until = dict(state.declared)
-    known = {*state.stopping, *until}
+    waits = not lasted(state.stopped_ms, state.now_ms, UNANSWERED_MS)
+    known = {*(state.stopping if waits else ()), *until}
     return {v for v in known if not lasted(until.get(v, NOT_YET_MS), state.now_ms, 1)}
 
 

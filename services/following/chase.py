@@ -16,6 +16,7 @@ from cratous.core.tasks.stations import in_ring, outruns
 from cratous.services.following.motion import Motion
 from cratous.services.following.stations import station
 from cratous.services.following.task_parameters import Asked
+from cratous.services.mission.landing import MAX_ACCELERATION_M_S2
 from cratous.services.pipeline.contexts import Context
 from cratous.services.planning.options import Option, hold_rooms
 from cratous.services.planning.performance_classes import flight_ms
@@ -44,6 +45,14 @@ def speed_of(option: Option, vehicle: Vehicle) -> float:
     return vehicle.max_speed_m_s if is_chase(option) else option.flyer.speed_m_s
 
 
+def slows_down_m(option: Option, vehicle: Vehicle) -> float:
+    """Distance from the rim of its circle within which a vehicle that chases is told its usual speed [m]: enough to
+    slow down to it, so that it does not swing out of its circle, which is as wide as a turn at the usual speed.
+    """
+    fast, usual = vehicle.max_speed_m_s, option.flyer.speed_m_s
+    return max(option.flyer.radius_m, (fast**2 - usual**2) / (2 * MAX_ACCELERATION_M_S2))
+
+
 def chase(
     context: Context, asked: Asked, motion: Motion, usual: Option, vehicle: Vehicle
 ) -> Option | None:
@@ -59,7 +68,7 @@ def chase(
         return None
     begin = context.inputs.starts[vehicle.id]._replace(alt_m=flyer.alt_m)
     gate = pose_after(begin, 0, LEAD_S * flyer.speed_m_s, 1.0)
-    wide_m = flyer.radius_m * (fast / flyer.speed_m_s) ** 2
+    wide_m, slow_m = flyer.radius_m * (fast / flyer.speed_m_s) ** 2, slows_down_m(usual, vehicle)
     slot = int(usual.label.removeprefix("slot ")) - 1
     zones, terrain_m = context.inputs.zones, context.inputs.mission.frame.terrain_m
     seconds = 0.0
@@ -71,14 +80,16 @@ def chase(
         heading = math.atan2(goal.at.y - gate.east_m, goal.at.x - gate.north_m)
         rim = pose_after(Pose(*goal.at, flyer.alt_m, heading), 0, -goal.radius_m, 1.0)
         path = tuple(cut(dubins(gate, rim, wide_m), rim))
-        before, seconds = seconds, polyline_length_m(path) / fast
+        last_m = min(polyline_length_m(path), slow_m)
+        fast_m = polyline_length_m(path) - last_m
+        before, seconds = seconds, fast_m / fast + last_m / flyer.speed_m_s
     if abs(seconds - before) > SETTLED_S:
         return None
     if broken_by(Position(*goal.at, flyer.alt_m), goal.radius_m, zones) is not None:
         return None
     if first_bad_leg(path, zones) is not None:
         return None
-    lasts = max(asked.least_ms, flight_ms(polyline_length_m(path), fast))
+    lasts = max(asked.least_ms, flight_ms(seconds, 1.0))
     return replace(
         usual, start=gate, end=rim, path=path, duration_ms=lasts, label=usual.label + CHASE,
         holds=hold_rooms(gate, flyer.radius_m, zones),

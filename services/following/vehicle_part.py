@@ -11,7 +11,7 @@ from cratous.core.kernel import Vec2
 from cratous.core.routing.loiter_discs import broken_by
 from cratous.core.routing.visibility import name_of
 from cratous.core.tasks.stations import in_ring
-from cratous.services.following.chase import is_chase, speed_of
+from cratous.services.following.chase import is_chase, slows_down_m, speed_of
 from cratous.services.following.motion import Motion
 from cratous.services.following.stations import Station, at_station, camera_of, station
 from cratous.services.following.task_options import slot_of
@@ -33,8 +33,8 @@ class Part(NamedTuple):
     state: task state for this vehicle; option: the one it flies, in the context of its request; begins:
     number of the waypoint from which it follows; then: the waypoint at which it continues; held: the circle
     commanded last; seen_ms: when it was last heard; there: whether it then did what the task requires;
-    blocked: reported reason why it does not reach its circle; hurries: it chases, and is still more than two radii
-    from its circle's centre.
+    blocked: reported reason why it does not reach its circle; hurries: it chases, and is not yet so near its circle
+    that it slows down.
     """
 
     state: State
@@ -82,7 +82,8 @@ def heard(part: Part, body: Any, asked: Asked, motion: Motion, fresh: bool, now_
     # aim at where the entity will be after about the duration of a turn
     led = motion._replace(at=motion.after(flyer.radius_m / flyer.speed_m_s))
     goal = station(asked, slot, flyer, led, frame.terrain_m)
-    near = in_ring(now.at, at, 0, 2 * now.radius_m)
+    slow_m = slows_down_m(part.option, context.inputs.mission.vehicle(part.vehicle))
+    near = in_ring(now.at, at, 0, now.radius_m + slow_m)
     part = part._replace(hurries=is_chase(part.option) and not near)
     zone = _in_the_way(part, here, goal)
     if zone:

@@ -168,7 +168,7 @@ class Instance:
         """How far ahead the routes of others are needed at a heartbeat [s]: the look-ahead, or without limit
         where permits or courses are checked against them.
         """
-        daa, plan = self.config.daa, self.config.alone
+        daa, plan = self.config.daa, self.config.alone(state.failing.declared)
         linked = plan is None or in_time(state.told.heard_ms, now_ms, plan.after_ms)
         linked = linked or (plan is not None and plan.in_hand)
         linked = linked and state.no_link.loss.mode == LINKED

@@ -70,10 +70,10 @@ def heartbeat(
     config: Config, state: State, sensed: Sensed
 ) -> tuple[State, tuple[Fails | WithoutLink, ...]]:
     """The state with the mode and course for this heartbeat, and what to report."""
-    plan, now_ms = config.alone, sensed.now_ms
-    if plan is None:
-        return state, ()
     state, said = _declared(config, state, sensed)
+    plan, now_ms = config.alone(state.failing.declared), sensed.now_ms
+    if plan is None:
+        return state, said
     before, tried = state.no_link, Tried(None)
     linked_ms = heard_by(state.failing.failure, state.told.heard_ms)
     if plan.in_hand:
@@ -134,6 +134,8 @@ def _declared(config: Config, state: State, sensed: Sensed) -> tuple[State, tupl
     state = replace(state, failing=now, no_link=state.no_link._replace(loss=loss))
     if now.declared == before.declared:
         return state, ()
+    # what follows is no continuation of what was flown without the link
+    state = replace(state, no_link=state.no_link._replace(course=None))
     return state, (failing.told(now, config.vehicle_id),)
 
 
@@ -164,7 +166,8 @@ def flown(
     """The manoeuvre to fly without the link: along the course, or by avoidance if no course is permitted; on
     the ground none.
     """
-    course, goal = state.no_link.course, config.alone.goal if config.alone else None
+    plan = config.alone(state.failing.declared)
+    course, goal = state.no_link.course, plan.goal if plan else None
     if state.no_link.loss.mode == LANDED:
         stands = Choice("heading", sensed.motion.heading_rad, 0.0, 0.0, 0.0, True, None)
         return replace(state, held=None, search=IDLE), stands

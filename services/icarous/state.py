@@ -52,10 +52,9 @@ class Config(NamedTuple):
     merging: Fix | None = None
     on_failure: OnFailure | None = None
 
-    @property
-    def alone(self) -> LostLink | None:
-        """What the vehicle flies by itself, without the link or after a declared failure; None for neither."""
-        return self.lost_link if self.on_failure is None else self.on_failure.flies
+    def alone(self, failed: bool) -> LostLink | None:
+        """What the vehicle flies by itself: after a declared failure what follows it, else without the link."""
+        return self.on_failure.flies if failed and self.on_failure is not None else self.lost_link
 
 
 class Rising(NamedTuple):

@@ -20,6 +20,7 @@ the start and once at the end of the failure), and counts what is lost.
 from __future__ import annotations
 
 import re
+from collections import deque
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -87,7 +88,7 @@ class MessageLogger:
         self._texts: TextFiles | None = None
         if text_limit > 0:
             self._texts = TextFiles(folder, f"{stem}_{number}", text_limit, files_per_folder)
-        self._waiting: list[Entry] = []
+        self._waiting: deque[Entry] = deque()
         self._tap_state = self.start()
 
     @classmethod
@@ -166,10 +167,9 @@ class MessageLogger:
         return self._judged(state, [])
 
     def _write_texts(self) -> None:
-        waiting, self._waiting = self._waiting, []
-        if self._texts is not None:
-            for entry in waiting:
-                self._texts.write(entry, _xml(entry))
+        while self._texts is not None and self._waiting:
+            entry = self._waiting.popleft()  # one by one: what is interrupted keeps the others
+            self._texts.write(entry, _xml(entry))
 
     def _judged(self, state: LoggerState, said: list[Any]) -> tuple[LoggerState, Iterable[Any]]:
         trouble = self.log.trouble or (self._texts.trouble if self._texts is not None else "")
@@ -216,6 +216,8 @@ def entry_of(envelope: Envelope) -> tuple[Entry, BadInput | None]:
             body = lmcp.to_json(envelope.body)
         except BadInput:
             body = canonical({"$text": repr(envelope.body)[:10_000]})
+        # half of a surrogate pair has no form in a file; as an escape it is the same JSON
+        body = body.encode("utf-8", "backslashreplace").decode()
     entity, service = (getattr(envelope, name, 0) for name in ("entity_id", "service_id"))
     outside = (
         getattr(envelope, "address", "") or None,

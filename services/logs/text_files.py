@@ -58,7 +58,7 @@ class TextFiles:
         self.close()
         path = self.path_of(number)
         path.parent.mkdir(parents=True, exist_ok=True)
-        self._file = path.open("a", encoding="utf-8")
+        self._file = path.open("a", encoding="utf-8", errors="backslashreplace")
 
     def close(self) -> None:
         """Close the current file."""

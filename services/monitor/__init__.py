@@ -23,6 +23,7 @@ from cratous.services.monitor.link_loss import LinkLossWatch
 from cratous.services.monitor.merging import MergeWatch
 from cratous.services.monitor.observation import Ending, Presence
 from cratous.services.monitor.required_rows import END, missing, promised, watched
+from cratous.services.monitor.safe_state import SafeStateWatch
 from cratous.services.monitor.samples import Sample, Sampler
 from cratous.services.monitor.separation import SeparationWatch
 from cratous.services.monitor.take_off import TakeOffWatch
@@ -65,6 +66,7 @@ class Monitor:
         self.hand = HandWatch.of(mission)
         self.link_loss = LinkLossWatch(mission, self.landing.down, self.presence)
         self.failure = FailureWatch(mission, self.landing.down, self.presence)
+        self.safe_state = SafeStateWatch(mission, self.presence)
         self.take_off = TakeOffWatch(mission, self.presence)
         self.merging = MergeWatch(mission, self.presence)
         self._assumed = AssumptionWatch(mission, on_board)
@@ -94,6 +96,7 @@ class Monitor:
             if short == "GateState":
                 self.take_off.gate(body)
                 self.failure.gate(body)
+                self.safe_state.gate(body)
                 self.hand.gate(body, envelope.time_ms)
         elif short == "HandState":
             self.hand.hand(body, envelope.time_ms)
@@ -107,9 +110,11 @@ class Monitor:
         elif short == "LinkLossState":
             self.link_loss.state(body)
             self.failure.state(body)
+            self.safe_state.state(body)
         elif short == "FailureState":
             self.failure.declared(body)
             self.authority.declared(body)
+            self.safe_state.declared(body)
         elif short == "TakeOffState":
             self.take_off.state(body)
         elif short == "MissionEnd":
@@ -117,7 +122,9 @@ class Monitor:
                 self._step(*step)
             self._last_ms, self._over = body.Time, True
             self.completion.end(body)
-            self.authority.end(body, self.landing.at_rest(self._all_seen))
+            at_rest = self.landing.at_rest(self._all_seen)
+            self.authority.end(body, at_rest)
+            self.safe_state.end(body, at_rest)
             self.bridge.end(body)
             self.link_loss.end(body)
             self.failure.end(body)
@@ -141,6 +148,7 @@ class Monitor:
         self.constraints.step(before, after)
         self.take_off.step(before, after)
         self.merging.step(before, after)
+        self.safe_state.step(before, after)
         flown = self.landing.step(before, after)
         if all(flown):
             self.separation.step(*flown)
@@ -178,6 +186,7 @@ class Monitor:
             *self.bridge.verdicts(),
             *self.link_loss.verdicts(),
             *self.failure.verdicts(),
+            *self.safe_state.verdicts(),
         ]
         there = {v.item for v in found if v.requirement == "G1"}
         return found + missing(promised(seen, there), ((v.requirement, v.item) for v in found))

@@ -15,12 +15,13 @@ from typing import Any
 
 from cratous.core.authority.failure import Asked, Failure, Seen, failure_step, heard_by
 from cratous.core.authority.gate import ICAROUS, UXAS, Gate, gate_accepts
-from cratous.core.authority.link_loss import LAND, LOITER, RETURN, Loss, loss_step
+from cratous.core.authority.link_loss import FINISH, LAND, LINKED, LOITER, RETURN, Loss, loss_step
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.landing import on_ground
 from cratous.core.kernel import qualified
 from cratous.services.assumptions.authority import reported
 from cratous.services.mission.landing import on_failure_of
+from cratous.services.mission.merging import merging_of
 from cratous.services.monitor.landing import Down
 from cratous.services.monitor.link_loss import EITHER, NO_LOSS, LinkLossWatch
 from cratous.services.monitor.link_loss import Told as Flown
@@ -41,6 +42,8 @@ RESERVE_BEATS = 4
 """Number of heartbeats that a certificate must cover; a test compares it with the instance's value."""
 BOUND_MS = 2**40
 """No silence counts: only a declared failure does [ms]."""
+SILENT_MS = 30_000
+"""Silence of UxAS after which a vehicle in ICAROUS's hand acts by itself; a test compares it with the instance's."""
 BLOCKED_NOTE = "blocked: "
 NO_FAILURE = Failure(NONE, 0)
 UNTOUCHED = Gate(UXAS, 0, False)
@@ -66,6 +69,7 @@ class FailureWatch(LinkLossWatch):
         """down: vehicles on the ground, by their positions; presence: observation spans of each aircraft."""
         super().__init__(mission, down, presence)
         self._after = on_failure_of(mission)
+        self._merges_or_senses = mission.sensing is not None or merging_of(mission) is not None
         there = mission.instances if self._after is not None else ()
         self._seen = {number: Told() for number in there}
         self._told = dict(self._seen)
@@ -125,6 +129,9 @@ class FailureWatch(LinkLossWatch):
             return
         told.checks += 1
         now_ms, mode, chosen = body.Time, int(body.Mode), NUMBERS[self._after.choice]
+        if told.failure.kind == NONE:
+            self._without_link(told, body)
+            return
         by = heard_by(told.failure, body.Heard)
         may = {
             loss_step(told.loss, chosen, by, now_ms, BOUND_MS, way, end).loss.mode
@@ -137,6 +144,22 @@ class FailureWatch(LinkLossWatch):
             told.wrong.append((now_ms, "it began later than the failure was declared"))
         told.loss = Loss(mode, now_ms)
         told.said.append(f"{body.Mode.name} from {now_ms / 1000:.2f} s")
+
+    def _without_link(self, told: Told, body: Any) -> None:
+        """Process what is flown without the link before any failure: the known way, then a circle, in ICAROUS's hand."""
+        now_ms, mode = body.Time, int(body.Mode)
+        may = {
+            loss_step(told.loss, FINISH, heard_ms, now_ms, SILENT_MS, way, end).loss.mode
+            for way, end in product(EITHER, EITHER)
+            # whether the vehicle was out of ICAROUS's hand meanwhile, which counts as heard, is seen by its gate
+            for heard_ms in ((body.Heard,) if _flies(told) else (body.Heard, now_ms))
+        }
+        if self._merges_or_senses or mode not in may or int(body.Chosen) != FINISH:
+            told.wrong.append((now_ms, f"{body.Mode.name} is not what follows then"))
+        elif not _flies(told) and mode != LINKED:
+            told.wrong.append((now_ms, f"{body.Mode.name} is flown, and UxAS has it"))
+        told.loss = Loss(mode, now_ms)
+        told.said.append(f"{body.Mode.name} from {now_ms / 1000:.2f} s, without the link")
 
     def status(self, body: Any) -> None:
         """A BridgeStatus says nothing of failures."""

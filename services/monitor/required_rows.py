@@ -107,6 +107,11 @@ def alone_without_link_item(vehicle: int) -> str:
     return f"what vehicle {vehicle} flies without the link"
 
 
+def circle_item(vehicle: int) -> str:
+    """Name of the G5 row on the circle of a vehicle when a flight ends in the safe state."""
+    return f"circle of vehicle {vehicle} at the end"
+
+
 def failure_item(vehicle: int) -> str:
     """Name of the G4 row on what a vehicle does after a declared failure."""
     return f"what vehicle {vehicle} does after a failure"

@@ -12,7 +12,7 @@ from cratous.core.kernel import Vec2
 from cratous.core.tasks.coverage import area_m2, outline, square_array, square_side_m
 from cratous.core.tasks.stations import in_ring
 from cratous.core.tasks.sweep import LANES_MOST, Piece, Swath, SwathOf, swath, unjoined_m
-from cratous.services.mission.sensor import footprints, looks_over, zoomed
+from cratous.services.mission.sensor import footprints, looks_over, sample_distance_m, zoomed
 from cratous.services.planning.area_views import open_view
 from cratous.services.planning.performance_classes import Flyer
 from cratous.services.planning.smoothing import MARGIN
@@ -110,6 +110,20 @@ def swaths_of(site: Site, view: View | None) -> SwathOf:
 def camera_with(site: Site, view: View | None) -> Camera:
     """The camera as it is zoomed for a view."""
     return zoomed(site.camera, site.task, site.height_m, view if open_view(site.task) else None)
+
+
+def tilt_label(site: Site, view: View | None) -> str:
+    """What the planner's own view adds to a label: its tilt and, if the task requires a ground sample distance, the one
+    along the view, which is coarser than the one across it.
+    """
+    if view is None:
+        return ""
+    text = f", {round(-math.degrees(view.elevation_rad))} deg down"
+    camera = camera_with(site, view)
+    if not (max(site.task.gsd_m, 0.0) and camera.pixels):
+        return text
+    along_m = sample_distance_m(camera, view, site.height_m) / math.sin(-view.elevation_rad)
+    return f"{text}, {along_m:.2g} m a pixel along the view"
 
 
 @functools.lru_cache(maxsize=4096)

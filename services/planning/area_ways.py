@@ -46,6 +46,7 @@ from cratous.services.planning.area_site import (
     site_of,
     swaths_aside,
     swaths_of,
+    tilt_label,
 )
 from cratous.services.planning.area_views import best_view, open_view
 from cratous.services.planning.cut_paths import cut
@@ -323,7 +324,7 @@ def _lanes_along(
     site: Site, heading: float, swath_of: SwathOf, lead_m: float, view: View | None
 ) -> list[Candidate]:
     parts = strips(site.vertices, heading, lane_width_m(swath_of, heading))
-    tilt = f", {round(-math.degrees(view.elevation_rad))} deg down" if view is not None else ""
+    tilt = tilt_label(site, view)
     return [
         candidate_of(site, label + tilt, pieces, view)
         for label, pieces in (_over(site, parts, heading, swath_of, lead_m) if parts else ())

@@ -19,13 +19,14 @@ from profiled_crossing import flown
 
 from cratous.core.authority.gate import gate_accepts
 from cratous.core.authority.timeliness import beats_in_time, in_time
+from cratous.core.geofence.mission_leg_arrays import first_bad, table
 from cratous.core.geofence.planar import locate, orient
 from cratous.core.kernel import REGISTRY, Entry, Fold, Vec2, qualified
 from cratous.core.kernel.sources import altered
 from cratous.core.readings import tiered
 from cratous.core.readings.enclosed import enclosed
 from cratous.core.readings.exact import exact, exactly
-from cratous.core.readings.machine.compiled import compiled, machine
+from cratous.core.readings.machine.compiled import compiled, is_kept, machine
 from cratous.core.tasks.footprints import points_in_quads
 from cratous.core.well_clear.now import vertical_violation
 from cratous.services.certify.evidence import LOOP, PYTHON, counted, is_data
@@ -323,3 +324,21 @@ def test_plan_and_monitor_tell_what_they_called(
     watched = evidence_of(capsys, "monitor", fly_once(CROSSING))
     assert "cratous.core.well_clear.during.violation_within" in watched
     assert not any(".contracts." in name or ".assignment." in name for name in watched)
+
+
+def test_a_plan_has_the_same_evidence_without_and_with_kept_machine_code(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also in the second run of a process, when its caches are full."""
+    relations = Path(__file__).parents[2] / "examples" / "relations" / "mission.yaml"
+    machine(first_bad)(np.zeros((1, 3)), table(()))
+    found, made = [], []
+    for kept in (False, True, True):
+        monkeypatch.setattr(tiered, "_compiled", {})
+        monkeypatch.setattr(tiered, "_inner", {})
+        monkeypatch.setattr(tiered, "_is_time", lambda loop, *_, kept=kept: kept and is_kept(loop))
+        found.append(evidence_of(capsys, "plan", relations))
+        made.append({*tiered._compiled})
+    assert found[0] == found[1] == found[2]
+    assert not made[0]
+    assert qualified(first_bad) in made[1]

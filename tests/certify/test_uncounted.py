@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import inspect
+import threading
 
 import pytest
 
 from cratous.core.geofence.planar import orient
 from cratous.core.kernel import REGISTRY, Entry, Vec2, qualified
+from cratous.core.readings import tiered
 from cratous.services.certify.evidence import PYTHON, counted
 from cratous.services.certify.uncounted import uncounted
 
 LIMIT = 2
+CORNERS = Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)
+BEGUN, OTHER_DONE = threading.Event(), threading.Event()
 
 
 def rising(n: int, *, by: int = 1) -> int:
@@ -39,3 +43,24 @@ def test_a_copy_calls_copies_and_reads_the_same_names(monkeypatch: pytest.Monkey
 
 def test_what_assigns_to_its_module_is_not_copied() -> None:
     assert uncounted(changing) is changing
+
+
+def waiting() -> bool:
+    orient(*CORNERS)
+    BEGUN.set()
+    return OTHER_DONE.wait(20)
+
+
+def test_calls_of_other_threads_are_counted_while_a_loop_runs() -> None:
+    def work() -> None:
+        BEGUN.wait(20)
+        for _ in range(100):
+            orient(*CORNERS)
+        OTHER_DONE.set()
+
+    with counted() as calls:
+        thread = threading.Thread(target=work)
+        thread.start()
+        assert tiered.swift(waiting)()
+        thread.join()
+    assert calls.data()["called"] == {qualified(orient): {PYTHON: 100}}

@@ -117,6 +117,18 @@ def test_each_choice_is_flown(
     assert_known(flight, tmp_path)
 
 
+def test_a_vehicle_that_cannot_be_told_is_not_waited_for_to_the_limit(
+    root: Path, tmp_path: Path
+) -> None:
+    """Its link is cut while UxAS has it: it never hears that its mission is stopped."""
+    simulation = {"limit_s": 1000, "bridge_faults": {"seed": 1, "cut_s": 5}}
+    flight = flown_of(load(mission_file(root, tmp_path, simulation=simulation)))
+    assert failures(flight) == []
+    assert flight.result.outcome == "failed"
+    assert flight.result.end_ms < 200_000
+    assert flight.verdicts()["G3"].outcome is Outcome.VIOLATED
+
+
 def test_a_vehicle_that_is_blocked_lands(root: Path, tmp_path: Path) -> None:
     """Somebody hovers behind the goal: the task is given up, the vehicle lands, and no other task is begun."""
     flight = flown_of(load(mission_file(root, tmp_path, traffic=[HOVERS], changes=None)))

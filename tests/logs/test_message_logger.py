@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 import resource
 from pathlib import Path
 from typing import Any
@@ -249,3 +250,22 @@ def test_the_text_is_written_after_the_messages_that_follow(tmp_path: Path) -> N
     written = sum(p.read_text().count("$lmcp|") for p in tmp_path.glob("*.txt"))
     assert written == WAITING_MOST + 2
     logger.stop(logger.start())
+
+
+def test_text_without_a_form_in_a_file_costs_no_other_message(tmp_path: Path) -> None:
+    """The texts of a burst are written together, and half of a surrogate pair has no UTF-8."""
+    logger, faults = MessageLogger(tmp_path, text_limit=9), list[Any]()
+    bus = Bus(lmcp.full_names, on_fault=lambda *fault: faults.append(fault))
+    bus.add(logger)
+    for key in ("first", "half \udc80", "last"):
+        bus.publish(lmcp.new("KeyValuePair", Key=key), "sim")
+    bus.run_until(0)
+    bus.remove(logger.name)
+    assert faults == []
+    (text,) = tmp_path.glob("*.txt")
+    heads = [line for line in text.read_text().splitlines() if "lmcp|afrl.cmasi.KeyValue" in line]
+    assert len(heads) == 3
+    assert "half \\udc80" in text.read_text()
+    bodies = [entry.body for entry in logged(logger.log.path) if "KeyValuePair" in entry.topic]
+    assert len(bodies) == 3
+    assert json.loads(bodies[1])["Key"] == "half \udc80"

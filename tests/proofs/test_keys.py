@@ -204,11 +204,12 @@ def test_a_kernel_keeps_its_source_in_a_module_of_another_name(keys: Keys) -> No
 
 def test_two_lemmas_do_not_change_places_unseen(keys: Keys) -> None:
     """The lemmas that a theorem names count in their order, not only as a set."""
-    name = next(n for n, w in _statements(keys) if len(w.strings) > 1)
-    first, second = keys.statement(name).strings[:2]
-    file = ledger.theorem_file(name, ledger.PRODUCT)
-    assert file is not None
-    text = file.read_text()
+    name, (first, second), file, text = next(
+        (n, w.strings[:2], file, text)
+        for n, w in _statements(keys)
+        if len(w.strings) > 1 and (file := ledger.theorem_file(n, ledger.PRODUCT)) is not None
+        and all(f'"{one}"' in (text := file.read_text()) for one in w.strings[:2])
+    )  # fmt: skip
     swapped = text.replace(first, "@").replace(second, first).replace("@", second)
     assert swapped != text
     assert Keys(edits={file: swapped.encode()}).theorem(name) != keys.theorem(name)

@@ -101,6 +101,10 @@ def test_a_camera_that_zooms_in_looks_shallower_at_the_same_sharpness() -> None:
     assert flown_camera(camera, asked, 400.0, made_for).hfov_rad == camera.zoom_rad[0]
     assert best.view_elevation_rad is not None
     assert math.radians(-60) < best.view_elevation_rad <= math.radians(-20)
+    slant_m = 400 / math.sin(-best.view_elevation_rad)
+    across_m = 2 * slant_m * math.tan(camera.zoom_rad[0] / 2) / camera.pixels
+    along_m = across_m / math.sin(-best.view_elevation_rad)
+    assert best.label.endswith(f", {along_m:.2g} m a pixel along the view")
 
 
 def _best(metres: dict[float, float], camera: Camera = AROUND, aside: float = 0.0) -> float:

@@ -14,11 +14,13 @@ from cratous.bridge import lmcp
 
 RADIUS_M = 1.1 * 20**2 / (9.80665 * math.tan(math.radians(30)))
 """The tightest planned turn, and the circle."""
+SLOW_M = (30**2 - 20**2) / (2 * 1.0)
+"""What slowing down from 30 to 20 m/s takes at 1 m/s2."""
 
 
 def test_who_follows_is_planned_to_its_circle_as_it_is_when_he_gets_there(tmp_path: Path) -> None:
     """One who flies 20 m/s, 3 km behind what flies 15 m/s away, is a turn behind it after so much less; at his
-    greatest speed, 30 m/s, from 5 s ahead of him on, after a third of that.
+    greatest speed, 30 m/s, from 5 s ahead of him on, after a third of that, and a little more, since he slows down.
     """
     rig = Rig(tmp_path)
     task = lmcp.new("WatchTask", TaskID=5, WatchedEntityID=ENTITY)
@@ -31,8 +33,9 @@ def test_who_follows_is_planned_to_its_circle_as_it_is_when_he_gets_there(tmp_pa
     seconds = (math.hypot(*entity) - RADIUS_M) / (20 - 15)
     assert math.hypot(*end) == pytest.approx(20 * seconds, rel=0.02)
     assert math.hypot(*gate) == pytest.approx(5 * 20, abs=1)
-    seconds = (math.hypot(*entity) + 5 * 15 - RADIUS_M - 5 * 20) / (30 - 15)
-    assert math.dist(gate, rim) == pytest.approx(30 * seconds, rel=0.02)
+    gap_m = math.hypot(*entity) + 5 * 15 - RADIUS_M - 5 * 20
+    seconds = (gap_m + SLOW_M / 20 * (30 - 20)) / (30 - 15)
+    assert math.dist(gate, rim) == pytest.approx(gap_m + 15 * seconds, rel=0.02)
     assert chase.Cost == pytest.approx(1000 * seconds, rel=0.02)
 
 
@@ -47,10 +50,12 @@ def test_who_chases_flies_his_greatest_speed_until_he_is_near(tmp_path: Path) ->
     assert set(speeds[begins + 1 :]) == {30}
     state = aircraft(1, 0.0)[1].copy(AssociatedTasks=[5], CurrentWaypoint=99, Mode="Waypoint")
     rig.tell(state)
-    rig.tell(state.copy(Location=place(0.03, 0.002), Time=1000))
-    far, near = [c.VehicleActionList[0] for c in rig.got("VehicleActionCommand")]
-    assert [far.Airspeed, near.Airspeed] == pytest.approx([30, 20])
-    assert [far.Radius, near.Radius] == pytest.approx([RADIUS_M] * 2, abs=0.1)
+    for k, short_m in enumerate((1.1 * SLOW_M, 0.9 * SLOW_M, 0.0), 1):
+        away = place(0.03 - (RADIUS_M + short_m) / 111_000, 0.002)
+        rig.tell(state.copy(Location=away, Time=k))
+    told = [c.VehicleActionList[0] for c in rig.got("VehicleActionCommand")]
+    assert [one.Airspeed for one in told] == pytest.approx([30, 30, 20, 20])
+    assert [one.Radius for one in told] == pytest.approx([RADIUS_M] * 4, abs=0.1)
 
 
 @pytest.mark.parametrize("why", ["", "escort", "no faster", "too near", "stands", "zone"])
