@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
-from cratous.core.authority.gate import UXAS
+from cratous.core.authority.gate import ICAROUS, gate_accepts
 from cratous.core.authority.link_loss import LOITER, OVER
 from cratous.core.authority.timeliness import in_time, lasted
 from cratous.core.geofence.distance import edge_against
@@ -71,7 +71,8 @@ class SafeStateWatch:
     def gate(self, body: Any) -> None:
         """Process a GateState: who commands a vehicle."""
         if seen := self._seen.get(body.VehicleID):
-            seen.icarous = reported(body).owner != UXAS
+            gate = reported(body)
+            seen.icarous = gate_accepts(gate, ICAROUS, gate.epoch)
 
     def state(self, body: Any) -> None:
         """Process a LinkLossState: what a vehicle flies by itself."""
@@ -93,7 +94,7 @@ class SafeStateWatch:
             if not flown and number in before:
                 flown.append(before[number])
             flown.append(after[number])
-            while flown and flown[0].time_ms < flown[-1].time_ms - STAYS_MS:
+            while not in_time(flown[0].time_ms, flown[-1].time_ms, STAYS_MS):
                 flown.popleft()
 
     def end(self, body: Any, down: Mapping[int, Down]) -> None:
@@ -169,9 +170,11 @@ def _reach_m(vehicle: Vehicle, flown: Sequence[Sample]) -> float:
         default=0.0,
     )
     fast_m_s = min(fast_m_s, vehicle.max_speed_m_s)
-    if math.tan(vehicle.max_bank_rad) <= 0:
-        return MARGIN_M  # what cannot bank flies no circle
-    return WIDER * turn_radius_m(fast_m_s, vehicle.max_bank_rad) + MARGIN_M
+    try:
+        radius_m = max(turn_radius_m(fast_m_s, vehicle.max_bank_rad), 0.0)
+    except ZeroDivisionError:  # what cannot bank flies no circle
+        radius_m = 0.0
+    return WIDER * radius_m + MARGIN_M
 
 
 def _middle(flown: Sequence[Sample]) -> Position:
