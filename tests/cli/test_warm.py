@@ -52,7 +52,7 @@ def test_what_is_warm_is_not_warmed_again(tmp_path: Path, monkeypatch: pytest.Mo
     did: list[Any] = []
     monkeypatch.setattr(warm, "private_cache", lambda: tmp_path)
     monkeypatch.setattr(warm.ahead, "begin_all", lambda: did.append("begun"))
-    monkeypatch.setattr(warm.coming, "ready", did.append)
+    monkeypatch.setattr(warm.pending_compilation, "ready", did.append)
     monkeypatch.setattr(warm.ahead, "beside", lambda *call: did.append(call))
     said: list[str] = []
     warm.ensure_planning(said.append)

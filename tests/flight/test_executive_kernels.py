@@ -148,8 +148,9 @@ def test_a_step_changes_nothing_but_its_answer(monkeypatch: pytest.MonkeyPatch) 
     result, _ = flown(mission, plan)
     assert (result.takeovers, list(result.failed)) == (1, [1])
     # ways back are asked for where UxAS plans live alone (test_ways_back_asked)
-    # and that a link is lost, or somebody lands, means something with `link_loss:` alone (below)
-    others = {"RouteAsked", "NotHeard", "HeardAgain", "Stands"}
+    # and that a link is lost, or somebody lands, means something with `link_loss:` alone (below),
+    # a declared failure with `on_failure:` (test_on_failure)
+    others = {"RouteAsked", "NotHeard", "HeardAgain", "Stands", "Fails", "WithoutLink"}
     assert seen["Executive"] == {m.__name__ for m in ToExecutive.__args__} - others
     assert seen["VehicleNode"] == {m.__name__ for m in ToVehicle.__args__} - {"LimitsAre"}
 

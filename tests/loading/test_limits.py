@@ -99,7 +99,7 @@ READ_MISSION = (
 )
 READ_LMCP = (
     "from cratous.bridge.lmcp import stored_forms\n"
-    "for found in forms.read(Path(sys.argv[1]).read_bytes()): pass"
+    "for found in stored_forms.read(Path(sys.argv[1]).read_bytes()): pass"
 )
 READ_XML = "from cratous.bridge.lmcp import xml\nxml.read_file(sys.argv[1])"
 READ_LOG = (

@@ -102,7 +102,7 @@ class Rig:
 
     def authority(self) -> Verdict:
         """What the monitor says of the authority over vehicle 1, from what was published."""
-        ours = SimpleNamespace(vehicles=[SimpleNamespace(id=1, protected=True)])
+        ours = SimpleNamespace(vehicles=[SimpleNamespace(id=1, protected=True)], daa=None)
         watch = AuthorityWatch(ours)  # type: ignore[arg-type]
         for envelope in self.sent:
             kind = type(envelope.body).__name__
