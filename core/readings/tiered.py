@@ -16,7 +16,7 @@ from typing import Any
 from cratous.core.kernel import qualified
 
 Loop = Callable[..., Any]
-SOON, LOADED, WORTH = 300, 3_000, 60_000
+SOON, LOADED, WORTH = 300, 5_000, 60_000
 """Amount of work after which the compiled loop is used: if it is cached and another one is in use already, if it is
 cached (loading the compiler takes half a second, which pays once all loops together have done so much), and if it is
 not."""
