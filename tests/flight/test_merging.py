@@ -125,7 +125,7 @@ def test_the_leader_is_lost_and_all_pass_one_after_the_other(
     assert example.stages(1) == ["Away", "Asking", "InSlot", "Away"]
 
 
-@pytest.mark.parametrize("count", [4, 6])
+@pytest.mark.parametrize("count", [4, pytest.param(6, marks=pytest.mark.long)])
 def test_many_pass_though_the_leader_is_lost_for_good(
     root: Path, tmp_path: Path, count: int
 ) -> None:
