@@ -223,8 +223,8 @@ LISTING = (
     ),
     Assumption(
         "stays bounded",
-        "on each item of a chain takeovers are no more than are allowed, and it is allowed that ICAROUS stays as long as its "
-        "longest stay on any item, as often as takeovers come on the worst one, and once more",
+        "on each item of a chain, takeovers stay within the allowed number, and the time that ICAROUS may take covers its "
+        "longest stay on any item, times one more than the most takeovers on one item",
         SERVED,
         ("G3",),
         "that no item is given up for what ICAROUS flies, so that each is served",
