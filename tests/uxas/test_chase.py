@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import pytest
@@ -73,3 +74,19 @@ def test_no_chase_is_offered_where_none_is_possible_or_of_use(tmp_path: Path, wh
     rig.tell(configuration, state, *what, zone, region, escort() if why == "escort" else task)
     rig.tell(request(5, OperatingRegion=4))
     assert len(rig.got("TaskPlanOptions")[0].Options) == (1 if why else 2)
+
+
+def test_of_several_all_chase_or_none_does(tmp_path: Path) -> None:
+    """Each way to give two vehicles their circles is offered at the usual speeds and as chases."""
+    rig = Rig(tmp_path)
+    task = lmcp.new("MultiVehicleWatchTask", TaskID=5, WatchedEntityID=ENTITY, NumberVehicles=2)
+    rig.tell(*aircraft(1, 0.0), *aircraft(2, 0.001), *moving(15.0), task)
+    rig.tell(request(5, vehicles=(1, 2)))
+    (made,) = rig.got("TaskPlanOptions")
+    usual, chases = ({o.OptionID for o in made.Options if o.OptionID % 2 == k} for k in (1, 0))
+    ways = [
+        {int(p) for p in way.split(" p")} for way in re.findall(r"\|\(p([^)]*)\)", made.Composition)
+    ]
+    assert [way <= chases for way in ways] == [True, True, False, False]
+    assert [way <= usual for way in ways] == [False, False, True, True]
+    assert all(len(way) == 2 for way in ways)
