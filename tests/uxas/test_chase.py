@@ -59,17 +59,18 @@ def test_who_chases_flies_his_greatest_speed_until_he_is_near(tmp_path: Path) ->
     assert [one.Radius for one in told] == pytest.approx([RADIUS_M] * 4, abs=0.1)
 
 
-@pytest.mark.parametrize("why", ["", "escort", "no faster", "too near", "stands", "zone", "circle"])
+@pytest.mark.parametrize(
+    "why", ["", "escort", "no faster", "too near", "stands", "zone", "way", "circle"]
+)
 def test_no_chase_is_offered_where_none_is_possible_or_of_use(tmp_path: Path, why: str) -> None:
     task = lmcp.new("BlockadeTask", TaskID=5, BlockedEntityID=ENTITY)
     configuration, state = aircraft(1, 0.028 if why == "too near" else 0.0)
-    # about where a chase would begin, 100 m ahead; or on the far side of its circle
-    at = place(0.0616, 0.002) if why == "circle" else place(0.0009, 0.0)
+    # where a chase would begin, 100 m ahead; halfway to its circle; on the far side of this
+    places = {"zone": (0.0009, 0.0), "way": (0.03, 0.001), "circle": (0.0616, 0.002)}
+    at = place(*places.get(why, (0.0, 0.0)))
     area = lmcp.new("Circle", CenterPoint=at, Radius=40.0)
     zone = lmcp.new("KeepOutZone", ZoneID=3, Boundary=area, MaxAltitude=1000.0)
-    region = lmcp.new(
-        "OperatingRegion", ID=4, KeepOutAreas=[3] if why in ("zone", "circle") else []
-    )
+    region = lmcp.new("OperatingRegion", ID=4, KeepOutAreas=[3] if why in places else [])
     if why == "no faster":
         configuration = configuration.copy(MaximumSpeed=20.5)
     what = moving({"stands": 0.0, "too near": 3.0}.get(why, 15.0))
