@@ -40,6 +40,11 @@ def is_chase(option: Option) -> bool:
     return option.label.endswith(CHASE)
 
 
+def slot_of(option: Option) -> int:
+    """The slot of an option, from 0."""
+    return int(option.label.removeprefix("slot ").removesuffix(CHASE)) - 1
+
+
 def speed_of(option: Option, vehicle: Vehicle) -> float:
     """The speed at which a vehicle flies an option to its circle [m/s]."""
     return vehicle.max_speed_m_s if is_chase(option) else option.flyer.speed_m_s
@@ -69,12 +74,11 @@ def chase(
     begin = context.inputs.starts[vehicle.id]._replace(alt_m=flyer.alt_m)
     gate = pose_after(begin, 0, LEAD_S * flyer.speed_m_s, 1.0)
     wide_m, slow_m = flyer.radius_m * (fast / flyer.speed_m_s) ** 2, slows_down_m(usual, vehicle)
-    slot = int(usual.label.removeprefix("slot ")) - 1
     zones, terrain_m = context.inputs.zones, context.inputs.mission.frame.terrain_m
     seconds = 0.0
     for _ in range(ROUNDS):
         there = motion._replace(at=motion.after(LEAD_S + seconds))
-        goal = station(asked, slot, flyer, there, terrain_m)
+        goal = station(asked, slot_of(usual), flyer, there, terrain_m)
         if in_ring(goal.at, Vec2(*gate[:2]), 0, goal.radius_m + 2 * wide_m):
             return None
         heading = math.atan2(goal.at.y - gate.east_m, goal.at.x - gate.north_m)

@@ -18,7 +18,7 @@ from cratous.core.routing.dubins import pose_after
 from cratous.core.routing.loiter_discs import broken_by
 from cratous.core.routing.visibility import name_of
 from cratous.core.tasks.stations import in_ring, outruns
-from cratous.services.following.chase import CHASE, chase
+from cratous.services.following.chase import chase, slot_of
 from cratous.services.following.motion import Motion
 from cratous.services.following.stations import (
     Station,
@@ -173,11 +173,6 @@ def _way_in(
         if leg is None:
             break
     return way, bad if bad is not None or leg is None else leg[1]
-
-
-def slot_of(option: Option) -> int:
-    """The slot of an option, from 0."""
-    return int(option.label.removeprefix("slot ").removesuffix(CHASE)) - 1
 
 
 def offered(context: Context, task_id: int, options: Sequence[Option], needed: int) -> Any:

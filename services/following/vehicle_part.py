@@ -11,10 +11,9 @@ from cratous.core.kernel import Vec2
 from cratous.core.routing.loiter_discs import broken_by
 from cratous.core.routing.visibility import name_of
 from cratous.core.tasks.stations import in_ring
-from cratous.services.following.chase import is_chase, slows_down_m, speed_of
+from cratous.services.following.chase import is_chase, slot_of, slows_down_m, speed_of
 from cratous.services.following.motion import Motion
 from cratous.services.following.stations import Station, at_station, camera_of, station
-from cratous.services.following.task_options import slot_of
 from cratous.services.following.task_parameters import Asked
 from cratous.services.loading.coordinates import Places
 from cratous.services.pipeline.contexts import Context

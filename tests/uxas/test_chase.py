@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import pytest
@@ -58,14 +59,18 @@ def test_who_chases_flies_his_greatest_speed_until_he_is_near(tmp_path: Path) ->
     assert [one.Radius for one in told] == pytest.approx([RADIUS_M] * 4, abs=0.1)
 
 
-@pytest.mark.parametrize("why", ["", "escort", "no faster", "too near", "stands", "zone"])
+@pytest.mark.parametrize(
+    "why", ["", "escort", "no faster", "too near", "stands", "zone", "way", "circle"]
+)
 def test_no_chase_is_offered_where_none_is_possible_or_of_use(tmp_path: Path, why: str) -> None:
     task = lmcp.new("BlockadeTask", TaskID=5, BlockedEntityID=ENTITY)
     configuration, state = aircraft(1, 0.028 if why == "too near" else 0.0)
-    # about where a chase would begin, 100 m ahead
-    area = lmcp.new("Circle", CenterPoint=place(0.0009, 0.0), Radius=40.0)
+    # where a chase would begin, 100 m ahead; halfway to its circle; on the far side of this
+    places = {"zone": (0.0009, 0.0), "way": (0.03, 0.001), "circle": (0.0616, 0.002)}
+    at = place(*places.get(why, (0.0, 0.0)))
+    area = lmcp.new("Circle", CenterPoint=at, Radius=40.0)
     zone = lmcp.new("KeepOutZone", ZoneID=3, Boundary=area, MaxAltitude=1000.0)
-    region = lmcp.new("OperatingRegion", ID=4, KeepOutAreas=[3] if why == "zone" else [])
+    region = lmcp.new("OperatingRegion", ID=4, KeepOutAreas=[3] if why in places else [])
     if why == "no faster":
         configuration = configuration.copy(MaximumSpeed=20.5)
     what = moving({"stands": 0.0, "too near": 3.0}.get(why, 15.0))
@@ -73,3 +78,19 @@ def test_no_chase_is_offered_where_none_is_possible_or_of_use(tmp_path: Path, wh
     rig.tell(configuration, state, *what, zone, region, escort() if why == "escort" else task)
     rig.tell(request(5, OperatingRegion=4))
     assert len(rig.got("TaskPlanOptions")[0].Options) == (1 if why else 2)
+
+
+def test_of_several_all_chase_or_none_does(tmp_path: Path) -> None:
+    """Each way to give two vehicles their circles is offered at the usual speeds and as chases."""
+    rig = Rig(tmp_path)
+    task = lmcp.new("MultiVehicleWatchTask", TaskID=5, WatchedEntityID=ENTITY, NumberVehicles=2)
+    rig.tell(*aircraft(1, 0.0), *aircraft(2, 0.001), *moving(15.0), task)
+    rig.tell(request(5, vehicles=(1, 2)))
+    (made,) = rig.got("TaskPlanOptions")
+    usual, chases = ({o.OptionID for o in made.Options if o.OptionID % 2 == k} for k in (1, 0))
+    ways = [
+        {int(p) for p in way.split(" p")} for way in re.findall(r"\|\(p([^)]*)\)", made.Composition)
+    ]
+    assert [way <= chases for way in ways] == [True, True, False, False]
+    assert [way <= usual for way in ways] == [False, False, True, True]
+    assert all(len(way) == 2 for way in ways)
