@@ -84,13 +84,17 @@ def triangle(name: str, body: dict[str, Any], end_ms: int) -> dict[str, Any]:
     start_ms = end_ms - 130_000
     if name != "TruthState" or body["VehicleID"] != 1 or body["Time"] < start_ms:
         return body
-    speed_m_s, side_m = math.hypot(body["VelocityNorth"], body["VelocityEast"]), 190.0
-    turns, along_m = divmod((body["Time"] - start_ms) / 1000 * speed_m_s, side_m)
+    speed_m_s, side_m = 22.0, 187.0
+    turns, along_m = divmod((body["Time"] - start_ms) * speed_m_s / 1000 + 1e-6, side_m)
     rad = [k * math.tau / 3 for k in range(int(turns) % 3 + 1)]
     far_m = [side_m] * (len(rad) - 1) + [along_m]
     north = sum(m * math.cos(r) for m, r in zip(far_m, rad, strict=True))
     east = sum(m * math.sin(r) for m, r in zip(far_m, rad, strict=True))
-    return {**body, "North": north, "East": east}
+    going = {
+        "VelocityNorth": speed_m_s * math.cos(rad[-1]),
+        "VelocityEast": speed_m_s * math.sin(rad[-1]),
+    }
+    return {**body, "North": north, "East": east, **going}
 
 
 def said_late(name: str, body: dict[str, Any], end_ms: int) -> dict[str, Any]:
