@@ -73,7 +73,8 @@ class State:
     leaves out, with the reason; in_part: tasks of which only a planned part was flown; commands, replans,
     finished: counts; hurry: whether some deadline is tight; asked: the pending plan request; landed: vehicles
     at rest on the ground, or given up after a declared failure, each with when and where in words; stopping: vehicles
-    whose mission is stopped, the last of them at stopped_ms; declared: those that have declared a failure, and after when each has flown what follows [ms];
+    whose mission is stopped, the last of them at stopped_ms; declared: those that have declared a failure, with the
+    time after which each has flown what follows [ms];
     circling: since when vehicles fly a permitted circle because UxAS is not heard; under_icarous: since when vehicles
     report that ICAROUS has them.
     """

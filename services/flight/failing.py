@@ -22,9 +22,9 @@ from cratous.spec.mission.on_failure import Failed
 from cratous.spec.records import replace
 
 NOT_YET_MS = 2**53
-"""A vehicle that still flies what follows its failure is not done by any time of a flight [ms]."""
+"""Stands for the time [ms] at which a vehicle has flown what follows its failure, while it still flies it."""
 UNANSWERED_MS = 60_000
-"""How long a vehicle whose mission is stopped is waited for that does not answer [ms]."""
+"""How long the end of the flight waits for a stopped vehicle that has not declared its failure [ms]."""
 
 
 def asks(state: State, failure: Failed) -> bool:
@@ -34,7 +34,7 @@ def asks(state: State, failure: Failed) -> bool:
 
 
 def stop(state: State, vehicle_ids: Iterable[int]) -> State:
-    """Stop the missions of vehicles with an instance."""
+    """Stop the missions of these vehicles, but of those that are stopped already or fly no more."""
     gone = {*state.stopping, *dict(state.landed)}
     new = tuple(v for v in vehicle_ids if v not in gone)
     if not new:

@@ -54,8 +54,9 @@ class Beat(NamedTuple):
 
 class Failing(NamedTuple):
     """failure: as the kernel has it; without: no certificate was found for the last manoeuvre, since since_ms [ms];
-    surprises: of the hand, at the last certificate; had: there has been one since ICAROUS took the vehicle; last: the intruder for which it took over last, 0 for none;
-    intruder_id, why: what the last certificate was refused for.
+    surprises: the hand's count of surprises at the last certificate; had: one was found since ICAROUS took the
+    vehicle; last: the intruder that it took over for last, 0 for none; intruder_id, why: what was in the way of the
+    last certificate that was refused.
     """
 
     failure: Failure = Failure(NONE, 0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -70,6 +71,43 @@ def not_said(name: str, body: dict[str, Any], end_ms: int) -> dict[str, Any] | N
     return None if name == "LinkLossState" else body
 
 
+def straight_and_said_fast(name: str, body: dict[str, Any], end_ms: int) -> dict[str, Any]:
+    """A greater speed than it can fly allows no wider circle."""
+    body = straight(name, body, end_ms)
+    if name == "TruthState" and body["Time"] > end_ms - 20_000:
+        return {**body, "VelocityEast": 2000.0}
+    return body
+
+
+def triangle(name: str, body: dict[str, Any], end_ms: int) -> dict[str, Any]:
+    """No two places are farther apart than the diameter, and not all are within the radius of the middle."""
+    start_ms = end_ms - 130_000
+    if name != "TruthState" or body["VehicleID"] != 1 or body["Time"] < start_ms:
+        return body
+    speed_m_s, side_m = 22.0, 187.0
+    turns, along_m = divmod((body["Time"] - start_ms) * speed_m_s / 1000 + 1e-6, side_m)
+    rad = [k * math.tau / 3 for k in range(int(turns) % 3 + 1)]
+    far_m = [side_m] * (len(rad) - 1) + [along_m]
+    north = sum(m * math.cos(r) for m, r in zip(far_m, rad, strict=True))
+    east = sum(m * math.sin(r) for m, r in zip(far_m, rad, strict=True))
+    going = {
+        "VelocityNorth": speed_m_s * math.cos(rad[-1]),
+        "VelocityEast": speed_m_s * math.sin(rad[-1]),
+    }
+    return {**body, "North": north, "East": east, **going}
+
+
+def said_late(name: str, body: dict[str, Any], end_ms: int) -> dict[str, Any]:
+    return {**body, "Time": end_ms - 60_000} if name == "LinkLossState" else body
+
+
+def said_to_end(name: str, body: dict[str, Any], end_ms: int) -> dict[str, Any]:
+    """It is said to circle first, and to fly on after that."""
+    if name != "LinkLossState":
+        return body
+    return {**body, "Mode": "Finish" if body["Mode"].name in ("Over", "Loiter") else "Loiter"}
+
+
 def not_seen(name: str, body: dict[str, Any], end_ms: int) -> dict[str, Any] | None:
     gap = name == "TruthState" and end_ms - 60_000 < body["Time"] < end_ms - 50_000
     return None if gap else body
@@ -100,7 +138,11 @@ def test_the_circles_are_seen_in_the_positions(circles: Flown, tmp_path: Path) -
     ("change", "expected"),
     [
         (straight, "violated"),
+        (straight_and_said_fast, "violated"),
+        (triangle, "unknown"),
         (not_said, "violated"),
+        (said_late, "violated"),
+        (said_to_end, "violated"),
         (nobody, "violated"),
         (not_seen, "unknown"),
         (not_seen_at_all, "unknown"),
@@ -114,6 +156,16 @@ def test_monitor_and_judge_agree_on_what_is_no_circle(
     found = circles.verdicts(log).get(ROW)
     assert (None if found is None else found.outcome.value) == expected
     assert circles.judged(tmp_path, log).get(ROW) == expected
+
+
+def test_a_failure_that_the_mission_does_not_ask_about_removes_no_row(
+    circles: Flown, tmp_path: Path
+) -> None:
+    body = lmcp.new("FailureState", VehicleID=1, Time=circles.result.end_ms, Failure="Ended")
+    forged = SimpleNamespace(topic="cratous.FailureState", time_ms=body.Time, body=body)
+    log = [*circles.log[:-1], forged, circles.log[-1]]
+    assert circles.verdicts(log)[ROW].outcome.value == "holds"
+    assert circles.judged(tmp_path, log)[ROW] == "holds"
 
 
 @pytest.mark.parametrize(("since_s", "expected"), [(0, "violated"), (1, "holds")])
