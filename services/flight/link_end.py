@@ -254,7 +254,8 @@ class UxasEnd:
             if not zones:  # the route is kept
                 anew = [ForgetFences()]
             out += down_to(peer, fences if more else anew)
-            outdated = peer.outdated or not (more or peer.open)
+            # also with an open connection: a break may not have been noticed yet
+            outdated = peer.outdated or not more
             state = state.with_peer(replace(peer, again=(), outdated=outdated))
         return replace(state, zones=zones), tuple(out)
 

@@ -29,7 +29,7 @@ class Peer:
     waypoints reported as reached; down: heartbeats sent; heard_ms: when it was last heard; gate: as last
     reported by the vehicle; way: lines of the last route; again: how often lines of the plan or of a zone
     were sent again, as ((tag, zone), times); flies: its route under UxAS, steered: its velocity under
-    ICAROUS, as told to the other instances; outdated: a zone was removed while its connection was closed.
+    ICAROUS, as told to the other instances; outdated: a zone was removed since it last connected.
     """
 
     vehicle_id: int

@@ -4,9 +4,9 @@ Once a second, while a loss of well clear is predicted or ICAROUS flies, the pro
 (`core.daa.session`) evaluates the present motion and all traffic in straight flight. Two levels: corrective
 (MID) is the mission's buffered volume within the look-ahead; warning (NEAR) is the unbuffered volume within
 the time at which even the vehicle with the right of way acts. M of N, hysteresis, persistence and recovery
-follow the mission's `daa.guidance`, by default DO-365B. An intruder known only within bounds is evaluated with
-the SUM volume, with the bounds as deviations. Directions and speeds are over ground. Zones and announced routes
-are not considered here: `core.avoidance` and the permit decide what is flown.
+follow the mission's `daa.guidance`, by default the preset `do_365b` with `recovery_crit`. An intruder known only
+within bounds is evaluated with the SUM volume, with the bounds as deviations. Directions and speeds are over
+ground. Zones and announced routes are not considered here: `core.avoidance` and the permit decide what is flown.
 """
 
 from __future__ import annotations

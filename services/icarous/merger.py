@@ -134,8 +134,6 @@ def beat(
             standing = seat_stands(merger.seat, talks.me)
             role = STANDS if standing.stands else FOLLOWS
             merger = merger._replace(seat=standing.seat, role=role, led_ms=now_ms, proposed=())
-            if role == STANDS and _elected(talks, merger):  # the only member
-                merger = merger._replace(role=LEADS)
     if merger.role == LEADS:
         merger = merger._replace(proposed=_proposals(talks, merger, now_ms), led_ms=now_ms)
         merger = _granted(talks, merger, merger.proposed)

@@ -13,6 +13,7 @@ from icarous_tools import ABILITY, NORTH, VOLUME
 
 from cratous.core.authority.gate import UXAS, Gate
 from cratous.core.avoidance.prediction import Intruder
+from cratous.services.daa import named_or_file
 from cratous.services.icarous.bands import Whose, parameters_of, watched
 from cratous.services.icarous.messages import Sensed
 from cratous.services.loading import load
@@ -26,6 +27,11 @@ from cratous.spec.errors import BadInput
 from cratous.spec.mission import Daa, GuidedWellClear, Mission, Position, Velocity
 from cratous.spec.mission.guidance import Guidance
 
+OF_GUIDANCE = (
+    "alerting_m", "alerting_n", "hysteresis_time_s", "persistence_time_s", "bands_persistence",
+    "persistence_preferred_hdir_rad", "persistence_preferred_hs_m_s", "persistence_preferred_vs_m_s",
+    "persistence_preferred_alt_m", "ca_bands", "ca_factor", "recovery_stability_time_s", "conflict_crit",
+)  # fmt: skip
 CROSSING = Intruder(9, Position(1100.0, 850.0, 300.0), Velocity(0.0, -20.0, 0.0))
 
 
@@ -47,10 +53,14 @@ def levels(guidance: Guidance, looks: int) -> list[int]:
     return shown[4:]
 
 
-def test_what_a_mission_does_not_say_is_as_it_was() -> None:
-    assert parameters_of(whose(None), ABILITY, False) == parameters_of(
-        whose(Guidance()), ABILITY, False
-    )
+def test_what_a_mission_does_not_say_is_that_of_do_365b_with_recovery_coordinated() -> None:
+    usual = parameters_of(whose(None), ABILITY, False)
+    preset = named_or_file("do_365b").parameters
+    for name in OF_GUIDANCE:
+        assert getattr(usual, name) == pytest.approx(getattr(preset, name)), name
+    assert usual.recovery_crit
+    assert not preset.recovery_crit
+    assert usual == parameters_of(whose(Guidance()), ABILITY, False)
 
 
 def test_each_item_reaches_the_engine() -> None:

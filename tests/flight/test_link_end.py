@@ -382,6 +382,9 @@ def test_a_zone_that_was_removed_while_an_instance_was_away_is_forgotten_as_it_c
         told = inbox.hear(told, line, END.projection, 0)
     assert [zone.vertices[1] for zone in told.zones] == [pytest.approx((0.0, 90.0), abs=1e-3)]
     assert len(told.zones) == 1
+    # removed before the break was noticed: its message may not have arrived
+    unnoticed = after(zones, there[0], left, cut, there[1])[1]
+    assert tp.ForgetFences() in _lines(unnoticed[-len(out) :])
     again = _lines(after(cut, there[1], state=state)[1])
     usual = _lines(after(zones, there[0], cut, there[1])[1])
     assert tp.ForgetFences() not in (*again, *usual)
