@@ -1,4 +1,4 @@
-"""Persistence and hysteresis of alerts and bands in flight. Defaults: RTCA DO-365B."""
+"""Persistence and hysteresis of alerts and bands in flight. Defaults: the preset `do_365b`, with `recovery_crit`."""
 
 from __future__ import annotations
 
