@@ -99,11 +99,14 @@ class Wire:
 
     def there(self, end: socket.socket) -> bytes:
         """What lies at an end; b"" also for one that has ended."""
+        timeout_s = end.gettimeout()
         end.setblocking(False)
         try:
             return end.recv(1 << 20)
         except (BlockingIOError, ConnectionError):
             return b""
+        finally:
+            end.settimeout(timeout_s)
 
 
 @contextmanager

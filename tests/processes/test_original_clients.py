@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -96,7 +97,10 @@ def test_a_process_has_the_keys_that_it_is_given_and_no_others(
         found = {}
         for number, given in ((2, keys.of(2)), (0, Keys({}))):
             pid = children.start(f"one_{number}", "version", private=given.environment())
-            text = Path(f"/proc/{pid}/environ").read_text()
+            # Empty until the kernel has set up the new program.
+            limit_s = time.monotonic() + 10
+            while not (text := Path(f"/proc/{pid}/environ").read_text()):
+                assert time.monotonic() < limit_s
             fields = (field.partition("=") for field in text.split("\0"))
             found[number] = {name: value for name, _, value in fields if "BRIDGE_KEY" in name}
             assert keys.by_vehicle[2].hex() not in Path(f"/proc/{pid}/cmdline").read_text()
