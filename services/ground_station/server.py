@@ -26,6 +26,7 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
+from starlette.types import Scope
 
 from cratous.services.ground_station.access import Access
 from cratous.services.ground_station.background import Beneath
@@ -108,8 +109,7 @@ class GroundStation(WebServer):
                 Route(path, _order(obey, commands.longest), methods=["POST"])
                 for path, obey in commands.orders.items()
             ),
-            *(Route(f"/{page}", _absent) for page in (PAGE, PAGE_OF_TWO, PAGE_OF_EDITOR)),
-            Mount("/", StaticFiles(packages=[(str(__package__), "page")])),
+            Mount("/", _Parts(packages=[(str(__package__), "page")])),
         ]
         app = Starlette(
             routes=routes,
@@ -148,8 +148,13 @@ def _page(name: str) -> Endpoint:
     return answer
 
 
-async def _absent(_: Request) -> Response:
-    raise HTTPException(404)  # only the page at `/` is served
+class _Parts(StaticFiles):
+    """The files that pages load; the pages themselves are not among them, only the one at `/` is served."""
+
+    def get_path(self, scope: Scope) -> str:
+        if (path := super().get_path(scope)) in (PAGE, PAGE_OF_TWO, PAGE_OF_EDITOR):
+            raise HTTPException(404)
+        return path
 
 
 def _sender(request: Request) -> tuple[str, str]:

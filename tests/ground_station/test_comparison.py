@@ -252,7 +252,7 @@ def test_the_server_gives_the_page_of_two_and_both_recordings(
     with serving(crossing, crossing_alone) as (_, port):
         assert b'id="differences"' in ask(port, "/").body
         found = ask(port, "/recording.json").data()
-        for path in ("/index.html", "/compare.html", "/live.json"):
+        for path in ("/index.html", "/./index.html", "/compare.html", "/live.json"):
             assert ask(port, path).status == 404
     assert found == json.loads(json.dumps(comparison(crossing, crossing_alone)))
 
