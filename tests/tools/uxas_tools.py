@@ -14,16 +14,12 @@ from typing import Any
 from cratous.bridge import envelope as wire
 from cratous.bridge import lmcp, sentinel
 from cratous.services.loading.uxas_settings import read
+from cratous.services.processes.children import free_port as free_port
 from cratous.services.uxas.logs import Logs
 from cratous.services.uxas.process import Process
 
 HEAD = '<UxAS FormatVersion="1.0" EntityID="{}" EntityType="Aircraft" {}>\n'
 LIMIT_S = 120.0
-
-
-def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as probe:
-        return int(probe.getsockname()[1])
 
 
 def write_cfg(folder: Path, body: str, root: str = "", entity: int = 100) -> Path:
