@@ -222,6 +222,19 @@ def test_a_frame_longer_than_the_room_still_goes_to_one_who_reads() -> None:
     server.port.close()
 
 
+def test_what_is_sent_together_is_read_together(server: Server) -> None:
+    client = server.connect()
+    whole = frame(b"one") + frame(b"two") + frame(b"three")
+    server.port.send_together([b"one", b"two", b"three"])
+    assert client.recv(100_000) == whole, "in one piece"
+    assert server.port.counts.sent == 3
+    server.port.send_together([b"one", bytes(SMALL.payload_bytes + 1)])
+    assert server.port.counts.lost["message longer than the limit"] == 1
+    server.port.send((b"last",))
+    assert client.recv(100_000) == frame(b"last"), "all or none"
+    client.close()
+
+
 def test_a_client_waits_for_its_server_and_comes_again() -> None:
     reports = Reports()
     place = "127.0.0.1", free_port()
