@@ -58,7 +58,7 @@ class Client:
         while True:
             assert of is None or of.poll() is None, f"it has ended with {of.returncode}"
             try:
-                self.sock = socket.create_connection(("127.0.0.1", port), timeout=5)
+                self.sock = socket.create_connection(("127.0.0.1", port), timeout=60)
                 break
             except OSError:
                 assert time.monotonic() < end, "nobody listens"
@@ -113,7 +113,7 @@ def ended(running: subprocess.Popen[Any]) -> Any:
         if running.poll() is None:
             running.terminate()
         try:
-            running.wait(20)
+            running.wait(60)
         except subprocess.TimeoutExpired:
             running.kill()
             running.wait(5)
