@@ -20,6 +20,7 @@ from typing import Any
 import pytest
 import zmq
 from requirement_tools import all_closed, written
+from uxas_tools import free_port
 
 from cratous.bridge import envelope, lmcp, sentinel
 from cratous.services.cli import main
@@ -300,8 +301,7 @@ def test_nobody_there_is_said(requirements, monkeypatch, capsys):
     from cratous.services.cli import monitor_attach
 
     monkeypatch.setattr(monitor_attach, "WAIT_S", 0.3)
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        port = taken.getsockname()[1]
+    port = free_port()
     assert _attach(port, requirements, seconds=20) == 2
     assert "no program listens there" in capsys.readouterr().err
 
@@ -393,8 +393,7 @@ def test_no_publisher_is_said(requirements, monkeypatch, capsys):
     from cratous.services.cli import monitor_attach
 
     monkeypatch.setattr(monitor_attach, "WAIT_S", 0.3)
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        port = taken.getsockname()[1]
+    port = free_port()
     words = ["monitor", "--attach", f"zmq://127.0.0.1:{port}", "--seconds", "20"]
     assert main([*words, "--requirements", str(requirements)]) == 2
     assert "no program listens there" in capsys.readouterr().err
