@@ -153,7 +153,7 @@ def test_an_opening_without_an_end_is_given_up() -> None:
 def test_another_dialect_is_refused(opened: list[Any]) -> None:
     one = TextPort(at(), server=True, secret=KEYS)
     opened.append(one)
-    with socket.create_connection(one.bound, timeout=10) as sock:
+    with socket.create_connection(one.bound, timeout=60) as sock:
         sock.sendall(DEFAULT_SECRET.encode() + b"\n")
         assert "handshake failed: another dialect than v2" in ends(wait(one, ends))
     plain = TextPort(at(), server=True)
@@ -187,7 +187,8 @@ def test_a_replayed_packet_is_refused_counted_and_told(opened: list[Any]) -> Non
     said = list[str]()
     one = TextPort(at(), server=True, secret=KEYS, report=lambda _s, text: said.append(text))
     opened.append(one)
-    with socket.create_connection(one.bound, timeout=0.05) as sock:
+    with socket.create_connection(one.bound, timeout=60) as sock:
+        sock.settimeout(0.05)
         client = SealedClient(keys=key(1).by_vehicle)
         until_s = time.monotonic() + 60
         while not client.done:

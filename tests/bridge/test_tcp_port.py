@@ -37,7 +37,7 @@ class Server:
         self.got: list[bytes] = []
 
     def connect(self) -> socket.socket:
-        sock = socket.create_connection(self.port.bound, timeout=10)
+        sock = socket.create_connection(self.port.bound, timeout=60)
         peers = self.port.peers
         self.until(lambda: self.port.peers > peers)
         return sock
@@ -143,7 +143,7 @@ def test_a_thousand_idle_connections_affect_nobody(server: Server) -> None:
     _raise_file_limit()
     idle = []
     for _ in range(1000):
-        idle.append(socket.create_connection(server.port.bound, timeout=10))
+        idle.append(socket.create_connection(server.port.bound, timeout=60))
         server.step()
     client = server.connect()
     server.until(lambda: server.port.peers == 1001)
@@ -159,7 +159,7 @@ def test_a_thousand_idle_connections_affect_nobody(server: Server) -> None:
 def test_one_connection_too_many_is_refused_with_a_reason() -> None:
     server = Server(Limits(connections=2))
     first, second = server.connect(), server.connect()
-    third = socket.create_connection(server.port.bound, timeout=10)
+    third = socket.create_connection(server.port.bound, timeout=60)
     server.until(lambda: server.port.counts.refused[FULL] == 1)
     assert third.recv(1) == b""
     first.sendall(frame(b"still here"))

@@ -53,7 +53,7 @@ def until(port: TextPort, clock: Clock, done: Any) -> list[Came]:
 
 def raw(port: TextPort, opened: list[Any], *pieces: bytes) -> socket.socket:
     """A peer that sends these bytes."""
-    sock = socket.create_connection(port.bound, timeout=10)
+    sock = socket.create_connection(port.bound, timeout=60)
     opened.append(sock)
     for piece in pieces:
         sock.sendall(piece)
@@ -116,7 +116,7 @@ def test_a_connection_is_made_again_after_pauses_and_an_end_is_said_once(opened:
         port, now_s, said = TextPort(where, server=False), 0.0, list[str]()
         opened.append(port)
         redial, attempts = Redial(port, (where,)), list[float]()
-        until_s = time.monotonic() + 20
+        until_s = time.monotonic() + 60
         while len(attempts) < 5:
             assert time.monotonic() < until_s
             redial.step(now_s)
@@ -243,7 +243,7 @@ def test_more_peers_than_it_takes_are_closed_and_a_taken_port_is_refused(opened:
     while not one.counts.refused["too many connections"]:
         assert time.monotonic() < end
         one.step(clock.now_s)
-    peers[2].settimeout(10)
+    peers[2].settimeout(60)
     with contextlib.suppress(ConnectionResetError):  # as it had sent what nobody has read
         assert peers[2].recv(100) == b""
     with pytest.raises(BadInput, match="cannot listen"):
@@ -284,7 +284,7 @@ def test_a_peer_of_another_dialect_is_refused_with_the_reason_on_both_ends(
     opened += [one, other]
     other.dial(clock.now_s)
     came: dict[bool, list[Came]] = {True: [], False: []}
-    end, asked = time.monotonic() + 30.0, False
+    end, asked = time.monotonic() + 60.0, False
     while not all(found and isinstance(found[-1].what, LinkEvent) for found in came.values()):
         assert time.monotonic() < end, came
         came[True] += one.step(clock.now_s)
@@ -313,7 +313,7 @@ def test_one_that_uxas_refuses_is_told_why_on_a_sealed_connection_too(
     opened += [one, other]
     key = other.dial(clock.now_s)
     came: dict[bool, list[Came]] = {True: [], False: []}
-    end, refused = time.monotonic() + 30.0, False
+    end, refused = time.monotonic() + 60.0, False
     while not all(found and isinstance(found[-1].what, LinkEvent) for found in came.values()):
         assert time.monotonic() < end, came
         came[True] += one.step(clock.now_s)

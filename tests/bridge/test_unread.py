@@ -24,7 +24,7 @@ STATE = tp.OwnPosition(1.0, 37.1, -76.4, 300.0, 300.0, 22.0, 0.0, 0.0, vehicle_i
 
 def meet(port: TextPort, opened: list[Any]) -> tuple[socket.socket, int]:
     """A client of the original's, and the key of its connection."""
-    sock = socket.create_connection(port.bound, timeout=10)
+    sock = socket.create_connection(port.bound, timeout=60)
     opened.append(sock)
     sock.sendall(DEFAULT_SECRET.encode())
     end = time.monotonic() + 60

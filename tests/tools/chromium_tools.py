@@ -127,7 +127,7 @@ def browsing(profile: Path) -> Iterator[Page]:
             running.wait(60)
         except subprocess.TimeoutExpired:
             running.kill()
-            running.wait(5)
+            running.wait(60)
         os.close(read)
 
 

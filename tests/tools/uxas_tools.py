@@ -116,7 +116,7 @@ def ended(running: subprocess.Popen[Any]) -> Any:
             running.wait(60)
         except subprocess.TimeoutExpired:
             running.kill()
-            running.wait(5)
+            running.wait(60)
 
 
 @contextlib.contextmanager
