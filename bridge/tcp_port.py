@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import select
 import socket
+from collections.abc import Sequence
 from typing import Any
 
 import zmq
@@ -135,17 +136,25 @@ class TcpPort:
 
     def send(self, parts: tuple[bytes, ...], but: str = "") -> None:
         """Queue the payload for every peer except the one named `but`; without any peer, a client counts it as lost."""
-        payload = b"".join(parts)
-        if len(payload) > self._limits.payload_bytes:
-            self._tally.lose("message longer than the limit", f"{len(payload)} bytes")
-            return
+        self._send([b"".join(parts)], but)
+
+    def send_together(self, payloads: Sequence[bytes]) -> None:
+        """Queue several payloads for every peer as one piece of data, so that they are read together as far as the
+        peer's buffer goes."""
+        self._send(payloads)
+
+    def _send(self, payloads: Sequence[bytes], but: str = "") -> None:
+        for payload in payloads:
+            if len(payload) > self._limits.payload_bytes:
+                self._tally.lose("message longer than the limit", f"{len(payload)} bytes")
+                return
         peers = [p for p in self._peers.values() if not p.connecting and p.name != but]
         if not peers:
             if not self._server:
                 self._tally.lose(NOBODY)
             return
-        frame = sentinel.frame(payload)
-        self.counts.sent += 1
+        frame = b"".join(map(sentinel.frame, payloads))
+        self.counts.sent += len(payloads)
         for peer in peers:
             self._queue(peer, frame)
 

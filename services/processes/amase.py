@@ -234,10 +234,13 @@ class Amase:
 
     def _placing(self) -> None:
         self._phase, self._instant = Phase.PLACING, {}
+        made = list[Any]()
         for number, (configuration, _) in sorted(self._told.items()):
-            self._send([configuration, self._last[number].copy(Time=0)])
+            made += [configuration, self._last[number].copy(Time=0)]
         for number, standing in sorted(self._standing.items()):
-            self._send(standing.again(self._last.get(number)))
+            made += standing.again(self._last.get(number))
+        # together: one that is inserted an instant after another would be behind it
+        self._port.send_together([_framed(body) for body in made])
 
     # what AMASE tells -----------------------------------------------------------------------------
 

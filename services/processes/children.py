@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import random
 import signal
 import socket
 import subprocess
@@ -10,6 +11,7 @@ import sys
 import time
 from collections import deque
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from types import MappingProxyType, TracebackType
 
@@ -23,6 +25,8 @@ from cratous.spec.errors import CratousError
 GRACE_S = 5.0
 """Time between SIGTERM and SIGKILL [s]."""
 LAST_LINES = 8
+LOWEST, MOST_TRIED = 10_000, 100
+"""Of free ports: the lowest one, and how many are tried at most."""
 
 
 class ProcessEnded(CratousError):
@@ -45,9 +49,23 @@ class ProcessEnded(CratousError):
 
 
 def free_port() -> int:
-    """A loopback port on which no process is listening."""
+    """A loopback port on which no process is listening, outside of the range from which the system chooses ports
+    (where Linux tells it): no other program's connection takes it before a process listens there.
+    """
+    for _ in range(MOST_TRIED):
+        with suppress(OSError), socket.create_server(("127.0.0.1", _unassigned())) as probe:
+            return int(probe.getsockname()[1])
     with socket.create_server(("127.0.0.1", 0)) as probe:
         return int(probe.getsockname()[1])
+
+
+def _unassigned() -> int:
+    """A port below the range from which the system chooses; 0, its own choice, where there is no such range."""
+    try:
+        first = int(Path("/proc/sys/net/ipv4/ip_local_port_range").read_text().split()[0])
+    except (OSError, ValueError, IndexError):
+        return 0
+    return random.SystemRandom().randrange(LOWEST, first) if first > LOWEST else 0
 
 
 class Children:

@@ -3,7 +3,6 @@ older than the window, oversize, or recorded before one of the two was started."
 
 from __future__ import annotations
 
-import os
 import socket
 import time
 from collections.abc import Iterator
@@ -14,6 +13,7 @@ import pytest
 from bridge_tools import one_byte_changed
 from hypothesis import given
 from hypothesis import strategies as st
+from uxas_tools import free_port
 
 from cratous.bridge.multicast_port import MOST_READ, MulticastPort
 from cratous.bridge.port import address
@@ -144,7 +144,7 @@ def test_all_that_are_heard_fit_a_datagram() -> None:
 
 @pytest.fixture
 def ports() -> Iterator[tuple[MulticastPort, MulticastPort]]:
-    where = address(f"udp://239.255.77.1:{20000 + os.getpid() % 20000}", ("udp",))
+    where = address(f"udp://239.255.77.1:{free_port()}", ("udp",))
     pair = MulticastPort(where), MulticastPort(where)
     yield pair
     for port in pair:
@@ -152,7 +152,7 @@ def ports() -> Iterator[tuple[MulticastPort, MulticastPort]]:
 
 
 def got(port: MulticastPort, count: int) -> list[bytes]:
-    found, until_s = list[bytes](), time.monotonic() + 10
+    found, until_s = list[bytes](), time.monotonic() + 60
     while len(found) < count:
         assert time.monotonic() < until_s
         found += port.step()

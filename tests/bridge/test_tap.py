@@ -15,6 +15,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
+from uxas_tools import free_port
 
 from cratous.bridge.port import Address
 from cratous.bridge.relay import BARRED, CLOSED, FAR, LOST, NEAR, OPENED
@@ -48,7 +49,7 @@ def taps() -> Iterator[Callable[[Address, Address], Tap]]:
 
 def taken(tap: Tap, until: Callable[[list[Copied]], bool]) -> list[Copied]:
     found: list[Copied] = []
-    deadline = time.monotonic() + 30
+    deadline = time.monotonic() + 120
     while not until(found):
         assert time.monotonic() < deadline, [one._replace(data=b"") for one in found[-5:]]
         found += tap.step()
@@ -90,13 +91,13 @@ def test_both_ways_go_through_byte_for_byte_while_nobody_looks(taps) -> None:
                     start += count
                 one.shutdown(socket.SHUT_WR)
             for thread in threads:
-                thread.join(60)
+                thread.join(300)
     assert [bytes(one) for one in got] == sent
-    found = taken(tap, lambda f: any(one.kind == LOST for one in f))
+    found = taken(tap, lambda f: {one.kind for one in f} >= {LOST, CLOSED})
     lost = sum(one.lost for one in found)
     assert len(of(found, NEAR)) + len(of(found, FAR)) + lost == sum(map(len, sent))
     assert lost > 0
-    assert {one.kind for one in found} >= {OPENED, CLOSED}
+    assert OPENED in {one.kind for one in found}
 
 
 def test_what_is_copied_is_what_went_through(taps) -> None:
@@ -111,7 +112,7 @@ def test_what_is_copied_is_what_went_through(taps) -> None:
             assert far.recv(100) == b"two\n"
             far.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
             far.close()  # broken, not ended
-            client.settimeout(10)
+            client.settimeout(60)
             with pytest.raises(ConnectionResetError):
                 client.recv(100)
         found = taken(tap, lambda f: any(one.kind == CLOSED for one in f))
@@ -134,7 +135,7 @@ def test_lines_are_not_cut_and_a_client_that_stops_is_given_no_more_than_it_can_
             writer.start()
             time.sleep(0.5)
             total = 0
-            client.settimeout(10)
+            client.settimeout(60)
             while total < len(line) * 20_000:
                 data = client.recv(1 << 20)
                 total += len(data)
@@ -152,7 +153,7 @@ def test_clients_meet_the_program_in_the_order_in_which_they_came(taps) -> None:
             one.sendall(b"%02d" % number)
         for number in range(20):
             far, _ = server.accept()
-            far.settimeout(10)
+            far.settimeout(60)
             assert far.recv(2) == b"%02d" % number
             far.close()
         for one in clients:
@@ -160,17 +161,16 @@ def test_clients_meet_the_program_in_the_order_in_which_they_came(taps) -> None:
 
 
 def test_where_nobody_listens_the_client_is_sent_away_and_the_tap_stays(taps) -> None:
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        port = server.getsockname()[1]
+    port = free_port()
     tap = taps(at(), at(port))
     for _ in range(2):
-        with socket.create_connection(tap.bound, 10) as client, suppress(ConnectionError):
+        with socket.create_connection(tap.bound, 60) as client, suppress(ConnectionError):
             assert client.recv(10) == b""
     with (
         socket.create_server(("127.0.0.1", port)) as server,
-        socket.create_connection(tap.bound, 10),
+        socket.create_connection(tap.bound, 60),
     ):
-        server.settimeout(10)
+        server.settimeout(60)
         server.accept()[0].close()
 
 
@@ -208,7 +208,7 @@ def test_when_the_watch_ends_what_is_connected_goes_on_and_then_the_relay_ends(t
         client.close()
         assert far.recv(10) == b""
         far.close()
-    assert tap.process.wait(10) == 0
+    assert tap.process.wait(60) == 0
 
 
 def test_a_watcher_that_is_killed_ends_nothing() -> None:
@@ -219,7 +219,7 @@ def test_a_watcher_that_is_killed_ends_nothing() -> None:
         "at = lambda p: Address('tcp', '127.0.0.1', p, '')\n"
         "tap = Tap(at(0), at(int(sys.argv[1])))\n"
         "print(tap.bound[1], tap.process.pid, flush=True)\n"
-        "time.sleep(60)\n"
+        "time.sleep(600)\n"
     )
     with socket.create_server(("127.0.0.1", 0)) as server:
         words = [sys.executable, "-c", code, str(server.getsockname()[1])]
@@ -232,11 +232,11 @@ def test_a_watcher_that_is_killed_ends_nothing() -> None:
             watcher.wait()
             time.sleep(0.1)
             far.sendall(b"still\n")
-            client.settimeout(10)
+            client.settimeout(60)
             assert client.recv(100) == b"still\n"
             client.close()
             far.close()
-    deadline = time.monotonic() + 10
+    deadline = time.monotonic() + 60
     while time.monotonic() < deadline:
         try:
             with open(f"/proc/{pid}/stat") as file:
@@ -267,7 +267,7 @@ def test_more_clients_than_there_are_handles_end_no_connection(taps) -> None:
         others = [socket.create_connection(tap.bound) for _ in range(60)]
         time.sleep(0.3)
         with client, far:
-            far.settimeout(10)
+            far.settimeout(60)
             client.sendall(b"one\n")
             assert far.recv(100) == b"one\n"
         for one in others:
@@ -278,7 +278,11 @@ def test_more_clients_than_there_are_handles_end_no_connection(taps) -> None:
 def test_the_relay_has_no_key_of_a_vehicle(taps, monkeypatch) -> None:
     monkeypatch.setenv("CRATOUS_BRIDGE_KEY_3", "00" * 32)
     tap = taps(at(), at(1))
-    assert b"CRATOUS_BRIDGE_KEY_3" not in Path(f"/proc/{tap.process.pid}/environ").read_bytes()
+    limit_s = time.monotonic() + 60
+    # empty until the kernel has set up the new program
+    while not (environment := Path(f"/proc/{tap.process.pid}/environ").read_bytes()):
+        assert time.monotonic() < limit_s
+    assert b"CRATOUS_BRIDGE_KEY_3" not in environment
 
 
 def test_a_flood_does_not_keep_who_watches_from_ending(taps) -> None:
@@ -302,16 +306,17 @@ def test_a_flood_does_not_keep_who_watches_from_ending(taps) -> None:
             for thread in threads:
                 thread.start()
             time.sleep(0.5)
-            most = 0
-            for _ in range(5):
+            most, looks, limit_s = 0, 0, time.monotonic() + 60
+            while looks < 5:
+                assert time.monotonic() < limit_s, "nothing comes"
                 count = 0
                 for one in tap.step():
                     count += len(one.data)
                     time.sleep(0.005)  # it is looked at
                     if count > 8 << 20:
                         break
-                most = max(most, count)
+                most, looks = max(most, count), looks + bool(count)
             over.set()
         for thread in threads:
-            thread.join(10)
+            thread.join(60)
     assert 0 < most <= 1 << 18

@@ -24,10 +24,10 @@ STATE = tp.OwnPosition(1.0, 37.1, -76.4, 300.0, 300.0, 22.0, 0.0, 0.0, vehicle_i
 
 def meet(port: TextPort, opened: list[Any]) -> tuple[socket.socket, int]:
     """A client of the original's, and the key of its connection."""
-    sock = socket.create_connection(port.bound, timeout=10)
+    sock = socket.create_connection(port.bound, timeout=60)
     opened.append(sock)
     sock.sendall(DEFAULT_SECRET.encode())
-    end = time.monotonic() + 30
+    end = time.monotonic() + 60
     while time.monotonic() < end:
         for came in port.step(100.0):
             if isinstance(came.what, Opened):
@@ -70,7 +70,7 @@ def test_a_client_that_is_stopped_is_sent_no_more_than_it_survives_then_cut_off_
 
 def test_one_that_is_slow_gets_every_line(port: TextPort, opened: list[Any]) -> None:
     sock, key = meet(port, opened)
-    sock.settimeout(0.01)
+    sock.settimeout(1)
     got, line = b"", tp.encode(STATE, dialect=tp.Dialect.ORIGINAL)
     for _ in range(1000):
         assert port.send(key, STATE)

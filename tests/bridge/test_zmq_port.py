@@ -36,7 +36,7 @@ class Reports(list):
         return any(text in line for _, line in self)
 
 
-def until(done, *ports, limit_s: float = 10.0):
+def until(done, *ports, limit_s: float = 60.0):
     """Step the ports until `done`; what each has received."""
     got: list[list[tuple[bytes, ...]]] = [[] for _ in ports]
     stop = time.monotonic() + limit_s
@@ -106,15 +106,17 @@ def test_a_slow_subscriber_alone_loses_and_it_is_counted(context: zmq.Context[An
     count, got = 3000, 0
     for k in range(count):
         hub.send((b"%d " % k + bytes(4000),))
-        while got <= k and fast.poll(5000):
+        while got <= k and fast.poll(60_000):
             got += fast.recv()[:1] != b"a"
     assert got == count, "the one that reads gets all"
-    numbers = []
-    while slow.poll(200):
-        numbers.append(slow.recv())
+    numbers, bound = list[bytes](), hub.since_full
+    while (came := slow.recv() if slow.poll(50) else b"") != b"the end":
+        numbers.append(came)
+        if not came:  # it has read all that was on its way, or it is slow to come
+            hub.send((b"the end",))
     missing = count - sum(n[:1].isdigit() for n in numbers)
     assert hub.counts.lost[SLOW] >= 1
-    assert 0 < missing <= hub.since_full < count, "the loss is bounded from above"
+    assert 0 < missing <= bound < count, "the loss is bounded from above"
     assert reports.has(SLOW)
     hub.close()
     assert reports.has("unknown part")
@@ -144,7 +146,7 @@ def test_a_message_of_gigabytes_ends_only_its_own_connection(context: zmq.Contex
     reports = Reports()
     hub = ZmqPort(context, None, end("PULL", "tcp://127.0.0.1:0", True), report=reports)
     port = int(hub.bound(True).rpartition(":")[2])
-    bad = socket.create_connection(("127.0.0.1", port), timeout=10)
+    bad = socket.create_connection(("127.0.0.1", port), timeout=60)
     # the greeting of ZMTP 3.0 with mechanism NULL, READY as PUSH, then a frame of 1.6 GB
     bad.sendall(b"\xff" + bytes(8) + b"\x7f\x03\x00" + b"NULL".ljust(20, b"\0") + bytes(32))
     ready = b"\x05READY" + b"\x0bSocket-Type" + struct.pack(">I", 4) + b"PUSH"
@@ -155,7 +157,7 @@ def test_a_message_of_gigabytes_ends_only_its_own_connection(context: zmq.Contex
     good.send(b"unaffected")
     got = until(lambda got: got[0] and reports.has("gone"), hub)
     assert got[0] == [(b"unaffected",)]
-    bad.settimeout(10)
+    bad.settimeout(60)
     while bad.recv(4096):
         pass  # the end of the connection comes
     bad.close()
@@ -320,7 +322,7 @@ def test_what_was_queued_before_the_start_is_read_when_its_sender_can_hear(
     push = context.socket(zmq.PUSH)
     push.connect(port.bound(True))
     push.send(b"request")
-    assert port._in.poll(5000), "it is there"
+    assert port._in.poll(60_000), "it is there"
     assert port.step(10.0) == []
     assert port.due_s == 10.5
     assert all(sock is not port._in for sock, _ in port.handles()), "or the loop would spin"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import socket
 import time
 from collections.abc import Iterator
 from typing import Any
@@ -12,6 +11,7 @@ import pytest
 import zmq
 from hypothesis import given
 from hypothesis import strategies as st
+from uxas_tools import free_port
 
 from cratous.bridge import zre_wire as wire
 from cratous.bridge.port import Limits
@@ -83,18 +83,12 @@ def test_the_bytes_of_rfc_36() -> None:
         wire.unpack(b"\xaa\xa1\x01\x03\x00\x01")
 
 
-def free_udp_port() -> int:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
-        sock.bind(("127.0.0.1", 0))
-        return int(sock.getsockname()[1])
-
-
 class Net:
     """Nodes on the loopback device with a beacon port of their own."""
 
     def __init__(self) -> None:
         self.context: zmq.Context[Any] = zmq.Context()
-        self.port = free_udp_port()
+        self.port = free_port()
         self.nodes: list[ZreNode] = []
         self.events: dict[str, list[Event]] = {}
         self.reports: list[str] = []

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -52,8 +53,11 @@ def conduct(file: Path, folder: Path, engine: Any, watch: Any = None) -> tuple[s
 
 def _flies(worker: int) -> bool:
     """Whether a worker has begun an attempt: then there is a process that flies."""
-    threads = Path(f"/proc/{worker}/task").iterdir()
-    return any((thread / "children").read_text() for thread in threads)
+    for thread in Path(f"/proc/{worker}/task").iterdir():
+        with suppress(FileNotFoundError, ProcessLookupError):  # a thread that has ended
+            if (thread / "children").read_text():
+                return True
+    return False
 
 
 def test_a_killed_worker_costs_an_attempt_and_no_byte(tmp_path: Path) -> None:

@@ -95,7 +95,7 @@ def test_each_way_to_be_lost_costs_one_attempt_and_is_said(tmp_path: Path) -> No
         "dies": f"die {tmp_path}/dies", "hangs": f"hang {tmp_path}/hangs",
         "eats": f"eat {tmp_path}/eats", "always": "die", "good": "",
     }  # fmt: skip
-    rest = "limits: {time_s: 5, memory_mb: 400, attempts: 2}\n"
+    rest = "limits: {time_s: 15, memory_mb: 400, attempts: 2}\n"
     campaign = load_campaign(written(tmp_path, missions, rest), None, ())
     with here() as engine:
         text, course = conduct(campaign, tmp_path / "out", engine)

@@ -48,12 +48,12 @@ def test_what_assigns_to_its_module_is_not_copied() -> None:
 def waiting() -> bool:
     orient(*CORNERS)
     BEGUN.set()
-    return OTHER_DONE.wait(20)
+    return OTHER_DONE.wait(120)
 
 
 def test_calls_of_other_threads_are_counted_while_a_loop_runs() -> None:
     def work() -> None:
-        BEGUN.wait(20)
+        BEGUN.wait(120)
         for _ in range(100):
             orient(*CORNERS)
         OTHER_DONE.set()

@@ -30,7 +30,7 @@ def soon(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def _until(stream: io.StringIO, text: str) -> None:
     """Wait for the thread; that it never says this is a failure."""
-    end = time.monotonic() + 20
+    end = time.monotonic() + 120
     while text not in stream.getvalue():
         assert time.monotonic() < end, stream.getvalue()
         time.sleep(0.01)

@@ -53,7 +53,7 @@ class Vehicle:
         self.until(lambda: self.port.peers and self.link.there)
 
     def until(self, done: Callable[[], object]) -> list[Reported]:
-        found, limit_s = list[Reported](), time.monotonic() + 20
+        found, limit_s = list[Reported](), time.monotonic() + 60
         while not done():
             assert time.monotonic() < limit_s
             self.got = [inc.parts[0] for inc in self.port.step(time.monotonic())]
@@ -65,7 +65,7 @@ class Vehicle:
             self.port.send((wire.enclose(body.all_names[0], lmcp.binary.pack(body)).pack(),))
 
     def told(self, count: int) -> list[Reported]:
-        found, limit_s = list[Reported](), time.monotonic() + 20
+        found, limit_s = list[Reported](), time.monotonic() + 60
         while len(found) < count:
             assert time.monotonic() < limit_s
             self.port.step(time.monotonic())

@@ -84,9 +84,10 @@ def test_verdicts_so_far_say_when_and_are_unknown_unless_broken(live: Served) ->
     live.order(do="play")
     _flown(live, 100_000)
     live.order(do="pause")
-    now_ms = _stands(live)
+    live.until("paused")
     until_s = time.monotonic() + LIMIT_S
-    while (said := _verdicts(live)).get("so_far_ms") != now_ms:
+    # it says so before it stands: of the instant at which it does come the last verdicts
+    while (said := _verdicts(live)).get("so_far_ms") != _end_ms(live):
         assert time.monotonic() < until_s, said
         time.sleep(0.05)
     rows = {row["requirement"]: row for row in said["requirements"]}
@@ -202,7 +203,7 @@ def test_a_paused_flight_ends_with_a_server_that_was_killed_after_a_command(
         live.process.wait(LIMIT_S)
     finally:
         os.kill(child, signal.SIGCONT)
-    _ended(child, limit_s=10)
+    _ended(child, LIMIT_S)
     assert not (tmp_path / "live").exists()
     assert live.process.stderr is not None
     assert live.process.stderr.read() == ""  # of the flight, too
@@ -270,7 +271,7 @@ def test_a_pace_stands_when_paused_and_says_so_once() -> None:
     thread = threading.Thread(target=fly)
     thread.start()
     assert not flown.wait(0.2)
-    pace.set_rate(2)
+    pace.set_rate(0.25)
     assert not flown.wait(0.2)
     assert stood == [50]
     pace.play()
@@ -279,7 +280,7 @@ def test_a_pace_stands_when_paused_and_says_so_once() -> None:
     pace.step()
     begin_s = time.monotonic()
     pace.wait(50 + STEP_MS, pytest.fail)
-    assert time.monotonic() - begin_s < 0.4  # a step is as fast as it goes
+    assert time.monotonic() - begin_s < 2  # a step is as fast as it goes: at its rate it takes 4 s
 
 
 def _all(live: Served) -> list[dict[str, dict[str, list[object]]]]:

@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 from chromium_tools import READY, Page, browsing
-from ground_station_tools import ask, serving
+from ground_station_tools import LIMIT_S, ask, serving
 
 from cratous.services.cli import main
 from cratous.services.ground_station.tiles import MOST, Tiles, View, seen, tiles_of
@@ -219,7 +219,7 @@ def _pixel(page: Page, x: float, y: float) -> tuple[int, ...]:
 
 def _until_pixel(page: Page, x: float, y: float, wanted: tuple[int, ...]) -> None:
     """Wait until a point of the page has a colour: pictures come one by one."""
-    until_s = time.monotonic() + 20
+    until_s = time.monotonic() + LIMIT_S
     while (got := _pixel(page, x, y)) != pytest.approx(wanted, abs=3):
         assert time.monotonic() < until_s, (got, wanted)
         time.sleep(0.05)

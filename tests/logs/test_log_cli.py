@@ -199,7 +199,7 @@ def test_replay_to_a_client(log: Path) -> None:
         address = replayer.stderr.readline().split()[-1]
         with socket.create_connection(replay.parse_address(address), timeout=900) as client:
             assert len(receive(client, COUNT)) == COUNT
-        assert replayer.wait(60) == 0
+        assert replayer.wait(120) == 0
     finally:
         replayer.kill()
         assert replayer.stderr is not None

@@ -61,10 +61,17 @@ def test_a_keep_out_is_drawn_and_the_mission_planned_anew(page: Page, mission: P
 
 
 def test_a_plan_of_another_page_is_not_shown_as_its_own(page: Page, editor: Served) -> None:
+    # it looks for its plan when the other one has begun
+    page.value(
+        "(ask => { window.held = []; window.ask = ask; window.fetch = async (path, ...more) => {"
+        " if (path === '/planned.json') await new Promise(go => window.held.push(go));"
+        " return ask(path, ...more); }; })(window.fetch)"
+    )
     page.click("#plan")
-    page.until("document.getElementById('plan-state').textContent !== 'Planning: starting'")
+    page.until("window.held.length")
     other = page.value(TEXT).replace("east_m: 2500", "east_m: 2600")
     editor.edit("/plan", text=other)
+    page.value("window.fetch = window.ask; window.held.forEach(go => go())")
     said = "Another page planned its text before this plan was made: plan again."
     page.until(f"document.getElementById('plan-state').textContent === {said!r}")
     page.click("#plan")

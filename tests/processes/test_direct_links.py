@@ -68,7 +68,7 @@ class Flight:
         children.start("uxas", "uxas", "-cfgPath", str(cfg), unproved, private=keys.environment())
         self.connect(ports.recorder)
         self.until(lambda: self.ports[1].peers)
-        group = f"239.255.77.3:{20000 + os.getpid() % 20000}"
+        group = f"239.255.77.3:{free_port()}"
         for vid in ids:
             private = keys.of(vid).environment()
             more = ("--direct", group) if direct else ()
@@ -161,7 +161,7 @@ def test_a_flight_gives_each_icarous_the_group_and_all_direct_keys_and_uxas_none
     root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     mission = load(root / "examples/crossing/mission.yaml")
-    where = address(f"udp://239.255.77.5:{20000 + os.getpid() % 20000}", ("udp",))
+    where = address(f"udp://239.255.77.5:{free_port()}", ("udp",))
     links = direct_links(where, mission.instances)
     started, had = dict[str, tuple[str, ...]](), dict[str, dict[str, str]]()
     how: Any = SimpleNamespace(

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import fcntl
 import socket
+import struct
+import termios
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
 
 import pytest
 
@@ -22,6 +25,7 @@ from cratous.services.processes.failing_bridge import FailingBridge
 from cratous.spec.mission.bridge_faults import BridgeFaults
 
 BEAT_MS = 500
+LIMIT_S = 60.0
 KEYS = {1: bytes(range(32))}
 VELOCITY = encode(SetVelocity(1.0, 2.0, 0.0))
 
@@ -39,14 +43,21 @@ class Wire:
 
     def opened(self) -> tuple[socket.socket, socket.socket]:
         """A new connection from end to end, or one that is refused: its far end is then not there."""
-        near = socket.create_connection(("127.0.0.1", self.bridge.ports[1]))
-        near.settimeout(5)
-        self.bridge.step(self.now_ms, self.flies)
-        try:
-            far, _ = self.server.accept()
-        except TimeoutError:
+        near, far = socket.create_connection(("127.0.0.1", self.bridge.ports[1])), None
+        near.settimeout(0.01)
+
+        def answered() -> bool:
+            nonlocal far
+            with suppress(TimeoutError):
+                far, _ = self.server.accept()
+                return True
+            return near.recv(1) == b""  # it is refused by its end
+
+        self.until(answered)
+        near.settimeout(LIMIT_S)
+        if far is None:
             return near, near
-        far.settimeout(5)
+        far.settimeout(LIMIT_S)
         server, client = SealedServer(keys=KEYS), SealedClient(keys=KEYS)
         far.sendall(server.start())
         near.sendall(client.feed(self.line(near)))
@@ -59,7 +70,7 @@ class Wire:
 
     def until(self, done: Callable[[], object]) -> None:
         """Steps of the bridge until something is so."""
-        limit_s = time.monotonic() + 10
+        limit_s = time.monotonic() + LIMIT_S
         while True:
             self.bridge.step(self.now_ms, self.flies)
             with_limit = time.monotonic() < limit_s
@@ -93,8 +104,17 @@ class Wire:
     def steps(self, now_ms: int, times: int = 20) -> None:
         """The time of the flight is that now, and what was said has come to the bridge."""
         self.now_ms = now_ms
+        self._arrives((self.near, self.far))
         for _ in range(times):
             self.bridge.step(now_ms)
+            time.sleep(0.001)
+        inside = self.bridge._connections.get(1)
+        self._arrives([] if inside is None else [source for source, *_ in inside._halves])
+
+    def _arrives(self, ends: Iterable[socket.socket]) -> None:
+        """What was sent from these ends lies at the others, but for what does not go into their buffers."""
+        limit_s = time.monotonic() + 2
+        while any(_on_the_way(end) for end in ends) and time.monotonic() < limit_s:
             time.sleep(0.001)
 
     def there(self, end: socket.socket) -> bytes:
@@ -107,6 +127,13 @@ class Wire:
             return b""
         finally:
             end.settimeout(timeout_s)
+
+
+def _on_the_way(end: socket.socket) -> int:
+    """Bytes that the system still holds at this end."""
+    if end.fileno() < 0:
+        return 0
+    return int(struct.unpack("i", fcntl.ioctl(end, termios.TIOCOUTQ, bytes(4)))[0])
 
 
 @contextmanager
@@ -191,7 +218,7 @@ def test_who_does_not_read_for_too_long_is_cut_off() -> None:
         one.far.sendall(b"POSTN,a1.0,\n" * 100)
         one.steps(1500)
         assert one.there(one.near) == b""
-        one.far.settimeout(5)
+        one.far.settimeout(LIMIT_S)
         one.far.sendall(b"POSTN,a1.0,\n" * 6000)
         one.far.settimeout(0.01)
         one.until(lambda: one.near.recv(1) == b"")

@@ -7,6 +7,7 @@ import json
 import os
 import re
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -20,7 +21,8 @@ from simulator_tools import scenario, waypoint
 from uxas_tools import ended
 
 from cratous.services.cli import main
-from cratous.services.processes.children import Children, ProcessEnded
+from cratous.services.processes import children as children_module
+from cratous.services.processes.children import LOWEST, Children, ProcessEnded, free_port
 from cratous.services.processes.leash import ENDS_WITH
 
 LIMIT_S = 600.0
@@ -33,7 +35,10 @@ def stands(pid: int) -> bool:
     """Whether a process runs, or waits for nobody to ask after it."""
     try:
         return "Z" not in Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
-    except FileNotFoundError:
+    except (
+        FileNotFoundError,
+        ProcessLookupError,
+    ):  # gone before it was opened, or before it was read
         return False
 
 
@@ -68,7 +73,10 @@ def test_one_that_ends_is_named_with_its_exit_code_and_last_lines(tmp_path: Path
 
 
 @pytest.mark.long
-def test_none_stays_not_even_one_that_does_not_listen(tmp_path: Path) -> None:
+def test_none_stays_not_even_one_that_does_not_listen(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(children_module, "GRACE_S", 30.0)  # the other one may be slow to end
     with Children(tmp_path, tmp_path) as children:
         pids = [simulator(children, tmp_path, name) for name in ("one", "two")]
         until(lambda: "listening" in children.said("one") and "listening" in children.said("two"))
@@ -168,6 +176,21 @@ def test_they_are_the_same_program_in_any_folder(
     assert (place / "cratous").samefile(root / "src/cratous")
 
 
+def test_a_free_port_is_none_that_the_system_gives_to_another_program_s_connection() -> None:
+    text = Path("/proc/sys/net/ipv4/ip_local_port_range").read_text()
+    first, last = map(int, text.split())
+    if first <= LOWEST:
+        pytest.skip("the system may choose any port")
+    ports = [free_port() for _ in range(200)]
+    assert not [port for port in ports if first <= port <= last]
+    assert len(set(ports)) > 190, "and hardly ever the one that it gave before"
+    held = socket.create_server(("127.0.0.1", ports[0]))
+    with held, pytest.MonkeyPatch.context() as patch:
+        numbers = iter((ports[0], ports[1]))
+        patch.setattr(children_module, "_unassigned", lambda: next(numbers))
+        assert free_port() == ports[1], "where somebody listens is no free port"
+
+
 @contextlib.contextmanager
 def flying(root: Path, folder: Path, rate: float) -> Iterator[tuple[Any, Path]]:
     """`cratous run --processes` on the crossing, and the file of what it says."""
@@ -222,7 +245,7 @@ def test_asked_to_end_it_leaves_no_process_and_no_results(
     with flying(root, tmp_path, 1) as (running, said):
         pids = pids_once_started(running, said)
         running.send_signal(number)
-        assert running.wait(60) == 128 + number
+        assert running.wait(LIMIT_S) == 128 + number
     assert len(pids) == 4, said.read_text()
     assert not any(map(stands, pids.values()))
     assert not (tmp_path / "out/crossing").exists()

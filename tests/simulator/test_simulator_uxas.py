@@ -18,7 +18,7 @@ from typing import Any
 
 import pytest
 from simulator_tools import DIRECTOR, mission, ordered, scenario, waypoint
-from uxas_tools import Client
+from uxas_tools import Client, free_port
 
 from cratous.bridge import lmcp
 from cratous.bridge.port import Address, address
@@ -197,8 +197,7 @@ def test_a_port_of_a_vehicle_that_the_scenario_does_not_have_is_said(
 
 
 def test_a_port_that_is_taken_leaves_none_open() -> None:
-    with contextlib.closing(socket.create_server(("127.0.0.1", 0))) as free:
-        mine = free.getsockname()
+    mine = "127.0.0.1", free_port()
     with contextlib.closing(socket.create_server(("127.0.0.1", 0))) as taken:
         where, other = (
             address(f"tcp://127.0.0.1:{port}", ("tcp",))

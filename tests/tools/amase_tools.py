@@ -21,7 +21,7 @@ from cratous.bridge.tcp_port import TcpPort
 from cratous.services.processes.amase import Amase, amase_address
 from cratous.services.processes.children import Children, free_port
 
-PATIENCE_S = 60.0
+PATIENCE_S = 120.0
 
 
 def until(done: Callable[[], object]) -> None:
@@ -75,6 +75,7 @@ class Way:
         self._server = socket.create_server(("127.0.0.1", 0))
         self.port, self.met = self._server.getsockname()[1], 0
         self._ends, self._lock = False, threading.Lock()
+        self._ended = list[socket.socket]()
         self._thread = threading.Thread(target=self._run)
         self._thread.start()
 
@@ -88,20 +89,25 @@ class Way:
             for one in select.select([self._server, *self._pairs], (), (), 0.05)[0]:
                 if one is self._server:
                     near, far = one.accept()[0], socket.create_connection(("127.0.0.1", self._to))
-                    self._pairs |= {near: far, far: near}
+                    with self._lock:
+                        self._pairs |= {near: far, far: near}
                     self.met += 1
                     continue
-                data = one.recv(65536)
-                with self._lock:
-                    if data and one not in self._cut:
-                        self._pairs[one].sendall(data)
+                try:
+                    data = one.recv(65536)
+                    with self._lock:
+                        if data and one not in self._cut:
+                            self._pairs[one].sendall(data)
+                except ConnectionError:  # an end that goes with data unread is reset
+                    data = b""
                 if not data:
-                    self._pairs.pop(one)
+                    with self._lock:
+                        self._ended.append(self._pairs.pop(one))
 
     def close(self) -> None:
         self._ends = True
         self._thread.join()
-        for one in (self._server, *self._pairs, *self._pairs.values()):
+        for one in (self._server, *self._pairs, *self._pairs.values(), *self._ended):
             one.close()
 
 
@@ -114,6 +120,8 @@ class Session:
         where = address(f"tcp://127.0.0.1:{self.amase.port}", ("tcp",))
         self.uxas = TcpPort(where, server=False)
         self.states: list[Any] = []
+        self.heard_s = 0.0
+        """When the newest states came [s]."""
         self.passed_on: list[Any] = []
 
     def turn(self) -> None:
@@ -122,7 +130,9 @@ class Session:
             message = wire.parse(one.parts[0])
             self.passed_on.append(lmcp.binary.received(message.payload, message.descriptor)[0])
         heard, _ = self.amase.step(now_s)
-        self.states += [body for body in heard if type(body).__name__ == "AirVehicleState"]
+        came = [body for body in heard if type(body).__name__ == "AirVehicleState"]
+        self.states += came
+        self.heard_s = now_s if came else self.heard_s
 
     def until(self, done: Callable[[], object]) -> None:
         def turned() -> object:

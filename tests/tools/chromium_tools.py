@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 from ground_station_tools import serving
 
-LIMIT_S = 20.0
+LIMIT_S = 120.0
 READY = "!document.getElementById('station')?.hidden && document.querySelector('#aircraft tr')"
 
 
@@ -124,10 +124,10 @@ def browsing(profile: Path) -> Iterator[Page]:
     finally:
         os.close(write)  # a browser whose pipe is closed ends itself
         try:
-            running.wait(20)
+            running.wait(60)
         except subprocess.TimeoutExpired:
             running.kill()
-            running.wait(5)
+            running.wait(60)
         os.close(read)
 
 

@@ -33,7 +33,7 @@ def cluster(
     environment: dict[str, str] | None = None,
     port: int = 0,
 ) -> Iterator[tuple[str, list[subprocess.Popen[str]]]]:
-    """The address of a scheduler; it and its workers, which run in a folder."""
+    """The address of a scheduler; it and its workers, which run in a folder and are all there."""
     with contextlib.ExitStack() as stack:
         head = stack.enter_context(
             process("scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard")
@@ -47,4 +47,7 @@ def cluster(
             stack.enter_context(process(*worker, folder=folder, environment=environment))
             for _ in range(workers)
         ]
+        for hand in hands:  # who comes late may find nothing left to do
+            assert hand.stderr is not None
+            assert any("Registered to:" in line for line in hand.stderr)
         yield address, [head, *hands]

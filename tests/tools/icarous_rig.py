@@ -31,7 +31,7 @@ class Fake:
         dialect: tp.Dialect = tp.Dialect.CRATOUS,
         host: str = "127.0.0.1",
     ) -> None:
-        self.sock = socket.create_connection((host, port), timeout=5)
+        self.sock = socket.create_connection((host, port), timeout=60)
         self.sock.setblocking(False)
         self.handshake, self.hello, self.ended = ClientHandshake(), hello, False
         self.dialect = dialect

@@ -14,16 +14,12 @@ from typing import Any
 from cratous.bridge import envelope as wire
 from cratous.bridge import lmcp, sentinel
 from cratous.services.loading.uxas_settings import read
+from cratous.services.processes.children import free_port as free_port
 from cratous.services.uxas.logs import Logs
 from cratous.services.uxas.process import Process
 
 HEAD = '<UxAS FormatVersion="1.0" EntityID="{}" EntityType="Aircraft" {}>\n'
 LIMIT_S = 120.0
-
-
-def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as probe:
-        return int(probe.getsockname()[1])
 
 
 def write_cfg(folder: Path, body: str, root: str = "", entity: int = 100) -> Path:
@@ -62,7 +58,7 @@ class Client:
         while True:
             assert of is None or of.poll() is None, f"it has ended with {of.returncode}"
             try:
-                self.sock = socket.create_connection(("127.0.0.1", port), timeout=5)
+                self.sock = socket.create_connection(("127.0.0.1", port), timeout=60)
                 break
             except OSError:
                 assert time.monotonic() < end, "nobody listens"
@@ -117,10 +113,10 @@ def ended(running: subprocess.Popen[Any]) -> Any:
         if running.poll() is None:
             running.terminate()
         try:
-            running.wait(20)
+            running.wait(60)
         except subprocess.TimeoutExpired:
             running.kill()
-            running.wait(5)
+            running.wait(60)
 
 
 @contextlib.contextmanager

@@ -109,7 +109,7 @@ def test_the_command_speaks_it_and_another_dialect_is_refused_on_both_ends(
     cfg, sim_port, ics_port = flight.configuration(tmp_path, more)
     with flight.command(tmp_path, "uxas", "-cfgPath", str(cfg)):
         flight.listening(tmp_path)
-        with flight.icarous(tmp_path, ics_port, "--wait", "2", "--log", "wrong") as wrong:
+        with flight.icarous(tmp_path, ics_port, "--wait", "5", "--log", "wrong") as wrong:
             assert wrong.wait(120) == 3
         reason = "line of another dialect: thesis is spoken here"
         assert f"the other end refuses: {reason}" in flight.said(tmp_path)
@@ -127,7 +127,7 @@ def test_the_command_speaks_it_and_another_dialect_is_refused_on_both_ends(
                     break
             assert own.steered, flight.said(tmp_path)
             pilot.terminate()
-            assert pilot.wait(20) == 0
+            assert pilot.wait(120) == 0
 
 
 @pytest.mark.parametrize("other", ["--original", "--v2", "--plain"])

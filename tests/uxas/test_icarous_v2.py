@@ -32,7 +32,7 @@ class Sealed:
 
     def __init__(self, rig: Rig) -> None:
         self.rig, self.handshake = rig, SealedClient(keys=KEYS.by_vehicle)
-        self.sock = socket.create_connection(("127.0.0.1", rig.port), timeout=5)
+        self.sock = socket.create_connection(("127.0.0.1", rig.port), timeout=60)
         rig.opened.append(self.sock)
         self.sock.setblocking(False)
         rig.until(self._opened)
@@ -110,7 +110,7 @@ def test_many_forged_modes_are_told_seldom_and_counted_all(rig: Rig) -> None:
 
 
 def test_a_peer_without_a_key_is_refused_whatever_it_says(opened: list[Any], rig: Rig) -> None:
-    peer = socket.create_connection(("127.0.0.1", rig.port), timeout=5)
+    peer = socket.create_connection(("127.0.0.1", rig.port), timeout=60)
     opened.append(peer)
     peer.sendall(b"0" * 64 + tp.encode(tp.Hello(1)) + tp.encode(tp.SetMode("ACTIVE", 1)))
     rig.until(lambda: rig.said.has("another dialect than v2"))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import socket
 from pathlib import Path
 from typing import Any
 
@@ -287,9 +286,7 @@ def test_impact_bridges_speak_two_parts(tmp_path: Path, opened: list[Any]) -> No
 def test_zyre_bridges_find_each_other_and_tell_who_joins_and_leaves(
     tmp_path: Path, opened: list[Any]
 ) -> None:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        beacon = probe.getsockname()[1]
+    beacon = free_port()
     bridge = (
         '<Bridge Type="LmcpObjectNetworkZeroMqZyreBridge" NetworkDevice="lo" BeaconPort="{}">'
         '<SubscribeToExternalMessage MessageType="{}"/></Bridge>'

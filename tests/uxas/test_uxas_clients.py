@@ -146,18 +146,18 @@ def test_a_request_without_a_response_is_answered_in_time_and_strays_do_not_end_
     one, said, client = joined(tmp_path, opened, 'Trust="TRUE"', slow)
     send_one_vehicle_and_its_task(client, shared)
     until(lambda: "TaskInitialized" in client.kinds(), one)
+    times: dict[str, int] = {}
+    one.bus.tap(lambda e: times.setdefault(e.topic.rpartition(".")[2], e.time_ms))
     number = next(n for n, name in one.manager.services.items() if name == "PlanBuilderService")
     client.send(lmcp.new("KillService", ServiceID=number))
     request = lmcp.new("AutomationRequest", EntityList=[400], TaskList=[1000])
     client.send(request)
-    until(lambda: one.bus.state("AutomationRequestValidatorService").work == 1, one)
-    begun_ms = one.bus.now_ms
     for _ in range(9):
         client.send(lmcp.new("TaskPlanOptions", CorrespondingAutomationRequestID=77, TaskID=1000))
         client.send(lmcp.new("AssignmentCostMatrix", CorrespondingAutomationRequestID=77))
         client.send(lmcp.new("UniqueAutomationResponse", ResponseID=77))
     until(lambda: "AutomationResponse" in client.kinds(), one)
-    assert one.bus.now_ms - begun_ms >= 500
+    assert times["AutomationResponse"] - times["UniqueAutomationRequest"] >= 1000
     assert one.bus.state("AutomationRequestValidatorService").work == 0
     reasons = [p.Value for p in client.wait("AutomationResponse").Info]
     assert reasons == ["no response within MaxResponseTime_ms = 1000"]
