@@ -10,7 +10,14 @@ from typing import Any, NamedTuple
 from cratous.bridge.port import Address, address
 from cratous.bridge.text_protocol.dialects import Dialect
 from cratous.bridge.text_protocol.keys import Keys, keys_of
+from cratous.core.authority.link_loss import FINISH
 from cratous.services.icarous_communication.listeners import FORMS, Dialects, Door, form_of
+from cratous.services.icarous_communication.unheard import (
+    AFTER_MS,
+    CHOICES,
+    IN_HAND,
+    LostLink,
+)
 from cratous.services.loading.uxas_settings import Attr, Entry, choice, flag, number, whole
 from cratous.spec.errors import BadInput
 
@@ -31,6 +38,8 @@ ATTRIBUTES: Mapping[str, Attr] = {
     "PlainBeyondLoopback": flag(False),
     "RouteTimeout_s": number(2.0, 0.1, 600.0),
     "UseUxasRoutePlanner": flag(False),
+    "LostLink": choice("", "", *CHOICES),
+    "LostLinkAfter_s": number(AFTER_MS / 1000, 1.0, 3600.0),
 }
 DEVIATION_M = 500.0
 """Deviation from its leg at which a vehicle's tasks are paused during avoidance [m]."""
@@ -47,7 +56,8 @@ class Settings(NamedTuple):
     to connect to instead, one per instance; keys: of the vehicles, set for v2; ids: vehicles, () for the
     lowest known; wait_s: for the instances [s]; dialect: of the peers, also of the lines inside v2's
     packets; planner: RoutePlannerUsed, -1 for UxAS's own; answer_s: limit for a route [s]; live: ICAROUS
-    may request a way back from UxAS during a takeover; others: addresses for other dialects.
+    may request a way back from UxAS during a takeover; others: addresses for other dialects; lost: what is
+    flown while an instance is not heard.
     """
 
     instances: int
@@ -62,6 +72,7 @@ class Settings(NamedTuple):
     answer_s: float = 2.0
     live: bool = False
     others: tuple[Door, ...] = ()
+    lost: LostLink = IN_HAND
 
     @property
     def doors(self) -> tuple[Door, ...]:
@@ -112,8 +123,11 @@ def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
         )
         raise entry.refusal("peers that cannot ask UxAS", item, expected, dialect.value)
     routes = v["RoutePlannerUsed"], v["RouteTimeout_s"], live
+    asked = CHOICES.get(v["LostLink"])
+    after_ms = round(1000 * v["LostLinkAfter_s"])
+    lost = LostLink(FINISH if asked is None else asked, after_ms, in_hand=asked is None)
     return Settings(
-        count, deviation_m, where, ids, v["Timeout_s"], dialect, to, keys, *routes, others
+        count, deviation_m, where, ids, v["Timeout_s"], dialect, to, keys, *routes, others, lost
     )
 
 

@@ -16,7 +16,7 @@ from cratous.services.exporting.uxas import (
     messages_text,
 )
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import LivePlanningMission, Mission
+from cratous.spec.mission import Mission
 
 SCENARIO = "scenario.xml"
 SETS_OUT_S = 0.45
@@ -80,7 +80,7 @@ def write_configuration(
         communication |= {"Dialect": "original", "Timeout_s": str(CLIENTS_S)}
     else:  # the keys are in the environment
         communication |= {"Dialect": "v2"}
-    if isinstance(mission, LivePlanningMission):
+    if mission.live_planning:
         if original:
             raise BadInput(
                 "the original's clients cannot ask UxAS",

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import NamedTuple
 
+from cratous.spec.mission.bridge_times import USUAL, BridgeTimes
 from cratous.spec.mission.camera import Camera as Camera
 from cratous.spec.mission.guidance import Guidance
 from cratous.spec.mission.link_loss import LandingSite, WithoutLink
@@ -372,6 +373,16 @@ class Mission:
         """What is flown while UxAS is not heard; None: not specified."""
         return self.daa.link_loss if isinstance(self.daa, LinkLossDaa) else None
 
+    @property
+    def bridge_times(self) -> BridgeTimes:
+        """How long the link may be silent, and a vehicle may circle without it."""
+        return self.bridge if isinstance(self, TimedBridgeMission) else USUAL
+
+    @property
+    def live_planning(self) -> bool:
+        """Whether an ICAROUS that commands its vehicle may ask UxAS for a path back."""
+        return isinstance(self, LivePlanningMission) and self.uxas_route_planner
+
     def vehicle(self, vehicle_id: int) -> Vehicle:
         """The vehicle with this id; KeyError if there is none."""
         for vehicle in self.vehicles:
@@ -392,3 +403,11 @@ class LivePlanningMission(Mission):
     """A mission in which UxAS plans in flight: an ICAROUS that commands its vehicle may request a path back."""
 
     uxas_route_planner: bool = True
+
+
+@dataclass(frozen=True)
+class TimedBridgeMission(LivePlanningMission):
+    """A mission with other times of the bridge than the usual ones."""
+
+    uxas_route_planner: bool = False
+    bridge: BridgeTimes = USUAL

@@ -154,7 +154,9 @@ def main() -> int:
             )
             return 1
         if lost := unaccounted(data, dialect is None, records, refused):
-            print(f"seed {asked.seed}, after {number:,} lines: {lost} lines unaccounted for: {data!r}")
+            print(
+                f"seed {asked.seed}, after {number:,} lines: {lost} lines unaccounted for: {data!r}"
+            )
             return 1
         counts.update("read" if isinstance(one, Message) else type(one).__name__ for one in records)
         counts["packets refused"] += len(refused)
