@@ -17,6 +17,7 @@ from cratous.services.exporting.uxas import (
 )
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission
+from cratous.spec.mission.bridge_times import USUAL
 
 SCENARIO = "scenario.xml"
 SETS_OUT_S = 0.45
@@ -76,6 +77,11 @@ def write_configuration(
         "DeviationAllowed": "0",
         "DeviationOrigin": "path",
     }
+    if mission.link_loss is not None:
+        communication["LostLink"] = mission.link_loss.choice.value
+        communication["LostLinkAfter_s"] = f"{mission.link_loss.after_ms / 1000:g}"
+    elif mission.bridge_times != USUAL:
+        communication["LostLinkAfter_s"] = f"{mission.bridge_times.lost_link_after_ms / 1000:g}"
     if original:
         communication |= {"Dialect": "original", "Timeout_s": str(CLIENTS_S)}
     else:  # the keys are in the environment
