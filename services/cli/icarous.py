@@ -216,7 +216,7 @@ def craft_of(path: Path, vehicle_id: int, dialect: Dialect, digest: str | None =
         )
     if mission.link_loss is not None and mission.link_loss.choice.value not in CHOICES:
         raise BadInput(
-            "without the link UxAS's end of the bridge flies no way to a place and no landing",
+            "without the link UxAS's end of the bridge flies no landing",
             where=str(path),
             item="link_loss.choice",
             expected=f"{' or '.join(CHOICES)}, or cratous run without --processes",

@@ -80,7 +80,8 @@ class Craft:
     configuration: AirVehicleConfiguration; body, air: newest AirVehicleState and its motion in the plane;
     plan: in force; away: set while it does not fly it; holds: commanded to hold because its ICAROUS is not
     heard; handed: just handed back, so late steering of ICAROUS is expected; waiting: mission received
-    meanwhile; loss: its lost-link procedure.
+    meanwhile; loss: its lost-link procedure; first: where it was first seen; returns: MissionCommand on which
+    it returns without the link.
     """
 
     configuration: Any = None
@@ -92,6 +93,8 @@ class Craft:
     handed: bool = False
     waiting: Any = None
     loss: Loss = NO_LOSS
+    first: Position | None = None
+    returns: Any = None
 
     @property
     def listed(self) -> tuple[int, ...]:

@@ -13,7 +13,6 @@ from typing import Any
 
 from cratous.bridge.text_protocol import GoToWaypoint, Heartbeat, Hello, Message, SetMode
 from cratous.core.authority.gate import ICAROUS, UXAS, gate_accepts, gate_after
-from cratous.core.authority.link_loss import LOITER
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import Motion
 from cratous.services.flight.dynamics import AirState
@@ -35,7 +34,7 @@ from cratous.services.flight.messages import (
     Watch,
     ZonesKnown,
 )
-from cratous.services.icarous_communication import modes, unheard
+from cratous.services.icarous_communication import modes, returning, unheard
 from cratous.services.icarous_communication.holding import (
     Sender,
     about_tasks,
@@ -44,7 +43,6 @@ from cratous.services.icarous_communication.holding import (
     held,
     hold,
     missions_at_gate,
-    off_plan,
     taken_over,
 )
 from cratous.services.icarous_communication.listeners import Dialects
@@ -217,6 +215,8 @@ class Communication:
         vid, craft = int(command.VehicleID), state.craft(command.VehicleID)
         if not command.WaypointList:
             return ended(state, vid, self.dialects.of(vid))
+        if returning.is_part(command, craft):
+            return state, by_uxas(self.sender, state, vid, command)
         if craft.away is not None:
             text = f"vehicle {vid}: a mission has come while ICAROUS has it, and waits for the handback"
             come = by_uxas(self.sender, state, vid, command)
@@ -252,7 +252,8 @@ class Communication:
         state, out = self._framed(state, body.Location)
         assert state.frame is not None
         air = air_state(body, plane(state.frame))
-        craft = replace(state.craft(vid), body=body, air=air, handed=False)
+        craft = state.craft(vid)
+        craft = replace(craft, body=body, air=air, handed=False, first=craft.first or air.position)
         if craft.plan is not None and craft.away is None:
             settled = lasted(craft.plan.since_ms, now_ms, SETTLES_MS)
             craft = replace(craft, plan=shown(craft.plan, body.CurrentWaypoint, settled))
@@ -344,7 +345,9 @@ class Communication:
         """What a vehicle is sent after a handback."""
         craft = state.craft(vid)
         away, plan, air = craft.away, craft.plan, craft.air
-        state = state.put(vid, replace(craft, away=None, holds=False, handed=True, waiting=None))
+        state = state.put(
+            vid, replace(craft, away=None, holds=False, handed=True, waiting=None, returns=None)
+        )
         if craft.waiting is not None:
             state = state.put(vid, replace(state.craft(vid), plan=None))
             state, out = self._in_force(state, vid, craft.waiting, now_ms)
@@ -356,7 +359,7 @@ class Communication:
         sent = resumed(plan, away, now, radius_m, state.plane, COMMANDS_FROM + state.commands + 1)
         flown = plan_of(sent.command, state.plane, now_ms, air.position)
         way = leading_back(plan, away, sent, flown)
-        after = replace(craft, away=None, holds=False, handed=True, plan=way)
+        after = replace(craft, away=None, holds=False, handed=True, plan=way, returns=None)
         state = replace(state.put(vid, after), commands=state.commands + 1)
         state, out = self._route(state, vid)
         return state, [Say(sent.command, self.name), *out]
@@ -371,20 +374,14 @@ class Communication:
     def _alone(self, state: State, vid: int, now_ms: int, out: list[Out]) -> Step:
         """Carry out what a vehicle flies while its ICAROUS is not heard."""
         who = self.name, self.procedure
-        state, step, said = unheard.heartbeat(*who, state, vid, now_ms, self.dialects.ours(vid))
-        out = [*out, *said]
-        craft, has = state.craft(vid), unheard.icarous_has(state, vid)
-        if step.act == REJOIN and craft.away is not None and not has:
-            state, onward = self._onward(state, vid, now_ms)
-            out += missions_at_gate(self.sender, state, vid, onward)
-            tasks = craft.away.tasks
-            return state, [*out, *about_tasks(self.sender, "TaskResume", tasks), *onward]
-        if step.loss.mode != LOITER or craft.holds:
-            return state, out
-        if not has:
-            state, paused = off_plan(self.sender, state, vid)
-            out += paused
-        return hold(self.sender, state, vid, out, "its ICAROUS is not heard")
+        state, beat = unheard.heartbeat(*who, state, vid, now_ms, self.dialects.ours(vid))
+        craft, out = state.craft(vid), [*out, *beat.said]
+        if beat.step.act != REJOIN or craft.away is None or unheard.icarous_has(state, vid):
+            state, more = unheard.flown(self.sender, state, vid, beat)
+            return state, [*out, *more]
+        state, onward = self._onward(state, vid, now_ms)
+        out += missions_at_gate(self.sender, state, vid, onward)
+        return state, [*out, *about_tasks(self.sender, "TaskResume", craft.away.tasks), *onward]
 
     def _framed(self, state: State, place: Any) -> Step:
         """The first position received defines the plane; zones received before are then converted."""

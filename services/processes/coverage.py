@@ -85,7 +85,7 @@ def _asked(mission: Mission, original: bool) -> Iterator[tuple[str, bool, str, s
     yield "sensing", sensed, "ICAROUS is given what sensors see", "no sensing"
     loss = mission.link_loss
     unflown = loss is not None and loss.choice.value not in CHOICES
-    what = "UxAS's end of the bridge flies no way to a place and no landing without the link"
+    what = "UxAS's end of the bridge flies no landing without the link"
     yield "link_loss.choice", unflown, what, " or ".join(CHOICES)
     deaf = loss is not None and original
     what = "the original's clients have no heartbeat, so their silence does not show"

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from cratous.core.authority.link_loss import LOITER, OVER
+from cratous.core.authority.link_loss import LOITER, OVER, RETURN
 from cratous.core.authority.timeliness import lasted
 from cratous.core.executive.steps import ends_in_safe_state
 from cratous.services.flight.executive import SAFE_STATE
@@ -20,7 +20,7 @@ LIMIT = "limit"
 class Ending:
     """What has been told. safe_ms: how long a vehicle circles without the link until it is in the safe state [ms];
     complete, failed: tasks, the latter with reasons; away: vehicles that ICAROUS has; circling: vehicles without the
-    link, with since when [ms].
+    link, with since when [ms]; returning: those on their way to the place to circle at.
     """
 
     plan: Plan
@@ -29,6 +29,7 @@ class Ending:
     failed: dict[int, str] = field(default_factory=dict)
     away: set[int] = field(default_factory=set)
     circling: dict[int, int] = field(default_factory=dict)
+    returning: set[int] = field(default_factory=set)
 
     def heard(self, body: Any) -> None:
         """Process a message of UxAS's bus, with times of the mission."""
@@ -38,6 +39,9 @@ class Ending:
         elif kind == "AuthorityChange":
             {"ICAROUS": self.away.add, "UxAS": self.away.discard}[body.Owner.name](body.VehicleID)
         elif kind == "LinkLossState":
+            (self.returning.add if int(body.Mode) == RETURN else self.returning.discard)(
+                body.VehicleID
+            )
             if int(body.Mode) in CIRCLES:
                 self.circling.setdefault(body.VehicleID, body.Time)
             else:
@@ -59,8 +63,8 @@ class Ending:
 
     def outcome(self, now_ms: int, late: bool) -> str:
         """How the mission has ended, "" while it has not. late: the limit is reached."""
-        # one that circles without the link flies its plan no more, whoever has it
-        away = self.away | self.circling.keys()
+        # one that circles or returns without the link flies its plan no more, whoever has it
+        away = self.away | self.circling.keys() | self.returning
         if self.left <= self.failed.keys() and not away:
             in_part = self.asked & {one.task_id for one in in_part_of(self.plan)}
             return "failed" if self.left or in_part else "complete"

@@ -87,6 +87,17 @@ def test_a_link_that_comes_back_begins_the_time_anew(flight: Ending) -> None:
     assert flight.outcome(160_000, late=False) == "safe state", "held by UxAS's own command"
 
 
+def test_one_that_returns_without_the_link_is_waited_for(flight: Ending) -> None:
+    flight.heard(done(1))
+    flight.heard(done(2))
+    flight.heard(alone(1, "Loiter", 10_000))
+    flight.heard(alone(2, "Return", 10_000))
+    assert flight.outcome(100_000, late=False) == ""
+    flight.heard(alone(2, "Over", 100_000))
+    assert flight.outcome(159_999, late=False) == ""
+    assert flight.outcome(160_000, late=False) == "safe state"
+
+
 def test_a_task_that_circles_is_not_complete_for_want_of_others(flight: Ending) -> None:
     """With every task failed or complete, one that circles still ends in the safe state, not complete."""
     flight.heard(done(1))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -15,15 +16,17 @@ from cratous.bridge import lmcp
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.text_protocol.dialects import Dialect
-from cratous.core.authority.link_loss import FINISH, LOITER
+from cratous.core.authority.link_loss import FINISH, LOITER, RETURN
 from cratous.services.flight.messages import Lost, Say
 from cratous.services.icarous_communication import holding
 from cratous.services.icarous_communication.listeners import Dialects
-from cratous.services.icarous_communication.settings import ATTRIBUTES
+from cratous.services.icarous_communication.returning import Place
+from cratous.services.icarous_communication.settings import ATTRIBUTES, Settings, settings_of
 from cratous.services.icarous_communication.state import State
 from cratous.services.icarous_communication.step import Communication
 from cratous.services.icarous_communication.unheard import IN_HAND, LostLink
-from cratous.services.loading.uxas_settings import values_of
+from cratous.services.loading.uxas_settings import Entry, values_of
+from cratous.services.mission.zones import exact_leg_ok
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Position, Zone, ZoneKind
 
@@ -47,8 +50,10 @@ class Flight:
         self.state, out = done
         self.sent += [one.body for one in out if isinstance(one, Say)]
 
-    def fly(self, north_m: float, waypoint: int = 1, tasks: tuple[int, ...] = ()) -> None:
-        craft = Aircraft(1, north_m, 0.0, 0.0)
+    def fly(
+        self, north_m: float, waypoint: int = 1, tasks: tuple[int, ...] = (), east_m: float = 0.0
+    ) -> None:
+        craft = Aircraft(1, north_m, east_m, 0.0)
         craft.waypoint = waypoint
         body = craft.state(self.now_ms).copy(AssociatedTasks=list(tasks))
         self.do(self.step.flown(self.state, body, self.now_ms))
@@ -196,6 +201,117 @@ def test_one_that_is_held_may_be_taken_over_and_comes_back_to_where_it_left_its_
     (command,) = flight.got("MissionCommand")
     places = [PLANE.to_local(w.Latitude, w.Longitude) for w in command.WaypointList]
     assert any(math.dist(place, (500.0, 0.0)) < 20.0 for place in places), places
+
+
+PLACE = Position(1500.0, 2500.0, 350.0)
+RETURNS = LostLink(RETURN, 5_000, False, Place(*PLANE.to_geodetic(*PLACE[:2]), PLACE.alt_m))
+
+
+def points_of(command: Any) -> list[Position]:
+    return [
+        Position(*PLANE.to_local(w.Latitude, w.Longitude), w.Altitude) for w in command.WaypointList
+    ]
+
+
+@pytest.mark.parametrize("blocked", [False, True])
+def test_return_leads_around_the_zones_to_the_place_and_holds_there(blocked: bool) -> None:
+    flight = Flight(RETURNS)
+    flight.say(tp.SetMode("PASSIVE", 0))
+    flight.fly(500.0, 2, (TASK,))
+    ring = [(900.0, 700.0), (900.0, 1700.0), (1100.0, 1700.0), (1100.0, 700.0)]
+    corners = [PLANE.to_geodetic(*corner) for corner in ring]
+    if blocked:
+        flight.do(flight.step.zone(flight.state, keep_out(corners)))
+    flight.wait(20_000)
+    assert flight.modes == [(6500, "Return", "Return", 1000)]
+    assert [p.TaskID for p in flight.got("TaskPause")] == [TASK]
+    (command,) = flight.got("MissionCommand")
+    points = points_of(command)
+    assert points[-1] == pytest.approx(PLACE, abs=0.1)
+    zone = Zone(3, ZoneKind.KEEP_OUT, tuple(ring), 0.0, 1000.0)
+    legs = list(itertools.pairwise([Position(500.0, 0.0, 300.0), *points]))
+    assert all(exact_leg_ok(a, b, zone) for a, b in legs) or not blocked
+    assert not any(w.AssociatedTasks for w in command.WaypointList)
+    assert flight.got("GatedCommand")[-1].Sender.name == "UxAS"
+    # a waypoint manager sends it on as its own: that is no new mission
+    flight.do(flight.step.mission(flight.state, command.copy(CommandID=77), flight.now_ms))
+    assert flight.state.craft(1).waiting is None
+    flight.fly(1500.0, 2, east_m=2480.0)
+    flight.wait(21_000)
+    assert [mode[1] for mode in flight.modes] == ["Return", "Over"]
+    assert len(flight.holds) == 1
+    flight.say(tp.Heartbeat(2, 30.0))
+    assert [mode[1] for mode in flight.modes] == ["Return", "Over", "Linked"]
+    places = points_of(flight.got("MissionCommand")[-1])
+    assert any(math.dist(place[:2], (500.0, 0.0)) < 20.0 for place in places), places
+
+
+def test_return_without_a_place_leads_to_where_it_was_first_seen() -> None:
+    flight = Flight(RETURNS._replace(to=None))
+    flight.say(tp.SetMode("PASSIVE", 0))
+    flight.fly(2500.0, 2)
+    flight.wait(20_000)
+    (command,) = flight.got("MissionCommand")
+    assert points_of(command)[-1] == pytest.approx((-300.0, 0.0, 300.0), abs=0.1)
+
+
+def test_where_no_way_leads_to_the_place_it_holds() -> None:
+    flight = Flight(RETURNS)
+    flight.say(tp.SetMode("PASSIVE", 0))
+    flight.fly(500.0, 2)
+    north, east = PLACE[:2]
+    ring = [(north + a, east + b) for a, b in ((-300, -300), (-300, 300), (300, 300), (300, -300))]
+    flight.do(flight.step.zone(flight.state, keep_out([PLANE.to_geodetic(*c) for c in ring])))
+    flight.wait(20_000)
+    assert [mode[1] for mode in flight.modes] == ["Loiter"]
+    assert (flight.got("MissionCommand"), len(flight.holds)) == ([], 1)
+
+
+def test_one_that_icarous_has_does_not_return() -> None:
+    flight = Flight(RETURNS)
+    flight.say(tp.SetMode("ACTIVE", 1))
+    flight.fly(500.0, 2)
+    flight.wait(20_000)
+    assert [mode[1] for mode in flight.modes] == ["Loiter"]
+    assert (flight.got("MissionCommand"), len(flight.holds)) == ([], 1)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"LostLink": "return", "LostLinkTo": "45.0 -121.0"},
+        {"LostLink": "return", "LostLinkTo": "45.0 -121.0 high"},
+        {"LostLink": "return", "LostLinkTo": "95.0 -121.0 300"},
+        {"LostLink": "return", "LostLinkTo": "45.0 -121.0 inf"},
+        {"LostLink": "loiter", "LostLinkTo": "45.0 -121.0 300"},
+    ],
+)
+def test_a_place_that_is_none_is_refused(given: dict[str, str]) -> None:
+    with pytest.raises(BadInput, match="no place to return to") as wrong:
+        settings({**given})
+    assert "LostLinkTo" in str(wrong.value)
+
+
+@pytest.mark.shows(SERVICE, "LostLinkTo")
+def test_a_place_is_read() -> None:
+    lost = settings({"LostLink": "return", "LostLinkTo": "45.5 -121.25 350"}).lost
+    assert lost == LostLink(RETURN, 30_000, False, Place(45.5, -121.25, 350.0))
+
+
+def settings(given: dict[str, str]) -> Settings:
+    given = {"NumberOfUAVs": "1", "Dialect": "cratous", **given}
+    problems = list[BadInput]()
+    values = values_of(ATTRIBUTES, given, "cfg.xml", SERVICE, problems)
+    assert problems == []
+    return settings_of(Entry("Service", SERVICE, given, (), "cfg.xml"), values)
+
+
+def keep_out(corners: list[tuple[float, float]]) -> Any:
+    points = [lmcp.new("Location3D", Latitude=a, Longitude=b) for a, b in corners]
+    return lmcp.new(
+        "KeepOutZone", ZoneID=3, MaxAltitude=1000.0, MaxAltitudeType="MSL", MinAltitudeType="MSL",
+        Boundary=lmcp.new("Polygon", BoundaryPoints=points),
+    )  # fmt: skip
 
 
 def test_peers_without_heartbeats_are_lost_with_their_connection_only() -> None:
