@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
-from cratous.core.authority.gate import UXAS
+from cratous.core.authority.gate import ICAROUS, UXAS, gate_accepts
 from cratous.core.avoidance.manoeuvre import velocity_of
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.messages import Say
@@ -39,6 +39,12 @@ class Sender(NamedTuple):
 
     name: str
     dialects: Dialects
+
+
+def icarous_has(state: State, vid: int) -> bool:
+    """Whether a vehicle's gate obeys its ICAROUS."""
+    peer = state.link.peer(vid)
+    return peer is not None and gate_accepts(peer.gate, ICAROUS, peer.gate.epoch)
 
 
 def commanded(sender: Sender, state: State, vid: int, action: Any) -> tuple[State, Say]:
@@ -111,7 +117,7 @@ def taken_over(sender: Sender, state: State, vid: int, now_ms: int) -> Step:
 def held(sender: Sender, state: State, vid: int, out: list[Out]) -> Step:
     """Let a vehicle hold while ICAROUS has it but is not heard."""
     peer, craft = state.link.peer(vid), state.craft(vid)
-    if peer is None or peer.end.alive or craft.away is None or craft.holds:
+    if peer is None or peer.end.alive or craft.holds or not icarous_has(state, vid):
         return state, out
     return hold(sender, state, vid, out, "its ICAROUS, which has it, is not heard")
 

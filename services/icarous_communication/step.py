@@ -42,6 +42,7 @@ from cratous.services.icarous_communication.holding import (
     commanded,
     held,
     hold,
+    icarous_has,
     missions_at_gate,
     taken_over,
 )
@@ -376,7 +377,7 @@ class Communication:
         who = self.name, self.procedure
         state, beat = unheard.heartbeat(*who, state, vid, now_ms, self.dialects.ours(vid))
         craft, out = state.craft(vid), [*out, *beat.said]
-        if beat.step.act != REJOIN or craft.away is None or unheard.icarous_has(state, vid):
+        if beat.step.act != REJOIN or craft.away is None or icarous_has(state, vid):
             state, more = unheard.flown(self.sender, state, vid, beat)
             return state, [*out, *more]
         state, onward = self._onward(state, vid, now_ms)

@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import NamedTuple
 
-from cratous.core.authority.gate import ICAROUS, gate_accepts
 from cratous.core.authority.link_loss import (
     FINISH,
     LINKED,
@@ -23,7 +22,7 @@ from cratous.core.authority.timeliness import in_time
 from cratous.services.flight.messages import Say
 from cratous.services.flight.notices import link_loss_state
 from cratous.services.icarous.messages import WithoutLink as Alone
-from cratous.services.icarous_communication.holding import Sender, Step, hold, off_plan
+from cratous.services.icarous_communication.holding import Sender, Step, hold, icarous_has, off_plan
 from cratous.services.icarous_communication.returning import Place, is_there, sent, way_to
 from cratous.services.icarous_communication.state import Out, State
 from cratous.spec.authority.link_loss import NOTHING, REJOIN
@@ -62,12 +61,6 @@ class Beat(NamedTuple):
 
 IN_HAND = LostLink()
 """The procedure of a mission that asks for none."""
-
-
-def icarous_has(state: State, vid: int) -> bool:
-    """Whether a vehicle's gate obeys its ICAROUS."""
-    peer = state.link.peer(vid)
-    return peer is not None and gate_accepts(peer.gate, ICAROUS, peer.gate.epoch)
 
 
 def heartbeat(

@@ -20,7 +20,8 @@ LIMIT = "limit"
 class Ending:
     """What has been told. safe_ms: how long a vehicle circles without the link until it is in the safe state [ms];
     complete, failed: tasks, the latter with reasons; away: vehicles that ICAROUS has; circling: vehicles without the
-    link, with since when [ms]; returning: those on their way to the place to circle at.
+    link, with since when [ms]; returning: those on their way to the place to circle at; unheard: those
+    whose ICAROUS UxAS does not hear.
     """
 
     plan: Plan
@@ -30,6 +31,7 @@ class Ending:
     away: set[int] = field(default_factory=set)
     circling: dict[int, int] = field(default_factory=dict)
     returning: set[int] = field(default_factory=set)
+    unheard: set[int] = field(default_factory=set)
 
     def heard(self, body: Any) -> None:
         """Process a message of UxAS's bus, with times of the mission."""
@@ -46,6 +48,8 @@ class Ending:
                 self.circling.setdefault(body.VehicleID, body.Time)
             else:
                 self.circling.pop(body.VehicleID, None)
+        elif kind == "BridgeStatus":
+            (self.unheard.discard if body.Alive else self.unheard.add)(body.VehicleID)
         elif kind == "ServiceStatus":
             said = {pair.Key: pair.Value for pair in body.Info}
             if said.get("TaskID", "").isdigit():

@@ -44,7 +44,7 @@ STARTS_S = 600.0
 """Time limit for starting all processes, which check the proofs first [s]."""
 SILENCE_S = 60.0
 """A simulator whose clock runs counts as stuck without a state for this long [s]; so does UxAS without a message,
-since it reports each heartbeat of an ICAROUS instance."""
+since it reports each heartbeat of an ICAROUS instance, unless it hears none of them."""
 PROGRESS_MS = 10_000
 LIMITS = Limits(waiting_bytes=64 << 20)
 LOOK_S = 0.2
@@ -335,6 +335,9 @@ class _Flight:
                 if self.how.amase is not None and not self.how.amase.flies:
                     # an absent AMASE is waited for; UxAS's clock stands meanwhile
                     self.news_s = dict.fromkeys(self.news_s, time.monotonic())
+                if self.ending.unheard >= set(self.mission.instances):
+                    # UxAS, which reports heartbeats, has none to report
+                    self.news_s[UXAS] = time.monotonic()
                 for name, news_s in self.news_s.items():
                     if is_due(news_s + SILENCE_S, time.monotonic()):
                         raise Stuck(f"{name} has told nothing of the flight for {SILENCE_S:g} s")

@@ -87,6 +87,12 @@ def test_a_link_that_comes_back_begins_the_time_anew(flight: Ending) -> None:
     assert flight.outcome(160_000, late=False) == "safe state", "held by UxAS's own command"
 
 
+def test_whose_icarous_is_not_heard_is_known(flight: Ending) -> None:
+    for vehicle, alive in ((1, True), (1, False), (2, False), (2, True)):
+        flight.heard(lmcp.new("BridgeStatus", VehicleID=vehicle, Alive=alive))
+    assert flight.unheard == {1}
+
+
 def test_one_that_returns_without_the_link_is_waited_for(flight: Ending) -> None:
     flight.heard(done(1))
     flight.heard(done(2))

@@ -139,7 +139,9 @@ def test_without_the_link_uxas_flies_all_but_a_landing(
     assert wrong.value.item == "link_loss"
     told_of(mission)
     cfg = write_configuration(mission, mission.instances, Ports(1001, 1002, 1003), tmp_path)
-    given = next(e.attributes for e in read_cfg(cfg).entries if e.type == "IcarousCommunicationService")
+    given = next(
+        e.attributes for e in read_cfg(cfg).entries if e.type == "IcarousCommunicationService"
+    )
     assert (given["LostLink"], given["LostLinkAfter_s"]) == (choice.value, "7")
     if to is not None:
         lat, long, alt = map(float, given["LostLinkTo"].split())

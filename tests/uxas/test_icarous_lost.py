@@ -224,6 +224,7 @@ def test_return_leads_around_the_zones_to_the_place_and_holds_there(blocked: boo
         flight.do(flight.step.zone(flight.state, keep_out(corners)))
     flight.wait(20_000)
     assert flight.modes == [(6500, "Return", "Return", 1000)]
+    assert flight.holds == [], "it flies there"
     assert [p.TaskID for p in flight.got("TaskPause")] == [TASK]
     (command,) = flight.got("MissionCommand")
     points = points_of(command)
@@ -236,6 +237,9 @@ def test_return_leads_around_the_zones_to_the_place_and_holds_there(blocked: boo
     # a waypoint manager sends it on as its own: that is no new mission
     flight.do(flight.step.mission(flight.state, command.copy(CommandID=77), flight.now_ms))
     assert flight.state.craft(1).waiting is None
+    flight.fly(900.0, 2, east_m=1900.0)
+    flight.wait(20_500)
+    assert flight.holds == []
     flight.fly(1500.0, 2, east_m=2480.0)
     flight.wait(21_000)
     assert [mode[1] for mode in flight.modes] == ["Return", "Over"]
